@@ -57,7 +57,7 @@ fn patch(n: usize) -> Patch {
 }
 
 fn zero_touch(object: &Model) -> Pose {
-    let rest = RestPoses::AsModelled.of(object).swap_remove(0);
+    let rest = RestPoses::AsModelled.poses(object).swap_remove(0);
     let touch = Touch {
         rest: 0,
         offset: [0.0; 2],
@@ -229,8 +229,10 @@ fn touches(c: &mut Criterion) {
             patch: patch(64),
             objects: vec![model],
         };
-        let standing = RestPoses::AsModelled.of(&scene.objects[0]).swap_remove(0);
-        let lying = RestPoses::Stable.of(&scene.objects[0]).swap_remove(0);
+        let standing = RestPoses::AsModelled
+            .poses(&scene.objects[0])
+            .swap_remove(0);
+        let lying = RestPoses::Stable.poses(&scene.objects[0]).swap_remove(0);
         for (rest_name, rest) in [("standing", standing), ("lying", lying)] {
             let pose = |number: usize| {
                 let digit = |place: usize, n: usize| (number / place % n) as f64;

@@ -52,7 +52,9 @@ fn bottle() -> Model {
 
 /// `patch_from_object` at the depth.
 fn pressed(scene: &Scene) -> Pose {
-    let rest = RestPoses::AsModelled.of(&scene.objects[0]).swap_remove(0);
+    let rest = RestPoses::AsModelled
+        .poses(&scene.objects[0])
+        .swap_remove(0);
     let touch = Touch {
         rest: 0,
         offset: [0.0; 2],

@@ -17,7 +17,7 @@ use bubbletouch::recognition::features::{
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, choose};
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::recognition::svm::{Multiclass, SvmParams};
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, SignalStep, SignalWorkspace};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec, draw_touches, load_objects};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -272,7 +272,7 @@ fn touch_to_answer(criterion: &mut Criterion) {
         let classifier = classifier
             .train(&set.training(None).unwrap(), &Seed::new(1))
             .unwrap();
-        let (mut press, mut scratch) = (contact::Workspace::new(), Scratch::default());
+        let (mut press, mut scratch) = (contact::Workspace::new(), SignalWorkspace::default());
         let (mut workspace, mut frame) = (Workspace::default(), vec![0.0; array.n_taxels()]);
         let mut row = Array2::zeros((1, join.n_values(array.shape())));
         let mut next = 0;

@@ -4,7 +4,7 @@ use bubbletouch::random::Seed;
 use bubbletouch::sensing::{
     Basis, Dictionary, Effort, Ensemble, Projection, Reconstructor, SensedDictionary, Solver,
 };
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, SensorError, SignalStep, SignalWorkspace};
 use bubbletouch::world::{Grid, Patch, Taxel};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ndarray::Array2;
@@ -75,7 +75,7 @@ fn signal(criterion: &mut Criterion) {
         ("quantisation", SensorError::Quantisation.step(&[8.0], skin)),
     ] {
         let chain = Chain::new(&[step], &patch).expect("the step is valid");
-        let (mut frame, mut scratch) = (vec![1e-3; SIDE * SIDE], Scratch::default());
+        let (mut frame, mut scratch) = (vec![1e-3; SIDE * SIDE], SignalWorkspace::default());
         let mut touch = 0;
         group.bench_function(name, |bencher| {
             bencher.iter(|| {

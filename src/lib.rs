@@ -19,7 +19,7 @@
 //! use bubbletouch::report::pressure_map::pressure_text;
 //! use bubbletouch::report::terminal::Ink;
 //! use bubbletouch::sensing::{Ensemble, Projection};
-//! use bubbletouch::signal::{Chain, Noise, NoiseUnit, Quantity, Scratch, SignalStep};
+//! use bubbletouch::signal::{Chain, Noise, NoiseUnit, Quantity, SignalWorkspace, SignalStep};
 //! use bubbletouch::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel, touches};
 //! use ndarray::Array2;
 //!
@@ -43,7 +43,7 @@
 //!     depth: Spread::Values(vec![3e-3]),
 //!     per_object: None,
 //! };
-//! let rests = placement.rest.of(&mug.model);
+//! let rests = placement.rest.poses(&mug.model);
 //! let seed = Seed::new(2018).named("mug");
 //! let all = touches(&placement, &rests, &seed)?;
 //! assert_eq!(all.len(), 5);
@@ -63,7 +63,7 @@
 //! let noise = Noise { std: 0.05, unit: NoiseUnit::FullScale };
 //! let steps = [SignalStep::Noise(noise), SignalStep::Smoothing { width: 4e-3 }];
 //! let chain = Chain::new(&steps, &patch)?;
-//! chain.apply(&mut frame, None, &seed.numbered(2), &mut Scratch::default());
+//! chain.apply(&mut frame, None, &seed.numbered(2), &mut SignalWorkspace::default());
 //!
 //! // 64 measurements instead of 1,024 numbers.
 //! let projection = Projection::new(Ensemble::Gaussian, (grid.ny, grid.nx), 64, &seed)?;

@@ -25,10 +25,10 @@ pub use crate::studies::recognition::exports::touch_files::{
     ReadFrames, TOUCH_FILES, touch_units, write_human_touches, write_touches,
 };
 pub use crate::studies::recognition::frames::array_press::{ArrayPress, ArrayWorkspace};
+pub use crate::studies::recognition::frames::frame_store::{FrameFacts, Frames};
 pub use crate::studies::recognition::frames::human_touches::{
     HumanTouches, RecordedTouch, record_touch,
 };
-pub use crate::studies::recognition::frames::kept::{FrameFacts, Frames};
 pub use crate::studies::recognition::frames::recorded_frames::RecordedFrames;
 pub use crate::studies::recognition::frames::recorded_skin::{RecordedSkinFiles, UntouchedFrames};
 pub use crate::studies::recognition::frames::samples::sample_frames;

@@ -11,7 +11,7 @@ use bubbletouch::recognition::data::dataset::dataset;
 use bubbletouch::recognition::svm::SvmParams;
 use bubbletouch::recognition::svm::kernel::{Gamma, Kernel};
 use bubbletouch::sensing::{Ensemble, Projection};
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, SensorError, SignalStep, SignalWorkspace};
 use bubbletouch::study::write_npy;
 use bubbletouch::world::{Grid, Layout, Patch, Taxel};
 use bubbletouch::{Error, Result};
@@ -117,7 +117,7 @@ fn after_presses(folder: &Path, patch: &Patch, mut frames: Array2<f64>) -> Resul
         SensorError::Quantisation.step(&[10.0], skin),
     ];
     let chain = Chain::new(&steps, patch)?;
-    let (touches, mut scratch) = (Seed::new(2018), Scratch::default());
+    let (touches, mut scratch) = (Seed::new(2018), SignalWorkspace::default());
     for (number, mut frame) in frames.outer_iter_mut().enumerate() {
         let frame = frame.as_slice_mut().expect("rows are whole");
         chain.apply(frame, None, &touches.numbered(number as u64), &mut scratch);

@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Maximum number of items that a thread takes at once. If larger, threads finish at different times; if smaller, they wait for each other more often.
-const MOST_AT_ONCE: usize = 16;
+const MAX_AT_ONCE: usize = 16;
 /// Minimum number of items per thread; fewer items are not worth the time of waking a thread, 5 to 50 µs.
 const LEAST_PER_THREAD: usize = 4;
 
@@ -29,7 +29,7 @@ pub fn n_threads(asked: Option<i64>) -> PyResult<Option<usize>> {
     }
 }
 
-/// Scratch memory reused by successive calls.
+/// SignalWorkspace memory reused by successive calls.
 pub struct Spare<S>(Mutex<Vec<S>>);
 
 impl<S> Spare<S> {
@@ -87,7 +87,7 @@ pub fn for_each<T: Send, S: Send>(
         let n_threads = threads
             .unwrap_or_else(|| pool.current_num_threads())
             .min(most);
-        let at_once = (n_items / (4 * n_threads)).clamp(1, MOST_AT_ONCE);
+        let at_once = (n_items / (4 * n_threads)).clamp(1, MAX_AT_ONCE);
         let queue = Mutex::new(items.into_iter().enumerate());
         let failed: Mutex<Option<(usize, PyErr)>> = Mutex::new(None);
         let is_over = AtomicBool::new(false);

@@ -105,7 +105,7 @@ impl Solid {
         guarded(|| {
             let solid = self.0.solid.clone();
             let packed = aside(py, move |_| solid.pack(tolerance))?;
-            Ok(SphereUnion::of(packed.map_err(exception)?))
+            Ok(SphereUnion::from_spheres(packed.map_err(exception)?))
         })
     }
 

@@ -70,7 +70,7 @@ impl Contacts {
     ///
     /// # Errors
     /// Returns only errors of Python.
-    pub fn of(py: Python, mut poses: Vec<(usize, OfPose)>) -> PyResult<Self> {
+    pub fn from_poses(py: Python, mut poses: Vec<(usize, OfPose)>) -> PyResult<Self> {
         poses.sort_unstable_by_key(|(number, _)| *number);
         let all: Vec<(usize, &TaxelContact, DVec3)> = poses
             .iter()

@@ -22,7 +22,7 @@ impl Goal {
     ///
     /// # Errors
     /// If two amounts are given, an amount is not a number, or a depth is negative.
-    pub fn of(
+    pub fn from_arguments(
         depth: Option<&Bound<PyAny>>,
         travel: Option<&Bound<PyAny>>,
         force: Option<&Bound<PyAny>>,

@@ -19,8 +19,8 @@ pub fn _kernel_pace(
     depth: &Bound<PyAny>,
     seconds: f64,
 ) -> PyResult<f64> {
-    let poses = Poses::of("poses", poses)?.poses;
-    let goal = Goal::of(Some(depth), None, None)?;
+    let poses = Poses::from_argument("poses", poses)?.poses;
+    let goal = Goal::from_arguments(Some(depth), None, None)?;
     goal.check(poses.len())?;
     let (patch, model) = (patch.get().inner(), model_of("object", object)?);
     py.detach(|| {

@@ -144,7 +144,7 @@ impl Mesh {
             let packed = packed.map_err(|error| error_of_file(error, &self.place, ADVICE));
             let packed = packed.map_err(exception)?;
             self.warn_if_turned(py, &orientation)?;
-            Ok(SphereUnion::of(packed.spheres))
+            Ok(SphereUnion::from_spheres(packed.spheres))
         })
     }
 
@@ -153,7 +153,7 @@ impl Mesh {
         guarded(|| {
             let vertices = self.triangle_mesh().vertices();
             let spheres = vertex_spheres(&self.place, vertices).map_err(exception)?;
-            Ok(SphereUnion::of(spheres))
+            Ok(SphereUnion::from_spheres(spheres))
         })
     }
 

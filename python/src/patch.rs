@@ -32,7 +32,7 @@ pub struct Patch {
 
 impl Patch {
     /// Wraps a patch of the library.
-    pub fn of(patch: world::Patch) -> Self {
+    pub fn from_patch(patch: world::Patch) -> Self {
         let grid = patch.layout().as_grid();
         Self {
             shape: grid.map_or(vec![patch.n_taxels()], |grid| vec![grid.ny, grid.nx]),
@@ -43,7 +43,7 @@ impl Patch {
 
     fn with(layout: Layout, taxels: impl Into<Taxels>) -> PyResult<Self> {
         let patch = world::Patch::new("patch", layout, taxels);
-        Ok(Self::of(patch.map_err(exception)?))
+        Ok(Self::from_patch(patch.map_err(exception)?))
     }
 
     /// Returns the patch of the library.
@@ -99,7 +99,7 @@ impl Patch {
             let grid = Grid { nx, ny, pitch };
             grid.check().map_err(exception)?;
             let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
-            Ok(Self::of(
+            Ok(Self::from_patch(
                 world::Patch::grid(grid, taxel).map_err(exception)?,
             ))
         })
@@ -282,7 +282,7 @@ impl Patch {
     /// Returns a copy moved in the frame of the patch; the copy is not a grid. pose: (7,) or (4, 4).
     fn moved(&self, pose: &Bound<PyAny>) -> PyResult<Self> {
         guarded(|| {
-            let poses = Poses::of("pose", pose)?;
+            let poses = Poses::from_argument("pose", pose)?;
             let [pose] = &poses.poses[..] else {
                 let given = format!("{} poses", poses.poses.len());
                 return Err(bad_input("pose", given, "one pose"));
@@ -431,7 +431,7 @@ impl Patch {
         jacobian: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
-            let goal = crate::goal::Goal::of(depth, travel, force)?;
+            let goal = crate::goal::Goal::from_arguments(depth, travel, force)?;
             crate::press::press(
                 py,
                 crate::press::PatchToPress {

@@ -17,7 +17,7 @@ struct Groups {
 }
 
 impl Groups {
-    fn of(place: &str, given: Option<&Bound<PyAny>>, width: usize) -> PyResult<Self> {
+    fn new(place: &str, given: Option<&Bound<PyAny>>, width: usize) -> PyResult<Self> {
         let Some(given) = given else {
             return Ok(Self {
                 values: vec![0.0; width],
@@ -74,9 +74,9 @@ pub fn touch_poses<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     guarded(|| {
         let model = model_of("object", object)?;
-        let offset = Groups::of("offset", offset, 2)?;
-        let yaw = Groups::of("yaw", yaw, 1)?;
-        let tilt = Groups::of("tilt", tilt, 2)?;
+        let offset = Groups::new("offset", offset, 2)?;
+        let yaw = Groups::new("yaw", yaw, 1)?;
+        let tilt = Groups::new("tilt", tilt, 2)?;
         let many = [&offset, &yaw, &tilt].map(|groups| (!groups.is_one).then_some(groups.len()));
         let mut lengths = many.into_iter().flatten();
         let n = lengths.next();
@@ -89,8 +89,8 @@ pub fn touch_poses<'py>(
             ));
         }
         let mut rests = py.detach(|| match rest {
-            None => RestPoses::AsModelled.of(model),
-            Some(_) => RestPoses::Stable.of(model),
+            None => RestPoses::AsModelled.poses(model),
+            Some(_) => RestPoses::Stable.poses(model),
         });
         let number = usize::try_from(rest.unwrap_or(0)).unwrap_or(usize::MAX);
         if number >= rests.len() {

@@ -25,7 +25,7 @@ impl Poses {
     ///
     /// # Errors
     /// If the shape is wrong, or a pose is not finite or contains no rotation; the error names the pose's number, from 0.
-    pub fn of(place: &str, given: &Bound<PyAny>) -> PyResult<Self> {
+    pub fn from_argument(place: &str, given: &Bound<PyAny>) -> PyResult<Self> {
         let array = numbers(place, given)?;
         let (n_numbers, is_one) = match array.shape() {
             [7] => (7, true),

@@ -69,7 +69,7 @@ pub fn press<'py>(
     threads: Option<i64>,
     wanted: Wanted,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let given = Poses::of("poses", poses)?;
+    let given = Poses::from_argument("poses", poses)?;
     goal.check(given.poses.len())?;
     if wanted.jacobian {
         jacobian::check(goal.kind(), patch.patch)?;
@@ -248,7 +248,7 @@ impl<'py> Batch<'_, 'py> {
             return Ok(None);
         }
         let found = found.into_inner().unwrap_or_default();
-        Contacts::of(py, found).map(Some)
+        Contacts::from_poses(py, found).map(Some)
     }
 }
 

@@ -6,8 +6,8 @@ use crate::errors::{bad_input, exception, guarded};
 use crate::patch::Patch;
 use bubbletouch::random::Seed;
 use bubbletouch::signal::{
-    self, MAX_STRENGTHS, Noise, NoiseUnit, Quantity, Recording, SENSOR_ERRORS, Scratch,
-    SensorError, SignalStep,
+    self, MAX_STRENGTHS, Noise, NoiseUnit, Quantity, Recording, SENSOR_ERRORS, SensorError,
+    SignalStep, SignalWorkspace,
 };
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -147,7 +147,7 @@ pub struct Chain {
     /// Rows and columns of a grid; `None` for other patches.
     sides: Option<[usize; 2]>,
     steps: Vec<Step>,
-    spare: Spare<Scratch>,
+    spare: Spare<SignalWorkspace>,
 }
 
 #[pymethods]
@@ -170,7 +170,7 @@ impl Chain {
                 false => Quantity::Deflection,
             };
             let patch = patch.get().inner();
-            let chain = signal::Chain::of(&prepared, patch, quantity);
+            let chain = signal::Chain::new(&prepared, patch, quantity);
             let grid = patch.layout().as_grid();
             Ok(Self {
                 sides: grid.map(|grid| [grid.ny, grid.nx]),
@@ -206,7 +206,7 @@ impl Chain {
             let mut values = self::frames("frames", frames, n_taxels, self.sides)?;
             let rates = self.rates(rates, values.nrows())?;
             let seed = Seed::new(seed);
-            let work = |number: usize, frame: &mut [f64], scratch: &mut Scratch| {
+            let work = |number: usize, frame: &mut [f64], scratch: &mut SignalWorkspace| {
                 let touch = seed.numbered(first + number as u64);
                 let rates = rates
                     .as_ref()
@@ -217,7 +217,7 @@ impl Chain {
             let rows = values.as_slice_mut().expect("frames are whole");
             let rows = rows.chunks_exact_mut(n_taxels).collect();
             let (threads, spare) = (n_threads(threads)?, &self.spare);
-            for_each(py, rows, threads, spare, Scratch::default, work)?;
+            for_each(py, rows, threads, spare, SignalWorkspace::default, work)?;
             as_given(values.into_pyarray(py).into_any(), shape)
         })
     }
@@ -266,7 +266,7 @@ impl Chain {
                 interval,
                 time,
             };
-            let (touch, mut scratch) = (Seed::new(seed), Scratch::default());
+            let (touch, mut scratch) = (Seed::new(seed), SignalWorkspace::default());
             py.detach(|| self.chain.apply_recording(recording, &touch, &mut scratch));
             let shape = frames.getattr("shape").ok();
             let read = as_given(values.into_pyarray(py).into_any(), shape)?;

@@ -6,7 +6,7 @@ use crate::model::model_of;
 use crate::patch::Patch;
 use crate::poses::{Poses, seven};
 use bubbletouch::geometry::Pose;
-use bubbletouch::scene::{self, Frame, Held, PatchReading, ScenePlan, SceneSpec, Stepping};
+use bubbletouch::scene::{self, Frame, PatchReading, PoseControl, ScenePlan, SceneSpec, Stepping};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -139,7 +139,9 @@ impl Simulation {
     fn patch(&self, name: &str) -> PyResult<Patch> {
         let patches = self.plan.patches.iter();
         let mut patches = patches.filter(|patch| patch.skin.name() == name);
-        let found = patches.next().map(|patch| Patch::of(patch.skin.clone()));
+        let found = patches
+            .next()
+            .map(|patch| Patch::from_patch(patch.skin.clone()));
         found.ok_or_else(|| bad_input("patch", format!("`{name}`"), self.patches().join(", ")))
     }
 
@@ -239,7 +241,7 @@ fn on<T>(
 
 /// Reads one pose `world_from_…`.
 fn one_pose(given: &Bound<PyAny>) -> PyResult<Pose> {
-    let poses = Poses::of("pose", given)?;
+    let poses = Poses::from_argument("pose", given)?;
     match (poses.is_one, &poses.poses[..]) {
         (true, &[pose]) => Ok(pose),
         (_, several) => {
@@ -260,11 +262,11 @@ fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: Frame) -> PyResult<Bo
     for (object, reading) in plan.objects.iter().zip(&frame.objects) {
         let of_object = PyDict::new(py);
         let held = match reading.held {
-            Held::Imposed => "imposed",
-            Held::Pressed { .. } => "pressed",
-            Held::AtRest => "at rest",
-            Held::Unsettled => "unsettled",
-            Held::Escaped { .. } => "escaped",
+            PoseControl::Imposed => "imposed",
+            PoseControl::Pressed { .. } => "pressed",
+            PoseControl::AtRest => "at rest",
+            PoseControl::NotConverged => "unsettled",
+            PoseControl::Escaped { .. } => "escaped",
         };
         of_object.set_item("pose", to_column(py, seven(&reading.pose)))?;
         of_object.set_item("held", held)?;

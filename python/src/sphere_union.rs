@@ -22,7 +22,7 @@ pub struct SphereUnion {
 
 impl SphereUnion {
     /// Wraps a union of the library.
-    pub fn of(spheres: objects::SphereUnion) -> Self {
+    pub fn from_spheres(spheres: objects::SphereUnion) -> Self {
         Self {
             model: spheres.into(),
         }
@@ -52,7 +52,7 @@ impl SphereUnion {
             let spheres = centers.into_iter().zip(radii);
             let spheres = spheres.map(|(center, radius)| Sphere { center, radius });
             let union = objects::SphereUnion::new(spheres.collect()).map_err(exception)?;
-            Ok(Self::of(union))
+            Ok(Self::from_spheres(union))
         })
     }
 
@@ -66,7 +66,7 @@ impl SphereUnion {
             let unit = unit_of(unit)?;
             check_readable(&path)?;
             let spheres = load_spheres(&path, unit, &SizeLimits::ANY).map_err(exception)?;
-            Ok(Self::of(spheres))
+            Ok(Self::from_spheres(spheres))
         })
     }
 

@@ -6,7 +6,7 @@ use crate::threads::{Stop, aside};
 use bubbletouch::Error;
 use bubbletouch::Result;
 use bubbletouch::kinds::{Source, check_folder, load, read_tables};
-use bubbletouch::report::advice::{self, Offers, Wish};
+use bubbletouch::report::advice::{self, Candidates, Requirement};
 use bubbletouch::report::advice_answers::{answers, answers_json};
 use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::shell_line::shell_line;
@@ -26,7 +26,7 @@ use std::time::{Duration, Instant, SystemTime};
 const BETWEEN_CALLS: Duration = Duration::from_millis(50);
 
 /// Progress reporter that calls a Python callback, and stops the study if the callback raises.
-struct Told {
+struct CallbackProgress {
     stop: Stop,
     callback: Option<Py<PyAny>>,
     stage: Mutex<Stage>,
@@ -41,7 +41,7 @@ struct Stage {
     told: Instant,
 }
 
-impl Told {
+impl CallbackProgress {
     fn tell(&self, (name, done, total): (String, u64, u64)) {
         let Some(callback) = &self.callback else {
             return;
@@ -57,7 +57,7 @@ impl Told {
     }
 }
 
-impl Progress for Told {
+impl Progress for CallbackProgress {
     fn stage(&self, name: &str, total: u64) {
         self.stop.end_if_told();
         if let Ok(mut stage) = self.stage.lock() {
@@ -94,12 +94,12 @@ impl Progress for Told {
 type Said<'py> = (String, String, String, Bound<'py, PyDict>);
 
 /// A study's text, and the folder of its results.
-struct Asked {
+struct StudySource {
     source: Source,
     name: String,
 }
 
-fn run(asked: &Asked, told: &Told) -> Result<Vec<Table>> {
+fn run(asked: &StudySource, told: &CallbackProgress) -> Result<Vec<Table>> {
     let started = SystemTime::now();
     let Source {
         results,
@@ -156,7 +156,7 @@ pub fn run_study<'py>(
     guarded(|| {
         let seed = seed.map(|seed| whole_number("seed", seed)).transpose()?;
         let packings = out.parent().unwrap_or(Path::new("")).join("packings");
-        let asked = Asked {
+        let asked = StudySource {
             source: Source {
                 folder,
                 seed,
@@ -169,7 +169,7 @@ pub fn run_study<'py>(
         let raised = Arc::new(Mutex::new(None));
         let of_callback = Arc::clone(&raised);
         let ran = aside(py, move |stop| {
-            let told = Told {
+            let told = CallbackProgress {
                 stop: stop.clone(),
                 callback,
                 raised: of_callback,
@@ -240,9 +240,9 @@ pub fn advise(
 ) -> PyResult<String> {
     guarded(|| {
         let wish = match (reach, budget) {
-            (Some(reach), None) => Wish::Value(reach),
-            (None, Some(most)) => Wish::Budget(most),
-            (None, None) if !limits.is_empty() => Wish::Best,
+            (Some(reach), None) => Requirement::Value(reach),
+            (None, Some(most)) => Requirement::Budget(most),
+            (None, None) if !limits.is_empty() => Requirement::Best,
             _ => {
                 let given = "both or neither of what is needed and a budget";
                 return Err(bad_input(
@@ -253,14 +253,14 @@ pub fn advise(
             }
         };
         let (_, tables) = read_tables(&results).map_err(exception)?;
-        let asked = advice::Asked {
+        let asked = advice::StudySource {
             table,
             value,
             cost,
             given,
             limits,
         };
-        let said = Offers::of(&tables, &asked)
+        let said = Candidates::new(&tables, &asked)
             .map_err(|error| error.under(format!("{}: ", results.display())))
             .and_then(|offers| Ok(answers_json(&offers, &answers(&offers, wish, worst)?)));
         said.map(|said| said.to_string()).map_err(exception)

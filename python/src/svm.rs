@@ -100,7 +100,7 @@ fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> 
 /// Kernel and C of a call, with their Python names.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
-struct Asked {
+struct SvmArguments {
     kernel: String,
     /// Value of γ; `None` for 'scale'.
     gamma: Option<f64>,
@@ -112,7 +112,7 @@ struct Asked {
     memory_bytes: usize,
 }
 
-impl Asked {
+impl SvmArguments {
     fn params(&self) -> PyResult<SvmParams> {
         let gamma = self.gamma.map_or(Gamma::Scale, Gamma::Value);
         let kernel = match &self.kernel[..] {
@@ -167,7 +167,7 @@ impl KernelSvm {
         params: Bound<PyDict>,
     ) -> PyResult<Self> {
         guarded(|| {
-            let asked = params.extract::<Asked>()?.params()?;
+            let asked = params.extract::<SvmArguments>()?.params()?;
             let (model, data) = trained(features, labels, move |rows| Ok(asked.train(rows)?))?;
             let asked = params.copy()?.unbind();
             Ok(Self { model, asked, data })
@@ -354,7 +354,7 @@ pub fn choose_svm<'py>(
     gamma_scales: Vec<f64>,
 ) -> PyResult<Bound<'py, PyDict>> {
     guarded(|| {
-        let params = params.extract::<Asked>()?.params()?;
+        let params = params.extract::<SvmArguments>()?.params()?;
         let data = data_of(features, labels)?;
         let fold = |(train, test): &(Bound<PyAny>, Bound<PyAny>)| {
             Ok(Split {

@@ -1,7 +1,7 @@
 //! `bubbletouch advise`: which setting to take.
 
 use crate::command::terminal::streams::say;
-use bubbletouch::report::advice::{Advice, Asked, Offers, Wish};
+use bubbletouch::report::advice::{Advice, AdviceQuery, Candidates, Requirement};
 use bubbletouch::report::advice_answers::{Answer, answers, answers_json};
 use bubbletouch::{Result, kinds};
 use std::path::PathBuf;
@@ -87,7 +87,7 @@ fn renamed(_: &str) -> std::result::Result<f64, String> {
 pub fn advise(args: &Args) -> Result<()> {
     let place = format!("{}: ", args.results.display());
     let (_, tables) = kinds::read_tables(&args.results)?;
-    let asked = Asked {
+    let asked = AdviceQuery {
         table: args.table.clone(),
         value: match args.wish.accuracy {
             Some(_) => Some("accuracy".to_owned()),
@@ -97,8 +97,8 @@ pub fn advise(args: &Args) -> Result<()> {
         given: args.given.clone(),
         limits: args.limits(),
     };
-    let offers = Offers::of(&tables, &asked).map_err(|error| error.under(place))?;
-    let answers = answers(&offers, args.wish(), args.worst)?;
+    let offers = Candidates::new(&tables, &asked).map_err(|error| error.under(place))?;
+    let answers = answers(&offers, args.requirement(), args.worst)?;
     match args.json {
         true => say(answers_json(&offers, &answers)),
         false => {
@@ -109,11 +109,11 @@ pub fn advise(args: &Args) -> Result<()> {
 }
 
 impl Args {
-    fn wish(&self) -> Wish {
+    fn requirement(&self) -> Requirement {
         match (self.wish.accuracy.or(self.wish.reach), self.wish.budget) {
-            (Some(value), _) => Wish::Value(value),
-            (None, Some(most)) => Wish::Budget(most),
-            (None, None) => Wish::Best,
+            (Some(value), _) => Requirement::Value(value),
+            (None, Some(most)) => Requirement::Budget(most),
+            (None, None) => Requirement::Best,
         }
     }
 
@@ -135,7 +135,7 @@ impl Args {
         given.collect()
     }
 
-    fn in_words(&self, offers: &Offers, Answer { condition, advice }: &Answer) -> String {
+    fn in_words(&self, offers: &Candidates, Answer { condition, advice }: &Answer) -> String {
         let head = match &condition[..] {
             "" => String::new(),
             words => format!("With {words}:\n"),
@@ -146,7 +146,7 @@ impl Args {
         }
     }
 
-    fn advice_in_words(&self, offers: &Offers, advice: &Advice) -> String {
+    fn advice_in_words(&self, offers: &Candidates, advice: &Advice) -> String {
         let choice = &advice.choice;
         let mut text = offers.setting(choice);
         // That of the worst of several conditions says which.

@@ -14,7 +14,7 @@ const MM: f64 = 1e-3;
 /// Points of a mesh at which the error is measured.
 const N_POINTS: usize = 100_000;
 /// Points of the box around a solid at which it is measured, at most, about. Larger: gigabytes at tolerances of a micrometre.
-const MOST_POINTS: f64 = 1e6;
+const MAX_POINTS: f64 = 1e6;
 
 /// Pack a mesh or a built-in object with few spheres.
 ///
@@ -61,7 +61,7 @@ pub fn renamed(_: &str) -> std::result::Result<f64, String> {
 fn describe_solid(solid: &Solid, spheres: &SphereUnion, tolerance: f64) -> String {
     let size = solid.bounds().size();
     let around = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
-    let finest = (around / MOST_POINTS).sqrt();
+    let finest = (around / MAX_POINTS).sqrt();
     let spacing = (size.length() / 200.0).min(20.0 * tolerance).max(finest);
     let error = surface_error(solid, spheres, spacing);
     format!(

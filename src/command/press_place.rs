@@ -50,9 +50,9 @@ impl Place {
     /// How it lies; the error names a stable pose that the object has not.
     pub fn rest(&self, model: &Model) -> Result<RestPose> {
         let Some(number) = self.rest else {
-            return Ok(RestPoses::AsModelled.of(model).swap_remove(0));
+            return Ok(RestPoses::AsModelled.poses(model).swap_remove(0));
         };
-        let mut poses = RestPoses::Stable.of(model);
+        let mut poses = RestPoses::Stable.poses(model);
         if number >= poses.len() {
             let last = poses.len() - 1;
             let allowed = format!("0 to {last}, the stable poses of this object");

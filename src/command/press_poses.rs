@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Times of each pose that are kept, at most: their median needs no more.
-const MOST_REPEATS: usize = 1_000_000;
+const MAX_REPEATS: usize = 1_000_000;
 
 #[derive(clap::Args)]
 #[group(id = "Poses", multiple = true)]
@@ -77,8 +77,8 @@ pub fn press_poses(
     out: Option<&Path>,
 ) -> Result<()> {
     let n_repeats = args.repeat.unwrap_or(1);
-    if !(1..=MOST_REPEATS).contains(&n_repeats) {
-        let allowed = format!("1 to {MOST_REPEATS}");
+    if !(1..=MAX_REPEATS).contains(&n_repeats) {
+        let allowed = format!("1 to {MAX_REPEATS}");
         return Err(Error::input("--repeat", n_repeats, allowed));
     }
     check_ending(out, "npy")?;

@@ -5,7 +5,7 @@ use crate::command::terminal::output::output_folder;
 use crate::command::terminal::signals::keep_journal_on_signals;
 use bubbletouch::kinds::AnyStudy;
 use bubbletouch::study::Shard;
-use bubbletouch::study::journal::{JOURNAL_FILE, Journal, set_aside};
+use bubbletouch::study::journal::{JOURNAL_FILE, Journal, rename_old_results};
 use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::{Error, Result};
 use std::path::Path;
@@ -67,7 +67,7 @@ pub fn run(args: &Args) -> Result<()> {
 fn open_journal(args: &Args, run: &StudyRun) -> Result<Arc<Journal>> {
     let (study, folder) = (run.study.as_ref(), &run.folder);
     if args.fresh
-        && let Some(old) = set_aside(folder)?
+        && let Some(old) = rename_old_results(folder)?
     {
         let remark = format!("the old results are in {}", old.display());
         run.progress.finish(&remark);

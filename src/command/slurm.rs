@@ -13,7 +13,7 @@ use bubbletouch::{Error, Result};
 use std::path::Path;
 
 /// Jobs of an array, at most: what Slurm can be set to.
-const MOST_JOBS: usize = 4_000_000;
+const MAX_JOBS: usize = 4_000_000;
 
 /// Digits of the hash in a job's name. Fewer: two runs may share a name; more: squeue cuts the name.
 const HASH_DIGITS: usize = 12;
@@ -38,8 +38,8 @@ pub struct Args {
 
 pub fn slurm(args: &Args) -> Result<()> {
     let n = args.array;
-    if !(1..=MOST_JOBS).contains(&n) {
-        let allowed = format!("1 to {MOST_JOBS} jobs");
+    if !(1..=MAX_JOBS).contains(&n) {
+        let allowed = format!("1 to {MAX_JOBS} jobs");
         return Err(Error::input("--array", n, allowed));
     }
     let folder = args.results.folder()?;

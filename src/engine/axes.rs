@@ -12,7 +12,7 @@
 //! may then have values in their tables, too.
 
 use crate::error::{Error, Result};
-use crate::inputs::check::MOST_VALUES;
+use crate::inputs::check::MAX_VALUES;
 use crate::inputs::toml_value::{is_at, number, value_at};
 use crate::table::{Column, Role, Scale};
 use crate::toml_lines::line_of;
@@ -299,7 +299,7 @@ impl StudyAxis {
             |key: &String| !key.split('.').any(str::is_empty) && !key.contains(['{', '}']);
         let twice = self.values.iter().enumerate().find(|(place, value)| {
             let before = self.values[..*place].iter();
-            before.take(MOST_VALUES).any(|other| is_same(other, value))
+            before.take(MAX_VALUES).any(|other| is_same(other, value))
         });
         let n = self.values.len();
         let (given, allowed) = match (refused, twice) {
@@ -315,7 +315,7 @@ impl StudyAxis {
                 "no list of values".to_owned(),
                 "at least one value: [1.0, 2.0]",
             ),
-            _ if n > MOST_VALUES => (format!("{n} values"), "at most 10000 values"),
+            _ if n > MAX_VALUES => (format!("{n} values"), "at most 10000 values"),
             (_, Some((_, value))) => (format!("{value} twice"), "each value once"),
             _ => return Ok(()),
         };

@@ -26,7 +26,7 @@ impl<T: Clone> Axis<T> {
     }
 
     /// Returns the values of an optional key; a missing key counts as the single value `None`.
-    pub fn of(axis: &Option<Self>) -> Vec<Option<T>> {
+    pub fn optional_values(axis: &Option<Self>) -> Vec<Option<T>> {
         let values = axis.as_ref().map(Self::values);
         values.map_or(vec![None], |values| values.into_iter().map(Some).collect())
     }

@@ -3,9 +3,9 @@
 //! The engine runs the [work items](work_items) of a study independently of what they measure. It stores each finished item in the [`journal`], so that an
 //! interrupted run continues, and divides items among shards ([`shard`]).
 
-pub(crate) mod attempt;
 pub mod axes;
 pub mod axis;
+pub(crate) mod isolated;
 pub mod journal;
 pub(crate) mod program;
 pub mod progress;

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::inputs::memory::{check_memory, machine_memory};
 use crate::inputs::toml_value::{number, value_at};
-use crate::inputs::units::{MM, MOST_FRAMES, MOST_SIDE, millimetres};
+use crate::inputs::units::{MAX_FRAMES, MAX_SIDE, MM, millimetres};
 use crate::world::MAX_TOUCHES;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -20,16 +20,16 @@ pub fn not_negative(value: f64) -> bool {
 }
 
 /// Maximum number of values of one axis. A larger number indicates a mistake, and every value is compared with all others.
-pub const MOST_VALUES: usize = 10_000;
+pub const MAX_VALUES: usize = 10_000;
 
 /// Maximum value of keys that count something. Larger counts exceed memory or take too long.
-const MOST_COUNTED: usize = 100_000_000;
+const MAX_COUNTED: usize = 100_000_000;
 
 /// Maximum number of readings of a training touch. All are in memory at once, and further readings do not improve training.
-const MOST_READINGS: usize = 100;
+const MAX_READINGS: usize = 100;
 
 /// Maximum number of configurations of a study; all are created before the first one runs.
-const MOST_CONFIGURATIONS: f64 = 1e6;
+const MAX_CONFIGURATIONS: f64 = 1e6;
 
 /// Allowed numbers of a key.
 #[derive(Clone, Copy)]
@@ -80,12 +80,12 @@ impl Range {
 }
 
 /// Maximum number of copies of a touch; further copies do not improve a classifier.
-const MOST_COPIES: usize = 1000;
+const MAX_COPIES: usize = 1000;
 /// Tilt angles, degrees. Much larger tilts add no plane.
 const TILT: Range = Range::Of(|deg| deg > 0.0 && deg <= 45.0, "above 0, at most 45");
 /// Slide distances, mm. A slide of 1 km has far fewer steps than it passes taxels; the square of 1e160 mm would be infinite.
 const SLIDE: Range = Range::Of(|mm| (0.0..=1e6).contains(&mm), "0 to 1000000");
-pub const COUNT: Range = Range::Count(1, MOST_COUNTED);
+pub const COUNT: Range = Range::Count(1, MAX_COUNTED);
 
 /// Allowed distances of spheres from a surface, mm. Below a nanometre, rounding errors of coordinates are equally large.
 pub const SURFACE_ERROR: Range = Range::Of(|mm| mm >= 1e-6, "at least 1e-6 mm");
@@ -111,7 +111,7 @@ const KEYS: [(&str, Range); 59] = [
     ("objects.names", Range::Any),
     ("skin.pitch_mm", Range::Positive),
     ("skin.size_mm", Range::Positive),
-    ("skin.taxels", Range::Count(1, MOST_SIDE)),
+    ("skin.taxels", Range::Count(1, MAX_SIDE)),
     ("skin.curvature_radius_mm", Range::Positive),
     ("skin.friction", Range::NotNegative),
     ("skin.shear_stiffness_n_per_m", Range::Positive),
@@ -122,7 +122,7 @@ const KEYS: [(&str, Range); 59] = [
     ("touches.per_object", TOUCHES),
     ("touches.slide_mm", SLIDE),
     ("touches.slide_deg", Range::Finite),
-    ("touches.frames", Range::Count(1, MOST_FRAMES)),
+    ("touches.frames", Range::Count(1, MAX_FRAMES)),
     ("touches.speed_mm_per_s", Range::NotNegative),
     ("human_touch.kinds", Range::Any),
     ("human_touch.per_kind", TOUCHES),
@@ -139,7 +139,7 @@ const KEYS: [(&str, Range); 59] = [
     ("sensing.measurements", COUNT),
     ("recognition.features", Range::Any),
     ("recognition.foremost_full_scale", Range::Positive),
-    ("recognition.tilted_copies", Range::Count(0, MOST_COPIES)),
+    ("recognition.tilted_copies", Range::Count(0, MAX_COPIES)),
     ("recognition.tilted_copies_deg", TILT),
     ("recognition.over_time", Range::Any),
     ("recognition.classifier", Range::Any),
@@ -147,11 +147,11 @@ const KEYS: [(&str, Range); 59] = [
     ("recognition.choose_c", PENALTY),
     ("recognition.gamma", GAMMA),
     ("recognition.choose_gamma", GAMMA),
-    ("recognition.choose_folds", Range::Count(2, MOST_COUNTED)),
+    ("recognition.choose_folds", Range::Count(2, MAX_COUNTED)),
     ("recognition.choose_touches", COUNT),
     (
         "recognition.training_readings",
-        Range::Count(1, MOST_READINGS),
+        Range::Count(1, MAX_READINGS),
     ),
     ("recognition.degree", Range::Count(1, 20)),
     ("recognition.coef0", COEF0),
@@ -165,7 +165,7 @@ const KEYS: [(&str, Range); 59] = [
     ("recognition.fused_touches", COUNT),
     ("recognition.next_touch", Range::Any),
     ("recognition.test_fraction", Range::Part),
-    ("recognition.folds", Range::Count(2, MOST_COUNTED)),
+    ("recognition.folds", Range::Count(2, MAX_COUNTED)),
     ("recognition.keep_together_mm", Range::Positive),
     ("recognition.keep_together_deg", Range::Positive),
 ];
@@ -250,7 +250,7 @@ impl Check<'_> {
 
     /// Checks that the number of configurations, the product of all axes, is within the limit.
     pub fn configurations(&self, n: f64) -> Result<()> {
-        if n <= MOST_CONFIGURATIONS {
+        if n <= MAX_CONFIGURATIONS {
             return Ok(());
         }
         // Beyond this value, not all digits are exact.
@@ -260,7 +260,7 @@ impl Check<'_> {
             format!("{n:.1e} configurations")
         };
         let allowed = format!(
-            "at most {MOST_CONFIGURATIONS}, all combinations of the values of its axes: fewer values, or several studies"
+            "at most {MAX_CONFIGURATIONS}, all combinations of the values of its axes: fewer values, or several studies"
         );
         Err(Error::input(self.place, given, allowed))
     }
@@ -280,8 +280,8 @@ impl Check<'_> {
         if values.is_empty() {
             return Err(self.error(key, "an empty list", "at least one value"));
         }
-        if values.len() > MOST_VALUES {
-            let allowed = format!("at most {MOST_VALUES} values");
+        if values.len() > MAX_VALUES {
+            let allowed = format!("at most {MAX_VALUES} values");
             return Err(self.error(key, format!("{} values", values.len()), allowed));
         }
         for (index, value) in values.iter().enumerate() {

@@ -107,7 +107,7 @@ pub fn read_mesh_file(
     unit: Option<LengthUnit>,
     sizes: &SizeLimits,
 ) -> Result<MeshFile> {
-    let format = MeshFormat::of(path)?;
+    let format = MeshFormat::from_path(path)?;
     check_regular(path)?;
     let place = path.display().to_string();
     let mesh = format.read(&place, unit.unwrap_or_default(), open(path, "a mesh")?)?;
@@ -344,7 +344,7 @@ fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
     let paths = listing.map(|entry| entry.map(|entry| entry.path()));
     let paths = paths.collect::<std::io::Result<Vec<_>>>();
     let mut paths = paths.map_err(|e| Error::io(folder, "read", e))?;
-    paths.retain(|path| MeshFormat::of(path).is_ok());
+    paths.retain(|path| MeshFormat::from_path(path).is_ok());
     let n_meshes = paths.len();
     paths.retain(|path| is_wanted(&stem(path), spec.names.as_deref()));
     let (given, allowed) = match (paths.len(), n_meshes) {

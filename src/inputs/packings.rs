@@ -41,7 +41,7 @@ pub fn pack_within(
     folder: Option<&Path>,
 ) -> Result<Packed> {
     let path = folder.map(|folder| packing_path(folder, surface.mesh(), tolerance));
-    if let Some(spheres) = path.as_deref().map(kept).transpose()?.flatten() {
+    if let Some(spheres) = path.as_deref().map(read_packing).transpose()?.flatten() {
         let was_kept = true;
         return Ok(Packed { spheres, was_kept });
     }
@@ -76,7 +76,7 @@ pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathB
 }
 
 /// Reads the spheres of a complete file; `None` if there is none.
-fn kept(path: &Path) -> Result<Option<SphereUnion>> {
+fn read_packing(path: &Path) -> Result<Option<SphereUnion>> {
     match fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         // Opening a pipe would block until another process writes to it.

@@ -59,7 +59,7 @@ pub struct Strengths([Option<f64>; N_STRENGTHS]);
 
 impl Strengths {
     /// Returns the strength of a key; `None` if the study does not set it.
-    pub fn of(&self, key: &str) -> Option<f64> {
+    pub fn get(&self, key: &str) -> Option<f64> {
         let mut all = all_strengths().zip(self.0);
         all.find_map(|((_, strength), value)| value.filter(|_| strength.key == key))
     }
@@ -88,7 +88,7 @@ impl Strengths {
     pub(crate) fn step(&self, error: SensorError, skin: &Seed) -> SignalStep {
         let mut strengths = [0.0; MAX_STRENGTHS];
         for (to, strength) in strengths.iter_mut().zip(error.about().strengths) {
-            *to = self.of(strength.key).unwrap_or(0.0);
+            *to = self.get(strength.key).unwrap_or(0.0);
         }
         error.step(&strengths, *skin)
     }
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(all.len(), N_STRENGTHS);
         for (error, strength) in all {
             let strengths = Strengths::default().with(strength.key, Some(0.5));
-            assert_eq!(strengths.of(strength.key), Some(0.5));
+            assert_eq!(strengths.get(strength.key), Some(0.5));
             let present: Vec<_> = strengths.present().map(|(e, s, v)| (e, s.key, v)).collect();
             assert_eq!(present, [(error, strength.key, 0.5)]);
             let none = strengths.with(strength.key, Some(0.0));

@@ -4,7 +4,7 @@
 pub(crate) const MM: f64 = 1e-3;
 
 /// Maximum number of frames per touch; a larger number indicates a rate or a wrong unit.
-pub(crate) const MOST_FRAMES: usize = 10_000;
+pub(crate) const MAX_FRAMES: usize = 10_000;
 
 /// Converts metres to millimetres, rounded for display: 2, not 2.0000000000000004.
 pub fn millimetres(metres: f64) -> f64 {
@@ -12,4 +12,4 @@ pub fn millimetres(metres: f64) -> f64 {
 }
 
 /// Maximum number of taxels along a side of an array.
-pub(crate) const MOST_SIDE: usize = 4096;
+pub(crate) const MAX_SIDE: usize = 4096;

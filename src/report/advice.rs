@@ -8,7 +8,7 @@ use crate::table::{Better, Column, Role, Scale, Table, Value, column_name, front
 use std::collections::HashSet;
 
 /// Selector of a column in the tables, by role and name.
-struct Sought {
+struct ColumnSelector {
     /// Command-line option that names the column.
     option: &'static str,
     /// Default name, used if no name is given and a table has such a column. Otherwise, the first column of the role is used.
@@ -18,14 +18,14 @@ struct Sought {
     shared: &'static [(&'static str, &'static [&'static str])],
 }
 
-const VALUE: Sought = Sought {
+const VALUE: ColumnSelector = ColumnSelector {
     option: "--value",
     usual: "accuracy",
     has_role: |role| matches!(role, Role::Value(Better::More | Better::Less)),
     shared: &[],
 };
 
-const COST: Sought = Sought {
+const COST: ColumnSelector = ColumnSelector {
     option: "--cost",
     usual: "decision_time",
     has_role: |role| role == Role::Cost,
@@ -42,7 +42,7 @@ const COST: Sought = Sought {
 
 /// Query for advice. A field that is `None` is chosen automatically.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Asked {
+pub struct AdviceQuery {
     /// File name of the table.
     pub table: Option<String>,
     /// Column of values to optimise.
@@ -57,7 +57,7 @@ pub struct Asked {
 
 /// Requirement: a bound on the value or on the cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Wish {
+pub enum Requirement {
     /// Minimum quality: the cheapest choice whose value is at least this good.
     Value(f64),
     /// Maximum cost, positive: the choice of best value within this budget.
@@ -68,7 +68,7 @@ pub enum Wish {
 
 /// Candidate: a row of the table with its value and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Offer {
+pub struct Candidate {
     /// Index of the candidate's row in the table.
     pub row: usize,
     /// Value, in the unit of the value column.
@@ -81,15 +81,15 @@ pub struct Offer {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advice {
     /// The cheapest choice whose value is sufficient, or the best choice within the budget.
-    pub choice: Offer,
+    pub choice: Candidate,
     /// The cheapest choice whose whole confidence interval is sufficient. `None` if it equals `choice` or does not exist.
-    pub certain: Option<Offer>,
+    pub certain: Option<Candidate>,
     /// The next choice on the Pareto front: the cheapest one with a better value than `choice`.
-    pub next_up: Option<Offer>,
+    pub next_up: Option<Candidate>,
 }
 
 /// Candidates of one table, restricted to the given conditions.
-pub struct Offers<'a> {
+pub struct Candidates<'a> {
     /// The table of the candidates.
     pub table: &'a Table,
     /// Column of values to optimise.
@@ -101,12 +101,12 @@ pub struct Offers<'a> {
     rows: Vec<usize>,
 }
 
-impl<'a> Offers<'a> {
+impl<'a> Candidates<'a> {
     /// Returns the candidates of the first table that has choices and the requested value and cost columns.
     ///
     /// # Errors
     /// If no table has these columns, or a condition or a cost limit is not valid for the table.
-    pub fn of(tables: &'a [Table], asked: &Asked) -> Result<Self> {
+    pub fn new(tables: &'a [Table], asked: &AdviceQuery) -> Result<Self> {
         let mut offering: Vec<&Table> = tables.iter().filter(|t| t.offers_choices()).collect();
         let has_several = offering.iter().any(|table| table.n_rows > 1);
         offering.retain(|table| table.n_rows > 1 || !has_several);
@@ -179,7 +179,7 @@ impl<'a> Offers<'a> {
             table,
             value,
             cost,
-            swept: Swept::of(table, &rows),
+            swept: Swept::new(table, &rows),
             rows: Vec::new(),
         };
         let is_known = |row: &usize| found.offer(*row).is_some();
@@ -188,15 +188,15 @@ impl<'a> Offers<'a> {
     }
 
     /// Returns `None` if the value or the cost of the row is absent.
-    fn offer(&self, row: usize) -> Option<Offer> {
+    fn offer(&self, row: usize) -> Option<Candidate> {
         let value = self.table.number(&self.value.name, row);
         let cost = self.table.number(&self.cost.name, row);
         let is_known = value.is_finite() && cost.is_finite();
-        is_known.then_some(Offer { row, value, cost })
+        is_known.then_some(Candidate { row, value, cost })
     }
 
     /// Returns the candidates grouped by condition, in the order in which the conditions first occur.
-    pub fn by_condition(&self) -> Vec<Vec<Offer>> {
+    pub fn by_condition(&self) -> Vec<Vec<Candidate>> {
         let conditions = self.swept.by_condition(&self.rows).into_iter();
         let offers =
             |rows: Vec<usize>| rows.into_iter().filter_map(|row| self.offer(row)).collect();
@@ -205,7 +205,7 @@ impl<'a> Offers<'a> {
 
     /// Returns each choice with its worst value and its highest cost over all conditions: a guarantee for any of these conditions.
     /// Choices that were not measured in every condition are left out.
-    pub fn worst(&self) -> Vec<Offer> {
+    pub fn worst(&self) -> Vec<Candidate> {
         let n_conditions = self.swept.by_condition(&self.rows).len();
         let choices = self.swept.of_role(Role::Choice);
         let choices = self.swept.groups(&choices, &self.rows).into_iter();
@@ -219,7 +219,7 @@ impl<'a> Offers<'a> {
                     a
                 };
                 let cost = a.cost.max(b.cost);
-                Offer { cost, ..worse }
+                Candidate { cost, ..worse }
             })
         };
         measured.filter_map(worst).collect()
@@ -229,22 +229,22 @@ impl<'a> Offers<'a> {
     ///
     /// # Errors
     /// If the requirement is out of range, there are no candidates, or no candidate meets the requirement; the error names the nearest candidate.
-    pub fn advise(&self, offers: &[Offer], wish: Wish) -> Result<Advice> {
+    pub fn advise(&self, offers: &[Candidate], wish: Requirement) -> Result<Advice> {
         let (column, wanted, place) = match wish {
-            Wish::Value(wanted) => (self.value, wanted, "wish"),
-            Wish::Budget(most) => (self.cost, most, "budget"),
-            Wish::Best => (self.cost, f64::INFINITY, "budget"),
+            Requirement::Value(wanted) => (self.value, wanted, "wish"),
+            Requirement::Budget(most) => (self.cost, most, "budget"),
+            Requirement::Best => (self.cost, f64::INFINITY, "budget"),
         };
         let given = column.phrase(&Value::Number(wanted));
         let refuse = |allowed: String| Error::input(place, &given, allowed);
         let is_share = column.scale == Scale::Share;
         let (is_in_range, range) = match wish {
-            Wish::Value(share) if is_share => {
+            Requirement::Value(share) if is_share => {
                 (share > 0.0 && share <= 1.0, "more than 0, at most 1")
             }
-            Wish::Value(wanted) => (wanted.is_finite(), "a number"),
-            Wish::Budget(most) => (most > 0.0 && most.is_finite(), "a positive number"),
-            Wish::Best => (true, ""),
+            Requirement::Value(wanted) => (wanted.is_finite(), "a number"),
+            Requirement::Budget(most) => (most > 0.0 && most.is_finite(), "a positive number"),
+            Requirement::Best => (true, ""),
         };
         if !is_in_range {
             return Err(refuse(range.to_owned()));
@@ -256,22 +256,22 @@ impl<'a> Offers<'a> {
             ));
         };
         let place = match wish {
-            Wish::Value(wanted) => front
+            Requirement::Value(wanted) => front
                 .iter()
                 .position(|offer| self.is_enough(offer.value, wanted)),
-            Wish::Budget(most) => front.iter().rposition(|offer| offer.cost <= most),
-            Wish::Best => Some(front.len() - 1),
+            Requirement::Budget(most) => front.iter().rposition(|offer| offer.cost <= most),
+            Requirement::Best => Some(front.len() - 1),
         };
         let Some(place) = place else {
             return Err(refuse(match wish {
-                Wish::Value(_) => format!("the best here is {}", self.in_words(best)),
-                Wish::Budget(_) | Wish::Best => {
+                Requirement::Value(_) => format!("the best here is {}", self.in_words(best)),
+                Requirement::Budget(_) | Requirement::Best => {
                     format!("the cheapest here is {}", self.in_words(cheapest))
                 }
             }));
         };
         let certain = match wish {
-            Wish::Value(wanted) if self.value.interval.is_some() => {
+            Requirement::Value(wanted) if self.value.interval.is_some() => {
                 let offers = offers.iter().copied();
                 let certain = offers.filter(|offer| self.is_enough(self.worse_end(offer), wanted));
                 let certain = self.front(&certain.collect::<Vec<_>>());
@@ -288,11 +288,11 @@ impl<'a> Offers<'a> {
     }
 
     /// Returns the Pareto front, cheapest first: each candidate is better than all that cost the same or less. Among equal candidates, the first is kept.
-    pub fn front(&self, offers: &[Offer]) -> Vec<Offer> {
+    pub fn front(&self, offers: &[Candidate]) -> Vec<Candidate> {
         let points: Vec<(f64, f64)> = offers.iter().map(|o| (o.cost, o.value)).collect();
         let is_on = front(&points, |a, b| self.is_better(a, b));
         let on = offers.iter().zip(is_on).filter(|(_, is_on)| *is_on);
-        let mut front: Vec<Offer> = on.map(|(offer, _)| *offer).collect();
+        let mut front: Vec<Candidate> = on.map(|(offer, _)| *offer).collect();
         // The sort is stable: among equal candidates, the first stays first.
         front.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         front.dedup_by_key(|offer| offer.cost);
@@ -312,7 +312,7 @@ impl<'a> Offers<'a> {
     }
 
     /// Returns the worse end of the value's confidence interval, or NaN if there is no interval.
-    fn worse_end(&self, offer: &Offer) -> f64 {
+    fn worse_end(&self, offer: &Candidate) -> f64 {
         let ends = self.table.interval(self.value, offer.row);
         ends.map_or(
             f64::NAN,
@@ -321,7 +321,7 @@ impl<'a> Offers<'a> {
     }
 
     /// Describes value, interval and cost: `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
-    pub fn gives(&self, offer: &Offer) -> String {
+    pub fn gives(&self, offer: &Candidate) -> String {
         let interval = match self.table.interval(self.value, offer.row) {
             Some(ends) => {
                 let [low, high] = ends.map(|end| self.value_words(end));
@@ -343,12 +343,12 @@ impl<'a> Offers<'a> {
     }
 
     /// Describes value, cost and choices: `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
-    pub fn in_words(&self, offer: &Offer) -> String {
+    pub fn in_words(&self, offer: &Candidate) -> String {
         format!("{}: {}", self.gives(offer), self.setting(offer))
     }
 
     /// Describes the choices, or returns "the only setting" if no choice varies.
-    pub fn setting(&self, offer: &Offer) -> String {
+    pub fn setting(&self, offer: &Candidate) -> String {
         match self.choices(offer) {
             words if words.is_empty() => "the only setting".to_owned(),
             words => words,
@@ -356,17 +356,17 @@ impl<'a> Offers<'a> {
     }
 
     /// Describes the choices. Empty if no choice varies.
-    pub fn choices(&self, offer: &Offer) -> String {
+    pub fn choices(&self, offer: &Candidate) -> String {
         self.swept.choice_words(offer.row)
     }
 
     /// Describes the condition. Empty if there is only one condition.
-    pub fn condition(&self, offer: &Offer) -> String {
+    pub fn condition(&self, offer: &Candidate) -> String {
         self.swept.condition_words(offer.row)
     }
 
     /// Returns a JSON object: the choices and the condition as text, and the entry of every column by column name.
-    pub fn json(&self, offer: &Offer) -> serde_json::Value {
+    pub fn json(&self, offer: &Candidate) -> serde_json::Value {
         let mut row = serde_json::Map::new();
         row.insert("setting".to_owned(), self.setting(offer).into());
         row.insert("condition".to_owned(), self.condition(offer).into());
@@ -379,7 +379,7 @@ impl<'a> Offers<'a> {
     }
 }
 
-impl Sought {
+impl ColumnSelector {
     /// Returns the matching numeric columns of a table, by name or, if `name` is `None`, all of the role. Columns that vary come first.
     fn columns<'t>(&self, table: &'t Table, name: Option<&str>) -> Vec<&'t Column> {
         let shared = self.shared.iter().find(|(known, _)| Some(*known) == name);
@@ -540,7 +540,9 @@ mod tests {
     }
 
     fn table(rows: &[Setting]) -> [Table; 1] {
-        [File::new("settings.csv", "Settings", "").of(rows).unwrap()]
+        [File::new("settings.csv", "Settings", "")
+            .table(rows)
+            .unwrap()]
     }
 
     fn settings() -> [Table; 1] {
@@ -554,38 +556,39 @@ mod tests {
         ])
     }
 
-    fn asked(value: &str, cost: &str) -> Asked {
-        Asked {
+    fn asked(value: &str, cost: &str) -> AdviceQuery {
+        AdviceQuery {
             value: Some(value.to_owned()),
             cost: Some(cost.to_owned()),
-            ..Asked::default()
+            ..AdviceQuery::default()
         }
     }
 
     /// Returns the designs of `choice`, `certain` and `next_up`.
-    fn advised(asked: &Asked, wish: Wish) -> Result<[Option<String>; 3]> {
+    fn advised(asked: &AdviceQuery, wish: Requirement) -> Result<[Option<String>; 3]> {
         let tables = settings();
-        let offers = Offers::of(&tables, asked)?;
+        let offers = Candidates::new(&tables, asked)?;
         let advice = offers.advise(&offers.by_condition()[0], wish)?;
-        let design = |offer: Offer| tables[0].word("design", offer.row).to_owned();
+        let design = |offer: Candidate| tables[0].word("design", offer.row).to_owned();
         let found = [Some(advice.choice), advice.certain, advice.next_up];
         Ok(found.map(|offer| offer.map(design)))
     }
 
-    fn choice(asked: &Asked, wish: Wish) -> String {
+    fn choice(asked: &AdviceQuery, wish: Requirement) -> String {
         advised(asked, wish).unwrap()[0].clone().unwrap()
     }
 
     #[test]
     fn nothing_beats_a_setting_of_the_front_and_something_beats_every_other() {
         let tables = settings();
-        let offers = Offers::of(&tables, &Asked::default()).unwrap();
+        let offers = Candidates::new(&tables, &AdviceQuery::default()).unwrap();
         let all = &offers.by_condition()[0];
         let front = offers.front(all);
         let rows: Vec<usize> = front.iter().map(|offer| offer.row).collect();
         assert_eq!(rows, [2, 1, 3]);
         for offer in all {
-            let is_no_better_than = |on: &Offer| on.cost <= offer.cost && on.value >= offer.value;
+            let is_no_better_than =
+                |on: &Candidate| on.cost <= offer.cost && on.value >= offer.value;
             assert!(front.iter().any(is_no_better_than), "{offer:?}");
         }
     }
@@ -594,22 +597,22 @@ mod tests {
     fn the_cheapest_that_is_good_enough_is_advised_with_the_certain_one_and_the_next() {
         let some = |name: &str| Some(name.to_owned());
         let accurate = asked("accuracy", "time");
-        let found = advised(&accurate, Wish::Value(0.9)).unwrap();
+        let found = advised(&accurate, Requirement::Value(0.9)).unwrap();
         assert_eq!(found, [some("middle"), some("certain"), some("best")]);
-        let found = advised(&accurate, Wish::Value(0.95)).unwrap();
+        let found = advised(&accurate, Requirement::Value(0.95)).unwrap();
         assert_eq!(found, [some("best"), None, None]);
         // For an error, smaller values are better.
-        let found = advised(&asked("error", "time"), Wish::Value(0.1)).unwrap();
+        let found = advised(&asked("error", "time"), Requirement::Value(0.1)).unwrap();
         assert_eq!(found, [some("middle"), None, some("best")]);
     }
 
     #[test]
     fn another_cost_is_another_answer_and_one_that_nobody_knows_is_refused() {
-        let wish = Wish::Value(0.65);
+        let wish = Requirement::Value(0.65);
         assert_eq!(choice(&asked("accuracy", "time"), wish), "middle");
         assert_eq!(choice(&asked("accuracy", "taxels"), wish), "best");
         let tables = settings();
-        let unknown = Offers::of(&tables, &asked("accuracy", "weight")).unwrap();
+        let unknown = Candidates::new(&tables, &asked("accuracy", "weight")).unwrap();
         assert!(unknown.by_condition().is_empty());
         for (value, cost, said) in [
             (
@@ -627,7 +630,10 @@ mod tests {
     #[test]
     fn the_best_within_a_budget_is_advised_and_a_budget_is_a_limit_that_may_be_reached() {
         for (budget, design) in [(10.0, "cheap"), (49.9, "cheap"), (199.0, "middle")] {
-            assert_eq!(choice(&Asked::default(), Wish::Budget(budget)), design);
+            assert_eq!(
+                choice(&AdviceQuery::default(), Requirement::Budget(budget)),
+                design
+            );
         }
     }
 
@@ -644,7 +650,7 @@ mod tests {
             at("noisy", setting("a", 6.0, 0.50, 0.0)),
             at("noisy", setting("b", 4.0, 0.80, 0.0)),
         ]);
-        let offers = Offers::of(&tables, &Asked::default()).unwrap();
+        let offers = Candidates::new(&tables, &AdviceQuery::default()).unwrap();
         assert_eq!(offers.by_condition().len(), 2);
         let worst: Vec<(usize, f64, f64)> = offers
             .worst()
@@ -660,23 +666,25 @@ mod tests {
             let error = advised(&asked(value, "time"), wish).unwrap_err();
             error.to_string()
         };
-        let dear = text("accuracy", Wish::Value(0.99));
+        let dear = text("accuracy", Requirement::Value(0.99));
         assert!(
             dear.contains("the best here is accuracy 0.970") && dear.contains("best"),
             "{dear}"
         );
-        let fine = text("error", Wish::Value(1e-3));
+        let fine = text("error", Requirement::Value(1e-3));
         assert!(fine.contains("the best here is error 0.03"), "{fine}");
-        let cheap = text("accuracy", Wish::Budget(5.0));
+        let cheap = text("accuracy", Requirement::Budget(5.0));
         assert!(
             cheap.contains("time 10 µs") && cheap.contains("cheap"),
             "{cheap}"
         );
-        for wish in [Wish::Value(0.0), Wish::Value(1.1)] {
+        for wish in [Requirement::Value(0.0), Requirement::Value(1.1)] {
             assert!(text("accuracy", wish).contains("at most 1"));
         }
-        assert!(text("accuracy", Wish::Budget(f64::NAN)).contains("positive"));
-        let error = Offers::of(&[], &Asked::default()).map(drop).unwrap_err();
+        assert!(text("accuracy", Requirement::Budget(f64::NAN)).contains("positive"));
+        let error = Candidates::new(&[], &AdviceQuery::default())
+            .map(drop)
+            .unwrap_err();
         assert!(error.to_string().contains("no table offers choices"));
     }
 }

@@ -1,6 +1,6 @@
 //! Advice for each condition, as text for the command and as JSON for programs.
 
-use super::advice::{Advice, Offer, Offers, Wish};
+use super::advice::{Advice, Candidate, Candidates, Requirement};
 use crate::error::{Error, Result};
 
 /// Advice for one condition, or the reason why there is none.
@@ -15,9 +15,9 @@ pub struct Answer {
 ///
 /// # Errors
 /// If no condition has advice: the error of the first condition.
-pub fn answers(offers: &Offers, wish: Wish, worst: bool) -> Result<Vec<Answer>> {
+pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Vec<Answer>> {
     let conditions = offers.by_condition();
-    let answer = |condition: String, choices: &[Offer]| Answer {
+    let answer = |condition: String, choices: &[Candidate]| Answer {
         condition,
         advice: offers.advise(choices, wish),
     };
@@ -25,7 +25,7 @@ pub fn answers(offers: &Offers, wish: Wish, worst: bool) -> Result<Vec<Answer>> 
         let words = format!("the worst of {} conditions", conditions.len());
         vec![answer(words, &offers.worst())]
     } else {
-        let answer = |choices: &Vec<Offer>| answer(offers.condition(&choices[0]), choices);
+        let answer = |choices: &Vec<Candidate>| answer(offers.condition(&choices[0]), choices);
         conditions.iter().map(answer).collect()
     };
     if answers.iter().any(|answer| answer.advice.is_ok()) {
@@ -44,8 +44,8 @@ pub fn answers(offers: &Offers, wish: Wish, worst: bool) -> Result<Vec<Answer>> 
 }
 
 /// Returns JSON: the table, its value and cost columns, and for each condition the advised choices with all columns by name.
-pub fn answers_json(offers: &Offers, answers: &[Answer]) -> serde_json::Value {
-    let in_json = |offer: &Offer| offers.json(offer);
+pub fn answers_json(offers: &Candidates, answers: &[Answer]) -> serde_json::Value {
+    let in_json = |offer: &Candidate| offers.json(offer);
     let answers = answers
         .iter()
         .map(|Answer { condition, advice }| match advice {

@@ -1,7 +1,7 @@
 //! Summary of a scene as tables for the terminal.
 
 use crate::report::terminal::rows_text;
-use crate::scene::{Held, Movement, ScenePlan, Summary};
+use crate::scene::{Movement, PoseControl, ScenePlan, Summary};
 use crate::table::short_number;
 use crate::world::Motion;
 
@@ -82,14 +82,14 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> String {
 }
 
 /// Describes the final state of an object.
-fn ending(movement: &Movement, held: &Held) -> String {
+fn ending(movement: &Movement, held: &PoseControl) -> String {
     match held {
-        Held::Imposed => match movement {
+        PoseControl::Imposed => match movement {
             Movement::Imposed(Motion::Fixed(_)) => "fixed".to_owned(),
             Movement::Carried(_) => "where its robot carries it".to_owned(),
             _ => "where its motion says".to_owned(),
         },
-        Held::Pressed {
+        PoseControl::Pressed {
             travel,
             force,
             wanted,
@@ -99,9 +99,9 @@ fn ending(movement: &Movement, held: &Held) -> String {
             short_number(*force),
             short_number(*wanted)
         ),
-        Held::AtRest => "at rest".to_owned(),
-        Held::Unsettled => "not at rest".to_owned(),
-        Held::Escaped { time, direction } => {
+        PoseControl::AtRest => "at rest".to_owned(),
+        PoseControl::NotConverged => "not at rest".to_owned(),
+        PoseControl::Escaped { time, direction } => {
             let [x, y, z] = direction.to_array().map(|number| format!("{number:.2}"));
             format!(
                 "escaped at {} s towards ({x}, {y}, {z})",

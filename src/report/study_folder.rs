@@ -11,7 +11,7 @@ use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
 
 /// Maximum number of charts in the page, and of drawn charts unless all are requested. More charts make the page too large for a phone and take minutes.
-pub const MOST_CHARTS: usize = 24;
+pub const MAX_CHARTS: usize = 24;
 
 /// Returns the files of charts, pictures and the page. `beyond` computes additional content while charts are drawn. Charts without drawable rows are left out.
 ///
@@ -25,7 +25,7 @@ pub fn files_with(
     let mut beside = Beside::default();
     let mut charts = Vec::new();
     for spec in found.charts {
-        if charts.len() >= MOST_CHARTS && !about.all_charts {
+        if charts.len() >= MAX_CHARTS && !about.all_charts {
             beside.left_out.push(spec.name.clone());
         } else if !chart::places(spec, found.tables)?.is_empty() {
             charts.push(spec.clone());
@@ -48,7 +48,7 @@ pub fn files_with(
         beside.charts.push(drawing.svg_with_data(title));
     }
     // More charts would make the page slow.
-    charts.truncate(MOST_CHARTS);
+    charts.truncate(MAX_CHARTS);
     let found = Found {
         charts: &charts,
         ..*found

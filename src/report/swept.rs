@@ -123,7 +123,7 @@ impl<'a> Setting<'a> {
 
 impl<'a> Swept<'a> {
     /// Classifies the settings of the given rows of a table.
-    pub fn of(table: &'a Table, rows: &[usize]) -> Self {
+    pub fn new(table: &'a Table, rows: &[usize]) -> Self {
         let all = Setting::of_roles(table, &[Role::Choice, Role::Condition]);
         let (mut free, fixed): (Vec<Setting>, Vec<Setting>) =
             all.partition(|one| !rows.is_empty() && one.varies(rows));

@@ -11,7 +11,7 @@ use comfy_table::{
 use std::io::IsTerminal;
 
 /// Maximum number of rows of a table.
-const MOST_LINES: usize = 40;
+const MAX_LINES: usize = 40;
 
 /// Number of spaces between two columns.
 const COLUMN_GAP: usize = 3;
@@ -86,12 +86,12 @@ struct TextColumn {
 /// A table of more than 40 rows is shown as a pivot table: one setting runs along the columns. If the settings do not distinguish all rows, the text contains
 /// the first 40 rows and the number of all rows.
 pub fn table_text(table: &Table, width: usize) -> String {
-    if table.n_rows > MOST_LINES
+    if table.n_rows > MAX_LINES
         && let Some(text) = pivot_text(table, width)
     {
         return text;
     }
-    let n_lines = table.n_rows.min(MOST_LINES);
+    let n_lines = table.n_rows.min(MAX_LINES);
     let columns = shown_columns(table).into_iter();
     let columns = columns.map(|setting| TextColumn {
         head: setting.column.words.to_string(),
@@ -102,9 +102,9 @@ pub fn table_text(table: &Table, width: usize) -> String {
     });
     let mut text = constants(table, width);
     text += &columns_text(columns.collect(), n_lines, width).0;
-    if table.n_rows > MOST_LINES {
+    if table.n_rows > MAX_LINES {
         let (n, file) = (table.n_rows, table.file);
-        let remark = format!("The first {MOST_LINES} of {n} rows; all are in {file}.");
+        let remark = format!("The first {MAX_LINES} of {n} rows; all are in {file}.");
         text += &paragraph(&remark, width);
     }
     text
@@ -195,7 +195,7 @@ fn constants(table: &Table, width: usize) -> String {
     if rows.len() < 2 {
         return String::new();
     }
-    let fixed = Swept::of(table, &rows).fixed;
+    let fixed = Swept::new(table, &rows).fixed;
     // Conditions that are zero (ideal) are left out.
     let is_said = |setting: &&Setting| {
         let value = setting.data.value(0);
@@ -216,7 +216,7 @@ fn constants(table: &Table, width: usize) -> String {
 /// settings do not distinguish all rows.
 fn pivot_text(table: &Table, width: usize) -> Option<String> {
     let rows: Vec<usize> = (0..table.n_rows).collect();
-    let swept = Swept::of(table, &rows);
+    let swept = Swept::new(table, &rows);
     let across = swept.main(&rows)?;
     let mut values = table.columns.iter();
     let value = values.find(|column| matches!(column.role, Role::Value(_)))?;
@@ -225,7 +225,7 @@ fn pivot_text(table: &Table, width: usize) -> Option<String> {
     }
     let down = without(&swept.free, &across);
     let lines = swept.groups(&down, &rows);
-    let shown = &lines[..lines.len().min(MOST_LINES)];
+    let shown = &lines[..lines.len().min(MAX_LINES)];
     let labels = down.iter().map(|one| TextColumn {
         head: one.column.words.to_string(),
         said: shown.iter().map(|line| one.label(line[0])).collect(),

@@ -67,14 +67,14 @@ pub struct ObjectReading {
     /// Pose `world_from_object`. For an escaped object, its last pose.
     pub pose: Pose,
     /// How the pose is determined: imposed, pressed, free or escaped.
-    pub held: Held,
+    pub held: PoseControl,
     /// For a free object that has not escaped: its equilibrium and the residual of the forces.
     pub balance: Option<Equilibrium>,
 }
 
 /// How the pose of an object is determined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Held {
+pub enum PoseControl {
     /// The pose follows an imposed motion.
     #[default]
     Imposed,
@@ -90,7 +90,7 @@ pub enum Held {
     /// The object is free and in equilibrium.
     AtRest,
     /// No equilibrium: the solver reached its iteration limit before all free objects were at rest.
-    Unsettled,
+    NotConverged,
     /// Escape: a free object left the skin and has no contact.
     Escaped {
         /// Time of the escape, seconds.
@@ -103,7 +103,7 @@ pub enum Held {
 /// Tolerance of a reached force, N, relative above 1 N. A smaller tolerance counts rounding errors of stiff skins as missed forces.
 const REACHED: f64 = 1e-9;
 
-impl Held {
+impl PoseControl {
     /// Returns whether the object is pressed and its force differs from the target.
     pub fn is_off(&self) -> bool {
         match self {

@@ -1,6 +1,6 @@
 //! Free objects of a scene, which move to a common equilibrium on skin, planes and other objects.
 
-use super::frame::{Held, ObjectReading};
+use super::frame::{ObjectReading, PoseControl};
 use super::plan::ScenePlan;
 use super::plan_object::Movement;
 use super::plan_patch::PlannedPatch;
@@ -41,7 +41,7 @@ struct Free {
 
 impl FreeObjects {
     /// Creates the free objects of a scene at their initial poses.
-    pub fn of(plan: &ScenePlan) -> Self {
+    pub fn new(plan: &ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
         let is_free =
             |object: usize| matches!(plan.objects[object].movement, Movement::Free { .. });
@@ -80,7 +80,7 @@ impl FreeObjects {
     }
 
     /// Computes the equilibrium of all objects that have not escaped. Returns whether all are at rest. `dt`: time since the last call, infinite at the start.
-    pub fn settle(
+    pub fn solve_equilibrium(
         &mut self,
         plan: &ScenePlan,
         skins: &mut [SkinState],
@@ -95,7 +95,7 @@ impl FreeObjects {
         }
         self.push_by_others(plan, skins, objects);
         self.hold_by_tips(plan, skins, objects);
-        let is_there = |free: &&mut Free| !matches!(free.reading.held, Held::Escaped { .. });
+        let is_there = |free: &&mut Free| !matches!(free.reading.held, PoseControl::Escaped { .. });
         let mut there: Vec<&mut Free> = self.all.iter_mut().filter(is_there).collect();
         let own = |tip: TangentialSpring| {
             let object = there.iter().position(|free| free.object == tip.object)?;
@@ -141,7 +141,7 @@ impl FreeObjects {
         }
         Ok(there
             .iter()
-            .all(|free| free.reading.held != Held::Unsettled))
+            .all(|free| free.reading.held != PoseControl::NotConverged))
     }
 
     /// Returns the loads of free objects on a patch, in taxel order.
@@ -219,7 +219,7 @@ impl FreeObjects {
 fn at_start(pose: Pose) -> ObjectReading {
     ObjectReading {
         pose,
-        held: Held::AtRest,
+        held: PoseControl::AtRest,
         balance: None,
     }
 }
@@ -233,9 +233,9 @@ fn reading(balance: Equilibrium, time: f64) -> ObjectReading {
     ObjectReading {
         pose: balance.pose,
         held: match balance.outcome {
-            Outcome::AtRest => Held::AtRest,
-            Outcome::NotConverged => Held::Unsettled,
-            Outcome::Escaped { direction } => Held::Escaped { time, direction },
+            Outcome::AtRest => PoseControl::AtRest,
+            Outcome::NotConverged => PoseControl::NotConverged,
+            Outcome::Escaped { direction } => PoseControl::Escaped { time, direction },
         },
         balance: balance.is_there().then_some(balance),
     }

@@ -83,7 +83,7 @@ mod spec_object;
 mod spec_patch;
 mod summary;
 
-pub use frame::{Frame, FrameSink, FrictionReading, Held, ObjectReading, PatchReading};
+pub use frame::{Frame, FrameSink, FrictionReading, ObjectReading, PatchReading, PoseControl};
 pub use mount::Mount;
 pub use plan::ScenePlan;
 pub use plan_object::{Movement, PlannedObject};

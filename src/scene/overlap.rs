@@ -35,7 +35,7 @@ pub(super) fn check_starts(
     if !objects.iter().any(is_free) {
         return Ok(());
     }
-    let mut states: Vec<RobotState> = robots.iter().map(RobotState::of).collect();
+    let mut states: Vec<RobotState> = robots.iter().map(RobotState::new).collect();
     for (state, robot) in states.iter_mut().zip(robots) {
         state.place(robot, 0.0)?;
     }

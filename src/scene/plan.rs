@@ -20,7 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Maximum number of steps of a scene. A larger number indicates a step in the wrong unit.
-const MOST_STEPS: f64 = 1e9;
+const MAX_STEPS: f64 = 1e9;
 
 /// Executable scene: robots, skin, objects and the times of the frames.
 #[derive(Clone, Debug)]
@@ -197,25 +197,21 @@ impl Clock {
         let rate = check.value("output_hz", spec.output_hz, positive, above_zero)?;
         let allowed = "zero or a positive number of seconds";
         let duration = check.value("duration_s", duration, not_negative, allowed)?;
-        if duration * rate.max(1.0 / dt) > MOST_STEPS {
+        if duration * rate.max(1.0 / dt) > MAX_STEPS {
             return Err(check.error(
                 "duration_s",
                 format!(
                     "{duration} s with dt_ms = {} and output_hz = {rate}",
                     spec.dt_ms
                 ),
-                format!("at most {MOST_STEPS} steps"),
+                format!("at most {MAX_STEPS} steps"),
             ));
         }
         // The tolerance keeps a whole number of steps whole after conversion of units.
         let substeps = (1.0 / (rate * dt) - 1e-9).ceil().max(1.0);
-        if substeps > MOST_STEPS {
+        if substeps > MAX_STEPS {
             let given = format!("{} beside output_hz = {rate}", spec.dt_ms);
-            return Err(check.error(
-                "dt_ms",
-                given,
-                format!("at most {MOST_STEPS} steps a frame"),
-            ));
+            return Err(check.error("dt_ms", given, format!("at most {MAX_STEPS} steps a frame")));
         }
         Ok(Self {
             n_frames: Self::frames(duration, rate),

@@ -223,7 +223,7 @@ impl Reader<'_> {
             (Some(_), Some(_)) => return refuse("group and triangles", "one of them"),
             (Some(group), None) => {
                 let key = &format!("{key}.group");
-                if MeshFormat::of(mesh)? != MeshFormat::Obj {
+                if MeshFormat::from_path(mesh)? != MeshFormat::Obj {
                     let given = format!("`{group}` of {}", mesh.display());
                     return Err(self.check.error(key, given, "a group of an OBJ file"));
                 }

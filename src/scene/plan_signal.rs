@@ -7,7 +7,9 @@ use crate::error::Result;
 use crate::inputs::check::not_negative;
 use crate::inputs::sensor_errors::{NOISES, all_strengths};
 use crate::random::Seed;
-use crate::signal::{Chain, MAX_STRENGTHS, Noise, Quantity, Recording, Scratch, SignalStep};
+use crate::signal::{
+    Chain, MAX_STRENGTHS, Noise, Quantity, Recording, SignalStep, SignalWorkspace,
+};
 use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
@@ -35,7 +37,7 @@ impl PlannedSignal {
         reading: &mut PatchReading,
         name: &Seed,
         share: f64,
-        scratch: &mut Scratch,
+        scratch: &mut SignalWorkspace,
     ) {
         let felt = match self.begins {
             Quantity::Deflection => &reading.deflection,
@@ -81,7 +83,7 @@ impl Reader<'_> {
         });
         let steps = steps.collect::<Result<Vec<_>>>()?;
         Ok(Some(PlannedSignal {
-            chain: self.under(key, Chain::of(&steps, skin, begins))?,
+            chain: self.under(key, Chain::with_quantity(&steps, skin, begins))?,
             begins,
         }))
     }

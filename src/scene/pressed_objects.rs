@@ -1,6 +1,6 @@
 //! State of pressed objects: travel and force.
 
-use super::frame::{Held, ObjectReading};
+use super::frame::{ObjectReading, PoseControl};
 use super::plan::ScenePlan;
 use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
@@ -28,7 +28,7 @@ struct Pressed {
 
 impl PressedObjects {
     /// Creates the pressed objects of a scene with zero travel.
-    pub fn of(plan: &ScenePlan) -> Self {
+    pub fn new(plan: &ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
         let pressed = objects.filter(|(_, planned)| planned.press.is_some());
         let at_start = |(object, _)| Pressed {
@@ -97,7 +97,7 @@ impl PressedObjects {
     /// Writes the readings of the pressed objects.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for pressed in &self.all {
-            readings[pressed.object].held = Held::Pressed {
+            readings[pressed.object].held = PoseControl::Pressed {
                 travel: pressed.now.travel,
                 force: pressed.now.force,
                 wanted: pressed.wanted,

@@ -18,7 +18,7 @@ pub(super) struct RobotState {
 
 impl RobotState {
     /// Creates the state of a robot with its joints at their rest positions.
-    pub fn of(robot: &PlannedRobot) -> Self {
+    pub fn new(robot: &PlannedRobot) -> Self {
         Self {
             positions: robot.robot.rest_positions(),
             are_set: false,

@@ -1,6 +1,6 @@
 //! Time loop of a scene, which passes on each frame as soon as it is computed. For manual steps, see [`by_hand`](super::by_hand).
 
-use super::frame::{Frame, FrameSink, FrictionReading, Held, ObjectReading, PatchReading};
+use super::frame::{Frame, FrameSink, FrictionReading, ObjectReading, PatchReading, PoseControl};
 use super::free_objects::FreeObjects;
 use super::plan::ScenePlan;
 use super::plan_object::Movement;
@@ -11,7 +11,7 @@ use super::skin_state::{Detail, PlacedObjects, SkinState};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::random::Seed;
-use crate::signal::Scratch;
+use crate::signal::SignalWorkspace;
 
 /// Choice of the time steps between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub struct Simulation<'p> {
     /// Seed of the sensor noise of each patch.
     noise: Vec<Seed>,
     frame: Frame,
-    scratch: Scratch,
+    scratch: SignalWorkspace,
     /// Time since the start, seconds.
     pub(super) time: f64,
     /// Whether the steps are made manually instead of by the scene's clock.
@@ -61,7 +61,7 @@ impl<'p> Simulation<'p> {
         let skins = plan.patches.iter();
         let imposed = ObjectReading {
             pose: Pose::IDENTITY,
-            held: Held::Imposed,
+            held: PoseControl::Imposed,
             balance: None,
         };
         let frame = Frame {
@@ -72,21 +72,21 @@ impl<'p> Simulation<'p> {
         };
         Self {
             stepping,
-            robots: plan.robots.iter().map(RobotState::of).collect(),
+            robots: plan.robots.iter().map(RobotState::new).collect(),
             noise: skins
                 .clone()
                 .map(|patch| signals.named(patch.skin.name()))
                 .collect(),
-            skins: skins.map(SkinState::of).collect(),
+            skins: skins.map(SkinState::new).collect(),
             put: vec![None; plan.objects.len()],
             objects: PlacedObjects {
                 poses: vec![Pose::IDENTITY; plan.objects.len()],
                 balls: plan.objects.iter().map(|object| object.ball).collect(),
             },
-            pressed: PressedObjects::of(plan),
-            free: FreeObjects::of(plan),
+            pressed: PressedObjects::new(plan),
+            free: FreeObjects::new(plan),
             frame,
-            scratch: Scratch::default(),
+            scratch: SignalWorkspace::default(),
             time: 0.0,
             is_by_hand: false,
             unfelt: None,
@@ -209,9 +209,9 @@ impl<'p> Simulation<'p> {
         for (number, skin) in self.skins.iter_mut().enumerate() {
             skin.hold(self.pressed.contacts_on(plan, number));
         }
-        let is_settled = self
-            .free
-            .settle(plan, &mut self.skins, &mut self.objects, [time, dt])?;
+        let is_settled =
+            self.free
+                .solve_equilibrium(plan, &mut self.skins, &mut self.objects, [time, dt])?;
         self.n_unsettled += usize::from(!is_settled);
         Ok(())
     }

@@ -81,7 +81,7 @@ pub(super) struct SkinState {
 
 impl SkinState {
     /// Creates the state of a patch with zero deflections.
-    pub fn of(patch: &PlannedPatch) -> Self {
+    pub fn new(patch: &PlannedPatch) -> Self {
         let n_taxels = patch.skin.n_taxels();
         let friction = patch.shears.clone();
         let at_rest = |shears| {

@@ -1,6 +1,6 @@
 //! Summary of a simulation: largest values over all frames.
 
-use super::frame::{Frame, FrameSink, Held};
+use super::frame::{Frame, FrameSink, PoseControl};
 use crate::error::Result;
 
 /// Largest values of a patch over all frames.
@@ -28,7 +28,7 @@ pub struct PatchPeaks {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ObjectSummary {
     /// Cause of the pose in the last frame.
-    pub held: Held,
+    pub held: PoseControl,
     /// Number of frames without equilibrium.
     pub n_unsettled: usize,
     /// Largest [imbalance](crate::contact::equilibrium::Equilibrium::imbalance) of a free object over all frames; 0 for other objects.
@@ -71,7 +71,7 @@ impl FrameSink for Summary {
         for (summary, object) in self.objects.iter_mut().zip(&frame.objects) {
             let imbalance = object.balance.map_or(0.0, |balance| balance.imbalance);
             summary.held = object.held;
-            summary.n_unsettled += usize::from(object.held == Held::Unsettled);
+            summary.n_unsettled += usize::from(object.held == PoseControl::NotConverged);
             summary.imbalance = summary.imbalance.max(imbalance);
             summary.n_off += usize::from(object.held.is_off());
         }

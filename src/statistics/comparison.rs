@@ -94,7 +94,7 @@ pub fn compare_crossed(
         return Ok(None);
     }
     let differences = &a - &b;
-    let squares = MeanSquares::of(differences.view())?;
+    let squares = MeanSquares::new(differences.view())?;
     let (n_splits, n_projections) = (a.nrows() as f64, a.ncols() as f64);
     let n_trials = n_splits * n_projections;
     let of_splits =
@@ -121,7 +121,7 @@ pub fn compare_crossed(
 /// Size of a difference, in standard deviations between trials, on which practically every trial agrees.
 const AGREED: f64 = 3.0;
 /// Upper bound of the number of trials that [`trials_needed`] searches.
-const MOST_TRIALS: usize = 1000;
+const MAX_TRIALS: usize = 1000;
 
 /// Returns the smallest number of trials J (for crossed trials: splits) that can give a significant result. With J trials, [`compare`] finds a difference of
 /// three standard deviations between trials significant; practically every trial agrees on such a difference. The condition is
@@ -142,15 +142,15 @@ pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usiz
         Ok(quantile * (1.0 / n + overlap(sizes)).sqrt() <= AGREED)
     };
     // If the maximum is too few, every smaller number is too few.
-    if !is_enough(MOST_TRIALS)? {
+    if !is_enough(MAX_TRIALS)? {
         return Ok(None);
     }
-    for n_trials in 2..MOST_TRIALS {
+    for n_trials in 2..MAX_TRIALS {
         if is_enough(n_trials)? {
             return Ok(Some(n_trials));
         }
     }
-    Ok(Some(MOST_TRIALS))
+    Ok(Some(MAX_TRIALS))
 }
 
 /// Returns the mean of n_test / n_train: the correction of the variance for trials that share touches.

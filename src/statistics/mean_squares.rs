@@ -15,7 +15,7 @@ pub(crate) struct MeanSquares {
 }
 
 impl MeanSquares {
-    pub fn of(scores: ArrayView2<f64>) -> Result<Self> {
+    pub fn new(scores: ArrayView2<f64>) -> Result<Self> {
         let (n_rows, n_columns) = scores.dim();
         if n_rows < 2 || n_columns < 2 {
             let given = format!("{n_rows} × {n_columns} scores");

@@ -32,7 +32,7 @@ pub fn kendall(pairs: &[[f64; 2]]) -> Option<f64> {
 
 /// Minimum number of configurations for a correct coverage of [`kendall_interval`]. With five configurations, the 95 % interval covers a τ of 0 in 98 %, of
 /// 0.6 in 87 %, and of 0.8 in 63 % of cases. The reason: resamples of few configurations in nearly equal order hardly differ.
-pub const ENOUGH_SETTINGS: usize = 10;
+pub const SUFFICIENT_SETTINGS: usize = 10;
 
 /// Returns the percentile bootstrap interval of Kendall's τ_b over configurations; `None` if no resample has a τ_b. Source: Efron and Tibshirani, *An
 /// introduction to the bootstrap*, 1993, chapter 13. A configuration drawn twice is tied with itself. The draws depend only on the number of configurations.
@@ -179,7 +179,7 @@ mod tests {
     fn intervals_of_enough_settings_hold_it_as_often_as_they_say_and_those_of_five_do_not() {
         const N_DRAWS: usize = 400;
         for correlation in [0.0, 0.8, 0.95] {
-            let held = coverage(N_DRAWS, ENOUGH_SETTINGS, correlation);
+            let held = coverage(N_DRAWS, SUFFICIENT_SETTINGS, correlation);
             let what = format!("{correlation}");
             assert_at_least(&what, held, 0.95, of_share(0.95, N_DRAWS));
         }

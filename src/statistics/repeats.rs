@@ -93,7 +93,7 @@ pub struct Paired {
 
 impl Paired {
     /// Pairs the trials of two configurations by trial number.
-    pub fn of(all_ours: &[Repeat], theirs: &[Repeat]) -> Self {
+    pub fn new(all_ours: &[Repeat], theirs: &[Repeat]) -> Self {
         let pairs = all_ours.iter().filter_map(|ours| {
             let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial);
             Some((*ours, *theirs?))
@@ -226,7 +226,7 @@ mod tests {
         let of = |n: usize, scores: [f64; 2]| -> Vec<Repeat> {
             (0..n).map(|t| trial(t, scores[t % 2])).collect()
         };
-        let pair = |n| Paired::of(&of(n, [0.9, 0.8]), &of(n, [0.7, 0.6]));
+        let pair = |n| Paired::new(&of(n, [0.9, 0.8]), &of(n, [0.7, 0.6]));
         let (twice, often) = (pair(2), pair(40));
         assert_eq!(often.n_trials(), 2);
         assert_eq!(often.means(), twice.means());

@@ -54,7 +54,7 @@ pub struct Components {
 /// If there are fewer than two rows or columns, a score is not finite, or the confidence is outside 0..1.
 pub fn components(scores: ArrayView2<f64>, confidence: f64) -> Result<Components> {
     check_confidence(confidence)?;
-    let squares = MeanSquares::of(scores)?;
+    let squares = MeanSquares::new(scores)?;
     let (n_rows, n_columns) = scores.dim();
     Ok(Components {
         rows: squares.effect(squares.rows, (n_rows, n_columns), confidence)?,

@@ -138,7 +138,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
             Ok((failures, self.kind.tables(rows)?))
         })?;
         self.note(&mut tables);
-        tables.push(FAILURES.of(&finished)?);
+        tables.push(FAILURES.table(&finished)?);
         let n_failed = finished.len();
         Ok(Outcome { tables, n_failed })
     }

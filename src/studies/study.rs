@@ -54,7 +54,7 @@ pub struct Facts {
 
 impl Facts {
     /// Creates the facts of a study from its specification and the hashes of its other content.
-    pub fn of(spec: &impl Serialize, content: BTreeMap<String, String>) -> Self {
+    pub fn new(spec: &impl Serialize, content: BTreeMap<String, String>) -> Self {
         Self::of_toml(toml_text::write(spec), content)
     }
 

@@ -50,7 +50,7 @@ impl<R: Columns> File<R> {
     ///
     /// # Errors
     /// If a row cannot be serialised as CSV; the error names the file.
-    pub fn of(&self, rows: &[R]) -> Result<Table>
+    pub fn table(&self, rows: &[R]) -> Result<Table>
     where
         R: Serialize,
     {
@@ -60,11 +60,11 @@ impl<R: Columns> File<R> {
     /// Returns the table of rows with the given columns, for studies that name their own axes.
     ///
     /// # Errors
-    /// As for [`of`](Self::of). Also if a row has other columns.
+    /// As for [`table`](Self::table). Also if a row has other columns.
     pub fn of_columns(&self, columns: Vec<Column>, rows: &[impl Serialize]) -> Result<Table> {
         let csv = csv_of(rows, &columns);
         let csv = csv.map_err(|e| Error::io(self.name, "write", std::io::Error::other(e)))?;
-        self.table(columns, Path::new(self.name), csv)
+        self.parse(columns, Path::new(self.name), csv)
     }
 
     /// Reads the table from a folder.
@@ -83,7 +83,7 @@ impl<R: Columns> File<R> {
         let path = folder.join(self.name);
         let csv = crate::files::read(&path)
             .map_err(|e| Error::unreadable(&path, "a table that bubbletouch run wrote", e))?;
-        self.table(columns, &path, csv)
+        self.parse(columns, &path, csv)
     }
 
     /// Reads the table of an optional part of a study. Returns `None` if the file does not exist.
@@ -95,7 +95,7 @@ impl<R: Columns> File<R> {
         is_there.then(|| self.read(folder)).transpose()
     }
 
-    fn table(&self, columns: Vec<Column>, path: &Path, csv: Vec<u8>) -> Result<Table> {
+    fn parse(&self, columns: Vec<Column>, path: &Path, csv: Vec<u8>) -> Result<Table> {
         let read = Table::from_csv((self.name, self.title), columns, path, csv)?;
         Ok(Table {
             note: self.note.to_owned(),

@@ -19,7 +19,7 @@
 ///     error: f64 => Value(Less) "deflection error": Log;
 /// } }
 /// let row = Row { method: "press".to_owned(), step_s: 0.5, error: 0.1 };
-/// let found = bubbletouch::table::File::new("found.csv", "Found", "").of(&[row]);
+/// let found = bubbletouch::table::File::new("found.csv", "Found", "").table(&[row]);
 /// assert_eq!(found.unwrap().csv, b"method,step_s,error\npress,0.5,0.1\n");
 /// ```
 /// A field without a description does not compile.

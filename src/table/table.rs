@@ -340,7 +340,7 @@ mod tests {
     fn a_table_holds_the_same_of_its_rows_and_of_its_file() {
         let folder = tempfile::tempdir().unwrap();
         for rows in [rows(Some(0.25)), rows(None), Vec::new()] {
-            let made = FOUND.of(&rows).unwrap();
+            let made = FOUND.table(&rows).unwrap();
             std::fs::write(folder.path().join("found.csv"), &made.csv).unwrap();
             let read = FOUND.read(folder.path()).unwrap();
             assert_eq!((&read.columns, read.n_rows), (&made.columns, rows.len()));
@@ -352,7 +352,7 @@ mod tests {
                 assert_eq!(values(&read, row), values(&made, row));
             }
         }
-        let made = FOUND.of(&rows(None)).unwrap();
+        let made = FOUND.table(&rows(None)).unwrap();
         assert_eq!(made.place("leak"), None);
         let words = made.column("method").unwrap().1.value(0);
         assert_eq!(words, Some(Value::Word("003".to_owned())));

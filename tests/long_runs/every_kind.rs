@@ -17,7 +17,7 @@ type Choices = (&'static str, &'static str, &'static str);
 
 /// Checks all laws; `choices` is `None` for a kind without choices that have a cost.
 fn obeys_all_laws(kind: Kind, choices: Option<Choices>) {
-    let whole = Faults::of(kind);
+    let whole = Faults::new(kind);
     let case = &whole.case;
     whole.has_the_work_items_that_its_plan_counts();
     whole.has_the_same_tables_in_shards_at_any_number_of_threads();
@@ -57,7 +57,7 @@ every_kind! {
 fn sensor_errors_choices_and_touches_over_time_give_the_same_tables_in_shards_at_any_number_of_threads()
  {
     for kind in [Kind::ERRORS, Kind::CHOICES, Kind::HUMAN] {
-        Faults::of(kind).has_the_same_tables_in_shards_at_any_number_of_threads();
+        Faults::new(kind).has_the_same_tables_in_shards_at_any_number_of_threads();
     }
 }
 
@@ -114,7 +114,7 @@ impl Faults {
             !same.is_empty() && said.contains("0 in the first alone, 0 in the"),
             "{said}"
         );
-        let is_same = |row: &Moved| row.difference == 0.0 && row.moved == "same";
+        let is_same = |row: &Significance| row.difference == 0.0 && row.moved == "same";
         assert!(same.iter().all(is_same));
         let (said, moved) = compared(case, ["whole", "changed"]);
         assert!(said.contains("settings are in both runs"), "{said}");
@@ -218,7 +218,7 @@ fn best_of_each_condition(table: &Table, value: &str) -> Vec<f64> {
 
 /// What `compare` writes.
 #[derive(serde::Deserialize)]
-struct Moved {
+struct Significance {
     table: String,
     column: String,
     row: usize,
@@ -228,7 +228,7 @@ struct Moved {
     moved: String,
 }
 
-fn compared(case: &Case, [first, second]: [&str; 2]) -> (String, Vec<Moved>) {
+fn compared(case: &Case, [first, second]: [&str; 2]) -> (String, Vec<Significance>) {
     let files = ["--out", "moved.csv", "--html", "moved.html"];
     let (said, _) = case.succeeds(&[&["compare", first, second], &files[..]].concat());
     let mut rows = csv::Reader::from_path(case.path("moved.csv")).unwrap();

@@ -9,7 +9,7 @@ use bubbletouch::kinds::stability::{StabilityPlan, StabilityStudySpec};
 use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::mesh::{LengthUnit, MeshFormat};
 use bubbletouch::objects::{Catalogue, read_spheres};
-use bubbletouch::report::advice::{Asked, Offers, Wish};
+use bubbletouch::report::advice::{AdviceQuery, Candidates, Requirement};
 use bubbletouch::report::compared::differences_text;
 use bubbletouch::report::differences::differences;
 use bubbletouch::report::folder::{table_files, write_files};
@@ -504,9 +504,9 @@ fn tables_of_results() {
             let read = read_tables(at.path());
             fs::write(&path, valid).unwrap();
             let read = read?;
-            let offers = Offers::of(&read, &Asked::default())?;
+            let offers = Candidates::new(&read, &AdviceQuery::default())?;
             for choices in offers.by_condition() {
-                let advice = offers.advise(&choices, Wish::Budget(1.0));
+                let advice = offers.advise(&choices, Requirement::Budget(1.0));
                 advice.map(|advice| offers.in_words(&advice.choice)).ok();
             }
             differences_text(&differences(&tables, &read)?, 80).map(drop)

@@ -44,7 +44,7 @@ pub fn planned(said: &str, word: &str) -> Vec<String> {
 }
 
 impl Faults {
-    pub fn of(kind: Kind) -> Self {
+    pub fn new(kind: Kind) -> Self {
         let case = kind.case();
         let (said, _) = case.succeeds(&["run", "study.toml", "--out", "whole", "--json"]);
         assert_progress_ends(&said);
@@ -268,7 +268,7 @@ fn n_kills_wanted() -> usize {
 }
 
 fn goes_through_all_faults(kind: Kind) {
-    let faults = Faults::of(kind);
+    let faults = Faults::new(kind);
     faults.is_killed_at_work_items_and_does_none_twice();
     faults.loses_no_more_than_a_torn_last_line();
     faults.ends_on_a_full_disk_and_goes_on_where_there_is_room();

@@ -392,7 +392,7 @@ fn touches_are_balanced_and_alone_the_same() {
     assert_eq!(touches.class_names(), TOUCH_KINDS.map(TouchKind::name));
     for (label, kind) in TOUCH_KINDS.into_iter().enumerate() {
         assert_eq!(sweep.labels.iter().filter(|&&l| l == label).count(), 40);
-        let of_kind = touches.of(label).iter();
+        let of_kind = touches.with_label(label).iter();
         assert!(of_kind.clone().all(|t| t.touch.kind == kind));
         let fits = |t: &bubbletouch::study::RecordedTouch| {
             t.onset >= 0.0 && t.onset + t.touch.duration() <= 3.2 + 1e-9
@@ -402,8 +402,8 @@ fn touches_are_balanced_and_alone_the_same() {
     // Fewer kinds and fewer touches are the same ones.
     let fewer = STUDY.replace("KINDS", "kinds = [\"pat\", \"tap\"]");
     let (_, fewer, _) = laid_out(&fewer.replace("per_kind = 40", "per_kind = 12")).unwrap();
-    assert_eq!(fewer.of(0), &touches.of(4)[..12]);
-    assert_eq!(fewer.of(1), &touches.of(0)[..12]);
+    assert_eq!(fewer.with_label(0), &touches.with_label(4)[..12]);
+    assert_eq!(fewer.with_label(1), &touches.with_label(0)[..12]);
     // Frame by frame as pressed by hand, with new spheres each time.
     let human = plan.spec.human_touch.as_ref().unwrap();
     let array = &plan.arrays[0];

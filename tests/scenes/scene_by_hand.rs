@@ -2,7 +2,9 @@
 
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Catalogue, Model};
-use bubbletouch::scene::{Frame, Held, Movement, ScenePlan, SceneSpec, Simulation, Stepping};
+use bubbletouch::scene::{
+    Frame, Movement, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
+};
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -174,7 +176,7 @@ fn joints_and_bases_by_hand_move_skin_as_trajectories_do() {
     assert!(
         frames
             .iter()
-            .all(|frame| frame.objects[1].held == Held::AtRest)
+            .all(|frame| frame.objects[1].held == PoseControl::AtRest)
     );
     assert!(
         frames[48].objects[1].pose.translation.z - frames[0].objects[1].pose.translation.z > 8e-3
@@ -249,12 +251,12 @@ fn a_free_object_that_was_lost_is_put_back() {
     let plan = plan(&text);
     let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
     let held = |simulation: &mut Simulation| simulation.observe().unwrap().objects[0].held;
-    assert!(matches!(held(&mut simulation), Held::Escaped { .. }));
+    assert!(matches!(held(&mut simulation), PoseControl::Escaped { .. }));
     simulation
         .set_object_pose("mug", Pose::from_translation(0.04 * DVec3::Z))
         .unwrap();
     simulation.step(0.01).unwrap();
-    assert_eq!(held(&mut simulation), Held::AtRest);
+    assert_eq!(held(&mut simulation), PoseControl::AtRest);
 }
 
 #[test]

@@ -4,7 +4,8 @@ use bubbletouch::contact::{FrictionState, NormalForce, Workspace, press_with_con
 use bubbletouch::geometry::Pose;
 use bubbletouch::report::scene_files::SceneFiles;
 use bubbletouch::scene::{
-    Frame, FrameSink, Held, PatchReading, ScenePlan, SceneSpec, Simulation, Stepping, Summary,
+    Frame, FrameSink, PatchReading, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
+    Summary,
 };
 use glam::DVec3;
 use std::fs;
@@ -265,7 +266,7 @@ fn a_skin_with_friction_carries_a_free_object_along_and_on_a_slope() {
     let seen = |frame: &Frame| frame.objects[0].pose.seen_from(&frame.patches[0].pose);
     let start = seen(&frames[0]);
     for frame in &frames {
-        assert_eq!(frame.objects[0].held, Held::AtRest, "{}", frame.time);
+        assert_eq!(frame.objects[0].held, PoseControl::AtRest, "{}", frame.time);
         let patch = &frame.patches[0];
         // What it feels is the weight, in its own frame.
         let down = patch.pose.rotation.conjugate() * DVec3::new(0.0, 0.0, -weight);
@@ -286,7 +287,7 @@ fn a_skin_with_friction_carries_a_free_object_along_and_on_a_slope() {
 
     let frames = on_a_tray(folder.path(), 0.02);
     let last = frames.last().unwrap();
-    assert!(matches!(last.objects[0].held, Held::Escaped { .. }));
+    assert!(matches!(last.objects[0].held, PoseControl::Escaped { .. }));
 }
 
 #[test]
@@ -457,7 +458,7 @@ fn the_force_that_is_recorded_is_the_one_that_is_wanted() {
     let (mut summary, mut n_held) = (Summary::default(), 0);
     for frame in frames(&plan) {
         summary.frame(&frame).unwrap();
-        let Held::Pressed {
+        let PoseControl::Pressed {
             travel,
             force,
             wanted,
@@ -488,7 +489,7 @@ fn a_damped_skin_feels_more_on_the_way_in_and_the_force_at_rest() {
     let frames = frames(&plan(&text));
     let at = |time: f64| {
         let frame = &frames[(100.0 * time) as usize];
-        let Held::Pressed { force, .. } = frame.objects[0].held else {
+        let PoseControl::Pressed { force, .. } = frame.objects[0].held else {
             panic!("the ball is pressed")
         };
         (force, total(&frame.patches[0]))
@@ -506,7 +507,7 @@ fn a_damped_skin_feels_more_on_the_way_in_and_the_force_at_rest() {
 fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() {
     let text = pushed("force_n = 50.0, speed_mm_per_s = 20.0, travel_mm = 6.0", "");
     // As if it had stood so for long: all the way at the start.
-    let Held::Pressed { travel, force, .. } = frames(&plan(&text))[0].objects[0].held else {
+    let PoseControl::Pressed { travel, force, .. } = frames(&plan(&text))[0].objects[0].held else {
         panic!("the ball is pressed")
     };
     assert_eq!(travel, 6e-3);
@@ -519,7 +520,7 @@ fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() 
     let mut summary = Summary::default();
     for frame in &frames {
         summary.frame(frame).unwrap();
-        let Held::Pressed { travel, .. } = frame.objects[0].held else {
+        let PoseControl::Pressed { travel, .. } = frame.objects[0].held else {
             panic!("the ball is pressed")
         };
         assert!(travel >= before && travel - before <= 0.02 * 0.01 + 1e-12);
@@ -540,7 +541,7 @@ fn an_object_that_is_pushed_too_hard_stays_felt_however_far_it_goes() {
     let (mut before, mut n_through) = (vec![0.0; 24 * 16], 0);
     for frame in frames(&plan(&text)) {
         let reading = &frame.patches[0];
-        let Held::Pressed { travel, force, .. } = frame.objects[0].held else {
+        let PoseControl::Pressed { travel, force, .. } = frame.objects[0].held else {
             panic!("the ball is pressed")
         };
         assert!((force - total(reading)).abs() < 1e-9, "{travel} m");
@@ -565,7 +566,7 @@ fn a_force_is_held_by_one_object_among_those_that_stand_there() {
     let alone = total(&frames[0].patches[0]);
     assert!(alone > 0.1 && alone < 1.0, "{alone}");
     for frame in &frames[20..] {
-        let Held::Pressed { wanted, .. } = frame.objects[0].held else {
+        let PoseControl::Pressed { wanted, .. } = frame.objects[0].held else {
             panic!("the ball is pressed")
         };
         assert!((total(&frame.patches[0]) - wanted).abs() < 1e-9);

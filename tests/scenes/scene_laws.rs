@@ -6,7 +6,7 @@ use bubbletouch::contact::equilibrium::{
 use bubbletouch::contact::{Workspace, Wrench, press_with_contacts, simulate, spring_load};
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{
-    Frame, Held, Mount, Movement, ScenePlan, SceneSpec, Simulation, Stepping,
+    Frame, Mount, Movement, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping,
 };
 use bubbletouch::world::{Motion, Phase, VelocityPlan};
 use glam::{DQuat, DVec3};
@@ -275,7 +275,7 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
     let (first, last) = (&frames[0], &frames[frames.len() - 1]);
     assert_eq!(first.objects[0].pose, settled.unwrap().pose);
     for frame in &frames {
-        assert_eq!(frame.objects[0].held, Held::AtRest);
+        assert_eq!(frame.objects[0].held, PoseControl::AtRest);
         // On upright springs the weight is the sum of their forces.
         let force = frame.patches[0].wrench.force.z;
         assert!((force + mass * 9.81).abs() < 1e-5, "{force} N");
@@ -337,7 +337,7 @@ fn two_free_balls_are_carried_side_by_side() {
         frame
             .objects
             .iter()
-            .all(|object| object.held == Held::AtRest)
+            .all(|object| object.held == PoseControl::AtRest)
     );
     let force = frame.patches[0].wrench.force.z;
     assert!((force + 0.258 * 9.81).abs() < 1e-4, "{force} N");
@@ -411,7 +411,7 @@ fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curv
             plan.cut("the test", 0.0).unwrap();
             let frame = &frames(&plan, Stepping::AsNeeded)[0];
             let case = format!("{mass} kg, flat: {is_flat}");
-            assert_eq!(frame.objects[0].held, Held::AtRest, "{case}");
+            assert_eq!(frame.objects[0].held, PoseControl::AtRest, "{case}");
             let weight = mass * 9.81;
             let (force, n_stopped) = carried(&plan, frame);
             assert!(
@@ -455,7 +455,7 @@ fn two_free_balls_that_come_to_rest_on_the_same_taxels_are_carried_together_and_
         let frame = simulation.next_frame().unwrap().unwrap();
         let places = [0, 1].map(|object| {
             let reading = frame.objects[object];
-            assert_eq!(reading.held, Held::AtRest, "{masses:?}");
+            assert_eq!(reading.held, PoseControl::AtRest, "{masses:?}");
             assert!(reading.balance.unwrap().imbalance < 1e-6, "{masses:?}");
             let [ball] = plan.models[object].spheres().unwrap().spheres() else {
                 panic!("a ball is one sphere")
@@ -564,7 +564,12 @@ fn a_damped_bed_carries_the_whole_weight_while_a_ball_sinks_and_after() {
     let (mut n_carried, mut n_both) = (0, 0);
     let mut deepest = Vec::new();
     for frame in frames(&plan, Stepping::AsNeeded) {
-        assert_eq!(frame.objects[0].held, Held::AtRest, "{} s", frame.time);
+        assert_eq!(
+            frame.objects[0].held,
+            PoseControl::AtRest,
+            "{} s",
+            frame.time
+        );
         let on_patch = frame.patches[0].wrench.force;
         let of_table: DVec3 = frame.touches.iter().map(|touch| touch.force).sum();
         let left = on_patch - of_table + weight * DVec3::Z;
@@ -586,7 +591,7 @@ fn a_damped_bed_carries_the_whole_weight_while_a_ball_sinks_and_after() {
 fn what_has_rolled_off_is_reported_once_and_touches_nothing_any_more() {
     let plan = read("ball_over_forearm.toml");
     let frames = frames(&plan, Stepping::AsNeeded);
-    let Held::Escaped { time, direction } = frames.last().unwrap().objects[0].held else {
+    let PoseControl::Escaped { time, direction } = frames.last().unwrap().objects[0].held else {
         panic!("the ball escapes")
     };
     assert!(time > 0.5 && time < 1.2, "{time} s");
@@ -595,10 +600,13 @@ fn what_has_rolled_off_is_reported_once_and_touches_nothing_any_more() {
     for frame in &frames {
         let n_touched: usize = frame.patches.iter().map(|patch| patch.n_touched).sum();
         if frame.time >= time {
-            assert_eq!(frame.objects[0].held, Held::Escaped { time, direction });
+            assert_eq!(
+                frame.objects[0].held,
+                PoseControl::Escaped { time, direction }
+            );
             assert_eq!(n_touched, 0);
         } else {
-            assert_eq!(frame.objects[0].held, Held::AtRest);
+            assert_eq!(frame.objects[0].held, PoseControl::AtRest);
             assert!(n_touched > 0);
         }
     }

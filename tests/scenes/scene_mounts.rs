@@ -1,6 +1,6 @@
 //! What rides along: skin on an object, and objects on a robot's links, against the same things that move by themselves.
 
-use bubbletouch::scene::{Frame, Held, ScenePlan, SceneSpec, Simulation, Stepping};
+use bubbletouch::scene::{Frame, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping};
 use std::path::Path;
 
 const MOTION: &str = "motion = { phases = [
@@ -133,7 +133,12 @@ fn a_free_ball_is_carried_by_skin_on_an_object_that_rides_a_link() {
         free = { mass_kg = 0.046 }";
     let weight = 0.046 * 9.81;
     for frame in frames(text) {
-        assert_eq!(frame.objects[1].held, Held::AtRest, "{} s", frame.time);
+        assert_eq!(
+            frame.objects[1].held,
+            PoseControl::AtRest,
+            "{} s",
+            frame.time
+        );
         let carried = frame.patches[0].wrench.force;
         assert!((carried.z + weight).abs() < 1e-6 * weight, "{carried}");
         assert!(frame.touches.is_empty());

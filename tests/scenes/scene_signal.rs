@@ -4,7 +4,7 @@ use bubbletouch::random::Seed;
 use bubbletouch::report::scene_files::SceneFiles;
 use bubbletouch::scene::{Frame, ScenePlan, SceneSpec, Simulation, Stepping};
 use bubbletouch::signal::{
-    Chain, Noise, NoiseUnit, Quantity, Recording, Scratch, SensorError, SignalStep,
+    Chain, Noise, NoiseUnit, Quantity, Recording, SensorError, SignalStep, SignalWorkspace,
 };
 use ndarray::Array2;
 use ndarray_npy::NpzReader;
@@ -61,7 +61,7 @@ fn the_signal_of_a_frame_is_what_the_chain_makes_of_its_forces() {
         SensorError::Faults.step(&[0.05, 0.02], skin),
         SensorError::Quantisation.step(&[8.0], skin),
     ];
-    let chain = Chain::of(&steps, &plan.patches[0].skin, Quantity::Force).unwrap();
+    let chain = Chain::with_quantity(&steps, &plan.patches[0].skin, Quantity::Force).unwrap();
     for (number, (frame, bare)) in frames.iter().zip(&bare).enumerate() {
         let (reading, bare) = (&frame.patches[0], &bare.patches[0]);
         assert_eq!(
@@ -78,7 +78,7 @@ fn the_signal_of_a_frame_is_what_the_chain_makes_of_its_forces() {
             time: Some(number as f64 / (frames.len() - 1) as f64),
         };
         let name = seed.named("signal").named("finger").numbered(number as u64);
-        chain.apply_recording(recording, &name, &mut Scratch::default());
+        chain.apply_recording(recording, &name, &mut SignalWorkspace::default());
         assert_eq!(reading.signal.as_ref(), Some(&expected), "frame {number}");
     }
 }

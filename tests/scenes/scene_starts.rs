@@ -1,7 +1,7 @@
 //! Where objects start: free objects apart from all others; and which part of a mesh carries taxels.
 
 use bubbletouch::report::scene_summary::scene_table;
-use bubbletouch::scene::{Held, ScenePlan, SceneSpec, Simulation, Stepping, Summary};
+use bubbletouch::scene::{PoseControl, ScenePlan, SceneSpec, Simulation, Stepping, Summary};
 use std::fs;
 use std::path::Path;
 
@@ -104,7 +104,7 @@ fn objects_that_touch_within_what_their_spheres_stand_out_are_read_and_so_are_th
     Simulation::new(&plan, Stepping::AsNeeded)
         .run(&mut [&mut frames])
         .unwrap();
-    assert_eq!(frames[0].objects[0].held, Held::AtRest);
+    assert_eq!(frames[0].objects[0].held, PoseControl::AtRest);
     // A cube in a cube is inside, though only spheres overlap.
     let inside = [
         ("low", cube, [0.0, 0.0, 9.0], FREE),

@@ -3,7 +3,9 @@
 use crate::study::Study;
 use bubbletouch::calibration::{Calibration, Estimate, RecordedSkin, calibrate};
 use bubbletouch::random::Seed;
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep};
+use bubbletouch::signal::{
+    Chain, Noise, NoiseUnit, Recording, SensorError, SignalStep, SignalWorkspace,
+};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::simulate_array;
 use bubbletouch::world::{Grid, Patch, Taxel};
@@ -97,7 +99,7 @@ impl Settings {
         };
         let patch = Patch::grid(grid, taxel).unwrap();
         let chain = Chain::new(&self.steps(seed.named("skin")), &patch).unwrap();
-        let mut scratch = Scratch::default();
+        let mut scratch = SignalWorkspace::default();
         let mut read = deflections.clone();
         let last = (read.nrows() - 1) as f64;
         for (k, mut frame) in read.outer_iter_mut().enumerate() {

@@ -11,7 +11,7 @@ use bubbletouch::recognition::data::dataset::dataset;
 use bubbletouch::recognition::evaluation::fusion::fuse_rows;
 use bubbletouch::recognition::features::Features;
 use bubbletouch::sensing::Projection;
-use bubbletouch::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+use bubbletouch::signal::{Chain, Noise, NoiseUnit, SignalStep, SignalWorkspace};
 use bubbletouch::study::table::{Cell, Tables, TrialScore};
 use ndarray::{Array1, Array2, Axis};
 use std::collections::BTreeMap;
@@ -93,7 +93,7 @@ fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
                     true => name,
                     false => name.named("frame").numbered(frame as u64),
                 };
-                chain.apply(&mut values, None, &noise, &mut Scratch::default());
+                chain.apply(&mut values, None, &noise, &mut SignalWorkspace::default());
                 for k in 0..m {
                     rows[(row, (frame - 1) * m + k)] =
                         matrix.row(k).dot(&Array1::from(values.clone()));

@@ -4,7 +4,7 @@ use crate::command::Case;
 use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
 use bubbletouch::random::Seed;
-use bubbletouch::signal::{Chain, Recording, Scratch, SensorError};
+use bubbletouch::signal::{Chain, Recording, SensorError, SignalWorkspace};
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::{Plan, StudySpec, sample_frames};
@@ -73,7 +73,7 @@ fn one_at_a_time_scores_what_all_combinations_score_there() {
     let told: Vec<_> = settings
         .iter()
         .map(|c| {
-            let strength = |key| c.strengths.of(key);
+            let strength = |key| c.strengths.get(key);
             (
                 c.noise_std,
                 strength("gain_std"),
@@ -108,7 +108,7 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
         let found = rows.find(|(cell, s)| same(cell) && s.trial == score.trial);
         assert_eq!(&found.expect("a cell of no strength").1, score);
         let strengths = plain.strengths;
-        assert_eq!(strengths.of("gain_std"), None);
+        assert_eq!(strengths.get("gain_std"), None);
     }
     let header = |tables: &_| {
         let accuracy = tables_of(tables).unwrap().swap_remove(0);
@@ -210,7 +210,7 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
             interval: Some(touch.depth / 0.02 / 2.0),
             time: None,
         };
-        chain.apply_recording(recording, &name, &mut Scratch::default());
+        chain.apply_recording(recording, &name, &mut SignalWorkspace::default());
         assert_eq!(rows.row(row).to_vec(), frames[2 * n..], "touch {row}");
     }
 }

@@ -4,7 +4,9 @@ use crate::study::{Study, laid_out};
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::Classifier;
-use bubbletouch::signal::{Chain, Recording, SENSOR_ERRORS, Scratch, SensorError, Strength};
+use bubbletouch::signal::{
+    Chain, Recording, SENSOR_ERRORS, SensorError, SignalWorkspace, Strength,
+};
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::{PStatus, Tables, TrialScore};
@@ -330,7 +332,7 @@ fn readings_of_a_touch_differ_if_and_only_if_the_error_is_random_by_reading() {
                 time: None,
             };
             let touch = Seed::new(2018).numbered(touch);
-            chain.apply_recording(recording, &touch, &mut Scratch::default());
+            chain.apply_recording(recording, &touch, &mut SignalWorkspace::default());
             frames
         };
         let differ = read(1) != read(2);

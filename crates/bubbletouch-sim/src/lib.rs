@@ -30,7 +30,7 @@
 //! use bubbletouch_sim::contact::{Workspace, press_to_depth};
 //! use bubbletouch_sim::objects::Catalogue;
 //! use bubbletouch_sim::random::Seed;
-//! use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+//! use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, SignalWorkspace, SignalStep};
 //! use bubbletouch_sim::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel, touches};
 //!
 //! // A mug of real size, as spheres that are within half a millimetre of its surface.
@@ -52,7 +52,7 @@
 //!     depth: Spread::Values(vec![3e-3]),
 //!     per_object: None,
 //! };
-//! let rests = placement.rest.of(&mug.model);
+//! let rests = placement.rest.poses(&mug.model);
 //! let seed = Seed::new(2018);
 //! let touch = touches(&placement, &rests, &seed)?.remove(0);
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
@@ -66,7 +66,7 @@
 //! // The electronics: noise of 5 % of full scale, then smoothing.
 //! let noise = Noise { std: 0.05, unit: NoiseUnit::FullScale };
 //! let steps = [SignalStep::Noise(noise), SignalStep::Smoothing { width: 4e-3 }];
-//! Chain::new(&steps, &patch)?.apply(&mut frame, None, &seed.named("noise"), &mut Scratch::default());
+//! Chain::new(&steps, &patch)?.apply(&mut frame, None, &seed.named("noise"), &mut SignalWorkspace::default());
 //! # Ok::<(), bubbletouch_sim::Error>(())
 //! ```
 //!

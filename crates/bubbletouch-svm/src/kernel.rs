@@ -270,7 +270,7 @@ impl KernelFunction {
                 degree,
             } => {
                 let mut value = [norm];
-                polynomials(&mut value, (T::of(gamma), T::of(coef0)), degree);
+                polynomials(&mut value, (T::from_f64(gamma), T::from_f64(coef0)), degree);
                 value[0]
             }
         }
@@ -289,7 +289,7 @@ impl KernelFunction {
                 gamma,
                 coef0,
                 degree,
-            } => polynomials(pairwise, (T::of(gamma), T::of(coef0)), degree),
+            } => polynomials(pairwise, (T::from_f64(gamma), T::from_f64(coef0)), degree),
         }
     }
 }
@@ -403,8 +403,11 @@ mod tests {
         // The length is not a multiple of the register width.
         let products: Vec<f64> = (0..37).map(|i| f64::from(i) * 0.03 - 0.4).collect();
         for degree in 1..=20 {
-            let mut powers: Vec<T> = products.iter().map(|&product| T::of(product)).collect();
-            polynomials(&mut powers, (T::of(0.7), T::of(1.0)), degree);
+            let mut powers: Vec<T> = products
+                .iter()
+                .map(|&product| T::from_f64(product))
+                .collect();
+            polynomials(&mut powers, (T::from_f64(0.7), T::from_f64(1.0)), degree);
             for (power, product) in powers.iter().zip(&products) {
                 let exact = (0.7 * product + 1.0).powi(degree as i32);
                 let error = (power.wide() - exact).abs();

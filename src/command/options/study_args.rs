@@ -8,7 +8,7 @@ use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Threads, at most, where there are not more cores: each takes memory of its own, and none is faster than a core.
-const MOST_THREADS: usize = 1024;
+const MAX_THREADS: usize = 1024;
 
 /// The study that a bare `bubbletouch` runs.
 pub const QUICKSTART_FILE: &str = "experiments/quickstart.toml";
@@ -119,7 +119,7 @@ pub fn set_threads(threads: Option<usize>) -> Result<()> {
         return Ok(());
     };
     let n_cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let most = MOST_THREADS.max(n_cores);
+    let most = MAX_THREADS.max(n_cores);
     if !(1..=most).contains(&threads) {
         let allowed = format!("1 to {most} (there are {n_cores} cores)");
         return Err(Error::input("--threads", threads, allowed));

@@ -1,6 +1,6 @@
 //! The work items that a run computes.
 
-use crate::engine::attempt::attempt;
+use crate::engine::isolated::run_isolated;
 use crate::engine::progress::Progress;
 use crate::engine::work_items::record::{ItemResult, ItemRows};
 use crate::engine::work_items::run_options::RunOptions;
@@ -16,7 +16,7 @@ pub struct PendingItems<'a, R> {
     pub progress: &'a dyn Progress,
     items: &'a [WorkItem],
     /// Whether each item is pending.
-    is_left: Vec<bool>,
+    is_pending: Vec<bool>,
     /// Results of finished items, by number.
     results: Mutex<BTreeMap<usize, ItemResult<R>>>,
 }
@@ -25,34 +25,34 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
     /// Selects the pending ones among all items.
     pub(crate) fn new(
         options: &RunOptions<'a>,
-        (items, is_left): (&'a [WorkItem], Vec<bool>),
+        (items, is_pending): (&'a [WorkItem], Vec<bool>),
     ) -> Self {
         Self {
             options: *options,
             progress: options.progress,
             items,
-            is_left,
+            is_pending,
             results: Mutex::default(),
         }
     }
 
     /// Returns the number of pending items.
     pub fn n(&self) -> usize {
-        self.left().count()
+        self.pending().count()
     }
 
     /// Returns the numbers of the pending items.
-    fn left(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.items.len()).filter(|&number| self.is_left[number])
+    fn pending(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.items.len()).filter(|&number| self.is_pending[number])
     }
 
     /// Returns whether an item is pending.
     pub fn has(&self, number: usize) -> bool {
-        self.is_left[number]
+        self.is_pending[number]
     }
 
     /// Returns the elements of `all` whose item is pending, with the numbers of their items. The items are numbered consecutively from `first`.
-    pub fn of<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
+    pub fn among<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
         let numbered = (first..).zip(all);
         numbered.filter(|(number, _)| self.has(*number)).collect()
     }
@@ -62,10 +62,10 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
     /// # Errors
     /// If the journal cannot be written, or if `measure` fails and the first failure ends the run.
     pub fn finish(&self, number: usize, measure: impl FnOnce() -> Result<R>) -> Result<()> {
-        if !self.is_left[number] {
+        if !self.is_pending[number] {
             return Ok(());
         }
-        let result = attempt(self.options.fail_fast, measure)?;
+        let result = run_isolated(self.options.fail_fast, measure)?;
         self.keep(number, result)
     }
 
@@ -78,10 +78,10 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         numbers: &[usize],
         make: impl FnOnce() -> Result<T>,
     ) -> Result<Option<T>> {
-        match attempt(self.options.fail_fast, make)? {
+        match run_isolated(self.options.fail_fast, make)? {
             Ok(made) => Ok(Some(made)),
             Err(said) => {
-                for &number in numbers.iter().filter(|&&number| self.is_left[number]) {
+                for &number in numbers.iter().filter(|&&number| self.is_pending[number]) {
                     self.keep(number, Err(said.clone()))?;
                 }
                 Ok(None)
@@ -111,6 +111,6 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
     pub(crate) fn into_results(self) -> (Vec<bool>, BTreeMap<usize, ItemResult<R>>) {
         let results = self.results.into_inner();
         let results = results.unwrap_or_else(|poisoned| poisoned.into_inner());
-        (self.is_left, results)
+        (self.is_pending, results)
     }
 }

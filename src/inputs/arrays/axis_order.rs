@@ -5,7 +5,7 @@
 //! axis of taxels.
 
 use crate::error::{Error, Result};
-use crate::inputs::units::{MOST_FRAMES, MOST_SIDE};
+use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};
 use ndarray::{Array2, ArrayD};
 
 /// Aspect ratio of a grid above which two axes may be other than rows and columns. If larger, time may be mistaken for taxels; if smaller, the order must be
@@ -224,16 +224,16 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
         axes: "ntcyx".chars().flat_map(axes_of).collect(),
         order: order.clone(),
     };
-    let is_side = |side| (1..=MOST_SIDE).contains(&side);
+    let is_side = |side| (1..=MAX_SIDE).contains(&side);
     let is_allowed = found.n_touches > 0
-        && (1..=MOST_FRAMES).contains(&found.n_frames)
+        && (1..=MAX_FRAMES).contains(&found.n_frames)
         && is_side(found.rows)
-        && (is_side(found.columns) || (!found.has_grid && found.columns <= MOST_SIDE * MOST_SIDE));
+        && (is_side(found.columns) || (!found.has_grid && found.columns <= MAX_SIDE * MAX_SIDE));
     match is_allowed && found.columns > 0 {
         true => Ok(found),
         false => {
             let allowed = format!(
-                "n × rows × columns or n × F × rows × columns, 1 to {MOST_FRAMES} frames of 1 to {MOST_SIDE} rows and columns"
+                "n × rows × columns or n × F × rows × columns, 1 to {MAX_FRAMES} frames of 1 to {MAX_SIDE} rows and columns"
             );
             Err(Error::input(place, given, allowed))
         }

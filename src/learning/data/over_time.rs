@@ -200,7 +200,7 @@ mod tests {
     use super::*;
     use ndarray::{Array1, Array2, array};
 
-    fn of(over_time: OverTime, frames: &Array2<f64>) -> Vec<f64> {
+    fn combined(over_time: OverTime, frames: &Array2<f64>) -> Vec<f64> {
         let n = over_time.n_features(frames.nrows(), frames.ncols());
         let mut row = Array1::zeros(n);
         over_time.write(frames.view(), row.view_mut());
@@ -223,14 +223,14 @@ mod tests {
 
     #[test]
     fn the_deepest_frame_is_that_of_the_highest_level() {
-        assert_eq!(of(OverTime::Deepest, &touch()), [4.0, 0.0]);
+        assert_eq!(combined(OverTime::Deepest, &touch()), [4.0, 0.0]);
     }
 
     #[test]
     fn stacked_frames_are_even_in_time_and_all_of_them_are_the_recording() {
         let all: Vec<f64> = touch().iter().copied().collect();
-        assert_eq!(of(OverTime::Stacked(8), &touch()), all);
-        assert_eq!(of(OverTime::Stacked(2), &touch()), [0.0; 4]);
+        assert_eq!(combined(OverTime::Stacked(8), &touch()), all);
+        assert_eq!(combined(OverTime::Stacked(2), &touch()), [0.0; 4]);
         for k in 2..=8 {
             let frames: Vec<usize> = (0..k).map(|part| evenly(part, k, 8)).collect();
             assert_eq!((frames[0], frames[k - 1]), (0, 7));
@@ -242,7 +242,7 @@ mod tests {
 
     #[test]
     fn the_course_counts_contacts_and_measures_their_times_and_ways() {
-        let row = of(OverTime::Course, &touch());
+        let row = combined(OverTime::Course, &touch());
         let root = 2.0_f64.sqrt();
         let expected = [
             4.0,
@@ -264,15 +264,15 @@ mod tests {
     #[test]
     fn a_summary_is_the_moments_and_the_course_and_nothing_stays_nothing() {
         let both = [
-            of(OverTime::Moments, &touch()),
-            of(OverTime::Course, &touch()),
+            combined(OverTime::Moments, &touch()),
+            combined(OverTime::Course, &touch()),
         ]
         .concat();
-        assert_eq!(of(OverTime::Summarised, &touch()), both);
+        assert_eq!(combined(OverTime::Summarised, &touch()), both);
         assert_eq!(both[..2], [9.0 / 8.0, 3.0 / 8.0]);
         assert_eq!(both[4..6], [4.0, 3.0]);
         let nothing = Array2::zeros((5, 3));
-        assert_eq!(of(OverTime::Summarised, &nothing), vec![0.0; 19]);
+        assert_eq!(combined(OverTime::Summarised, &nothing), vec![0.0; 19]);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::table::{Better, Role, front};
 use std::collections::HashMap;
 
 /// Maximum number of front points that are numbered and listed below a chart.
-const MOST_NAMED: usize = 24;
+const MAX_NAMED: usize = 24;
 
 /// Pareto fronts of a chart.
 pub(super) struct Front<'a> {
@@ -32,7 +32,7 @@ pub(super) fn words(view: &View) -> String {
 
 impl<'a> Front<'a> {
     /// Computes the Pareto fronts of a chart. Empty if the specification has no front.
-    pub fn of(view: &'a View) -> Self {
+    pub fn new(view: &'a View) -> Self {
         let conditions = Setting::of_roles(view.table, &[Role::Condition]);
         let conditions: Vec<Setting> = conditions.collect();
         let more = is_more_better(view);
@@ -67,7 +67,7 @@ impl<'a> Front<'a> {
     pub fn numbered(&self) -> impl Iterator<Item = (usize, &'a Place)> {
         let all = self.fronts.iter().flat_map(|front| &front.1);
         let n = all.clone().count();
-        let all = all.filter(move |_| n <= MOST_NAMED).copied();
+        let all = all.filter(move |_| n <= MAX_NAMED).copied();
         all.enumerate().map(|(number, place)| (number + 1, place))
     }
 

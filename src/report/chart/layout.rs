@@ -20,7 +20,7 @@ const WIDEST: f64 = 230.0;
 /// Maximum height of a rotated label below a column, pixels.
 const DEEPEST: f64 = 160.0;
 /// Maximum number of lines of a label below a column.
-const MOST_LINES: usize = 3;
+const MAX_LINES: usize = 3;
 /// Line height of a panel's title, pixels.
 const TITLE_LINE: f64 = 16.0;
 
@@ -52,7 +52,7 @@ struct XLabels {
 
 impl Layout {
     /// Arranges panels of a given size in a number of columns.
-    pub fn of(view: &View, entries: Vec<LegendEntry>, columns: usize, size: (f64, f64)) -> Self {
+    pub fn new(view: &View, entries: Vec<LegendEntry>, columns: usize, size: (f64, f64)) -> Self {
         let labels = view.y.ticks.iter();
         let labels = labels.map(|tick| text_width(&tick.label, TICK).min(WIDEST));
         let left = f64::max(LEFT, 44.0 + labels.fold(0.0, f64::max));
@@ -77,8 +77,8 @@ impl Layout {
             titles,
             above,
             above_first,
-            labels: XLabels::of(&view.x, size.0),
-            heading: Heading::of(&view.spec.title, settings.trim(), entries, width),
+            labels: XLabels::new(&view.x, size.0),
+            heading: Heading::new(&view.spec.title, settings.trim(), entries, width),
         }
     }
 
@@ -178,7 +178,7 @@ fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
 
 impl XLabels {
     /// Wraps the labels. If one is too wide or has too many lines, all labels are rotated.
-    fn of(scale: &Scale, width: f64) -> Self {
+    fn new(scale: &Scale, width: f64) -> Self {
         let labels = scale.ticks.iter().map(|tick| &tick.label[..]);
         let mut is_turned = false;
         let lines: Vec<Vec<String>> = if scale.is_words {
@@ -189,7 +189,7 @@ impl XLabels {
                 .collect();
             let is_too_wide = |line: &String| text_width(line, TICK) > room;
             is_turned = lines.iter().flatten().any(is_too_wide)
-                || lines.iter().any(|lines| lines.len() > MOST_LINES);
+                || lines.iter().any(|lines| lines.len() > MAX_LINES);
             match is_turned {
                 true => labels
                     .map(|label| vec![shorten(label, TICK, DEEPEST)])

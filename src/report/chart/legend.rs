@@ -42,7 +42,7 @@ pub(super) struct LegendEntry {
 
 impl Heading {
     /// Creates a heading for a drawing of the given width. Lines and legend entries wrap within the margins.
-    pub(super) fn of(title: &str, settings: &str, entries: Vec<LegendEntry>, width: f64) -> Self {
+    pub(super) fn new(title: &str, settings: &str, entries: Vec<LegendEntry>, width: f64) -> Self {
         let inner = width - LEFT - RIGHT;
         Self {
             // Bold text is wider.

@@ -24,8 +24,8 @@ pub(super) fn draw(view: &View) -> Drawing {
         true => 22.0 * view.y.n_levels as f64,
         false => height,
     };
-    let layout = Layout::of(view, legend(view), columns, (width, height));
-    let front = Front::of(view);
+    let layout = Layout::new(view, legend(view), columns, (width, height));
+    let front = Front::new(view);
     let list = front.list();
     let below = if list.is_empty() { 0.0 } else { 16.0 };
     let height = layout.bottom() + LINE * list.len() as f64 + below;

@@ -25,7 +25,7 @@ use view::View;
 /// # Errors
 /// If the specification names a table or a column that does not exist, or no row has a place in the chart.
 pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
-    let view = View::of(spec, tables)?;
+    let view = View::new(spec, tables)?;
     if view.places.is_empty() {
         let given = format!("no row of {} with {} and {}", spec.table, spec.x, spec.y);
         return Err(Error::input(
@@ -45,7 +45,7 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
 /// # Errors
 /// If the specification names a table or a column that does not exist.
 pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
-    let view = View::of(spec, tables)?;
+    let view = View::new(spec, tables)?;
     Ok(view.places)
 }
 
@@ -54,5 +54,5 @@ pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
 /// # Errors
 /// If the specification names a table or a column that does not exist.
 pub fn omitted(spec: &ChartSpec, tables: &[Table]) -> Result<String> {
-    Ok(View::of(spec, tables)?.omitted())
+    Ok(View::new(spec, tables)?.omitted())
 }

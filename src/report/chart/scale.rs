@@ -6,7 +6,7 @@ use crate::table::{Along, Column, Role, Scale as Spacing};
 /// Fraction of a logarithmic axis that is reserved for zero.
 pub(super) const SHELF: f64 = 0.09;
 /// Maximum number of distinct values of a swept axis for which each value has a tick. More values get round ticks.
-const MOST_SWEPT: usize = 40;
+const MAX_SWEPT: usize = 40;
 
 /// Axis scale: maps values to fractions of the axis length.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +39,7 @@ pub(super) struct Tick {
 
 impl Scale {
     /// Creates a continuous scale that covers the given values of a column.
-    pub fn of(column: &Column, values: &[f64], along: Along) -> Self {
+    pub fn new(column: &Column, values: &[f64], along: Along) -> Self {
         let is_swept = matches!(column.role, Role::Choice | Role::Condition | Role::Subject);
         let distinct = distinct(values);
         let is_log = column.scale == Spacing::Log;
@@ -60,7 +60,7 @@ impl Scale {
                 (low - margin, high + margin)
             }
         };
-        let ticks = match (is_swept && distinct.len() <= MOST_SWEPT, is_log) {
+        let ticks = match (is_swept && distinct.len() <= MAX_SWEPT, is_log) {
             (true, _) => distinct,
             (_, false) => even_ticks(low, high),
             (_, true) => {
@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn a_logarithmic_axis_has_decades_of_one_length_and_zero_apart() {
         let values = [0.0, 1e-6, 1e-3, 1.0];
-        let scale = Scale::of(&column(Spacing::Log, Role::Cost), &values, Along::X);
+        let scale = Scale::new(&column(Spacing::Log, Role::Cost), &values, Along::X);
         let at = |value| scale.place(value).unwrap();
         assert!((at(1e-3) - at(1e-6) - (at(1.0) - at(1e-3))).abs() < 1e-12);
         assert!(at(0.0) < SHELF && at(1e-6) > SHELF && at(1.0) < 1.0);
@@ -260,16 +260,16 @@ mod tests {
             ["0", "1e-6", "1e-5", "0.0001", "0.001", "0.01", "0.1", "1"]
         );
         assert_eq!(scale.place(-1.0), None);
-        let none = Scale::of(&column(Spacing::Log, Role::Cost), &[], Along::X);
+        let none = Scale::new(&column(Spacing::Log, Role::Cost), &[], Along::X);
         assert!(!none.ticks.is_empty() && none.place(0.0).is_none());
     }
 
     #[test]
     fn a_share_reaches_from_nothing_to_all_and_a_swept_value_has_a_tick() {
-        let share = Scale::of(&column(Spacing::Share, Role::Note), &[0.3, 0.4], Along::Y);
+        let share = Scale::new(&column(Spacing::Share, Role::Note), &[0.3, 0.4], Along::Y);
         assert_eq!(labels(&share), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
         assert_eq!((share.place(0.0), share.place(1.0)), (Some(0.0), Some(1.0)));
-        let swept = Scale::of(
+        let swept = Scale::new(
             &column(Spacing::Linear, Role::Choice),
             &[7.0, 1.5, 7.0],
             Along::X,
@@ -298,7 +298,7 @@ mod tests {
         let values: Vec<f64> = (0..=30)
             .map(|step| 10f64.powf(0.1 * f64::from(step)))
             .collect();
-        let scale = Scale::of(&column(Spacing::Log, Role::Choice), &values, Along::X);
+        let scale = Scale::new(&column(Spacing::Log, Role::Choice), &values, Along::X);
         let shown = thin(&scale.ticks, |_| 0.06);
         let kept = scale.ticks.iter().zip(&shown).filter(|(_, kept)| **kept);
         let kept: Vec<&str> = kept.map(|(tick, _)| &tick.label[..]).collect();

@@ -29,7 +29,7 @@ struct Look<'a> {
 
 /// Draws a chart of tiles. `fill` and `sign` are column names.
 pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawing> {
-    let look = Look::of(
+    let look = Look::new(
         view,
         view.column(fill)?,
         sign.map(|sign| view.column(sign)).transpose()?,
@@ -48,7 +48,7 @@ pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawin
     let most = 640.0 / (across * columns) as f64;
     let size = (widest.max(most.min(64.0)), high);
     let panel = (size.0 * across as f64, size.1 * down as f64);
-    let layout = Layout::of(view, look.legend(view), columns, panel);
+    let layout = Layout::new(view, look.legend(view), columns, panel);
     let mut drawing = Drawing::new(layout.width, layout.bottom());
     layout.draw_titles(&mut drawing, view);
     for panel in 0..view.titles.len() {
@@ -88,7 +88,7 @@ fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
 }
 
 impl<'a> Look<'a> {
-    fn of(view: &View, fill: Setting<'a>, sign: Option<Setting<'a>>) -> Self {
+    fn new(view: &View, fill: Setting<'a>, sign: Option<Setting<'a>>) -> Self {
         let column = fill.column;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         if let Data::Numbers(numbers) = fill.data {

@@ -8,9 +8,9 @@ use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Tab
 use std::collections::{HashMap, HashSet};
 
 /// Maximum number of lines with confidence bands. Bands of more lines would hide each other; error bars replace them.
-const MOST_BANDS: usize = 4;
+const MAX_BANDS: usize = 4;
 /// Maximum number of points with error bars. More bars would not be distinguishable.
-const MOST_WHISKERS: usize = 80;
+const MAX_WHISKERS: usize = 80;
 
 /// A chart specification, applied to its table.
 pub(super) struct View<'a> {
@@ -66,7 +66,7 @@ pub(super) struct Groups {
 
 impl<'a> View<'a> {
     /// Applies a chart specification to its table.
-    pub fn of(spec: &'a ChartSpec, tables: &'a [Table]) -> Result<Self> {
+    pub fn new(spec: &'a ChartSpec, tables: &'a [Table]) -> Result<Self> {
         let table = tables.iter().find(|table| table.file == spec.table);
         let table = table.ok_or_else(|| {
             let files: Vec<&str> = tables.iter().map(|table| table.file).collect();
@@ -86,7 +86,7 @@ impl<'a> View<'a> {
         }
         let groups = |names: &[String]| -> Result<Groups> {
             let settings: Result<Vec<Setting>> = names.iter().map(|name| column(name)).collect();
-            Ok(Groups::of(table, &settings?, &rows))
+            Ok(Groups::new(table, &settings?, &rows))
         };
         let (lines, panels) = (groups(&spec.lines)?, groups(spec.panels.as_slice())?);
         let is_tiles = matches!(spec.mark, Mark::Tiles { .. });
@@ -118,7 +118,7 @@ impl<'a> View<'a> {
             || one.column.scale == Spacing::Words
         {
             true => Scale::of_levels(one.column, (&own.0, &own.1), side),
-            false => Scale::of(one.column, all, side),
+            false => Scale::new(one.column, all, side),
         };
         let x_scale = scale(&x, &x_values, &along[0], Along::X);
         let is_broken = x_scale.is_words || x.column.has_named_numbers();
@@ -182,12 +182,12 @@ impl<'a> View<'a> {
 
     /// Returns whether intervals are bands. Only charts with few lines have bands.
     pub fn has_bands(&self) -> bool {
-        self.has_interval() && self.is_joined && self.lines.names.len() <= MOST_BANDS
+        self.has_interval() && self.is_joined && self.lines.names.len() <= MAX_BANDS
     }
 
     /// Returns whether intervals are drawn, as bands or as error bars.
     pub fn has_interval(&self) -> bool {
-        let is_many = self.spec.mark == Mark::Points && self.places.len() > MOST_WHISKERS;
+        let is_many = self.spec.mark == Mark::Points && self.places.len() > MAX_WHISKERS;
         !is_many && self.places.iter().any(|place| place.interval.is_some())
     }
 
@@ -329,7 +329,7 @@ impl<'a> View<'a> {
 
 impl Groups {
     /// Groups rows by the values of columns, in the order of their first rows. Groups of a single numeric column are in ascending order.
-    fn of(table: &Table, settings: &[Setting], rows: &[usize]) -> Self {
+    fn new(table: &Table, settings: &[Setting], rows: &[usize]) -> Self {
         let mut groups = Setting::groups(settings, table, rows);
         if let [one] = settings
             && let Data::Numbers(numbers) = one.data

@@ -3,12 +3,12 @@
 use crate::engine::program::PROGRAM;
 use crate::error::Result;
 use crate::quantile::quantile;
-use crate::report::differences::{ColumnDifferences, Difference, Moved};
+use crate::report::differences::{ColumnDifferences, Difference, Significance};
 use crate::report::entries::{ColumnEntries, TableEntries};
 use crate::report::page::StudyAbout;
 use crate::report::rank_agreement::RankAgreement;
 use crate::report::study_content::Found;
-use crate::report::study_folder::{MOST_CHARTS, page_of};
+use crate::report::study_folder::{MAX_CHARTS, page_of};
 use crate::report::terminal::{paragraph, table_text};
 use crate::spelling::counted;
 use crate::statistics::p_status::PStatus;
@@ -56,7 +56,7 @@ pub fn differences_page(
     let charts = found.iter().filter(|one| !is_cost(one));
     let charts =
         charts.filter_map(|one| Some(chart(&values, one, one.rows.first()?, (first, second))));
-    let charts: Vec<ChartSpec> = charts.take(MOST_CHARTS).collect();
+    let charts: Vec<ChartSpec> = charts.take(MAX_CHARTS).collect();
     let costs = table(&COSTS, found.iter().filter(|one| is_cost(one)))?;
     page_of(
         &about,
@@ -121,7 +121,7 @@ fn table<'a>(
         let by_p = a.moved.cmp(&b.moved).then(p(a).total_cmp(&p(b)));
         by_p.then(size(b).total_cmp(&size(a)))
     });
-    file.of(&rows)
+    file.table(&rows)
 }
 
 /// Describes the differences: for each table the number of shared settings, then its values, then its costs.
@@ -222,14 +222,14 @@ fn table_words(
 }
 
 /// Maximum number of changes of an outcome that a sentence lists.
-const MOST_CHANGES: usize = 8;
+const MAX_CHANGES: usize = 8;
 
 /// Describes an outcome: `stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).`
 fn outcome_words(file: &str, entries: &ColumnEntries) -> String {
-    let listed = entries.changes.iter().take(MOST_CHANGES);
+    let listed = entries.changes.iter().take(MAX_CHANGES);
     let listed = listed.map(|(from, to, n)| format!("{n} from {from} to {to}"));
     let mut listed: Vec<String> = listed.collect();
-    if entries.changes.len() > MOST_CHANGES {
+    if entries.changes.len() > MAX_CHANGES {
         listed.push("and others".to_owned());
     }
     format!(
@@ -270,14 +270,15 @@ fn value_words(one: &ColumnDifferences) -> Vec<String> {
         "{}: {n_same} the same, {better} {} in the second, {worse} {}.",
         one.column.words, words[0], words[1]
     );
-    let [better, worse] = one.counts(|row| row.moved == Moved::Surely);
+    let [better, worse] = one.counts(|row| row.moved == Significance::Surely);
     let surely = format!(
         "More than chance explains: {better} {}, {worse} {}",
         words[0], words[1]
     );
     let rows = || one.rows.iter();
     let n_tested = rows().filter(|row| row.p_holm.is_some()).count();
-    let has_intervals = rows().any(|row| matches!(row.moved, Moved::Surely | Moved::ByChance));
+    let has_intervals =
+        rows().any(|row| matches!(row.moved, Significance::Surely | Significance::ByChance));
     let too_few = rows().find(|row| row.p_status == Some(PStatus::TooFewTrials));
     let needed =
         too_few.and_then(|row| Some((counted(row.n_trials, "trial"), row.n_trials_needed?)));

@@ -18,7 +18,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 /// Significance of a difference between two runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Moved {
+pub enum Significance {
     /// Significant: p < 0.05 after correction, or the intervals are disjoint.
     Surely,
     /// Not tested: there are no intervals, and no trials or too few.
@@ -60,7 +60,7 @@ pub struct Difference {
     /// Upper end of the 95 % confidence interval of the difference; absent if trials are not paired.
     difference_high: Option<f64> => Note "95 % interval, upper end": Linear;
     /// Significance of the difference between both folders.
-    moved: Moved => Outcome "difference" named MOVED;
+    moved: Significance => Outcome "difference" named MOVED;
     /// Two-sided p-value of the hypothesis of no difference; absent if there are too few trials.
     p_value: Option<f64> => Note "p-value": Linear;
     /// The p-value after Holm's correction for all settings of the column.
@@ -95,7 +95,7 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
     // A table without a file is derived from other tables and contains nothing new.
     for second in second.iter().filter(|table| !table.csv.is_empty()) {
         let first = first.iter().find(|first| first.file == second.file);
-        let (Some(first), Some(second)) = (first.and_then(Settings::of), Settings::of(second))
+        let (Some(first), Some(second)) = (first.and_then(Settings::new), Settings::new(second))
         else {
             continue;
         };
@@ -132,7 +132,7 @@ struct Settings<'a> {
 
 impl<'a> Settings<'a> {
     /// Returns `None` if the table names configurations by numbers, which differ between runs, or if several rows of an unrepeated table share a setting.
-    fn of(table: &'a Table) -> Option<Self> {
+    fn new(table: &'a Table) -> Option<Self> {
         let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
         let columns = columns.filter(|one| one.column.name != "trial");
         let columns: Vec<Setting> = columns.collect();
@@ -217,7 +217,7 @@ fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<Col
     let p_values: Vec<Option<f64>> = rows.iter().map(|row| row.p_value).collect();
     for (row, p_holm) in rows.iter_mut().zip(holm_of_some(&p_values)) {
         row.p_holm = p_holm;
-        if let Some(p) = p_holm.filter(|_| row.moved != Moved::Same) {
+        if let Some(p) = p_holm.filter(|_| row.moved != Significance::Same) {
             row.moved = explained(p >= 1.0 - CONFIDENCE);
         }
     }
@@ -230,10 +230,10 @@ fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<Col
     })
 }
 
-fn explained(is_by_chance: bool) -> Moved {
+fn explained(is_by_chance: bool) -> Significance {
     match is_by_chance {
-        true => Moved::ByChance,
-        false => Moved::Surely,
+        true => Significance::ByChance,
+        false => Significance::Surely,
     }
 }
 
@@ -250,7 +250,7 @@ fn of_setting(
     if ours_told.is_empty() || theirs_told.is_empty() {
         return Ok(None);
     }
-    let paired = Paired::of(&ours_told, &theirs_told);
+    let paired = Paired::new(&ours_told, &theirs_told);
     let setting = second.words(ours[0]);
     if paired.n_trials() == 0 {
         let given = format!("{}: {setting}: no trial is in both", second.table.file);
@@ -278,12 +278,12 @@ fn of_setting(
         difference_low: interval.map(|interval| interval.low),
         difference_high: interval.map(|interval| interval.high),
         moved: match intervals {
-            _ if ours_mean == theirs_mean => Moved::Same,
+            _ if ours_mean == theirs_mean => Significance::Same,
             // Intervals of single trials do not apply to the means over trials.
             Some(([low, high], [from, to])) if !first.is_repeated && !second.is_repeated => {
                 explained(low <= to && from <= high)
             }
-            _ => Moved::Untested,
+            _ => Significance::Untested,
         },
         p_value: tested.and_then(|tested| tested.p_value),
         p_holm: None,

@@ -8,7 +8,7 @@
 
 use crate::report::swept::Setting;
 use crate::statistics::p_status::CONFIDENCE;
-use crate::statistics::rank_correlation::{ENOUGH_SETTINGS, kendall, kendall_interval};
+use crate::statistics::rank_correlation::{SUFFICIENT_SETTINGS, kendall, kendall_interval};
 use crate::table::{Column, Role, Table, Value, short_number};
 use bubbletouch_sim::statistics::interval::Interval;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -75,7 +75,7 @@ impl RankAgreement {
         let choices = self.choices.iter();
         let choices = choices.map(|(words, same, all)| format!("{same} of {all} of {words}"));
         let choices: Vec<String> = choices.collect();
-        let few = match self.n_designs < ENOUGH_SETTINGS {
+        let few = match self.n_designs < SUFFICIENT_SETTINGS {
             true => ", which holds it less often where designs are so few",
             false => "",
         };
@@ -282,7 +282,7 @@ mod tests {
                 });
             }
         }
-        vec![FILE.of(&rows).unwrap()]
+        vec![FILE.table(&rows).unwrap()]
     }
 
     const REAL: [f64; 6] = [0.97, 0.90, 0.90, 0.81, 0.80, 0.60];

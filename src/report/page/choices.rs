@@ -1,6 +1,6 @@
 //! The section "What to choose": Pareto fronts of the table that contains choices with values and costs.
 
-use crate::report::advice::{Asked, Offer, Offers};
+use crate::report::advice::{AdviceQuery, Candidate, Candidates};
 use crate::report::pictures::drawing::escape;
 use crate::report::study_content::Found;
 use crate::report::swept::Setting;
@@ -11,7 +11,7 @@ const MAX_ROWS: usize = 200;
 
 /// Returns a table for each cost: in each condition, the choices that are better than all of equal or lower cost. Empty if no table has choices with costs.
 pub(crate) fn choices_html(found: &Found) -> String {
-    let Ok(offers) = Offers::of(found.tables, &Asked::default()) else {
+    let Ok(offers) = Candidates::new(found.tables, &AdviceQuery::default()) else {
         return String::new();
     };
     let (table, value) = (offers.table, offers.value);
@@ -21,7 +21,7 @@ pub(crate) fn choices_html(found: &Found) -> String {
     let costs = Setting::of_roles(table, &[Role::Cost]);
     let costs = costs.filter(|one| one.is_number() && one.data.varies(0..table.n_rows));
     let others = costs.filter(|one| one.column.name != offers.cost.name);
-    let others = others.map(|one| Offers::of_columns(table, value, one.column));
+    let others = others.map(|one| Candidates::of_columns(table, value, one.column));
     let others: String = others
         .map(|offers| {
             format!(
@@ -41,14 +41,14 @@ pub(crate) fn choices_html(found: &Found) -> String {
     )
 }
 
-fn front_html(offers: &Offers) -> String {
+fn front_html(offers: &Candidates) -> String {
     let conditions = offers.by_condition();
     let has_conditions = conditions.len() > 1;
-    let fronts: Vec<Offer> = conditions
+    let fronts: Vec<Candidate> = conditions
         .iter()
         .flat_map(|of_one| offers.front(of_one))
         .collect();
-    let row = |offer: &Offer| {
+    let row = |offer: &Candidate| {
         let condition = match has_conditions {
             true => format!("<td class=word>{}</td>", escape(&offers.condition(offer))),
             false => String::new(),

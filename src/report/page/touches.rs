@@ -13,9 +13,9 @@ use crate::table::short_number;
 use ndarray::Array2;
 
 /// Maximum number of pixels along each side of a heat map. Larger frames show the largest value of each block of taxels.
-const MOST_CELLS: usize = 96;
+const MAX_CELLS: usize = 96;
 /// Maximum number of touches in a page; each has some kilobytes.
-const MOST_TOUCHES: usize = 120;
+const MAX_TOUCHES: usize = 120;
 /// Number of colour steps of a heat map.
 const N_COLOURS: f64 = 128.0;
 
@@ -26,7 +26,7 @@ pub fn touches_html(set: &Snapshots) -> Result<String> {
     }
     let scale = ColourScale::over(set.frames.iter().flat_map(|(_, frame)| frame), set.quantity);
     let largest = set.frames.iter().map(|(_, f)| f.nrows().max(f.ncols()));
-    let block = largest.max().unwrap_or(1).div_ceil(MOST_CELLS);
+    let block = largest.max().unwrap_or(1).div_ceil(MAX_CELLS);
     let mut html = format!(
         "<p class=\"quiet\">{}{}; x runs to the right, y up.</p>",
         escape(&set.caption),
@@ -34,7 +34,7 @@ pub fn touches_html(set: &Snapshots) -> Result<String> {
     );
     html += &colour_bar(scale)?;
     html += "<div class=\"touches\">";
-    for (name, frame) in set.frames.iter().take(MOST_TOUCHES) {
+    for (name, frame) in set.frames.iter().take(MAX_TOUCHES) {
         let shown = largest_of_blocks(frame, (block, block));
         let places = shown.mapv(|value| scale.place(value));
         let title = format!("{name}: largest {}", value_words(frame, set));
@@ -42,9 +42,9 @@ pub fn touches_html(set: &Snapshots) -> Result<String> {
         html += &format!("<figure>{image}<figcaption>{name}</figcaption></figure>");
     }
     html += "</div>";
-    if set.frames.len() > MOST_TOUCHES {
+    if set.frames.len() > MAX_TOUCHES {
         let n = set.frames.len();
-        html += &format!("<p class=\"quiet\">The first {MOST_TOUCHES} of {n}.</p>");
+        html += &format!("<p class=\"quiet\">The first {MAX_TOUCHES} of {n}.</p>");
     }
     Ok(html)
 }

@@ -63,7 +63,7 @@ pub fn fit_picture(
         hit.map_or(0.0, |hit| original.distance(canvas.point(ray, hit.height)))
     };
     let distances: Vec<f64> = seen.par_iter().enumerate().map(distance).collect();
-    let scale = Scale::of(&seen, &distances);
+    let scale = Scale::new(&seen, &distances);
     let paint = |_: usize, _: &Hit| PAINT;
     canvas.paint(&mut picture, [0, 0], &whole, Lighting::Plain, paint);
     canvas.paint(&mut picture, [tile, 0], &seen, Lighting::Plain, paint);
@@ -158,7 +158,7 @@ struct Scale {
 
 impl Scale {
     /// Creates a scale for all visible distances except the extreme 1 %, which would make the other colours pale.
-    fn of(seen: &[Option<Hit>], distances: &[f64]) -> Self {
+    fn new(seen: &[Option<Hit>], distances: &[f64]) -> Self {
         let of_hit = |(hit, &distance): (&Option<Hit>, &f64)| hit.is_some().then_some(distance);
         let mut distances: Vec<f64> = seen.iter().zip(distances).filter_map(of_hit).collect();
         let mut of_part = |part: f64| quantile(&mut distances, part);
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn rays_meet_a_solid_where_its_shape_says_and_a_mesh_where_its_triangles_are() {
-        let ball = Original::Solid(Solid::of(Shape::Ball { diameter: 1.0 }).unwrap());
+        let ball = Original::Solid(Solid::from_shape(Shape::Ball { diameter: 1.0 }).unwrap());
         let mesh = Original::Mesh(Box::new(square()), Body::Sheet);
         for (x, y) in [(0.0, 0.0), (0.3, -0.2), (-0.1, 0.45)] {
             let start = DVec3::new(x, y, 3.0);
@@ -247,7 +247,10 @@ mod tests {
             height: 0.5,
         };
         let hole = Part::new(cylinder(0.4), Pose::IDENTITY).unwrap();
-        let ring = Solid::of(cylinder(1.0)).unwrap().less(vec![hole]).unwrap();
+        let ring = Solid::from_shape(cylinder(1.0))
+            .unwrap()
+            .less(vec![hole])
+            .unwrap();
         let ring = Original::Solid(ring);
         let first_hit = |x: f64| {
             let start = DVec3::new(x, 0.01, 1.5);
@@ -260,7 +263,7 @@ mod tests {
 
     #[test]
     fn spheres_that_reach_outside_are_red_and_those_that_stay_inside_blue() {
-        let solid = Original::Solid(Solid::of(Shape::Ball { diameter: 0.04 }).unwrap());
+        let solid = Original::Solid(Solid::from_shape(Shape::Ball { diameter: 0.04 }).unwrap());
         let shown = |radius| fit_picture("ball", &solid, &ball(radius), 200).unwrap();
         let (large, small) = (shown(0.021), shown(0.019));
         assert_eq!((large.width, large.height), (600, 200));
@@ -270,7 +273,7 @@ mod tests {
 
     #[test]
     fn panels_of_other_sizes_than_a_screen_has_are_refused() {
-        let solid = Original::Solid(Solid::of(Shape::Ball { diameter: 0.04 }).unwrap());
+        let solid = Original::Solid(Solid::from_shape(Shape::Ball { diameter: 0.04 }).unwrap());
         for tile in [0, 199, 6_001] {
             let error = fit_picture("ball", &solid, &ball(0.02), tile).unwrap_err();
             assert_eq!(error.exit_code(), 2);

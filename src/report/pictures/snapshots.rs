@@ -14,9 +14,9 @@ use crate::world::Grid;
 use ndarray::Array2;
 
 /// Maximum number of cells along each side of a frame. A larger frame is shown by the largest value of each block of taxels.
-const MOST_CELLS: usize = 128;
+const MAX_CELLS: usize = 128;
 /// Maximum number of frames in a row.
-const MOST_COLUMNS: usize = 4;
+const MAX_COLUMNS: usize = 4;
 
 /// Frames of touches with a common colour scale.
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
         return Err(Error::input("snapshots", "no frames", "at least one"));
     };
     let scale = ColourScale::over(frames.iter().flat_map(|(_, frame)| frame), set.quantity);
-    let block = largest.div_ceil(MOST_CELLS);
+    let block = largest.div_ceil(MAX_CELLS);
     let n_cells = largest.div_ceil(block);
     let side = whole_pixels(192.0, n_cells);
     let rows = frames.iter().map(|(_, frame)| frame.nrows());
@@ -54,8 +54,8 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
     let (box_side, box_height) = (side * n_cells as f64, side * n_rows as f64);
     let (left, top) = (66.0, 34.0);
     let (column_width, row_height) = (box_side + 22.0, box_height + 74.0);
-    let right = left + frames.len().min(MOST_COLUMNS) as f64 * column_width;
-    let height = frames.len().div_ceil(MOST_COLUMNS) as f64 * row_height + 24.0;
+    let right = left + frames.len().min(MAX_COLUMNS) as f64 * column_width;
+    let height = frames.len().div_ceil(MAX_COLUMNS) as f64 * row_height + 24.0;
     let mut drawing = Drawing::new(right + 84.0, height);
     let mut maps = Vec::new();
     for (index, (name, frame)) in frames.iter().enumerate() {
@@ -66,8 +66,8 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
             ny,
             pitch: pitch_mm * 1e-3,
         };
-        let x = left + (index % MOST_COLUMNS) as f64 * column_width;
-        let y = top + (index / MOST_COLUMNS) as f64 * row_height;
+        let x = left + (index % MAX_COLUMNS) as f64 * column_width;
+        let y = top + (index / MAX_COLUMNS) as f64 * row_height;
         let cells = Cells::of_grid(&grid, block, side, (x, y));
         let area = cells.area;
         let (middle, above) = area.at(0.5, 1.0);
@@ -76,7 +76,7 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
         drawing.bold_text((middle, above - 10.0), &title, style);
         drawing.frame(area, Stroke::new(INK, 2.0));
         draw_map_axis(&mut drawing, area, Side::Below, nx as f64 * pitch_mm);
-        if index % MOST_COLUMNS == 0 {
+        if index % MAX_COLUMNS == 0 {
             draw_map_axis(&mut drawing, area, Side::Left, ny as f64 * pitch_mm);
         }
         maps.push((cells, largest_of_blocks(frame, (block, block))));

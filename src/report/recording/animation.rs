@@ -12,7 +12,7 @@ use png::{BitDepth, BlendOp, ColorType, Encoder, EncodingError};
 use std::path::Path;
 
 /// Maximum number of frames of an animation. Longer recordings show fewer frames per second; larger files are slow in browsers.
-pub const MOST_SHOWN: usize = 600;
+pub const MAX_SHOWN: usize = 600;
 
 /// Playback settings of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ pub struct ShownFrame {
 
 /// Selects the frames of an animation and their durations: the newest recorded frame at each tick of the playback, without repetitions.
 ///
-/// The first and the last frame are always selected. If there would be more than [`MOST_SHOWN`] frames, ticks are further apart. A frame is shown until the
+/// The first and the last frame are always selected. If there would be more than [`MAX_SHOWN`] frames, ticks are further apart. A frame is shown until the
 /// next one was recorded. The last frame is shown as long as the one before it; a single frame, for one second. `time` is in seconds, increasing.
 ///
 /// # Errors
@@ -60,7 +60,7 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
     let (Some(first), Some(last)) = (time.first(), time.last()) else {
         return Err(Error::input("animation", "no frames", "at least one"));
     };
-    let tick = (speed / fps).max((last - first) / (MOST_SHOWN - 2) as f64);
+    let tick = (speed / fps).max((last - first) / (MAX_SHOWN - 2) as f64);
     // Times are sums of steps; the tolerance covers their rounding errors.
     let slack = 1e-6 * tick;
     let n_ticks = ((last - first + slack) / tick) as usize;
@@ -216,7 +216,7 @@ mod tests {
                     (0, time.len() - 1)
                 );
                 assert!(shown.windows(2).all(|pair| pair[0].frame < pair[1].frame));
-                assert!(shown.len() <= MOST_SHOWN);
+                assert!(shown.len() <= MAX_SHOWN);
             }
         }
     }

@@ -12,7 +12,7 @@ use glam::DVec2;
 /// Height of a map, pixels. The width is at most twice the height.
 const SIDE: f64 = 400.0;
 /// Maximum number of cells along each side of a grid. A larger grid is shown by the largest value of each block of taxels.
-const MOST_CELLS: usize = 400;
+const MAX_CELLS: usize = 400;
 /// Left edge of maps, pixels.
 pub(super) const LEFT: f64 = 70.0;
 const TOP: f64 = 76.0;
@@ -38,11 +38,11 @@ pub(crate) struct Cells {
 
 impl Cells {
     /// Creates the cells of a patch: squares for a grid, discs for another layout.
-    pub fn of(patch: &RecordedPatch) -> Self {
+    pub fn new(patch: &RecordedPatch) -> Self {
         match &patch.grid {
             Some(grid) => {
                 let largest = grid.nx.max(grid.ny);
-                let block = largest.div_ceil(MOST_CELLS);
+                let block = largest.div_ceil(MAX_CELLS);
                 let side = whole_pixels(SIDE, largest.div_ceil(block));
                 Self::of_grid(grid, block, side, (LEFT, TOP))
             }

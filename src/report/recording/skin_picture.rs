@@ -37,7 +37,7 @@ impl SkinPicture {
     /// # Errors
     /// If the picture cannot be rendered.
     pub fn new(patch: &RecordedPatch, scale: ColourScale) -> Result<Self> {
-        let cells = Cells::of(patch);
+        let cells = Cells::new(patch);
         let mut drawing = paper(&patch.name, &cells, scale);
         cells.draw_frame(&mut drawing, patch.grid.is_some());
         Ok(Self {

@@ -22,7 +22,7 @@ pub(super) struct DeflectionError {
 
 impl DeflectionError {
     /// Computes the summary of the errors of single taxels, metres; 0 if there are none.
-    pub fn of(mut errors: Vec<f64>) -> Self {
+    pub fn new(mut errors: Vec<f64>) -> Self {
         Self {
             mean_mm: in_mm(mean(&errors)),
             p95_mm: in_mm(quantile(&mut errors, 0.95)),
@@ -105,14 +105,14 @@ impl Truth {
 
     /// Returns the error of a model at the pose of the exact object, with the patch retracted by `offset` metres.
     pub fn error(&self, model: &Model, offset: f64) -> DeflectionError {
-        DeflectionError::of(self.errors(model, offset))
+        DeflectionError::new(self.errors(model, offset))
     }
 
     /// Returns the error of a model that is pressed to the same depth past its own first contact. This is the error in a study that only has this model of the
     /// object.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
-        DeflectionError::of(self.errors_of(|pose, reading, workspace| {
+        DeflectionError::new(self.errors_of(|pose, reading, workspace| {
             press_to_depth(patch, object, pose, reading.depth, workspace);
         }))
     }

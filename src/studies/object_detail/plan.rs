@@ -23,13 +23,13 @@ pub struct ObjectDetailPlan {
 }
 
 /// Largest number of points of a mesh; all points are in memory at once.
-const MOST_POINTS: usize = 10_000_000;
+const MAX_POINTS: usize = 10_000_000;
 
 /// Ranges of the numeric keys of `[object_detail]`.
 const KEYS: [(&str, Range); 7] = [
     ("tolerances_mm", SURFACE_ERROR),
     ("methods", Range::Any),
-    ("surface_points", Range::Count(1, MOST_POINTS)),
+    ("surface_points", Range::Count(1, MAX_POINTS)),
     ("recognition.measurements", TOUCHES),
     ("recognition.training_touches", TOUCHES),
     ("recognition.test_touches", TOUCHES),

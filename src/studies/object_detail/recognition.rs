@@ -65,7 +65,7 @@ pub(super) struct Sensor<'a> {
 }
 
 /// Measurements of a model.
-pub(super) struct Felt {
+pub(super) struct ModelMeasurements {
     /// Measurements, shape (n_touches, m).
     measurements: Array2<f64>,
     /// Mean deflection error past the model's own contact, mm.
@@ -88,7 +88,7 @@ impl<'a> Sensor<'a> {
 
     /// Returns the measurements of each model of an object, in order; the first is the mesh. All models are touched at the same places of the object's rest
     /// poses.
-    pub fn measure(&self, made: &Measured) -> Result<Vec<Felt>> {
+    pub fn measure(&self, made: &Measured) -> Result<Vec<ModelMeasurements>> {
         let object =
             |variant: &Variant| Object::of_one_part(&made.mesh.name, variant.model.clone());
         let placement = Placement {
@@ -99,7 +99,7 @@ impl<'a> Sensor<'a> {
         let measured = made.variants.iter().map(|variant| {
             touched[0].object = object(variant);
             let frames = simulate_array(&touched, &self.plan.array, 1, &Silent);
-            Ok(Felt {
+            Ok(ModelMeasurements {
                 measurements: self.projection.measure(frames.to_array().view()),
                 own_contact_error_mm: made.truth.error_past_own_contact(&variant.model).mean_mm,
             })
@@ -108,7 +108,11 @@ impl<'a> Sensor<'a> {
     }
 
     /// Trains a classifier on one kind of model, given the measurements of all models of each object, and returns its accuracy.
-    pub fn row(&self, objects: &[Vec<Felt>], learned: &Learned) -> Result<DetailRecognition> {
+    pub fn row(
+        &self,
+        objects: &[Vec<ModelMeasurements>],
+        learned: &Learned,
+    ) -> Result<DetailRecognition> {
         let (number, n_training) = (learned.number, self.spec.training_touches);
         let of_level = |number: usize, touches: Range<usize>| {
             let objects = objects.iter();

@@ -129,7 +129,7 @@ impl Study for ObjectDetailStudy {
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
-        Ok(Facts::of(spec, objects_content(&spec.objects)?))
+        Ok(Facts::new(spec, objects_content(&spec.objects)?))
     }
 
     fn scale(&self) -> Scale {
@@ -169,7 +169,7 @@ impl Study for ObjectDetailStudy {
     }
 
     fn measure(&self, left: &PendingItems<DetailRows>) -> Result<()> {
-        let learned = left.of(models_item(self.meshes.len()), Learned::all(&self.plan));
+        let learned = left.among(models_item(self.meshes.len()), Learned::all(&self.plan));
         let learners: Vec<usize> = learned.iter().map(|(number, _)| *number).collect();
         let spec = self.plan.recognition().filter(|_| !learned.is_empty());
         let sensor = spec.map(|spec| Sensor::new(&self.plan, spec)).transpose()?;
@@ -212,13 +212,13 @@ impl Study for ObjectDetailStudy {
         let summary = summary(&detail);
         let costs = costs(&summary, &timing);
         let mut tables = vec![
-            DETAIL.of(&detail)?,
-            SUMMARY.of(&summary)?,
-            TIMING.of(&timing)?,
-            COST.of(&costs)?,
+            DETAIL.table(&detail)?,
+            SUMMARY.table(&summary)?,
+            TIMING.table(&timing)?,
+            COST.table(&costs)?,
         ];
         if self.plan.recognition().is_some() {
-            tables.push(RECOGNITION.of(&recognition)?);
+            tables.push(RECOGNITION.table(&recognition)?);
         }
         Ok(tables)
     }

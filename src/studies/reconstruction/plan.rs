@@ -35,15 +35,15 @@ pub struct ReconstructionPlan {
 }
 
 /// Largest number of supports drawn of each size; all are in memory at once.
-const MOST_SUBSETS: usize = 1_000_000;
+const MAX_SUBSETS: usize = 1_000_000;
 
 /// Largest number of atoms of a dictionary, more than any array has taxels. The smallest is two, because λ = √(2 ln k) vanishes for k = 1 atom.
-const MOST_ATOMS: usize = 100_000_000;
+const MAX_ATOMS: usize = 100_000_000;
 
 /// Ranges of the numeric keys of `[reconstruction]`.
 const KEYS: [(&str, Range); 10] = [
     ("dictionary", Range::Any),
-    ("atoms", Range::Count(2, MOST_ATOMS)),
+    ("atoms", Range::Count(2, MAX_ATOMS)),
     ("solver", Range::Any),
     ("most_atoms", COUNT),
     ("most_steps", COUNT),
@@ -51,7 +51,7 @@ const KEYS: [(&str, Range); 10] = [
     ("tolerance", Range::Positive),
     ("test_fraction", Range::Part),
     ("isometry_sparsity", COUNT),
-    ("isometry_subsets", Range::Count(1, MOST_SUBSETS)),
+    ("isometry_subsets", Range::Count(1, MAX_SUBSETS)),
 ];
 
 impl ReconstructionPlan {
@@ -189,7 +189,7 @@ impl Check<'_> {
             let allowed = "no such key: noise is the only axis of the signal, so that there is nothing to combine";
             return refuse("signal.combine", "given", allowed);
         }
-        if signal.axes.of("smoothing_mm").is_some() {
+        if signal.axes.get("smoothing_mm").is_some() {
             return refuse(
                 "signal.smoothing_mm",
                 "smoothing before reconstruction",

@@ -92,7 +92,7 @@ impl Study for ReconstructionStudy {
 
     fn facts(&self) -> Result<Facts> {
         let spec = &self.plan.spec;
-        Ok(Facts::of(spec, objects_content(&spec.objects)?))
+        Ok(Facts::new(spec, objects_content(&spec.objects)?))
     }
 
     fn scale(&self) -> Scale {
@@ -142,8 +142,8 @@ impl Study for ReconstructionStudy {
         }
         let pareto = pareto(&rows, &self.plan.noise);
         let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
-        let ensembles = ENSEMBLES.of(&statistics)?;
-        Ok(vec![cells, ensembles, timing, PARETO.of(&pareto)?])
+        let ensembles = ENSEMBLES.table(&statistics)?;
+        Ok(vec![cells, ensembles, timing, PARETO.table(&pareto)?])
     }
 
     fn findings(&self, tables: &[Table]) -> Findings {

@@ -7,7 +7,7 @@ use crate::learning::data::split::stratified_hold_out;
 use crate::random::Seed;
 use crate::sensing::{Basis, Dictionary, Ensemble};
 use crate::signal::{Chain, Noise, NoiseUnit};
-use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::{
     ReadSkin, Reading, TouchToRead, measure, touches_to_read,
 };

@@ -23,7 +23,7 @@ pub struct StabilityPlan {
 }
 
 /// Largest number of taxels along a side. Larger arrays take long and show nothing new about stability.
-const MOST_TAXELS: usize = 256;
+const MAX_TAXELS: usize = 256;
 
 /// Ranges of the numeric keys of a part.
 const KEYS: [(&str, Range); 9] = [
@@ -84,8 +84,8 @@ impl Check<'_> {
         }
         let sides = wanted.taxels.values();
         // The number is even, so that the ball lies between four taxels.
-        if let Some(n) = sides.iter().find(|&&n| n % 2 != 0 || n > MOST_TAXELS) {
-            let allowed = format!("even numbers from 2 to {MOST_TAXELS}");
+        if let Some(n) = sides.iter().find(|&&n| n % 2 != 0 || n > MAX_TAXELS) {
+            let allowed = format!("even numbers from 2 to {MAX_TAXELS}");
             return Err(error(["taxels", &n.to_string(), &allowed]));
         }
         let masses = object_masses(wanted).map_err(error)?;

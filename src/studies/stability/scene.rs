@@ -30,7 +30,7 @@ const LEAST_TIME: f64 = 0.5;
 
 /// Array of taxels under a ball that touches all of them nearly at once; see the documentation of the module.
 #[derive(Clone, Debug)]
-pub(super) struct Cradle {
+pub(super) struct TestBed {
     pub patch: Patch,
     pub ball: Model,
     /// `patch_from_object` at first contact.
@@ -40,7 +40,7 @@ pub(super) struct Cradle {
 /// Scene of a configuration, independent of the simulation method.
 #[derive(Clone, Debug)]
 pub(super) struct CellScene {
-    pub cradle: Cradle,
+    pub cradle: TestBed,
     pub taxel: Taxel,
     /// Motion or gravity of the ball.
     pub drive: Drive,
@@ -56,7 +56,7 @@ pub(super) struct CellScene {
     pub energy_limit: f64,
 }
 
-impl Cradle {
+impl TestBed {
     /// Creates a square array with `side` taxels along a side, under a ball whose radius is the side length of the array.
     fn new(side: usize, taxel: Taxel) -> Result<Self> {
         let grid = Grid {
@@ -135,7 +135,7 @@ impl Cradle {
 impl CellScene {
     /// Creates the scene of a configuration from the taxel without its damper.
     pub fn new(cell: &StabilityCell, undamped: Taxel) -> Result<Self> {
-        let cradle = Cradle::new(cell.taxels, undamped)?;
+        let cradle = TestBed::new(cell.taxels, undamped)?;
         let mut scene = match cell.object_mass_kg {
             Some(mass) => Self::of_free(cell, cradle, undamped, mass)?,
             None => Self::of_imposed(cell, cradle, undamped)?,
@@ -160,7 +160,7 @@ impl CellScene {
         }
     }
 
-    fn of_free(cell: &StabilityCell, cradle: Cradle, taxel: Taxel, mass: f64) -> Result<Self> {
+    fn of_free(cell: &StabilityCell, cradle: TestBed, taxel: Taxel, mass: f64) -> Result<Self> {
         let drive = Drive::Free {
             mass,
             gravity: GRAVITY,
@@ -193,7 +193,7 @@ impl CellScene {
         })
     }
 
-    fn of_imposed(cell: &StabilityCell, cradle: Cradle, taxel: Taxel) -> Result<Self> {
+    fn of_imposed(cell: &StabilityCell, cradle: TestBed, taxel: Taxel) -> Result<Self> {
         let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
         let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
         let damping = 2.0 * ratio * (k * m).sqrt();

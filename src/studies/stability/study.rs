@@ -57,7 +57,7 @@ impl Study for StabilityPlan {
     fn facts(&self) -> Result<Facts> {
         Ok(Facts {
             notes: vec![(CELLS.name(), peer_rows(self)?.1)],
-            ..Facts::of(&self.spec, BTreeMap::new())
+            ..Facts::new(&self.spec, BTreeMap::new())
         })
     }
 
@@ -109,8 +109,8 @@ impl Study for StabilityPlan {
             rows.insert(behind, row);
         }
         let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
-        let summary = SUMMARY.of(&summary(&rows))?;
-        let joints = JOINTS.of(&joints(&rows))?;
+        let summary = SUMMARY.table(&summary(&rows))?;
+        let joints = JOINTS.table(&joints(&rows))?;
         Ok(vec![cells, summary, timing, joints])
     }
 

@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 const SMALL: (usize, usize) = (5, 2);
 const LARGE: (usize, usize) = (9, 4);
 /// Largest fraction of a sleeve's taxels that a touch may cover, to leave space for the cushion.
-const MOST_TOUCHED: f64 = 0.4;
+const MAX_TOUCHED: f64 = 0.4;
 /// Amplitudes of the cushion's motion: rotation about the sleeve's axis, radians, and translation as a fraction of its side. The period is half a second.
 const SWING: f64 = 0.05;
 const SLIDE: f64 = 0.02;
@@ -28,7 +28,7 @@ const N_HALVINGS: usize = 40;
 
 /// One size of a scaling series: numbers of taxels, touched taxels and spheres.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Rung {
+pub(super) struct ScalingPoint {
     pub series: Series,
     pub name: String,
     sleeve: (usize, usize),
@@ -38,21 +38,27 @@ pub(super) struct Rung {
 }
 
 /// Returns all sizes of all series.
-pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<Rung> {
+pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
     let small = SMALL.0 * SMALL.1 * 10_000;
     let mut rungs = Vec::new();
     for &n_touched in &wanted.touched_at_taxels {
-        let has_room = |n: &&usize| n_touched as f64 <= MOST_TOUCHED * small.min(**n) as f64;
-        rungs.extend(wanted.taxels.iter().filter(has_room).map(|&n_taxels| Rung {
-            series: Series::Skin,
-            name: format!("{n_taxels} taxels, {n_touched} touched"),
-            sleeve: SMALL,
-            n_taxels,
-            n_touched,
-            n_spheres: wanted.spheres[0],
-        }));
+        let has_room = |n: &&usize| n_touched as f64 <= MAX_TOUCHED * small.min(**n) as f64;
+        rungs.extend(
+            wanted
+                .taxels
+                .iter()
+                .filter(has_room)
+                .map(|&n_taxels| ScalingPoint {
+                    series: Series::Skin,
+                    name: format!("{n_taxels} taxels, {n_touched} touched"),
+                    sleeve: SMALL,
+                    n_taxels,
+                    n_touched,
+                    n_spheres: wanted.spheres[0],
+                }),
+        );
     }
-    let large = |series, name, n_touched, n_spheres| Rung {
+    let large = |series, name, n_touched, n_spheres| ScalingPoint {
         series,
         name,
         sleeve: LARGE,
@@ -72,7 +78,7 @@ pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<Rung> {
 }
 
 /// Simulates and times one size.
-pub(super) fn climb(plan: &WholeBodyPlan, rung: &Rung) -> Result<Driven> {
+pub(super) fn climb(plan: &WholeBodyPlan, rung: &ScalingPoint) -> Result<Driven> {
     let sleeve = Sleeve::of_body(rung.n_taxels, rung.sleeve, plan.pitch);
     let (body, patches) = sleeve.body(rung.n_taxels, plan.taxel, plan.pitch)?;
     let side = plan.pitch * (rung.n_touched as f64).sqrt();

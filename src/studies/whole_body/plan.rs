@@ -63,9 +63,9 @@ pub struct Aim {
 }
 
 /// Largest number of steps of a scene; the time of each step is held in memory.
-const MOST_STEPS: usize = 10_000_000;
+const MAX_STEPS: usize = 10_000_000;
 /// Largest number of spheres of a cushion.
-const MOST_SPHERES: usize = 10_000_000;
+const MAX_SPHERES: usize = 10_000_000;
 
 /// Ranges of the numeric keys of `[whole_body]`.
 const KEYS: [(&str, Range); 23] = [
@@ -77,7 +77,7 @@ const KEYS: [(&str, Range); 23] = [
     ("patch_mm", Range::Positive),
     ("step_ms", Range::Positive),
     ("surface_error_mm", SURFACE_ERROR),
-    ("steps", Range::Count(1, MOST_STEPS)),
+    ("steps", Range::Count(1, MAX_STEPS)),
     ("sensing.measurements", COUNT),
     ("sensing.ensembles", Range::Any),
     ("sensing.sbhe_blocks", Range::Any),
@@ -89,7 +89,7 @@ const KEYS: [(&str, Range); 23] = [
     ("ladders.taxels", COUNT),
     ("ladders.touched_at_taxels", COUNT),
     ("ladders.touched", COUNT),
-    ("ladders.spheres", Range::Count(1, MOST_SPHERES)),
+    ("ladders.spheres", Range::Count(1, MAX_SPHERES)),
     ("ladders.touched_at_spheres", COUNT),
     ("ladders.taxels_at_touch", COUNT),
 ];

@@ -13,7 +13,7 @@ use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
 use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::studies::whole_body::drive::{Drive, Posture};
-use crate::studies::whole_body::ladders::{Rung, climb, rungs};
+use crate::studies::whole_body::ladders::{ScalingPoint, climb, rungs};
 use crate::studies::whole_body::objects::of_scene;
 use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
 use crate::studies::whole_body::recognition::learn;
@@ -74,7 +74,7 @@ impl Study for WholeBodyPlan {
 
     fn facts(&self) -> Result<Facts> {
         let robot = file_content(&self.robot_file)?;
-        Ok(Facts::of(&self.spec, [("robot".to_owned(), robot)].into()))
+        Ok(Facts::new(&self.spec, [("robot".to_owned(), robot)].into()))
     }
 
     fn scale(&self) -> Scale {
@@ -161,11 +161,11 @@ impl Study for WholeBodyPlan {
             sensed.extend(of.sensed);
         }
         Ok(vec![
-            CASES.of(&cases)?,
-            RECOGNITION.of(&recognition)?,
-            SENSED.of(&sensed)?,
-            TIMING.of(&times)?,
-            STEPS.of(&steps)?,
+            CASES.table(&cases)?,
+            RECOGNITION.table(&recognition)?,
+            SENSED.table(&sensed)?,
+            TIMING.table(&times)?,
+            STEPS.table(&steps)?,
         ])
     }
 
@@ -191,7 +191,7 @@ fn round_to_two(value: f64) -> f64 {
 }
 
 impl WholeBodyPlan {
-    fn rungs(&self) -> Vec<Rung> {
+    fn rungs(&self) -> Vec<ScalingPoint> {
         let ladders = self.spec.whole_body.ladders.as_ref();
         ladders.map_or_else(Vec::new, rungs)
     }

@@ -3,7 +3,7 @@
 use crate::browser::{ARROW_RIGHT, Browser};
 use crate::report_synthetic::{about, noise_cells, quickstart_cells, tables};
 use crate::shown::{Shown, html, show};
-use bubbletouch::report::advice::{Asked, Offers};
+use bubbletouch::report::advice::{AdviceQuery, Candidates};
 use bubbletouch::studies::recognition::charts::tables_of;
 use std::thread::sleep;
 use std::time::Duration;
@@ -101,11 +101,11 @@ fn the_page_lists_the_front_of_each_condition_and_each_cost() {
         ("decision_time", "time of a decision"),
         ("training_time", "time to train"),
     ] {
-        let asked = Asked {
+        let asked = AdviceQuery {
             cost: Some(cost.to_owned()),
-            ..Asked::default()
+            ..AdviceQuery::default()
         };
-        let offers = Offers::of(&tables, &asked).unwrap();
+        let offers = Candidates::new(&tables, &asked).unwrap();
         let conditions = offers.by_condition();
         assert_eq!(conditions.len(), 5, "noises");
         let (_, front) = choices

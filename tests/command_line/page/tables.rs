@@ -5,7 +5,7 @@ use crate::report_synthetic::{
     write_tables,
 };
 use bubbletouch::report::page::StudyAbout;
-use bubbletouch::report::study_folder::{ChartFormat, MOST_CHARTS};
+use bubbletouch::report::study_folder::{ChartFormat, MAX_CHARTS};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
 use bubbletouch::study::table::{Cell, Comparison, PStatus, Tables};
@@ -175,7 +175,7 @@ fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
     };
     let (first, png, html) = drawn("first", false, ChartFormat::Svg);
     // One of them shows what was taken for what.
-    let most = MOST_CHARTS - 1;
+    let most = MAX_CHARTS - 1;
     assert_eq!((first.len(), png.len()), (most, 0));
     let (all, _, all_html) = drawn("all", true, ChartFormat::Svg);
     assert!(all.len() > most + 1 && first.iter().all(|name| all.contains(name)));

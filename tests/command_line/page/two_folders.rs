@@ -54,8 +54,8 @@ fn tables(numbers: [usize; 2], edit: impl Fn(usize, &mut Scored), count: usize) 
     let scores: File<Scored> = File::new("scores.csv", "Scores", "");
     let counts: File<Counted> = File::new("counts.csv", "Counts", "");
     vec![
-        scores.of(&rows).unwrap(),
-        counts.of(&[0, 1].map(counted)).unwrap(),
+        scores.table(&rows).unwrap(),
+        counts.table(&[0, 1].map(counted)).unwrap(),
     ]
 }
 
@@ -139,7 +139,7 @@ fn classified(invert: &str) -> Vec<Table> {
         }
     }
     let file: File<Classified> = File::new("accuracy.csv", "Accuracy", "");
-    vec![file.of(&rows).unwrap()]
+    vec![file.table(&rows).unwrap()]
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn noise_in_millimetres_is_no_noise_of_full_scale() {
         })
     });
     let file: File<InNoise> = File::new("accuracy.csv", "Accuracy", "");
-    let first = vec![file.of(&rows.concat()).unwrap()];
+    let first = vec![file.table(&rows.concat()).unwrap()];
     let mut second = first.clone();
     let column = second[0].place("noise_std").unwrap();
     second[0].columns[column].unit = "mm".into();

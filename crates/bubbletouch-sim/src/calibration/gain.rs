@@ -33,7 +33,7 @@ pub struct Gains {
 
 impl Gains {
     /// Estimates the gains from touched frames without their zeros. `noise` is a standard deviation, smoothed by a width in pitches.
-    pub(super) fn of(
+    pub(super) fn new(
         skin: &RecordedSkin,
         touched: &Array2<f64>,
         (noise, width): (f64, f64),

@@ -88,7 +88,7 @@ pub fn calibrate(skin: &RecordedSkin) -> Result<Calibration> {
         false => estimate.resolved(),
     };
     let levels = (std, width);
-    let gains = gain::Gains::of(skin, &touched, levels);
+    let gains = gain::Gains::new(skin, &touched, levels);
     let of_gains = match is_clipped && width > 0.0 {
         true => {
             Estimate::unknown("readings are clipped at the zero, and smoothing mixes the gains")

@@ -48,7 +48,7 @@ impl DamperState {
         let states = self.deflection.iter_mut().zip(&mut self.force).zip(contact);
         match taxels {
             Taxels::Equal(taxel) => {
-                let relaxation = Relaxation::of(taxel, dt);
+                let relaxation = Relaxation::new(taxel, dt);
                 for ((deflection, force), &pushed) in states {
                     *force = relaxation.advance(deflection, pushed);
                 }
@@ -61,7 +61,7 @@ impl DamperState {
                         *force = 0.0;
                         continue;
                     }
-                    *force = Relaxation::of(taxel, dt).advance(deflection, pushed);
+                    *force = Relaxation::new(taxel, dt).advance(deflection, pushed);
                 }
             }
         }
@@ -78,7 +78,7 @@ pub struct Relaxation {
 }
 
 impl Relaxation {
-    pub(crate) fn of(taxel: &Taxel, dt: f64) -> Self {
+    pub(crate) fn new(taxel: &Taxel, dt: f64) -> Self {
         // Computes 1 − φ without cancellation for steps much shorter than c / k.
         let gone = if taxel.damping == 0.0 {
             1.0

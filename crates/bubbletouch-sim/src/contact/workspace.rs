@@ -5,7 +5,7 @@ use super::instructions::Instructions;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 
-/// Scratch memory of one thread and the result of its last press. Reuse avoids allocations once the largest patch has been pressed.
+/// SignalWorkspace memory of one thread and the result of its last press. Reuse avoids allocations once the largest patch has been pressed.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     instructions: Instructions,
@@ -26,14 +26,14 @@ pub struct Workspace {
     /// Contacts of the touched taxels, in the order of `touched`.
     pub(super) contacts: Vec<TaxelContact>,
     /// Parts that push their taxels even from behind the substrate; see [`hold`](Self::hold).
-    pub(super) held: Vec<Held>,
+    pub(super) held: Vec<HeldTaxel>,
     /// Poses of the objects along their path.
     pub(super) poses: Vec<Pose>,
 }
 
-/// Held taxel, with the object and part that hold it.
+/// HeldTaxel taxel, with the object and part that hold it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Held {
+pub(super) struct HeldTaxel {
     pub taxel: u32,
     pub by: [u32; 2],
 }
@@ -78,20 +78,22 @@ impl Workspace {
     /// thereby continues to press the taxels that it has pressed.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.held.clear();
-        self.held.extend(contacts.into_iter().map(|contact| Held {
-            taxel: contact.taxel as u32,
-            by: [contact.object, contact.part].map(|number| number as u32),
-        }));
+        self.held
+            .extend(contacts.into_iter().map(|contact| HeldTaxel {
+                taxel: contact.taxel as u32,
+                by: [contact.object, contact.part].map(|number| number as u32),
+            }));
     }
 
     /// Holds the parts that determine the deflections of the last press.
     pub(super) fn hold_touched(&mut self) {
         let deciding = &self.deciding;
         self.held.clear();
-        self.held.extend(self.touched.iter().map(|&taxel| Held {
-            taxel,
-            by: deciding[taxel as usize],
-        }));
+        self.held
+            .extend(self.touched.iter().map(|&taxel| HeldTaxel {
+                taxel,
+                by: deciding[taxel as usize],
+            }));
     }
 
     /// Returns whether any part is held.

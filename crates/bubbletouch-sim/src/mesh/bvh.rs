@@ -44,16 +44,16 @@ impl Bvh {
     /// Builds the tree of a mesh's triangles.
     pub fn new(mesh: &TriangleMesh) -> Self {
         let triangles = (0..mesh.n_triangles()).map(|t| mesh.triangle(t));
-        Self::of(triangles.collect()).expect("a mesh has triangles")
+        Self::from_triangles(triangles.collect()).expect("a mesh has triangles")
     }
 
     /// Builds the tree of triangles, whose indices are their positions in the vector; `None` if there are none.
-    pub fn of(triangles: Vec<Triangle>) -> Option<Self> {
+    pub fn from_triangles(triangles: Vec<Triangle>) -> Option<Self> {
         let tree = BoxTree::new(triangles.iter().map(Triangle::bounds).collect())?;
         let in_order = tree.order().iter().map(|&t| triangles[t as usize]);
         let triangles: Vec<Triangle> = in_order.collect();
         Some(Self {
-            planes: triangles.iter().map(Plane::of).collect(),
+            planes: triangles.iter().map(Plane::new).collect(),
             slabs: slabs(&tree, &triangles),
             triangles,
             tree,
@@ -206,7 +206,7 @@ struct Plane {
 }
 
 impl Plane {
-    fn of(triangle: &Triangle) -> Self {
+    fn new(triangle: &Triangle) -> Self {
         /// Smallest height of a triangle relative to its length; the planes of thinner ones are rotated too much by rounding.
         const THINNEST: f64 = 1e-4;
         let is_thin = 2.0 * triangle.area() <= THINNEST * triangle.longest_edge_squared();

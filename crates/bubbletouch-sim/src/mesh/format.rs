@@ -40,7 +40,7 @@ impl MeshFormat {
     ///
     /// # Errors
     /// If no format has this extension.
-    pub fn of(path: &Path) -> Result<Self> {
+    pub fn from_path(path: &Path) -> Result<Self> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         match ending.to_ascii_lowercase().as_str() {
             "ply" => Ok(Self::Ply),

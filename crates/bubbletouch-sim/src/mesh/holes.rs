@@ -28,7 +28,7 @@ impl Hole {
                 ([low, high], false) => [high, low],
             })
             .collect();
-        let mut joined = Joined::of(mesh.vertices().len());
+        let mut joined = Joined::new(mesh.vertices().len());
         for &[a, b] in &borders {
             joined.join(a, b);
         }
@@ -36,12 +36,12 @@ impl Hole {
         for edge in borders {
             parts.entry(joined.root(edge[0])).or_default().push(edge);
         }
-        let mut holes: Vec<Self> = parts.into_values().map(|b| Self::of(mesh, b)).collect();
+        let mut holes: Vec<Self> = parts.into_values().map(|b| Self::new(mesh, b)).collect();
         holes.sort_by(|a, b| b.length.total_cmp(&a.length));
         holes
     }
 
-    fn of(mesh: &TriangleMesh, border: Vec<[u32; 2]>) -> Self {
+    fn new(mesh: &TriangleMesh, border: Vec<[u32; 2]>) -> Self {
         let place = |corner: u32| mesh.vertices()[corner as usize];
         let edges = border.iter().map(|&[a, b]| place(a).distance(place(b)));
         Self {

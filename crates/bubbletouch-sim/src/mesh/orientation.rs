@@ -41,17 +41,17 @@ pub enum Orientation {
         n_all: usize,
     },
     /// An open part faces inwards, or its faces are inconsistent; nothing was turned.
-    Unsettled(&'static str),
+    NotConverged(&'static str),
 }
 
 impl Orientation {
     /// Returns an error if the outside is unknown.
     ///
     /// # Errors
-    /// If the mesh is [`Unsettled`](Self::Unsettled); the error begins with `place`.
+    /// If the mesh is [`NotConverged`](Self::NotConverged); the error begins with `place`.
     pub fn require(&self, place: &str) -> Result<()> {
         match self {
-            Self::Unsettled(given) => {
+            Self::NotConverged(given) => {
                 let allowed = "faces counter-clockwise seen from outside, or a closed mesh, which is turned outwards";
                 Err(Error::input(place, given, allowed))
             }
@@ -74,7 +74,7 @@ impl fmt::Display for Orientation {
                 f,
                 "{n_triangles} of {n_all} triangles faced inwards and were turned outwards"
             ),
-            Self::Unsettled(given) => write!(f, "{given}"),
+            Self::NotConverged(given) => write!(f, "{given}"),
         }
     }
 }
@@ -90,7 +90,7 @@ impl TriangleMesh {
         parts.turn_closed_parts();
         if let Some(given) = parts.unsettled() {
             // A partly turned mesh with an unsettled part is useless, so the original is returned.
-            return (self, Orientation::Unsettled(given));
+            return (self, Orientation::NotConverged(given));
         }
         let n_triangles = parts.is_turned.iter().filter(|&&turned| turned).count();
         if n_triangles == 0 {
@@ -120,7 +120,7 @@ struct Parts<'a> {
 impl<'a> Parts<'a> {
     fn new(mesh: &'a TriangleMesh, welded: &'a Welded) -> Self {
         let n = mesh.n_triangles();
-        let mut joined = Joined::of(n);
+        let mut joined = Joined::new(n);
         for sides in welded.edges() {
             for pair in sides.windows(2) {
                 joined.join(pair[0].triangle, pair[1].triangle);
@@ -344,9 +344,9 @@ impl Enclosure {
 
     /// Returns the winding number, before turning, of the majority of several points of another part; 0 outside.
     fn winding_around(&mut self, triangles: &[Triangle]) -> i32 {
-        let bvh = self
-            .bvh
-            .get_or_insert_with(|| Bvh::of(self.triangles.clone()).expect("a part has triangles"));
+        let bvh = self.bvh.get_or_insert_with(|| {
+            Bvh::from_triangles(self.triangles.clone()).expect("a part has triangles")
+        });
         let stride = triangles.len().div_ceil(N_POINTS);
         let points = triangles.iter().step_by(stride).map(Triangle::middle);
         let mut windings: Vec<i32> = points.map(|point| winding(bvh, point)).collect();

@@ -166,7 +166,7 @@ impl fmt::Display for MeshReport {
 }
 
 fn n_components(welded: &Welded, used: &[u32]) -> usize {
-    let mut joined = Joined::of(used.last().map_or(0, |&last| last as usize + 1));
+    let mut joined = Joined::new(used.last().map_or(0, |&last| last as usize + 1));
     for &[a, b, c] in &welded.corners {
         joined.join(a, b);
         joined.join(b, c);
@@ -190,7 +190,7 @@ fn n_duplicates(welded: &Welded) -> usize {
 /// Returns the number of corners whose triangles form several fans if triangles are joined only across edges.
 fn n_pinched(welded: &Welded) -> usize {
     // One element per corner of each triangle: 3 · triangle + corner.
-    let mut joined = Joined::of(3 * welded.corners.len());
+    let mut joined = Joined::new(3 * welded.corners.len());
     let at = |side: &Side, vertex: u32| {
         let corners = welded.corners[side.triangle as usize];
         let place = corners.iter().position(|&corner| corner == vertex);

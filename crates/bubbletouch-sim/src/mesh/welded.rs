@@ -84,7 +84,7 @@ pub(super) fn has_equal([a, b, c]: [u32; 3]) -> bool {
 pub(super) struct Joined(Vec<u32>);
 
 impl Joined {
-    pub fn of(n: usize) -> Self {
+    pub fn new(n: usize) -> Self {
         Self((0..n as u32).collect())
     }
 

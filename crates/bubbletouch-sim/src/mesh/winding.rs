@@ -39,7 +39,7 @@ impl WindingTree {
                 None => bvh
                     .leaf(node)
                     .iter()
-                    .map(Moments::of)
+                    .map(Moments::new)
                     .fold(Moments::default(), Moments::plus),
             };
         }
@@ -93,7 +93,7 @@ struct Moments {
 }
 
 impl Moments {
-    fn of(triangle: &Triangle) -> Self {
+    fn new(triangle: &Triangle) -> Self {
         let vector = 0.5 * triangle.double_area();
         let area = vector.length();
         let [a, b, c] = triangle.0;

@@ -149,7 +149,7 @@ impl Wording {
         }
     }
 
-    fn strand(self, points: &[DVec3], diameters: &[f64]) -> Result<()> {
+    fn check_capsule_chain(self, points: &[DVec3], diameters: &[f64]) -> Result<()> {
         if points.is_empty() || points.len() != diameters.len() {
             return Err(Error::input(
                 self.name("diameters"),
@@ -268,7 +268,9 @@ impl Shape {
                 positive("across_flats", *across_flats)?;
                 positive("height", *height)
             }
-            Shape::SphereSweep { points, diameters } => wording.strand(points, diameters),
+            Shape::SphereSweep { points, diameters } => {
+                wording.check_capsule_chain(points, diameters)
+            }
         }
     }
 }

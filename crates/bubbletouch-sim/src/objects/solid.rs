@@ -196,7 +196,7 @@ impl Solid {
     ///
     /// # Errors
     /// If [`Part::new`] fails.
-    pub fn of(shape: Shape) -> Result<Self> {
+    pub fn from_shape(shape: Shape) -> Result<Self> {
         Self::new(vec![Part::new(shape, Pose::IDENTITY)?])
     }
 
@@ -278,7 +278,7 @@ fn nearest(parts: &[Part], point: DVec3) -> f64 {
 
 fn kernel(shape: &Shape) -> Kernel {
     match *shape {
-        Shape::Ball { diameter } => strand(&[DVec3::ZERO], &[diameter]),
+        Shape::Ball { diameter } => capsule_chain(&[DVec3::ZERO], &[diameter]),
         Shape::Box { size, rounding } => Kernel::Block(Block {
             half: 0.5 * size,
             rounding,
@@ -287,9 +287,9 @@ fn kernel(shape: &Shape) -> Kernel {
         Shape::Capsule { diameter, length } => {
             let end = DVec3::Z * 0.5 * (length - diameter);
             if end == DVec3::ZERO {
-                return strand(&[end], &[diameter]);
+                return capsule_chain(&[end], &[diameter]);
             }
-            strand(&[-end, end], &[diameter, diameter])
+            capsule_chain(&[-end, end], &[diameter, diameter])
         }
         Shape::ConeFrustum {
             bottom_diameter,
@@ -329,7 +329,7 @@ fn kernel(shape: &Shape) -> Kernel {
         Shape::SphereSweep {
             ref points,
             ref diameters,
-        } => strand(points, diameters),
+        } => capsule_chain(points, diameters),
     }
 }
 
@@ -346,7 +346,7 @@ fn frustum(bottom_diameter: f64, top_diameter: f64, height: f64) -> Kernel {
     Kernel::Lathe(Lathe::new(&corners))
 }
 
-fn strand(points: &[DVec3], diameters: &[f64]) -> Kernel {
+fn capsule_chain(points: &[DVec3], diameters: &[f64]) -> Kernel {
     let balls = points.iter().zip(diameters).map(|(&center, &diameter)| {
         let radius = 0.5 * diameter;
         Sphere { center, radius }

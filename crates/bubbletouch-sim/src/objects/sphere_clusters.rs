@@ -65,7 +65,7 @@ impl SphereClusters {
             ],
             radii: padded(|s| s.radius),
             numbers,
-            ball: Extent::of(spheres.iter()).ball(&spheres),
+            ball: CenterBounds::new(spheres.iter()).ball(&spheres),
             starts,
             bounds,
         }
@@ -93,7 +93,7 @@ impl SphereClusters {
 
     /// Returns the spheres of a cluster.
     #[inline(always)]
-    pub(crate) fn of(&self, cluster: usize) -> Cluster<'_> {
+    pub(crate) fn cluster(&self, cluster: usize) -> Cluster<'_> {
         let first = self.starts[cluster] as usize;
         let [x, y, z] = &self.centers;
         Cluster {
@@ -133,7 +133,7 @@ fn lanes(values: &[f64]) -> &[f64; MAX_IN_CLUSTER] {
 
 impl ClusterBounds {
     fn push(&mut self, spheres: &[Sphere]) {
-        let extent = Extent::of(spheres.iter());
+        let extent = CenterBounds::new(spheres.iter());
         let ball = extent.ball(spheres);
         for axis in 0..3 {
             self.middle[axis].push(ball.center[axis]);
@@ -158,13 +158,13 @@ impl ClusterBounds {
 }
 
 /// Minimum and maximum of the centres and radii (component w) of spheres.
-struct Extent {
+struct CenterBounds {
     low: DVec4,
     high: DVec4,
 }
 
-impl Extent {
-    fn of<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone) -> Self {
+impl CenterBounds {
+    fn new<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone) -> Self {
         let all = || spheres.clone().map(|s| s.center.extend(s.radius));
         Self {
             low: all().fold(DVec4::INFINITY, DVec4::min),
@@ -194,7 +194,7 @@ fn cut(spheres: &mut [(u32, Sphere)], sizes: &mut Vec<usize>) {
         return;
     }
     let all = spheres.iter().map(|(_, sphere)| sphere);
-    let side = Extent::of(all).sides().max_position();
+    let side = CenterBounds::new(all).sides().max_position();
     let along = |(_, sphere): &(u32, Sphere)| sphere.center.extend(sphere.radius)[side];
     spheres.sort_by(|a, b| along(a).total_cmp(&along(b)));
     let (left, right) = spheres.split_at_mut(spheres.len() / 2);
@@ -226,7 +226,7 @@ mod tests {
             let bounds = clusters.bounds();
             for cluster in 0..bounds.len() {
                 let ball = bounds.ball(cluster);
-                let its = clusters.of(cluster);
+                let its = clusters.cluster(cluster);
                 let its: Vec<Sphere> = (0..its.n_spheres).map(|k| its.at(k)).collect();
                 let numbers = clusters.numbers(cluster).iter();
                 assert!(numbers.map(|&n| &spheres[n as usize]).eq(&its));

@@ -52,10 +52,10 @@ impl SphereUnion {
                 ));
             }
         }
-        Ok(Self::of(spheres))
+        Ok(Self::from_spheres(spheres))
     }
 
-    fn of(spheres: Vec<Sphere>) -> Self {
+    fn from_spheres(spheres: Vec<Sphere>) -> Self {
         let clusters = OnceLock::new();
         Self { spheres, clusters }
     }
@@ -98,7 +98,7 @@ impl SphereUnion {
                 radius: s.radius,
             })
             .collect();
-        Self::of(spheres)
+        Self::from_spheres(spheres)
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn gaps(target: &Target, triangles: &[usize], balls: &[Ball]) -> Gaps
     let looked_at = triangles
         .iter()
         .map(|&number| surface.mesh().triangle(number));
-    let Some(tree) = Bvh::of(looked_at.collect()) else {
+    let Some(tree) = Bvh::from_triangles(looked_at.collect()) else {
         return Gaps::default();
     };
     for (index, ball) in balls.iter().enumerate() {

@@ -78,7 +78,7 @@ impl Effort {
 /// Returns an error if the tolerance needs more than about [`MAX_SPHERES`] spheres.
 pub(super) fn sample(target: &Target) -> Result<Sampling> {
     let surface = target.surface;
-    let demand = Demand::of(target);
+    let demand = Demand::new(target);
     let n_spheres = demand.bent.min(demand.flat);
     if n_spheres > MAX_SPHERES as f64 {
         return Err(Error::input(
@@ -129,7 +129,7 @@ pub(super) fn sample(target: &Target) -> Result<Sampling> {
 
 /// Returns the approximate number of spheres of a packing.
 pub(super) fn estimated_spheres(target: &Target) -> f64 {
-    let demand = Demand::of(target);
+    let demand = Demand::new(target);
     demand.bent.min(demand.flat)
 }
 
@@ -143,7 +143,7 @@ struct Demand {
 
 impl Demand {
     /// Estimates the number from every eighth triangle; in large meshes from about 4,000 triangles.
-    fn of(target: &Target) -> Self {
+    fn new(target: &Target) -> Self {
         let mesh = target.surface.mesh();
         let every = (mesh.n_triangles() / 4096).max(8);
         let mut sizes = Sizes::new(target);

@@ -31,7 +31,7 @@ impl Lists {
         self.starts.len() - 1
     }
 
-    pub fn of(&self, list: usize) -> &[u32] {
+    pub fn list(&self, list: usize) -> &[u32] {
         &self.items[self.starts[list]..self.starts[list + 1]]
     }
 
@@ -47,7 +47,7 @@ impl Lists {
         let mut next = starts.clone();
         let mut items = vec![0; self.items.len()];
         for list in 0..self.len() {
-            for &item in self.of(list) {
+            for &item in self.list(list) {
                 items[next[item as usize]] = list as u32;
                 next[item as usize] += 1;
             }
@@ -117,12 +117,12 @@ impl<'a> Cover<'a> {
     pub fn new(rows_of: &'a Lists, n_rows: usize) -> Self {
         let sets_of = rows_of.transposed(n_rows);
         let mut uncovered = Members::none_of(n_rows);
-        for row in (0..n_rows).filter(|&row| !sets_of.of(row).is_empty()) {
+        for row in (0..n_rows).filter(|&row| !sets_of.list(row).is_empty()) {
             uncovered.insert(row);
         }
         let n_sets = rows_of.len();
         Self {
-            scores: (0..n_sets).map(|s| rows_of.of(s).len() as i32).collect(),
+            scores: (0..n_sets).map(|s| rows_of.list(s).len() as i32).collect(),
             rows_of,
             sets_of,
             chosen: Members::none_of(n_sets),
@@ -143,7 +143,7 @@ impl<'a> Cover<'a> {
     pub fn add(&mut self, set: usize) {
         self.chosen.insert(set);
         self.scores[set] = -self.scores[set];
-        for &row in self.rows_of.of(set) {
+        for &row in self.rows_of.list(set) {
             let row = row as usize;
             match self.counts[row] {
                 0 => {
@@ -161,7 +161,7 @@ impl<'a> Cover<'a> {
     fn remove(&mut self, set: usize) {
         self.chosen.remove(set);
         self.scores[set] = -self.scores[set];
-        for &row in self.rows_of.of(set) {
+        for &row in self.rows_of.list(set) {
             let row = row as usize;
             self.counts[row] -= 1;
             self.holders[row] ^= set as u32;
@@ -178,7 +178,7 @@ impl<'a> Cover<'a> {
 
     /// Adds `by` to the scores of all sets but `set` that contain a row.
     fn raise_all_but(&mut self, set: usize, row: usize, by: i32) {
-        for &other in self.sets_of.of(row) {
+        for &other in self.sets_of.list(row) {
             if other as usize != set {
                 self.scores[other as usize] += by;
             }
@@ -227,8 +227,8 @@ impl<'a> Cover<'a> {
             };
             self.remove(out as usize);
             self.moved_at[out as usize] = step;
-            let row = self.uncovered.members[below(self.uncovered.members.len(), rng)];
-            let holders = self.sets_of.of(row as usize).iter().copied();
+            let row = self.uncovered.members[uniform_below(self.uncovered.members.len(), rng)];
+            let holders = self.sets_of.list(row as usize).iter().copied();
             let others = holders.filter(|&set| set != out);
             let into = others.max_by_key(|&set| self.merit(set)).unwrap_or(out);
             self.add(into as usize);
@@ -250,7 +250,7 @@ impl<'a> Cover<'a> {
     fn cheapest_of_some(&self, except: Option<u32>, rng: &mut impl RngCore) -> Option<u32> {
         let chosen = &self.chosen.members;
         let n = chosen.len();
-        let tried = (0..TRIED.min(n)).map(|_| chosen[below(n, rng)]);
+        let tried = (0..TRIED.min(n)).map(|_| chosen[uniform_below(n, rng)]);
         tried
             .filter(|&set| Some(set) != except)
             .max_by_key(|&set| self.merit(set))
@@ -260,7 +260,7 @@ impl<'a> Cover<'a> {
     fn raise_uncovered(&mut self) {
         for &row in &self.uncovered.members {
             self.weights[row as usize] += 1;
-            for &set in self.sets_of.of(row as usize) {
+            for &set in self.sets_of.list(row as usize) {
                 self.scores[set as usize] += 1;
             }
         }
@@ -282,7 +282,7 @@ impl<'a> Cover<'a> {
 }
 
 /// Returns a random number below n, with a negligible bias.
-fn below(n: usize, rng: &mut impl RngCore) -> usize {
+fn uniform_below(n: usize, rng: &mut impl RngCore) -> usize {
     ((u64::from(rng.next_u32()) * n as u64) >> 32) as usize
 }
 
@@ -306,7 +306,7 @@ mod tests {
     fn covers(rows_of: &Lists, sets: &[u32], n_rows: usize) -> bool {
         let holds = |row: u32| {
             sets.iter()
-                .any(|&set| rows_of.of(set as usize).contains(&row))
+                .any(|&set| rows_of.list(set as usize).contains(&row))
         };
         (0..n_rows as u32).all(holds)
     }

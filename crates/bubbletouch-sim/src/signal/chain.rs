@@ -11,7 +11,7 @@ use std::sync::Arc;
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
-/// use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, Scratch, SignalStep};
+/// use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, SignalWorkspace, SignalStep};
 /// use bubbletouch_sim::world::{Grid, Patch, Taxel};
 ///
 /// let grid = Grid { nx: 8, ny: 8, pitch: 2e-3 };
@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// let chain = Chain::new(&steps, &Patch::grid(grid, taxel)?)?;
 ///
 /// let mut frame = vec![1e-3; 64];
-/// chain.apply(&mut frame, None, &Seed::new(2018).named("mug").numbered(17), &mut Scratch::default());
+/// chain.apply(&mut frame, None, &Seed::new(2018).named("mug").numbered(17), &mut SignalWorkspace::default());
 /// # Ok::<(), bubbletouch_sim::Error>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -56,7 +56,7 @@ pub struct Recording<'a> {
 
 /// Working memory of [`Chain::apply`]: one per thread, usable with any chain. The memory grows to the size that the largest chain needs.
 #[derive(Clone, Debug, Default)]
-pub struct Scratch(Vec<f64>);
+pub struct SignalWorkspace(Vec<f64>);
 
 /// Signal step with resolved units and computed weights.
 #[derive(Clone, Debug)]
@@ -78,14 +78,14 @@ impl Chain {
     /// If a strength is out of range (see the type of each step), if the taxels differ in stroke, stiffness or damping, or if the layout does not
     /// support a step.
     pub fn new(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
-        Self::of(steps, patch, Quantity::Deflection)
+        Self::with_quantity(steps, patch, Quantity::Deflection)
     }
 
     /// Prepares a chain for frames whose initial quantity is `quantity` instead of deflection.
     ///
     /// # Errors
     /// If the arguments are invalid, as for [`new`](Self::new).
-    pub fn of(steps: &[SignalStep], patch: &Patch, quantity: Quantity) -> Result<Self> {
+    pub fn with_quantity(steps: &[SignalStep], patch: &Patch, quantity: Quantity) -> Result<Self> {
         Self::prepared(steps, patch, quantity, false)
     }
 
@@ -154,7 +154,7 @@ impl Chain {
         frame: &mut [f64],
         rates: Option<&[f64]>,
         touch: &Seed,
-        scratch: &mut Scratch,
+        scratch: &mut SignalWorkspace,
     ) {
         assert_eq!(frame.len(), self.n_taxels(), "one value for each taxel");
         let recording = Recording {
@@ -175,7 +175,12 @@ impl Chain {
     ///
     /// # Panics
     /// If a frame is incomplete, if there are no frames after the leading `n_before`, or if there is not one rate per value.
-    pub fn apply_recording(&self, recording: Recording, touch: &Seed, scratch: &mut Scratch) {
+    pub fn apply_recording(
+        &self,
+        recording: Recording,
+        touch: &Seed,
+        scratch: &mut SignalWorkspace,
+    ) {
         let Recording { frames, rates, .. } = recording;
         let first = recording.n_before * self.n_taxels();
         assert!(

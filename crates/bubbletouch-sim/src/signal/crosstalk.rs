@@ -63,7 +63,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
                 Some(grid) => Box::new(Crosstalk::new(leak, grid)?),
                 None => Box::new(SurfaceLeak {
                     leak: fraction("crosstalk", leak)?,
-                    neighbours: Neighbours::of(skin.patch),
+                    neighbours: Neighbours::new(skin.patch),
                 }),
             })
         },

@@ -38,7 +38,7 @@ struct Zeros {
 impl Zeros {
     /// Draws the drift of a skin. `full_scale` is in the unit of the frames. `std` is the standard deviation of the zeros at the end of the session,
     /// relative to the full scale. The pattern does not depend on `std`. Returns an error if `std` is negative or not finite.
-    fn of(std: f64, skin: &Seed, n_taxels: usize, full_scale: f64) -> Result<Self> {
+    fn new(std: f64, skin: &Seed, n_taxels: usize, full_scale: f64) -> Result<Self> {
         not_negative("drift std", std, "")?;
         let usual: Vec<f64> = (0..N_MODES).map(|mode| SQRT_2 / frequency(mode)).collect();
         let at_end = usual.iter().map(|a| a * a).sum::<f64>().sqrt();
@@ -94,7 +94,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
         )],
         |&[std, _], skin| {
             let n_taxels = skin.patch.n_taxels();
-            Ok(Box::new(Zeros::of(
+            Ok(Box::new(Zeros::new(
                 std,
                 &skin.name,
                 n_taxels,
@@ -157,7 +157,7 @@ mod tests {
     use super::*;
 
     fn zeros_at(time: f64, n_taxels: usize) -> Vec<f64> {
-        let zeros = Zeros::of(0.1, &Seed::new(3), n_taxels, 5e-3).unwrap();
+        let zeros = Zeros::new(0.1, &Seed::new(3), n_taxels, 5e-3).unwrap();
         let mut values = vec![f64::NAN; n_taxels];
         zeros.at(time, &mut values);
         values
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_negative_or_undefined_drift_is_refused() {
         for std in [-0.1, f64::NAN, f64::INFINITY] {
-            let error = Zeros::of(std, &Seed::new(3), 4, 1.0).unwrap_err();
+            let error = Zeros::new(std, &Seed::new(3), 4, 1.0).unwrap_err();
             assert!(error.to_string().starts_with("drift std"), "{error}");
         }
     }

@@ -20,7 +20,7 @@ struct Levels(Vec<(usize, f64)>);
 impl Levels {
     /// Draws the faults of a skin: dead taxels, then stuck taxels with levels uniform between the lowest and the largest value.
     /// The fractions are rounded to whole taxels. Returns an error if a fraction is not from 0 to 1, or their sum exceeds 1.
-    fn of(
+    fn draw(
         [dead, stuck]: [f64; 2],
         skin: &Seed,
         n_taxels: usize,
@@ -74,7 +74,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
         ],
         |strengths, skin| {
             let (n_taxels, range) = (skin.patch.n_taxels(), [skin.least, skin.full_scale]);
-            Ok(Box::new(Levels::of(
+            Ok(Box::new(Levels::draw(
                 *strengths, &skin.name, n_taxels, range,
             )?))
         },
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     fn taxels(dead: f64, stuck: f64) -> Result<Vec<(usize, f64)>> {
-        Levels::of([dead, stuck], &Seed::new(11), 1000, [0.0, 5e-3]).map(|levels| levels.0)
+        Levels::draw([dead, stuck], &Seed::new(11), 1000, [0.0, 5e-3]).map(|levels| levels.0)
     }
 
     #[test]

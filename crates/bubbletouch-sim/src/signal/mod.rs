@@ -64,7 +64,7 @@ sensor_errors! {
 }
 
 pub use body_readout::{BodyReading, BodyReadout, WORTH_THREADS};
-pub use chain::{Chain, Recording, Scratch};
+pub use chain::{Chain, Recording, SignalWorkspace};
 pub use crosstalk::Crosstalk;
 pub use force::force;
 pub use noise::{Noise, NoiseUnit};

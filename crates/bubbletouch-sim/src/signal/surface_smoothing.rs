@@ -33,7 +33,7 @@ impl SurfaceSmoothing {
         if !(width >= 0.0 && width.is_finite()) {
             return Err(refused("zero or a positive number"));
         }
-        let neighbours = Neighbours::of(skin);
+        let neighbours = Neighbours::new(skin);
         let mut smoothing = Self {
             starts: vec![0],
             taxels: Vec::new(),

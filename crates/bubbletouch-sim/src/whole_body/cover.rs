@@ -70,7 +70,7 @@ impl CoveredRobot {
     /// # Errors
     /// If there is nothing to cover, the taxel is invalid, or `pitch` and `side` give a patch with no or too many taxels.
     pub fn new(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
-        Self::of(robot, Cover { taxel, pitch, side }, &[])
+        Self::with_cover(robot, Cover { taxel, pitch, side }, &[])
     }
 
     /// Covers a robot as [`new`](Self::new) does, and covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`.
@@ -79,10 +79,10 @@ impl CoveredRobot {
     /// # Errors
     /// If [`new`](Self::new) fails.
     pub fn with_flat_ends(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
-        Self::of(robot, Cover { taxel, pitch, side }, &flat_ends(robot)?)
+        Self::with_cover(robot, Cover { taxel, pitch, side }, &flat_ends(robot)?)
     }
 
-    fn of(robot: &Robot, cover: Cover, ends: &[End]) -> Result<Self> {
+    fn with_cover(robot: &Robot, cover: Cover, ends: &[End]) -> Result<Self> {
         let mut covered = Covered::default();
         let half_balls = half_balls(robot)?;
         for (number, link) in robot.links().iter().enumerate() {

@@ -122,7 +122,7 @@ impl View {
     /// Returns the spheres of a cluster in the patch frame.
     #[inline(always)]
     pub fn spheres(&self, object: &SphereClusters, cluster: usize) -> Placed {
-        let cluster = object.of(cluster);
+        let cluster = object.cluster(cluster);
         let [x, y, z] = cluster.centers;
         let zeros = [0.0; MAX_IN_CLUSTER];
         let mut placed = Placed {

@@ -28,9 +28,9 @@ pub(super) struct PatchState {
     pub n_evaluated: usize,
     /// Number of spheres of objects near the patch that were excluded before.
     pub n_rejected: usize,
-    /// Scratch memory of a search: for each cluster of an object a bound, below zero if one of its spheres may touch.
+    /// SignalWorkspace memory of a search: for each cluster of an object a bound, below zero if one of its spheres may touch.
     pub gaps: Vec<f64>,
-    /// Scratch memory for a sphere: the bundles under it, by their first columns.
+    /// SignalWorkspace memory for a sphere: the bundles under it, by their first columns.
     pub under: Vec<(u32, SphereOverBundle)>,
 }
 
@@ -86,7 +86,7 @@ impl PatchState {
 
     /// Returns the deflected taxels, ascending, and the forces, newtons, that moved them in the last step of `dt` seconds.
     pub fn forces(&self, patch: &BodyPatch, dt: f64) -> impl Iterator<Item = (u32, f64)> {
-        let relaxation = Relaxation::of(patch.taxel(), dt);
+        let relaxation = Relaxation::new(patch.taxel(), dt);
         let mut before = self.before.iter().copied().peekable();
         self.touched.iter().map(move |&(taxel, deflection)| {
             while before.next_if(|&(earlier, _)| earlier < taxel).is_some() {}

@@ -38,7 +38,7 @@ pub struct Neighbours {
 
 impl Neighbours {
     /// Finds the neighbours; about a microsecond per taxel.
-    pub fn of(skin: &Patch) -> Self {
+    pub fn new(skin: &Patch) -> Self {
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         for taxel in 0..skin.n_taxels() {
             let around = around(skin, taxel);
@@ -213,19 +213,19 @@ mod tests {
             ny: 5,
             pitch: PITCH,
         };
-        let neighbours = Neighbours::of(&skin(Layout::grid(&grid).unwrap()));
+        let neighbours = Neighbours::new(&skin(Layout::grid(&grid).unwrap()));
         for (taxel, (x, y)) in (0..35).map(|k| (k, (k % 7, k / 7))) {
             let found: Vec<usize> = neighbours.of_taxel(taxel).collect();
             let is_one = |&other: &usize| (other % 7).abs_diff(x) + (other / 7).abs_diff(y) == 1;
             let expected: Vec<usize> = (0..35).filter(is_one).collect();
             assert_eq!(found, expected, "taxel {taxel}");
         }
-        let hexagonal = Neighbours::of(&skin(Layout::hexagonal(9, 9, PITCH).unwrap()));
+        let hexagonal = Neighbours::new(&skin(Layout::hexagonal(9, 9, PITCH).unwrap()));
         assert_eq!(hexagonal.of_taxel(40).count(), 6);
         assert_eq!(hexagonal.most(), 6);
         // The rows of a whole cylinder have no ends.
         let cylinder = Layout::cylinder(0.02, 0.05, 2.0 * PI, PITCH).unwrap();
-        let counts = counts(&Neighbours::of(&skin(cylinder)));
+        let counts = counts(&Neighbours::new(&skin(cylinder)));
         assert!(counts.iter().all(|n| (3..=4).contains(n)), "{counts:?}");
     }
 
@@ -250,7 +250,7 @@ mod tests {
         let disc = Layout::disc(0.02, PITCH).unwrap();
         for layout in [cap, draped, disc] {
             let skin = skin(layout);
-            let neighbours = Neighbours::of(&skin);
+            let neighbours = Neighbours::new(&skin);
             for taxel in 0..skin.n_taxels() {
                 for other in neighbours.of_taxel(taxel) {
                     assert!(neighbours.of_taxel(other).any(|back| back == taxel));
@@ -271,7 +271,7 @@ mod tests {
         };
         let (centers, axes) = (0..40).map(|k| at(0.07 * f64::from(k))).unzip();
         let bent = skin(Layout::new(centers, axes).unwrap());
-        let neighbours = Neighbours::of(&bent);
+        let neighbours = Neighbours::new(&bent);
         let found = neighbours.within(&bent, 5, 0.01);
         for &(taxel, distance) in &found {
             let arc = radius * 0.07 * taxel.abs_diff(5) as f64;
@@ -283,7 +283,7 @@ mod tests {
             (0..10).map(|k| DVec3::new(PITCH * f64::from(k % 5), 0.0, 1e-4 * f64::from(k / 5)));
         let axes = (0..10).map(|k| if k < 5 { -DVec3::Z } else { DVec3::Z });
         let sheet = skin(Layout::new(places.collect(), axes.collect()).unwrap());
-        let neighbours = Neighbours::of(&sheet);
+        let neighbours = Neighbours::new(&sheet);
         let is_apart = |taxel| {
             neighbours
                 .of_taxel(taxel)
@@ -299,13 +299,13 @@ mod tests {
             let place =
                 |k: u32| DVec3::new(1e-3 * f64::from(k % 9), across * f64::from(k / 9), 0.0);
             let rows = Layout::new((0..27).map(place).collect(), vec![DVec3::Z; 27]);
-            let neighbours = Neighbours::of(&skin(rows.unwrap()));
+            let neighbours = Neighbours::new(&skin(rows.unwrap()));
             let found: Vec<usize> = neighbours.of_taxel(13).collect();
             assert_eq!(found, [4, 12, 14, 22], "{across} m");
         }
         // The edges of a cuff with an opening of 90 degrees.
         let cuff = skin(Layout::cylinder(0.02, 0.01, 1.5 * PI, PITCH).unwrap());
-        let neighbours = Neighbours::of(&cuff);
+        let neighbours = Neighbours::new(&cuff);
         let centers = cuff.layout().centers();
         for taxel in 0..cuff.n_taxels() {
             let mut found = neighbours.of_taxel(taxel);
@@ -317,7 +317,7 @@ mod tests {
     fn taxels_at_one_place_have_the_neighbours_of_the_place_and_one_another() {
         let place = |k: u32| PITCH * DVec3::new(f64::from(k / 3 % 4), f64::from(k / 12), 0.0);
         let tripled = Layout::new((0..36).map(place).collect(), vec![DVec3::Z; 36]);
-        let neighbours = Neighbours::of(&skin(tripled.unwrap()));
+        let neighbours = Neighbours::new(&skin(tripled.unwrap()));
         let found: Vec<usize> = neighbours.of_taxel(16).collect();
         assert_eq!(found, [3, 4, 5, 12, 13, 14, 15, 17, 18, 19, 20, 27, 28, 29]);
     }
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn a_taxel_alone_has_none() {
         let one = skin(Layout::new(vec![DVec3::ZERO], vec![DVec3::Z]).unwrap());
-        let neighbours = Neighbours::of(&one);
+        let neighbours = Neighbours::new(&one);
         assert_eq!((neighbours.n_taxels(), neighbours.most()), (1, 0));
         assert_eq!(neighbours.within(&one, 0, 1.0), [(0, 0.0)]);
     }

@@ -88,7 +88,7 @@ impl Patch {
 
     fn of_checked(name: String, layout: Layout, taxels: Taxels) -> Self {
         Self {
-            even_grid: EvenGrid::of(&layout, &taxels),
+            even_grid: EvenGrid::new(&layout, &taxels),
             tree: OnceLock::new(),
             ahead: OnceLock::new(),
             name,
@@ -135,7 +135,7 @@ impl Patch {
 }
 
 impl EvenGrid {
-    fn of(layout: &Layout, taxels: &Taxels) -> Option<Self> {
+    fn new(layout: &Layout, taxels: &Taxels) -> Option<Self> {
         let grid = *layout.as_grid()?;
         let (first, others) = taxels.all().split_first()?;
         let is_alike = |t: &Taxel| (t.radius, t.stroke) == (first.radius, first.stroke);

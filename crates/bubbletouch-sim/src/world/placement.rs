@@ -50,7 +50,7 @@ pub enum RestPoses {
 
 impl RestPoses {
     /// Returns the resting poses of one object.
-    pub fn of(self, object: &Model) -> Vec<RestPose> {
+    pub fn poses(self, object: &Model) -> Vec<RestPose> {
         match self {
             Self::AsModelled => vec![as_modelled(object)],
             Self::Stable => stable_poses(object),

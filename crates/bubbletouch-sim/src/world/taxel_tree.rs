@@ -168,10 +168,10 @@ impl TaxelTree {
         let index = self.nodes.len();
         if numbers.len() <= LEAF {
             let placed = numbers.iter();
-            let placed = placed.map(|&number| PlacedTaxel::of(layout, taxels, number as usize));
+            let placed = placed.map(|&number| PlacedTaxel::new(layout, taxels, number as usize));
             let placed: Vec<PlacedTaxel> = placed.collect();
             let leaf = Some(self.leaves.len() as u32);
-            self.leaves.push(Leaf::of(&placed));
+            self.leaves.push(Leaf::new(&placed));
             let node = Node::around(&placed);
             let next = index as u32 + 1;
             self.nodes.push(Node { leaf, next, ..node });
@@ -204,7 +204,7 @@ impl TaxelTree {
 }
 
 impl Leaf {
-    fn of(taxels: &[PlacedTaxel]) -> Self {
+    fn new(taxels: &[PlacedTaxel]) -> Self {
         let at = |k: usize| &taxels[k.min(taxels.len() - 1)];
         let lanes = |of: &dyn Fn(&PlacedTaxel) -> f64| std::array::from_fn(|k| of(at(k)));
         let vectors = |of: &dyn Fn(&PlacedTaxel) -> DVec3| {
@@ -273,12 +273,12 @@ impl Node {
     /// Returns whether a ball can push one of the node's taxels.
     #[inline(always)]
     pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
-        self.room(center, radius) >= 0.0
+        self.margin(center, radius) >= 0.0
     }
 
     /// Returns (R + ρ)² minus the squared distance between a ball's centre and the node's box, m²: an upper bound for each of the node's taxels.
     #[inline(always)]
-    pub fn room(&self, center: DVec3, radius: f64) -> f64 {
+    pub fn margin(&self, center: DVec3, radius: f64) -> f64 {
         let reach = (self.radius + radius) * ROUNDING;
         reach * reach - self.bounds.distance_squared(center)
     }
@@ -286,7 +286,7 @@ impl Node {
 
 impl PlacedTaxel {
     /// Returns a taxel of a layout by its number.
-    pub fn of(layout: &Layout, taxels: &Taxels, number: usize) -> Self {
+    pub fn new(layout: &Layout, taxels: &Taxels, number: usize) -> Self {
         let frame = layout.frame(number);
         let taxel = taxels.at(number);
         Self {

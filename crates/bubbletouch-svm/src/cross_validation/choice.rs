@@ -81,7 +81,7 @@ pub fn choose(
             gamma: kernels[kernel].gamma(),
             accuracy: n_correct as f64 / n_validated as f64,
         });
-    Ok(Chosen::of(tried.collect(), n_capped))
+    Ok(Chosen::new(tried.collect(), n_capped))
 }
 
 /// Chooses C as [`choose`] does, for any classifier. `train` fits a classifier to rows with a given C; it returns a prediction function and the number of
@@ -121,12 +121,12 @@ where
             accuracy: n_correct as f64 / n_validated as f64,
         });
     }
-    Ok(Chosen::of(tried, n_capped))
+    Ok(Chosen::new(tried, n_capped))
 }
 
 impl Chosen {
     /// Returns the first of the most accurate candidates.
-    fn of(tried: Vec<Tried>, n_capped: usize) -> Self {
+    fn new(tried: Vec<Tried>, n_capped: usize) -> Self {
         let better = |best: Tried, &tried: &Tried| {
             if tried.accuracy > best.accuracy {
                 tried

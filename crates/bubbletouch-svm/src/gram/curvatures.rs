@@ -13,7 +13,7 @@ const MAX_KEPT: usize = 1000;
 /// Returns the minimum curvature, given the diagonal.
 fn smallest<T: Scalar>(diagonal: &[T]) -> T {
     let largest = diagonal.iter().fold(T::zero(), |a, &b| a.max(b));
-    (T::of(SMALLEST_CURVATURE) * largest).max(T::min_positive_value())
+    (T::from_f64(SMALLEST_CURVATURE) * largest).max(T::min_positive_value())
 }
 
 /// Rows of inverse curvatures. If the matrix has few rows, they are stored at first use.

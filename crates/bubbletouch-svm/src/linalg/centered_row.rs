@@ -26,7 +26,7 @@ pub(crate) fn center_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -
     for at in 0..n {
         for lane in 0..LANES {
             let moved = row[at][lane] - centre[at][lane];
-            to[at][lane] = T::of(moved);
+            to[at][lane] = T::from_f64(moved);
             squares[lane] += moved * moved;
             products[lane] += moved * centre[at][lane];
         }
@@ -38,7 +38,7 @@ pub(crate) fn center_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -
     }
     for at in 0..last_to.len() {
         let moved = last_row[at] - last_centre[at];
-        last_to[at] = T::of(moved);
+        last_to[at] = T::from_f64(moved);
         norm += moved * moved;
         along_centre += moved * last_centre[at];
     }

@@ -11,11 +11,11 @@ const BLOCK: usize = 8;
 const INDEPENDENT_FROM: f64 = 10.0;
 
 /// A piece of a row.
-pub(crate) type Piece = [f64; LANES];
+pub(crate) type Lanes = [f64; LANES];
 
 /// Factorises a symmetric matrix plus a ridge, given by its upper triangle, into `D Lᵀ` and 1/D, row by row.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(crate) fn eliminate(rows: &mut [Piece], width: usize, inverse: &mut [f64], ridge: f64) {
+pub(crate) fn eliminate(rows: &mut [Lanes], width: usize, inverse: &mut [f64], ridge: f64) {
     let n = inverse.len();
     let n_pieces = n.div_ceil(LANES);
     let mut factors = vec![0.0; n];
@@ -48,10 +48,10 @@ pub(crate) fn eliminate(rows: &mut [Piece], width: usize, inverse: &mut [f64], r
 /// Solves `L v = side` in place for each right-hand side, piece by piece; the contributions of previous pieces are subtracted first.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute<const N: usize>(
-    rows: &[Piece],
+    rows: &[Lanes],
     width: usize,
     inverse: &[f64],
-    sides: &mut [[Piece; N]],
+    sides: &mut [[Lanes; N]],
 ) {
     let n = inverse.len();
     let mut factors = vec![[0.0; N]; n];
@@ -73,7 +73,7 @@ pub(crate) fn substitute<const N: usize>(
 
 /// Subtracts the product of a piece of a row and a factor from each right-hand side.
 #[inline(always)]
-fn take_product<const N: usize>(own: &mut [Piece; N], factors: &[f64; N], row: &Piece) {
+fn take_product<const N: usize>(own: &mut [Lanes; N], factors: &[f64; N], row: &Lanes) {
     for side in 0..N {
         for lane in 0..LANES {
             own[side][lane] -= factors[side] * row[lane];
@@ -83,7 +83,7 @@ fn take_product<const N: usize>(own: &mut [Piece; N], factors: &[f64; N], row: &
 
 /// Solves `D Lᵀ x = side` in place, block by block from the end; the contributions of later blocks are subtracted first.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
-pub(crate) fn substitute_back(rows: &[Piece], width: usize, inverse: &[f64], side: &mut [f64]) {
+pub(crate) fn substitute_back(rows: &[Lanes], width: usize, inverse: &[f64], side: &mut [f64]) {
     let n_blocks = inverse.len().div_ceil(BLOCK);
     let (blocks, _) = side.as_chunks_mut::<BLOCK>();
     for block in (0..n_blocks).rev() {
@@ -116,8 +116,8 @@ pub(crate) fn substitute_back(rows: &[Piece], width: usize, inverse: &[f64], sid
 /// Adds `weight · own ownᵀ` to the factorised matrix; the first of the given rows has the position `first`. `own` is overwritten.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn add_product(
-    rows: &mut [Piece],
-    own: &mut [Piece],
+    rows: &mut [Lanes],
+    own: &mut [Lanes],
     (first, mut weight): (usize, f64),
     inverse: &mut [f64],
 ) {
@@ -162,7 +162,7 @@ mod tests {
         (0..N).map(row).collect()
     }
 
-    fn factors() -> (Vec<Piece>, Vec<f64>) {
+    fn factors() -> (Vec<Lanes>, Vec<f64>) {
         let mut rows = vec![[0.0; LANES]; N * WIDTH];
         for (i, values) in matrix().iter().enumerate() {
             let row = rows[i * WIDTH..][..WIDTH].as_flattened_mut();
@@ -174,7 +174,7 @@ mod tests {
         (rows, inverse)
     }
 
-    fn side(number: usize) -> Vec<Piece> {
+    fn side(number: usize) -> Vec<Lanes> {
         let mut side = vec![[0.0; LANES]; WIDTH];
         let values = side.as_flattened_mut()[..N].iter_mut().enumerate();
         values.for_each(|(i, value)| *value = ((i + 31 * number) as f64 * 0.7).cos());
@@ -182,12 +182,12 @@ mod tests {
     }
 
     /// Asserts that the product of matrix and solution equals the right-hand side.
-    fn assert_solves((rows, inverse): &(Vec<Piece>, Vec<f64>), matrix: &[[f64; N]]) {
-        let both = |(a, b): (Piece, Piece)| [a, b];
-        let mut sides: Vec<[Piece; 2]> = side(0).into_iter().zip(side(1)).map(both).collect();
+    fn assert_solves((rows, inverse): &(Vec<Lanes>, Vec<f64>), matrix: &[[f64; N]]) {
+        let both = |(a, b): (Lanes, Lanes)| [a, b];
+        let mut sides: Vec<[Lanes; 2]> = side(0).into_iter().zip(side(1)).map(both).collect();
         substitute(rows, WIDTH, inverse, &mut sides);
         for number in 0..2 {
-            let mut x: Vec<Piece> = sides.iter().map(|side| side[number]).collect();
+            let mut x: Vec<Lanes> = sides.iter().map(|side| side[number]).collect();
             substitute_back(rows, WIDTH, inverse, x.as_flattened_mut());
             let expected = side(number);
             for (i, row) in matrix.iter().enumerate() {

@@ -20,7 +20,7 @@ pub(crate) fn spanned<T: Scalar>(rows: ArrayView2<T>, n_dimensions: usize) -> Ar
             row.scaled_add(-part, &direction);
         }
         let new = row.dot(&row).sqrt();
-        if new > T::of(NEW_SHARE) * length {
+        if new > T::from_f64(NEW_SHARE) * length {
             row.mapv_inplace(|value| value / new);
             directions
                 .push_row(row.view())

@@ -90,7 +90,9 @@ mod tests {
     use super::*;
 
     fn rows<T: Scalar>(n: usize, m: usize) -> Array2<T> {
-        Array2::from_shape_fn((n, m), |(i, j)| T::of(((i * m + j) as f64 * 1.7).sin()))
+        Array2::from_shape_fn((n, m), |(i, j)| {
+            T::from_f64(((i * m + j) as f64 * 1.7).sin())
+        })
     }
 
     fn assert_products<T: Scalar>(tolerance: f64) {

@@ -7,7 +7,7 @@ use crate::linalg::row_tiles;
 /// Floating-point type of the values of a Gram matrix: f32 or f64.
 pub(crate) trait Scalar: NdFloat + Default {
     /// Converts to the nearest value.
-    fn of(value: f64) -> Self;
+    fn from_f64(value: f64) -> Self;
     /// Converts to f64 without rounding.
     fn wide(self) -> f64;
     /// Replaces each squared distance by `exp(−γ · distance)`.
@@ -20,7 +20,7 @@ pub(crate) trait Scalar: NdFloat + Default {
 }
 
 impl Scalar for f64 {
-    fn of(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         value
     }
 
@@ -36,7 +36,7 @@ impl Scalar for f64 {
 }
 
 impl Scalar for f32 {
-    fn of(value: f64) -> Self {
+    fn from_f64(value: f64) -> Self {
         value as f32
     }
 

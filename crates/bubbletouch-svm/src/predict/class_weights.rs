@@ -53,7 +53,7 @@ impl<V: Scalar> ClassWeights<V> {
             for (&row, &coefficient) in rows.iter().zip(&solution.coefficients) {
                 let at = sorted.place()[row];
                 if weights.vectors.contains(&at) {
-                    own[at - weights.vectors.start] = V::of(coefficient);
+                    own[at - weights.vectors.start] = V::from_f64(coefficient);
                 }
             }
         }
@@ -66,7 +66,7 @@ impl<V: Scalar> ClassWeights<V> {
             let own = self.coefficients.row_mut(place);
             own.into_iter()
                 .zip(coefficients)
-                .for_each(|(own, &coefficient)| *own = V::of(coefficient));
+                .for_each(|(own, &coefficient)| *own = V::from_f64(coefficient));
         }
     }
 

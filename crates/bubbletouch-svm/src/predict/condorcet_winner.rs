@@ -80,7 +80,7 @@ impl<T: Scalar> Pairs<T> {
         rows.map(|row| {
             condorcet_winner(&mut ByKernel {
                 pairs: self,
-                kernel_values: Asked::new(row, vectors, kernel),
+                kernel_values: RowKernelValues::new(row, vectors, kernel),
             })
         })
         .collect()
@@ -88,7 +88,7 @@ impl<T: Scalar> Pairs<T> {
 
     /// Returns the terms of a pair, and its ρ.
     #[inline(always)]
-    fn of(&self, pair: usize) -> (&[(u32, T)], f64) {
+    fn pair(&self, pair: usize) -> (&[(u32, T)], f64) {
         let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };
         let (end, rho) = self.ends[pair];
         (&self.terms[start..end], rho)
@@ -148,14 +148,14 @@ impl<T: Scalar, K: KernelValues<T>> Decides<T> for ByKernel<'_, T, K> {
 
     #[inline(always)]
     fn value(&mut self, pair: usize) -> (T, T, usize, f64) {
-        let (terms, rho) = self.pairs.of(pair);
+        let (terms, rho) = self.pairs.pair(pair);
         let (sum, size) = sum_and_size(terms, self.kernel_values.with(terms));
         (sum, size, terms.len(), rho)
     }
 }
 
 /// Kernel values computed when a pair first requires them.
-struct Asked<'a, T> {
+struct RowKernelValues<'a, T> {
     kernel: &'a KernelFunction,
     vectors: &'a CenteredRows<T>,
     /// The row and its squared norm.
@@ -170,7 +170,7 @@ struct Asked<'a, T> {
     values: Vec<T>,
 }
 
-impl<'a, T: Scalar> Asked<'a, T> {
+impl<'a, T: Scalar> RowKernelValues<'a, T> {
     fn new(row: (&'a [T], T), vectors: &'a CenteredRows<T>, kernel: &'a KernelFunction) -> Self {
         Self {
             kernel,
@@ -186,7 +186,7 @@ impl<'a, T: Scalar> Asked<'a, T> {
     }
 }
 
-impl<T: Scalar> KernelValues<T> for Asked<'_, T> {
+impl<T: Scalar> KernelValues<T> for RowKernelValues<'_, T> {
     /// Computes the unknown kernel values of the terms.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T] {
         self.asked.clear();

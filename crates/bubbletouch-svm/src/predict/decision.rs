@@ -68,7 +68,7 @@ impl<T: Scalar> DecisionFunctions<T> {
                         let weights = ClassWeights::new(sorted, class, rows, problems);
                         weights.add_to(&mut normals, sorted);
                     }
-                    normals.mapv(T::of)
+                    normals.mapv(T::from_f64)
                 };
                 let normals = normals.unwrap_or_else(sum);
                 (about_centre.collect(), Sums::Hyperplanes(normals))
@@ -101,7 +101,7 @@ impl<T: Scalar> DecisionFunctions<T> {
     /// Returns the decision values of rows (n × m): n × n_problems.
     pub fn values(&self, features: ArrayView2<f64>) -> Array2<f64> {
         let mut values = Array2::zeros((features.nrows(), self.rho.len()));
-        let mut room = self.room(features.nrows());
+        let mut room = self.allocate_kernel_values(features.nrows());
         let blocks = values.axis_chunks_iter_mut(Axis(0), BLOCK_ROWS);
         for (mut values, points) in blocks.zip(self.blocks(&features)) {
             let sums = self.sums_of(&points, &mut room);
@@ -114,7 +114,7 @@ impl<T: Scalar> DecisionFunctions<T> {
     /// Returns the position of the class with the most votes for each row.
     pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
         let elect = |sums: Array2<T>| VoteCounter::elect(&sums, self.rho.view(), between, |_| true);
-        let mut room = self.room(features.nrows());
+        let mut room = self.allocate_kernel_values(features.nrows());
         let of_block = |points: CenteredRows<T>| match &self.sums {
             Sums::Support(
                 support @ Support {
@@ -169,7 +169,7 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 
     /// Allocates memory for the kernel values of a block; it is reused by all blocks.
-    fn room(&self, n_rows: usize) -> Array2<T> {
+    fn allocate_kernel_values(&self, n_rows: usize) -> Array2<T> {
         let n_vectors = match &self.sums {
             Sums::Hyperplanes(_) => 0,
             Sums::Support(support) => support.vectors.len(),

@@ -95,7 +95,7 @@ pub(crate) fn few_dimensions<T: SolverScalar>(sorted: &Sorted<T>) -> Sorted<T> {
 fn along_means<T: SolverScalar>(sorted: &Sorted<T>) -> Array2<T> {
     let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
     for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {
-        let n = T::of(range.len() as f64);
+        let n = T::from_f64(range.len() as f64);
         mean.assign(
             &(sorted
                 .points()

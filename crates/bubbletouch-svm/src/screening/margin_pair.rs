@@ -43,7 +43,7 @@ impl<T: SolverScalar> Within<T> {
     }
 }
 
-/// Scratch memory reused by successive pairs.
+/// SignalWorkspace memory reused by successive pairs.
 pub(crate) struct PairWorkspace<'r, T> {
     /// Active rows of both classes.
     rows: [Vec<&'r [T]>; 2],
@@ -230,8 +230,9 @@ impl<T: SolverScalar> MarginPair<T> {
         violating.clear();
         for (number, products) in products.into_iter().enumerate() {
             // f exceeds the middle by more than half the tolerance if w·x, times its sign, is below this bound.
-            let bound = T::of(SIGNS[number] * (SIGNS[number] - middle) - goal.tolerance / 2.0);
-            let sign = T::of(SIGNS[number]);
+            let bound =
+                T::from_f64(SIGNS[number] * (SIGNS[number] - middle) - goal.tolerance / 2.0);
+            let sign = T::from_f64(SIGNS[number]);
             find_below(products, sign, bound, &mut scratch.below);
             for &row in &scratch.below {
                 if !self.takes_part[number][row] {

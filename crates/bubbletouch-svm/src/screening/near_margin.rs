@@ -196,7 +196,9 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
             self.pairs[pair].solve(&self.classes.within, &mut self.workspace, goal);
             sums.fill(0.0);
             self.add_normal(pair, &mut sums);
-            round.normals.extend(sums.iter().map(|&sum| T::of(sum)));
+            round
+                .normals
+                .extend(sums.iter().map(|&sum| T::from_f64(sum)));
         }
         round.places.clear();
         round.places.resize(pairs.len(), [0..0, 0..0]);

@@ -68,7 +68,7 @@ pub(super) fn run_with<T: Scalar, G: Gram<T>>(
         return Stop::Done;
     };
     // Slightly stricter than the requested tolerance, so that the check in f64 succeeds.
-    let tolerance = T::of(0.95 * search.tolerance);
+    let tolerance = T::from_f64(0.95 * search.tolerance);
     let mut until_look = first_look;
     loop {
         let highest = variables.f[i];
@@ -97,7 +97,7 @@ pub(super) fn run_with<T: Scalar, G: Gram<T>>(
         match step_along(
             &mut variables.f,
             gram.rows(i, j),
-            T::of(step),
+            T::from_f64(step),
             &variables.up,
         ) {
             Some(next) => i = next,

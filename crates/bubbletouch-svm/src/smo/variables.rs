@@ -50,7 +50,7 @@ pub(crate) struct Variables<T> {
     pub up: Vec<T>,
     /// Marks: 0 if β_i can be lowered, otherwise −∞.
     pub low: Vec<T>,
-    /// Scratch memory of the second pass.
+    /// SignalWorkspace memory of the second pass.
     pub gains: Vec<T>,
 }
 
@@ -58,7 +58,7 @@ impl<T: Scalar> Variables<T> {
     pub fn new(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> Self {
         let n = beta.len();
         let mut own_f = Vec::with_capacity(padded(n));
-        own_f.extend(f.iter().map(|&f| T::of(f)));
+        own_f.extend(f.iter().map(|&f| T::from_f64(f)));
         own_f.resize(padded(n), T::zero());
         let mut variables = Self {
             beta: beta.to_vec(),

@@ -176,7 +176,7 @@ fn wide_rows_that_few_support_are_solved_to_the_optimum_of_all_rows() {
                 let params = params(Kernel::Linear, c, tolerance);
                 let name = format!("{apart} apart, C = {c}, tolerance {tolerance}");
                 for problem in model.problems() {
-                    let worth = Worth::of(&params, &data, problem);
+                    let worth = Worth::new(&params, &data, problem);
                     let rounding = if is_single(model) { 1e-4 } else { 0.0 };
                     assert!(
                         worth.spread <= 1.01 * tolerance + rounding,
@@ -326,7 +326,7 @@ fn assert_optimal(kernel: Kernel) {
         let params = params(kernel, c, 1e-3);
         let model = params.train(&data).unwrap();
         let problem = &model.problems()[0];
-        let worth = Worth::of(&params, &data, problem);
+        let worth = Worth::new(&params, &data, problem);
         let name = format!("{kernel:?}, C = {c}");
         // f32 kernel values are rounded by 6e-8, and up to C times that adds up over hundreds of support vectors: of values as large
         // as those of unlike rows mostly are (or 1, which exponents are rounded to), and at the most as the largest.
@@ -442,7 +442,7 @@ fn our_solver_and_linfas_reach_the_same_objective_and_bias() {
 fn optimal(params: SvmParams, data: &Dataset) -> SvmModel {
     let model = params.train(data).unwrap();
     for problem in model.problems() {
-        let worth = Worth::of(&params, data, problem);
+        let worth = Worth::new(&params, data, problem);
         let allowed = 1.01 * params.tolerance + 2e-6 * params.c;
         assert!(worth.spread <= allowed, "{params:?}: {worth:?}");
     }

@@ -61,7 +61,7 @@ fn where_libsvm_ends_ours_is_as_good_as_it() {
         let model = params.train(&data).unwrap();
         for (problem, wanted) in model.problems().iter().zip(wanted) {
             let about = format!("{kernel:?}, C = {c:e}, class {}", problem.positive);
-            let worth = Worth::of(&params, &data, problem);
+            let worth = Worth::new(&params, &data, problem);
             assert!(!problem.solution.is_capped, "{about}");
             let allowed = 1.01 * params.tolerance + worth.rounding;
             assert!(worth.violation <= allowed, "{about}: {worth:?}");
@@ -100,7 +100,7 @@ fn at_a_trillion_a_problem_is_optimal_or_counted_and_its_bounds_enclose_the_opti
                         "{name}, {kernel:?}, {multiclass:?}, class {}",
                         problem.positive
                     );
-                    let worth = Worth::of(&params, data, problem);
+                    let worth = Worth::new(&params, data, problem);
                     println!("{about}: capped {}, {worth:?}", problem.solution.is_capped);
                     let (dual, primal) = (worth.dual, worth.primal);
                     assert!(

@@ -107,7 +107,7 @@ fn sums(case: &Case, data: &Dataset, model: &SvmModel) -> Sums {
         decision_error: 0.0,
     };
     for problem in model.problems() {
-        let worth = Worth::of(&params, data, problem);
+        let worth = Worth::new(&params, data, problem);
         let gap = worth.gap().max(0.0);
         let error = 2.0 * (2.0 * gap * largest).sqrt() + case.tolerance;
         sums.dual -= worth.dual;

@@ -71,7 +71,7 @@ fn from_a_trillionth_to_a_trillion_of_c_a_solution_is_optimal_or_counted_as_capp
                 n_capped += model.n_capped();
                 let mut n_violated = 0;
                 for problem in model.problems() {
-                    let worth = Worth::of(&params, data, problem);
+                    let worth = Worth::new(&params, data, problem);
                     let allowed = 1.01 * params.tolerance + worth.rounding;
                     n_violated += usize::from(worth.violation > allowed);
                 }

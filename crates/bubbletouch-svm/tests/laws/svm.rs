@@ -60,7 +60,7 @@ fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
 
 /// Optimal within the tolerance and what rounding in sums of thousands of steps leaves open.
 fn assert_optimal(params: SvmParams, data: &Dataset, problem: &BinaryProblem) {
-    let worth = Worth::of(&params, data, problem);
+    let worth = Worth::new(&params, data, problem);
     let allowed = params.tolerance + worth.rounding + 1e-9 * params.c.max(1.0);
     assert!(worth.violation <= allowed, "{params:?}: {worth:?}");
 }
@@ -206,7 +206,7 @@ fn labels_decisions_and_objectives_are_those_of_scikit_learn() {
             );
         }
         let given = params(kernel, c, 1e-3);
-        let dual = |problem: &BinaryProblem| -Worth::of(&given, &train, problem).dual;
+        let dual = |problem: &BinaryProblem| -Worth::new(&given, &train, problem).dual;
         let sum = |problems: &[BinaryProblem]| problems.iter().map(dual).sum::<f64>();
         assert!((sum(exact.problems()) / objective - 1.0).abs() < 1e-8);
         assert!((sum(usual.problems()) / objective - 1.0).abs() < 1e-4);

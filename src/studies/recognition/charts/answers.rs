@@ -1,6 +1,6 @@
 //! Findings of a recognition study as sentences, derived from its tables.
 
-use crate::report::advice::{Offer, Offers, Wish};
+use crate::report::advice::{Candidate, Candidates, Requirement};
 use crate::report::csv_tables::{LIMITS_FILE, MISSED_TOUCHES};
 use crate::report::study_folder::words_of;
 use crate::report::swept::{Setting, Swept, without};
@@ -11,7 +11,7 @@ use crate::studies::recognition::charts::tables::CELLS;
 use crate::table::{Table, Value, short_number};
 
 /// Largest number of values listed in a sentence, and of conditions with a sentence.
-const MOST_LISTED: usize = 8;
+const MAX_LISTED: usize = 8;
 
 /// Returns the answers: the best configuration in each condition, the cheapest one within its interval, the effect of each setting, and remarks on omissions.
 pub fn answers(tables: &[Table]) -> Vec<String> {
@@ -61,15 +61,15 @@ fn missed(tables: &[Table]) -> Option<String> {
 fn bests(cells: &Table) -> Option<Vec<String>> {
     let (accuracy, _) = cells.column("accuracy")?;
     let (measurements, _) = cells.column("measurements_per_decision")?;
-    let offers = Offers::of_columns(cells, accuracy, measurements);
+    let offers = Candidates::of_columns(cells, accuracy, measurements);
     let conditions = offers.by_condition();
-    let listed = conditions.iter().take(MOST_LISTED);
+    let listed = conditions.iter().take(MAX_LISTED);
     let mut sentences: Vec<String> = listed
         .filter_map(|choices| best(&offers, choices))
         .flatten()
         .collect();
-    if conditions.len() > MOST_LISTED {
-        let n = conditions.len() - MOST_LISTED;
+    if conditions.len() > MAX_LISTED {
+        let n = conditions.len() - MAX_LISTED;
         sentences.push(format!(
             "The best of {n} more conditions are in the tables."
         ));
@@ -78,9 +78,9 @@ fn bests(cells: &Table) -> Option<Vec<String>> {
 }
 
 /// Returns the best configuration of a condition, and the one with the fewest measurements within its interval.
-fn best(offers: &Offers, choices: &[Offer]) -> Option<Vec<String>> {
+fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     let best = *offers.front(choices).last()?;
-    let accuracy = |offer: &Offer| offers.table.bounded(offers.value, offer.row);
+    let accuracy = |offer: &Candidate| offers.table.bounded(offers.value, offer.row);
     if offers.table.n_rows == 1 {
         return Some(vec![format!("Accuracy {}.", accuracy(&best))]);
     }
@@ -88,7 +88,7 @@ fn best(offers: &Offers, choices: &[Offer]) -> Option<Vec<String>> {
         "" => (String::new(), ""),
         words => (format!(" with {words}"), ":"),
     };
-    let said = |offer: &Offer| match &offers.choices(offer)[..] {
+    let said = |offer: &Candidate| match &offers.choices(offer)[..] {
         "" => accuracy(offer),
         words => format!("{} at {words}", accuracy(offer)),
     };
@@ -96,7 +96,7 @@ fn best(offers: &Offers, choices: &[Offer]) -> Option<Vec<String>> {
     let (_, measured) = offers.table.column(&offers.cost.name)?;
     if measured.varies(0..offers.table.n_rows) {
         let ends = offers.table.interval(offers.value, best.row);
-        let enough = Wish::Value(ends.map_or(best.value, |[low, _]| low));
+        let enough = Requirement::Value(ends.map_or(best.value, |[low, _]| low));
         sentences.push(match offers.advise(choices, enough) {
             Ok(advice) if advice.choice != best => format!(
                 "Within the interval of the best{with}, with the fewest measurements: {}.",
@@ -111,7 +111,7 @@ fn best(offers: &Offers, choices: &[Offer]) -> Option<Vec<String>> {
 /// Returns the mean accuracy at each value of each setting, over the combinations of other settings that have all of these values.
 fn effects(cells: &Table) -> Option<Vec<String>> {
     let rows: Vec<usize> = (0..cells.n_rows).collect();
-    let swept = Swept::of(cells, &rows);
+    let swept = Swept::new(cells, &rows);
     let accuracy = cells.numbers("accuracy")?;
     let effect = |setting: &Setting| {
         let levels = setting.levels(&rows);
@@ -131,7 +131,7 @@ fn effects(cells: &Table) -> Option<Vec<String>> {
         let said: Vec<String> = levels.iter().map(said).collect();
         let name = &setting.column.words;
         (n_complete > 0).then(|| match &said[..] {
-            [first, .., last] if said.len() > MOST_LISTED => {
+            [first, .., last] if said.len() > MAX_LISTED => {
                 let n = said.len();
                 format!("Mean accuracy by {name}, {n} values: from {first} to {last}.")
             }

@@ -248,7 +248,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
             .flat_map(|(_, along)| along)
             .copied()
             .collect();
-        let settings = Swept::of(summary, &rows).free;
+        let settings = Swept::new(summary, &rows).free;
         let rows = curves.par_iter().flat_map_iter(|(condition, along)| {
             both_sides(summary, &n_objects, (condition, along), &settings)
         });
@@ -257,7 +257,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
     let rows: Vec<Robustness> = rows.collect();
     match rows.is_empty() {
         true => Ok(None),
-        false => ROBUSTNESS.of(&rows).map(Some),
+        false => ROBUSTNESS.table(&rows).map(Some),
     }
 }
 
@@ -287,7 +287,7 @@ fn both_sides(
     let best = curve.best();
     let row = along[best];
     let cell = summary.number("cell", row);
-    curve.chance = 1.0 / n_objects.of(cell) as f64;
+    curve.chance = 1.0 / n_objects.n_objects(cell) as f64;
     let said = |one: &&Setting| {
         let has_value = one.data.value(row).is_some() || !one.column.word("").is_empty();
         has_value && one.column.name != condition
@@ -345,7 +345,7 @@ impl ObjectCounts {
     }
 
     /// Returns the number of objects of a configuration, at least 1. If a study stores only some confusion matrices, all configurations have the same objects.
-    fn of(&self, cell: f64) -> usize {
+    fn n_objects(&self, cell: f64) -> usize {
         self.own(cell).unwrap_or(self.of_all).max(1)
     }
 
@@ -464,9 +464,9 @@ mod tests {
             count: 1,
         });
         let summary = File::<(Cell, CellScore)>::new("summary.csv", "", "");
-        let summary = summary.of(&cells.collect::<Vec<_>>()).unwrap();
+        let summary = summary.table(&cells.collect::<Vec<_>>()).unwrap();
         let confusion = File::<Confusion>::new("confusion.csv", "", "");
-        let confusion = confusion.of(&rows.collect::<Vec<_>>()).unwrap();
+        let confusion = confusion.table(&rows.collect::<Vec<_>>()).unwrap();
         let robustness = robustness(&summary, &confusion).unwrap();
         (summary, robustness)
     }

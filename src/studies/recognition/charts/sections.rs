@@ -35,7 +35,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
         .collect();
     if let Some(cells) = filled(tables, CELLS) {
         let rows: Vec<usize> = (0..cells.n_rows).collect();
-        let Swept { free, fixed, .. } = Swept::of(cells, &rows);
+        let Swept { free, fixed, .. } = Swept::new(cells, &rows);
         let free = free
             .iter()
             .map(|one| (one, " <span class=\"tag\">swept</span>"));

@@ -4,7 +4,7 @@
 //! setting with most values. Lines and panels show the other settings with most values, in a tie texts before numbers. Each combination of the remaining
 //! settings has its own chart.
 
-use crate::report::study_folder::MOST_CHARTS;
+use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::{
@@ -44,7 +44,7 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     }
     others.extend(confusion.and_then(|table| confusion_chart(cells, table)));
     // Charts of accuracies are adjacent, and leave room for the other charts.
-    let place = charts.len().min(MOST_CHARTS - others.len());
+    let place = charts.len().min(MAX_CHARTS - others.len());
     charts.splice(place..place, others);
     charts
 }
@@ -70,11 +70,11 @@ fn chance(cells: &Table, confusion: Option<&Table>) -> Option<Rule> {
 /// Returns the charts of accuracy that together show every configuration. Settings of the signal that change one at a time have their own charts, along x.
 fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..cells.n_rows).collect();
-    let signal = Swept::of(cells, &all).one_at_a_time;
+    let signal = Swept::new(cells, &all).one_at_a_time;
     if signal.is_empty() {
         let mut charts = charts_along(cells, chart, None, &all);
         // A setting that only some classifiers have also gets its own chart, over the rows that have it.
-        for setting in &Swept::of(cells, &all).free {
+        for setting in &Swept::new(cells, &all).free {
             let has_it = |row: &usize| setting.data.value(*row).is_some();
             let rows: Vec<usize> = all.iter().copied().filter(has_it).collect();
             if setting.is_number() && rows.len() < all.len() && setting.levels(&rows).len() > 2 {
@@ -113,7 +113,7 @@ fn charts_along(
     x: Option<Setting>,
     rows: &[usize],
 ) -> Vec<ChartSpec> {
-    let swept = Swept::of(cells, rows);
+    let swept = Swept::new(cells, rows);
     let x = x.or_else(|| swept.main(rows));
     let mut others = x.map_or_else(|| swept.free.clone(), |x| without(&swept.free, &x));
     others.sort_by_key(|one| (Reverse(one.levels(rows).len()), one.is_number()));
@@ -200,7 +200,7 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
 /// classifier. With one classifier, colours show the values of the first other choice that varies.
 fn time_charts(cells: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
     let all: Vec<usize> = (0..cells.n_rows).collect();
-    let free = Swept::of(cells, &all).free;
+    let free = Swept::new(cells, &all).free;
     let of = |role: Role| free.iter().filter(move |one| one.column.role == role);
     let classifier = of(Role::Choice).find(|one| one.column.name == "classifier");
     let lines = classifier.or_else(|| of(Role::Choice).next());
@@ -234,7 +234,7 @@ fn confusion_chart(cells: &Table, confusion: &Table) -> Option<ChartSpec> {
     let mut cells_there = confusion.numbers("cell")?.iter();
     let row = cells_there.position(|known| *known == cell)?;
     let all: Vec<usize> = (0..cells.n_rows).collect();
-    let swept = Swept::of(cells, &all);
+    let swept = Swept::new(cells, &all);
     let mut words = vec![swept.condition_words(best), swept.choice_words(best)];
     words.retain(|words| !words.is_empty());
     words.push(format!("accuracy {:.2}", accuracy[best]));

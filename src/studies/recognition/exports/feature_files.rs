@@ -19,7 +19,7 @@ use crate::inputs::arrays::whole_numbers::{
     KeyValue, read_class_labels, read_group_keys, read_rows,
 };
 use crate::inputs::npy::{write_integers, write_npy};
-use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::{Measurements, measure_group};
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::rows::cell::Cell;

@@ -233,7 +233,7 @@ pub fn write_touches(
     let (placement, seed) = (&plan.placement, &Seed::new(plan.spec.seed));
     let n_frames = if read.is_some() { 1 } else { n_frames };
     let rests = objects.par_iter();
-    let rests: Vec<_> = rests.map(|o| placement.rest.of(&o.model)).collect();
+    let rests: Vec<_> = rests.map(|o| placement.rest.poses(&o.model)).collect();
     let sources = objects.iter().zip(&rests);
     let sources =
         sources.map(|(o, rests)| TouchSource::new(placement, rests, &touch_stream(seed, o)));

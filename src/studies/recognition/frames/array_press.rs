@@ -8,7 +8,7 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Shears;
 use glam::{DVec2, DVec3};
 
-/// Scratch memory of a thread for touches.
+/// SignalWorkspace memory of a thread for touches.
 #[derive(Debug, Default)]
 pub struct ArrayWorkspace {
     press: Workspace,

@@ -36,7 +36,7 @@ pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
     let mut frames = Vec::new();
     let chosen = named_samples(plan, &touches.class_names())?;
     for label in chosen.unwrap_or_else(|| (0..touches.spec.kinds.len()).collect()) {
-        let first = touches.of(label).par_iter().take(N_LOOKED_AT);
+        let first = touches.with_label(label).par_iter().take(N_LOOKED_AT);
         let recorded = first.map_init(Workspace::new, |room, touch| {
             let mut rows = Array2::zeros((touches.spec.n_frames(), grid.n_taxels()));
             record_touch(&skin, touch, interval, rows.view_mut(), room);

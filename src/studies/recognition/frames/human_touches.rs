@@ -58,7 +58,7 @@ impl HumanTouches {
     }
 
     /// Returns the touches of a kind, given by its label.
-    pub fn of(&self, label: usize) -> &[RecordedTouch] {
+    pub fn with_label(&self, label: usize) -> &[RecordedTouch] {
         &self.touches[label * self.spec.per_kind..][..self.spec.per_kind]
     }
 }

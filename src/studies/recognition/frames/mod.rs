@@ -1,11 +1,11 @@
 //! The frames of an array's touches: simulated once, shared by all configurations, and stored in memory.
 
 pub mod array_press;
+pub(crate) mod frame_store;
 pub mod human_samples;
 pub(crate) mod human_touch_set;
 pub mod human_touches;
-pub(crate) mod kept;
-pub(crate) mod making;
+pub(crate) mod parallel_simulation;
 pub(crate) mod pressed_objects;
 pub mod reading;
 pub mod recorded_frames;
@@ -15,4 +15,4 @@ pub(crate) mod shear_ripple;
 pub mod simulation;
 pub mod touch_set;
 
-pub use crate::studies::recognition::frames::kept::Frames;
+pub use crate::studies::recognition::frames::frame_store::Frames;

@@ -5,7 +5,7 @@ use crate::engine::progress::Progress;
 use crate::error::Result;
 use crate::objects::Model;
 use crate::random::Seed;
-use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
 use crate::studies::recognition::frames::samples::sample_frames;
 use crate::studies::recognition::frames::simulation::press_objects;

@@ -3,8 +3,8 @@
 use crate::error::Result;
 use crate::random::Seed;
 use crate::sensing::Projection;
-use crate::signal::{Chain, Recording, Scratch};
-use crate::studies::recognition::frames::kept::Frames;
+use crate::signal::{Chain, Recording, SignalWorkspace};
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::plan::sensed::of_channel;
 use crate::world::Taxel;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
@@ -96,7 +96,7 @@ pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>
     Ok((values, cpu_s))
 }
 
-/// Scratch memory of a thread.
+/// SignalWorkspace memory of a thread.
 #[derive(Debug, Default)]
 struct Working {
     /// Frames of a block.
@@ -106,7 +106,7 @@ struct Working {
     /// Deepest frame of the preceding touch.
     deepest: Vec<f64>,
     rates: Vec<f64>,
-    scratch: Scratch,
+    scratch: SignalWorkspace,
 }
 
 /// Reads some touches, F frames each.

@@ -18,7 +18,7 @@ use crate::learning::data::split::Side;
 use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::signal::Quantity;
-use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
 use crate::studies::recognition::frames::samples::spread_samples;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};

@@ -3,7 +3,7 @@
 use crate::contact::Contact;
 use crate::engine::progress::Progress;
 use crate::studies::recognition::frames::array_press::ArrayWorkspace;
-use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::touches::drawn_touches::TouchedObject;

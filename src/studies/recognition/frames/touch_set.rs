@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::learning::data::split::Side;
 use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
-use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::TouchToRead;
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::pose_groups::KeepTogether;

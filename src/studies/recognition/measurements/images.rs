@@ -69,7 +69,7 @@ impl Images {
     }
 
     /// Returns whether images can be estimated from this number of measurements.
-    pub fn is_of(&self, measurements: usize) -> bool {
+    pub fn has_estimate(&self, measurements: usize) -> bool {
         self.estimates.iter().any(|(m, _)| *m == measurements)
     }
 

@@ -4,8 +4,8 @@ use crate::error::Result;
 use crate::inputs::sensor_errors::TestedOn;
 use crate::random::Seed;
 use crate::sensing::{Ensemble, Projection, Readings};
-use crate::signal::Scratch;
-use crate::studies::recognition::frames::kept::Frames;
+use crate::signal::SignalWorkspace;
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::{ReadSkin, Reading, TouchToRead, measure};
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::measurements::images::Images;
@@ -169,7 +169,7 @@ pub fn measure_group(
             let train = (&trial.split().train[..], touched.classes().len());
             copies = tilted_copies(inputs, train, skins[0].chains[0].full_scale(), trial.number);
             let mut wanted = inputs.of_images.clone();
-            wanted.retain(|one| images.is_of(one.measurements));
+            wanted.retain(|one| images.has_estimate(one.measurements));
             let made = images.features((values.view(), n_frames), &wanted, copies.as_ref());
             wanted.into_iter().zip(made).collect()
         }
@@ -199,7 +199,7 @@ fn tilted_copies(
     let a_pixel = steepest * array.image().1 / array.taxel().stroke * full_scale;
     let seed = Seed::new(inputs.seed).named("tilted copies");
     let seed = seed.numbered(trial as u64);
-    Some(TiltedCopies::of(copies, train, a_pixel, &seed))
+    Some(TiltedCopies::new(copies, train, a_pixel, &seed))
 }
 
 /// Draws Φ in a trial, or fits it to training touches, and fits the image estimators.
@@ -260,7 +260,7 @@ pub const UNTOUCHED: usize = 256;
 fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     let seed = Seed::new(seed).named("untouched").numbered(trial as u64);
     let mut readings = Array2::zeros((UNTOUCHED, whole.projection.n_taxels()));
-    let mut scratch = Scratch::default();
+    let mut scratch = SignalWorkspace::default();
     for (number, mut row) in readings.outer_iter_mut().enumerate() {
         let frame = row.as_slice_mut().expect("rows are whole");
         let named = seed.numbered(number as u64);

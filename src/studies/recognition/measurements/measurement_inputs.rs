@@ -165,7 +165,7 @@ fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
     };
     // A strength that the study does not have counts as zero.
     let with_zero = |strengths: Strengths, (_, strength): (_, &Strength)| {
-        let value = strengths.of(strength.key).unwrap_or(0.0);
+        let value = strengths.get(strength.key).unwrap_or(0.0);
         strengths.with(strength.key, Some(value))
     };
     let steps = plan.spec.signal.steps.iter();

@@ -21,7 +21,7 @@ pub struct TiltedCopies {
 impl TiltedCopies {
     /// Draws copies of training touches, given in drawing order, which alternates between n classes. `steepest` is the largest increase from a taxel to the
     /// next. Each touch has its own random stream.
-    pub fn of(
+    pub fn new(
         CopyInputs {
             n_copies,
             n_touches,

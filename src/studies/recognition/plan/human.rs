@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::{MM, MOST_FRAMES, millimetres};
+use crate::inputs::units::{MAX_FRAMES, MM, millimetres};
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::studies::recognition::spec::scene::TouchesSpec;
@@ -68,8 +68,8 @@ impl Check<'_> {
         self.table("human_touch", human)?;
         self.grids(&spec.skin)?;
         let n_frames = (human.duration_s * human.frames_hz).round() + 1.0;
-        if !(2.0..=MOST_FRAMES as f64).contains(&n_frames) {
-            let allowed = format!("2 to {MOST_FRAMES} frames in duration_s at frames_hz");
+        if !(2.0..=MAX_FRAMES as f64).contains(&n_frames) {
+            let allowed = format!("2 to {MAX_FRAMES} frames in duration_s at frames_hz");
             return Err(self.error("human_touch", format!("{n_frames} frames a touch"), allowed));
         }
         let mut arrays = arrays.iter();

@@ -190,7 +190,7 @@ impl Check<'_> {
     /// Checks the combination of frames, which must not need more frames than a touch has.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
-        let values = Axis::of(&recognition.over_time);
+        let values = Axis::optional_values(&recognition.over_time);
         if let ([Some(OverTime::Deepest)], true) = (&values[..], frames.iter().all(|&f| f == 1)) {
             let given = "\"deepest\", but every touch is one frame";
             let allowed = "touches.frames of 2 or more beside it, or no such key";
@@ -302,7 +302,7 @@ impl RecognitionSpec {
     /// Returns the depth windows of the features; features of measurements have none.
     pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
         match features.of_image() {
-            Some(_) => Axis::of(&self.foremost_full_scale),
+            Some(_) => Axis::optional_values(&self.foremost_full_scale),
             None => vec![self.foremost_full_scale.as_ref().map(|_| 1.0)],
         }
     }
@@ -310,7 +310,7 @@ impl RecognitionSpec {
     /// Returns the numbers of tilted copies; features of measurements have none.
     pub fn copies(&self, features: Features) -> Vec<Option<usize>> {
         match features.of_image() {
-            Some(_) => Axis::of(&self.tilted_copies),
+            Some(_) => Axis::optional_values(&self.tilted_copies),
             None => vec![self.tilted_copies.as_ref().map(|_| 0)],
         }
     }
@@ -319,7 +319,7 @@ impl RecognitionSpec {
     pub fn next_touches(&self, k: usize) -> Vec<Option<NextTouch>> {
         match (k, &self.next_touch) {
             (1, Some(_)) => vec![Some(NextTouch::Random)],
-            _ => Axis::of(&self.next_touch),
+            _ => Axis::optional_values(&self.next_touch),
         }
     }
 
@@ -361,7 +361,7 @@ impl RecognitionSpec {
         match (&self.c, &self.choose_c) {
             (_, Some(_)) => vec![None],
             (None, None) => vec![Some(1.0)],
-            (axis, None) => Axis::of(axis),
+            (axis, None) => Axis::optional_values(axis),
         }
     }
 }

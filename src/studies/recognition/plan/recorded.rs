@@ -91,7 +91,7 @@ impl Check<'_> {
         if !array.is_placed() {
             let needs_places = |step: &&StepSpec| match step {
                 StepSpec::Smoothing => {
-                    let widths = spec.signal.axes.of("smoothing_mm").into_iter();
+                    let widths = spec.signal.axes.get("smoothing_mm").into_iter();
                     widths.flat_map(Axis::values).any(|width| width > 0.0)
                 }
                 StepSpec::Error(error) => error.about().needs_places,

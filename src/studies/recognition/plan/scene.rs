@@ -2,9 +2,9 @@
 
 use crate::engine::axis::Axis;
 use crate::error::Result;
-use crate::inputs::check::{Check, MOST_VALUES, positive};
+use crate::inputs::check::{Check, MAX_VALUES, positive};
 use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::units::{MM, MOST_SIDE};
+use crate::inputs::units::{MAX_SIDE, MM};
 use crate::mesh::SizeLimits;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::scene::{RangeSpec, SkinSpec, SpreadSpec, TouchesSpec};
@@ -169,7 +169,7 @@ impl Check<'_> {
             let given = format!("{size_mm} mm at a pitch of {pitch_mm} mm");
             match (n * pitch_mm - size_mm).abs() > 1e-6 * pitch_mm || n < 1.0 {
                 true => Err(self.error("skin.size_mm", given, "a whole number of pitches")),
-                false => self.count("skin.size_mm", n as usize, MOST_SIDE),
+                false => self.count("skin.size_mm", n as usize, MAX_SIDE),
             }
         };
         match (&skin.size_mm, &skin.taxels) {
@@ -233,7 +233,7 @@ impl Check<'_> {
             }
             SpreadSpec::Range(RangeSpec::Uniform(low, high)) => vec![low, high],
             SpreadSpec::Range(RangeSpec::Grid(first, last, count)) => {
-                self.count(key, count, MOST_VALUES)?;
+                self.count(key, count, MAX_VALUES)?;
                 let step = (last - first) / (count - 1).max(1) as f64;
                 (0..count).map(|k| first + k as f64 * step).collect()
             }

@@ -30,7 +30,7 @@ impl Check<'_> {
         sensed: Option<SensedSpec>,
     ) -> Result<(NoiseUnit, Vec<f64>)> {
         self.table("signal", signal)?;
-        let axis = |(key, unit)| Some((key, unit, signal.axes.of(key)?));
+        let axis = |(key, unit)| Some((key, unit, signal.axes.get(key)?));
         let mut given = NOISES.into_iter().filter_map(axis);
         let Some((name, unit, axis)) = given.next() else {
             return Ok((NoiseUnit::FullScale, vec![0.0]));
@@ -64,7 +64,7 @@ impl Check<'_> {
         let ranges = all_strengths().map(|(_, strength)| (strength.key, range(strength)));
         self.keys("signal", signal, ranges)?;
         let largest = |strength: &Strength| {
-            let axis = signal.axes.of(strength.key).into_iter();
+            let axis = signal.axes.get(strength.key).into_iter();
             axis.flat_map(Axis::values).fold(0.0, f64::max)
         };
         for error in SENSOR_ERRORS {

@@ -51,7 +51,7 @@ fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
 
 impl SignalAxes {
     /// Returns the axis of a key, if the study has it.
-    pub fn of(&self, key: &str) -> Option<&Axis<f64>> {
+    pub fn get(&self, key: &str) -> Option<&Axis<f64>> {
         let mut given = self.given();
         given.find_map(|(known, _, axis)| (*known == key).then_some(axis))
     }

@@ -74,7 +74,7 @@ impl RecognitionStudy {
         let (mut objects, mut has_noted) = (HashMap::new(), false);
         let mut drawn: HashMap<String, Arc<dyn TouchSet + Send>> = HashMap::new();
         let mut draw = |plan: &Plan| -> Result<Arc<dyn TouchSet + Send>> {
-            let inputs = TouchInputs::of(plan);
+            let inputs = TouchInputs::new(plan);
             let (content, seed) = (inputs.key(), Seed::new(inputs.seed));
             let touched: Arc<dyn TouchSet + Send> = if let Some(known) = drawn.get(&content) {
                 known.clone()
@@ -128,7 +128,7 @@ fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
 
 /// Returns a text that is equal for plans with equal touches, apart from the array and the files of their objects.
 pub fn touch_content(plan: &Plan) -> String {
-    TouchInputs::of(plan).key()
+    TouchInputs::new(plan).key()
 }
 
 /// Memory of a touch, bytes: its pose, its label and how it is read.

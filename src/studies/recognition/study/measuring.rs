@@ -3,7 +3,7 @@
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
 use crate::error::Result;
-use crate::studies::recognition::frames::kept::Frames;
+use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::Measurements;
 use crate::studies::recognition::study::recognition_study::{RecognitionStudy, in_frames};
 use crate::studies::recognition::study::rows::{CellRow, RecognitionRows, TouchRow};

@@ -142,7 +142,7 @@ impl RecognitionStudy {
         let mut known_groups: HashMap<String, usize> = HashMap::new();
         for (part, StudyPart { plan, sweep, .. }) in self.parts.iter().enumerate() {
             let touched = [plan, plan.tested.as_deref().unwrap_or(plan)];
-            let touched = touched.map(|plan| (plan, TouchInputs::of(plan).content()));
+            let touched = touched.map(|plan| (plan, TouchInputs::new(plan).content()));
             for (place, group) in sweep.groups.iter().enumerate() {
                 let number = self.groups.len();
                 let mut place_touches = |of: usize| {

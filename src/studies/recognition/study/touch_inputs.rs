@@ -18,7 +18,7 @@ pub(crate) struct TouchInputs<'a> {
 
 impl<'a> TouchInputs<'a> {
     /// Returns the inputs of a plan's touches.
-    pub fn of(plan: &'a Plan) -> Self {
+    pub fn new(plan: &'a Plan) -> Self {
         let spec = &plan.spec;
         Self {
             objects: &spec.objects,

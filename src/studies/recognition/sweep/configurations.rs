@@ -118,7 +118,7 @@ impl Sweep {
             array in 0..plan.arrays.len();
             frames in plan.frames.iter().copied();
             condition in plan.conditions();
-            tested_on in Axis::of(&plan.spec.signal.tested_on);
+            tested_on in Axis::optional_values(&plan.spec.signal.tested_on);
             ensemble in plan.spec.sensing.ensemble.values();
             {
                 let group = Group {
@@ -200,14 +200,14 @@ impl Sweep {
         let first = last.map_or(0, |cell| cell.cell + 1);
         nested! {
             measurements in plan.measurement_counts(array, group.ensemble);
-            over_time in Axis::of(&learned.over_time);
+            over_time in Axis::optional_values(&learned.over_time);
             features in learned.features.values();
             foremost_full_scale in learned.foremost(features);
             tilted_copies in learned.copies(features);
             classifier in learned.classifier.values();
             train_touches in train_touches.iter().copied();
-            class_imbalance in Axis::of(&learned.class_imbalance);
-            mislabelled_fraction in Axis::of(&learned.mislabelled_fraction);
+            class_imbalance in Axis::optional_values(&learned.class_imbalance);
+            mislabelled_fraction in Axis::optional_values(&learned.mislabelled_fraction);
             c in penalties(classifier);
             fused_touches in learned.fused_touches.values();
             next_touch in learned.next_touches(fused_touches);

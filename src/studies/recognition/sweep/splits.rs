@@ -90,7 +90,7 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
         Err(Error::input(key, given, allowed))
     };
     let fewest = fewest_per_object(splits.iter().map(|split| &split.train), labels);
-    let asked = Axis::of(&recognition.train_touches).into_iter();
+    let asked = Axis::optional_values(&recognition.train_touches).into_iter();
     let train_touches: Vec<usize> = asked.map(|asked| asked.unwrap_or(fewest)).collect();
     for &count in &train_touches {
         let what = "the training touches of every object in every trial";

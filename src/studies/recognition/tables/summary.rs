@@ -146,7 +146,7 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
         let scores = scores.map(|(cell, score)| score.repeat(cell.fused_touches));
         scores.collect::<Vec<_>>()
     });
-    let paired = Paired::of(&ours, &theirs);
+    let paired = Paired::new(&ours, &theirs);
     let (ours, theirs) = match paired.n_trials() {
         0 => (mean(trials, |t| t.accuracy), mean(best, |t| t.accuracy)),
         _ => paired.means(),
@@ -168,7 +168,7 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
 }
 
 /// Largest number of pairs in the list of confusions.
-const MOST_CONFUSED: usize = 15;
+const MAX_CONFUSED: usize = 15;
 
 /// Returns the pairs of objects that a configuration confuses most often, by the fraction of the touched object's test rows; in a tie the first in the table.
 /// `fused` is the number of the configuration with the most touches fused, and this number of touches.
@@ -209,7 +209,7 @@ pub fn most_confused(
     });
     let mut pairs = pairs.collect::<Result<Vec<Confused>>>()?;
     pairs.sort_by(|a, b| b.share.total_cmp(&a.share));
-    pairs.truncate(MOST_CONFUSED);
+    pairs.truncate(MAX_CONFUSED);
     Ok(pairs)
 }
 
@@ -329,7 +329,7 @@ mod tests {
         for other in 0..20 {
             table.push(row(1, "pear", &format!("apple {other}"), 1));
         }
-        assert_eq!(found(&table).len(), MOST_CONFUSED);
+        assert_eq!(found(&table).len(), MAX_CONFUSED);
         assert!(most_confused(&table, 7, None).unwrap().is_empty());
     }
 

@@ -28,7 +28,7 @@ pub fn draw_touches(
     seed: &Seed,
 ) -> Result<Vec<TouchedObject>> {
     let touched = objects.into_par_iter().map(|object| {
-        let rests = placement.rest.of(&object.model);
+        let rests = placement.rest.poses(&object.model);
         let touches = touches(placement, &rests, &touch_stream(seed, &object))?;
         Ok(TouchedObject {
             object,

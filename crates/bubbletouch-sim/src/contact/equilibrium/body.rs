@@ -73,7 +73,7 @@ impl<'a> Body<'a> {
 }
 
 /// Returns the displacement of a point of a body by each unit motion, per metre; `from_center` is the vector from the centre of mass to the point.
-pub(super) fn ways(axes: &[DVec3; 3], from_center: DVec3, arm: f64) -> [DVec3; 6] {
+pub(super) fn unit_motions(axes: &[DVec3; 3], from_center: DVec3, arm: f64) -> [DVec3; 6] {
     let [x, y, z] = *axes;
     let turn = |axis: DVec3| axis.cross(from_center) / arm;
     [x, y, z, turn(x), turn(y), turn(z)]

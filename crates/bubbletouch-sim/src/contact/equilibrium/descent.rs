@@ -218,7 +218,7 @@ impl<'a, 'b> Descent<'a, 'b> {
                 }
                 return End::Rest;
             }
-            match self.attempt(&step, slope) {
+            match self.try_step(&step, slope) {
                 Some(ratio) if ratio > 0.75 && length > 0.8 * self.reach => {
                     self.reach = (2.0 * self.reach).min(self.farthest);
                 }
@@ -249,7 +249,7 @@ impl<'a, 'b> Descent<'a, 'b> {
     }
 
     /// Takes a step if the energy decreases. Returns the ratio of actual to predicted gain, or `None` if the step was rejected.
-    fn attempt(&mut self, step: &Step, slope: f64) -> Option<f64> {
+    fn try_step(&mut self, step: &Step, slope: f64) -> Option<f64> {
         let bodies = self.scene.bodies.clone();
         let fallen = self.go(&step.motion);
         let before = self.workspace.now.loads.elastic;
@@ -290,8 +290,8 @@ impl<'a, 'b> Descent<'a, 'b> {
         let down = self.scene.bodies[0].weight.normalize();
         let all = Loose::all(&self.workspace.now.pairs, self.scene.bodies.len());
         all.into_iter().find_map(|loose| {
-            let way = loose.way(self.scene.ground, down)?;
-            let room = match loose.room(&self.scene.bodies, self.scene.ground, way) {
+            let way = loose.direction(self.scene.ground, down)?;
+            let room = match loose.clearance(&self.scene.bodies, self.scene.ground, way) {
                 // Steps find the direction along a plane, together with nearby contacts.
                 None if loose.slides() => return None,
                 room => room.unwrap_or(0.0).max(self.farthest),

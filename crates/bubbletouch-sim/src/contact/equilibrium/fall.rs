@@ -58,7 +58,7 @@ impl Loose {
     }
 
     /// Returns the direction (unit vector) of the motion under gravity: `down`, constrained by the planes touched; `None` if these hold the group.
-    pub fn way(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
+    pub fn direction(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
         let normals = self.planes.iter().map(|&plane| ground.planes[plane].normal);
         let normals: Vec<DVec3> = normals.collect();
         // Candidates are `down` and its projections onto planes and onto lines where two meet; the longest that enters no plane is the constrained
@@ -80,7 +80,7 @@ impl Loose {
 
     /// Returns a lower bound, metres, of the distance along `way` (unit vector) to skins, obstacles, other `bodies`, and planes not touched.
     /// Infinite if nothing is in this direction; `None` if something is too near to decide.
-    pub fn room(&self, bodies: &[Body], ground: &Ground, way: DVec3) -> Option<f64> {
+    pub fn clearance(&self, bodies: &[Body], ground: &Ground, way: DVec3) -> Option<f64> {
         let others = bodies.iter().enumerate();
         let others = others.filter(|(other, _)| !self.bodies.contains(other));
         let others: Vec<&Body> = others.map(|other| other.1).collect();

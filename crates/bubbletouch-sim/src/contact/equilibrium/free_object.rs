@@ -81,7 +81,7 @@ impl<'a> PlacedSkin<'a> {
     pub(super) fn stiffness(&self, taxel: usize) -> f64 {
         let taxel = self.patch.taxels().at(taxel);
         match self.before {
-            Some((_, dt)) => crate::contact::Relaxation::of(taxel, dt).force(0.0, 1.0),
+            Some((_, dt)) => crate::contact::Relaxation::new(taxel, dt).force(0.0, 1.0),
             None => taxel.stiffness,
         }
     }

@@ -40,7 +40,7 @@ pub(super) struct Smoothness {
 
 impl Smoothness {
     /// Returns μ of a taxel, metres.
-    fn of(&self, group: &Group) -> f64 {
+    fn for_group(&self, group: &Group) -> f64 {
         let of_load = self.load * group.weight / group.stiffness;
         self.smoothing.min(of_load).max(self.least)
     }
@@ -119,7 +119,7 @@ impl Loads {
             self.known.extend(pairs.iter().map(of));
         }
         let known = known.map(|known| (&self.known[..], known.iter().map(|k| k.1 * k.1).sum()));
-        let smoothing = smoothness.of(group);
+        let smoothing = smoothness.for_group(group);
         let max = tied_max(deflections, known, smoothing, &mut self.sharing);
         self.shares.extend_from_slice(&self.sharing);
         let lambda = multipliers.stops.get(&group.key).copied().unwrap_or(0.0);

@@ -7,7 +7,7 @@ use super::loads::Loads;
 use super::pair::Key;
 use super::pairs::Pairs;
 use super::scene::Scene;
-use super::shear_springs::Held;
+use super::shear_springs::ShearSpringModel;
 use super::slopes::Slopes;
 use super::symmetric::{Six, Symmetric, best_step, dot, norm};
 use glam::DVec3;
@@ -22,7 +22,7 @@ pub(super) struct Model {
     /// Loads after the motion evaluated last.
     loads: Loads,
     curvature: Symmetric,
-    held: Held,
+    held: ShearSpringModel,
     /// Workspace for one taxel: for each body that pushes it, the weighted mean of the energy gradients of its loads.
     means: Vec<(u32, Six)>,
     /// Workspace for one taxel: for each body that pushes it, the sum of these gradients.
@@ -113,7 +113,7 @@ impl Model {
                 if share <= 0.0 {
                     continue;
                 }
-                for (body, slope) in slopes.of(at) {
+                for (body, slope) in slopes.for_pair(at) {
                     add(of_body(means, *body), share, slope);
                     add(
                         &mut gradient[6 * *body as usize..],

@@ -11,7 +11,7 @@
 //! The derivative is k_t times v, returned to the cone. The radius r depends on the force f in equilibrium. Each round of a descent therefore takes r
 //! from the solution of the last round, until both agree: a fixed-point iteration of Tresca's friction \[NJ\].
 
-use super::body::{Body, along, ways};
+use super::body::{Body, along, unit_motions};
 use super::free_object::{Ground, PlacedSkin};
 use super::loads::Loads;
 use super::pair::Key;
@@ -171,18 +171,18 @@ pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loa
 
 /// Shear springs in a model of the energy: v is linear in the motion.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Held {
+pub(super) struct ShearSpringModel {
     /// Each spring with v at the pose, and the derivative of v by the motion of its body.
     all: Vec<(Spring, DVec2, [Six; 2])>,
 }
 
-impl Held {
+impl ShearSpringModel {
     /// Sets up the model at a pose; adds the curvature of the energy due to rotations.
     pub fn lay(&mut self, springs: &[Spring], bodies: &[Body], curvature: &mut Symmetric) {
         self.all.clear();
         for spring in springs {
             let (body, arm) = (&bodies[spring.body], spring.arm(bodies));
-            let ways = ways(&DVec3::AXES, arm, body.arm());
+            let ways = unit_motions(&DVec3::AXES, arm, body.arm());
             let v = spring.stretch(bodies);
             let slopes = spring.axes.map(|axis| along(&ways, axis));
             let turning = body.arm().powi(-2);

@@ -1,6 +1,6 @@
 //! Derivatives of deflections by the motions of bodies.
 
-use super::body::{Body, along, ways};
+use super::body::{Body, along, unit_motions};
 use super::pair::Pair;
 use super::symmetric::{Six, Symmetric, dot};
 use glam::DVec3;
@@ -14,13 +14,13 @@ pub(super) struct Slopes {
 }
 
 impl Slopes {
-    pub fn of(&self, pair: usize) -> &[(u32, Six)] {
+    pub fn for_pair(&self, pair: usize) -> &[(u32, Six)] {
         &self.all[self.first[pair] as usize..self.first[pair + 1] as usize]
     }
 
     /// Returns the change of a pair's deflection by a motion, to first order, metres.
     pub fn dot(&self, pair: usize, motion: &[f64]) -> f64 {
-        let of = self.of(pair).iter();
+        let of = self.for_pair(pair).iter();
         of.map(|(body, slope)| dot(slope, &motion[6 * *body as usize..]))
             .sum()
     }
@@ -43,14 +43,14 @@ impl Slopes {
     ) {
         if let Some((gradient, bending)) = pair.derivatives() {
             for (body, sign, arm) in pair.ends() {
-                let own = ways(axes, arm, bodies[body].arm());
+                let own = unit_motions(axes, arm, bodies[body].arm());
                 self.all.push((body as u32, along(&own, sign * gradient)));
                 if force <= 0.0 {
                     continue;
                 }
                 let bent = own.map(|way| sign * force * (bending * way));
                 for (other, other_sign, arm) in pair.ends() {
-                    let ways = ways(axes, arm, bodies[other].arm());
+                    let ways = unit_motions(axes, arm, bodies[other].arm());
                     for (i, bent) in bent.iter().enumerate() {
                         let row = curvature.part_mut(6 * body + i, 6 * other);
                         for (entry, way) in row.iter_mut().zip(&ways) {

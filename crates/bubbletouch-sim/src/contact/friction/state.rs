@@ -61,7 +61,7 @@ pub enum NormalForce<'a> {
 }
 
 impl NormalForce<'_> {
-    fn of(&self, contact: &TaxelContact, stiffness: f64) -> f64 {
+    fn at_contact(&self, contact: &TaxelContact, stiffness: f64) -> f64 {
         match self {
             Self::Springs => stiffness * contact.deflection,
             Self::Dampers(state) => state.force[contact.taxel],
@@ -125,16 +125,16 @@ pub struct FrictionState {
     /// Shape (n_taxels,).
     contact_modes: Vec<ContactMode>,
     /// Contacts of taxels, ascending by taxel.
-    held: Vec<Held>,
+    held: Vec<TaxelContactState>,
     /// Taxels in contact at the step before; used only during a step.
-    before: Vec<Held>,
+    before: Vec<TaxelContactState>,
     /// Poses `patch_from_object` after the last step.
     poses: Vec<Pose>,
 }
 
 /// Contact between a taxel's tip and an object.
 #[derive(Clone, Copy, Debug)]
-struct Held {
+struct TaxelContactState {
     taxel: usize,
     object: usize,
     /// Material point of the object that the tip touches, metres, in the object's frame.
@@ -191,7 +191,7 @@ impl FrictionState {
             .map_or(DVec2::ZERO, |held| held.displacement)
     }
 
-    fn held(&self, taxel: usize) -> Option<&Held> {
+    fn held(&self, taxel: usize) -> Option<&TaxelContactState> {
         let found = self.held.binary_search_by_key(&taxel, |held| held.taxel);
         found.ok().map(|index| &self.held[index])
     }
@@ -223,7 +223,7 @@ impl FrictionState {
             if let Err(at) = self.held.binary_search_by_key(&taxel, |held| held.taxel) {
                 let force = patch.taxels().at(taxel).stiffness * contact.deflection;
                 self.forces[taxel] = DVec3::new(0.0, 0.0, force);
-                let held = Held {
+                let held = TaxelContactState {
                     taxel,
                     object,
                     point: to_object.transform_point(contact.point),
@@ -277,7 +277,7 @@ impl FrictionState {
             let taxel = contact.taxel;
             while before.next_if(|held| held.taxel < taxel).is_some() {}
             let held = before.next_if(|held| held.taxel == taxel);
-            let force = normal.of(contact, patch.taxels().at(taxel).stiffness);
+            let force = normal.at_contact(contact, patch.taxels().at(taxel).stiffness);
             if force <= 0.0 {
                 continue;
             }
@@ -301,7 +301,7 @@ impl FrictionState {
                 }
                 _ => Dragged::default(),
             };
-            self.held.push(Held {
+            self.held.push(TaxelContactState {
                 taxel,
                 object: contact.object,
                 point,

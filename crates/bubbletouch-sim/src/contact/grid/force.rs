@@ -31,12 +31,12 @@ pub(crate) fn press(
         press.touch_nothing(grid);
         return Ok(None);
     };
-    let mut curve = ForceCurve::of(press, (grid, stiffness), first + stroke);
+    let mut curve = ForceCurve::new(press, (grid, stiffness), first + stroke);
     if curve.largest() < force {
         // This press is deep enough to reach every taxel that the objects can saturate.
         let depth = top(objects, patch_from_objects) + stroke - first;
         press.gather(grid, objects, patch_from_objects, TravelGoal::Depth(depth));
-        curve = ForceCurve::of(press, (grid, stiffness), first + depth);
+        curve = ForceCurve::new(press, (grid, stiffness), first + depth);
     }
     let largest = curve.largest();
     if force > largest * (1.0 + ROUNDING) {
@@ -66,7 +66,7 @@ struct ForceCurve<'a> {
 
 impl<'a> ForceCurve<'a> {
     /// Creates the curve from the gathered objects, up to a travel.
-    fn of(press: &'a mut GridPress, (grid, stiffness): (&EvenGrid, f64), travel: f64) -> Self {
+    fn new(press: &'a mut GridPress, (grid, stiffness): (&EvenGrid, f64), travel: f64) -> Self {
         let starts = press.starts(grid, travel);
         let last = starts.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
         Self {

@@ -14,7 +14,7 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::EvenGrid;
 
-/// Scratch memory of one thread.
+/// SignalWorkspace memory of one thread.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GridPress {
     pub instructions: Instructions,
@@ -185,20 +185,20 @@ fn stop_each(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [u
     match row {
         Row::Double([]) => deflections.each_row(|_, taxels| {
             for taxel in taxels {
-                *taxel = stop.of(*taxel);
+                *taxel = stop.limit(*taxel);
             }
         }),
         Row::Double(row) => deflections.each_row(|first, taxels| {
             let to = &mut row[first..][..taxels.len()];
             for at in 0..taxels.len() {
-                taxels[at] = stop.of(taxels[at]);
+                taxels[at] = stop.limit(taxels[at]);
                 to[at] = taxels[at];
             }
         }),
         Row::Single(row) => deflections.each_row(|first, taxels| {
             let to = &mut row[first..][..taxels.len()];
             for at in 0..taxels.len() {
-                taxels[at] = stop.of(taxels[at]);
+                taxels[at] = stop.limit(taxels[at]);
                 to[at] = taxels[at] as f32;
             }
         }),
@@ -217,7 +217,7 @@ struct Stop {
 impl Stop {
     /// Counts a deflection and returns it limited to the stroke.
     #[inline(always)]
-    fn of(&mut self, deflection: f64) -> f64 {
+    fn limit(&mut self, deflection: f64) -> f64 {
         self.n_touched += usize::from(deflection > 0.0);
         self.n_saturated += usize::from(deflection > self.limit);
         deflection.min(self.stroke)

@@ -89,7 +89,7 @@ impl SphereSearch {
             for (union, view, starts) in self.unions(placed.objects) {
                 for (look, starts) in starts.iter().enumerate() {
                     for k in LanesBelow::new(starts, limit.min(first)) {
-                        let cluster = union.of(look * LOOK + k);
+                        let cluster = union.cluster(look * LOOK + k);
                         for sphere in LanesBelow::new(&view.starts(&cluster), first) {
                             if let Some(sphere) = view.place(&cluster.at(sphere), first) {
                                 first = first.min(sphere.first_touch(placed.lines));
@@ -110,7 +110,7 @@ impl SphereSearch {
         for (union, view, starts) in self.unions(objects) {
             for (look, starts) in starts.iter().enumerate() {
                 for k in LanesBelow::new(starts, limit) {
-                    let cluster = union.of(look * LOOK + k);
+                    let cluster = union.cluster(look * LOOK + k);
                     for sphere in LanesBelow::new(&view.starts(&cluster), limit) {
                         let placed = view.place(&cluster.at(sphere), limit);
                         found.extend(placed.filter(&counts));

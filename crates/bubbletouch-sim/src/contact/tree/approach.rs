@@ -114,10 +114,10 @@ impl<'a> Approach<'a> {
         let Some(first) = foremost.1 else {
             return others;
         };
-        let mut farthest = self.farthest_of(&placed, placed.of(first), others);
+        let mut farthest = self.farthest_of(&placed, placed.cluster(first), others);
         for (cluster, ball) in placed.clusters() {
             if self.most(&ball) > farthest && travelling.is_near(ball.center, ball.radius) {
-                farthest = self.farthest_of(&placed, placed.of(cluster), farthest);
+                farthest = self.farthest_of(&placed, placed.cluster(cluster), farthest);
             }
         }
         farthest
@@ -136,7 +136,7 @@ impl<'a> Approach<'a> {
     /// Returns an upper bound of the deflection of a node's taxels by a ball. All taxels are parallel, so the bound uses the distance from their axes.
     #[inline(always)]
     fn most_of(&self, node: &Node, ball: &Sphere) -> f64 {
-        let room = node.room(ball.center, ball.radius);
+        let room = node.margin(ball.center, ball.radius);
         match room >= 0.0 {
             true => room.sqrt() + node.front(self.direction) - ball.center.dot(self.direction),
             false => f64::NEG_INFINITY,

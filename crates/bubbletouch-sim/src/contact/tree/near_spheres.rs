@@ -43,7 +43,7 @@ impl<'a> PlacedUnion<'a> {
     }
 
     /// Returns the numbers of the spheres of a cluster.
-    pub fn of(&self, cluster: usize) -> &'a [u32] {
+    pub fn cluster(&self, cluster: usize) -> &'a [u32] {
         self.union.clusters().numbers(cluster)
     }
 
@@ -52,7 +52,7 @@ impl<'a> PlacedUnion<'a> {
         numbers.clear();
         for (cluster, ball) in self.clusters() {
             if may_count(&ball) {
-                numbers.extend_from_slice(self.of(cluster));
+                numbers.extend_from_slice(self.cluster(cluster));
             }
         }
         numbers.sort_unstable();

@@ -6,7 +6,7 @@ use crate::contact::instructions::for_instructions;
 use crate::contact::law::saturation_limit;
 use crate::contact::mesh::skin_mesh::MeshAt;
 use crate::contact::taxel_contact::TaxelContact;
-use crate::contact::workspace::Held;
+use crate::contact::workspace::HeldTaxel;
 use crate::contact::{Contact, Workspace};
 use crate::geometry::Pose;
 use crate::mesh::Triangle;
@@ -70,8 +70,8 @@ fn push_held(
     workspace: &mut Workspace,
 ) {
     let held = std::mem::take(&mut workspace.held);
-    for &Held { taxel, by } in &held {
-        let taxel = PlacedTaxel::of(patch.layout(), patch.taxels(), taxel as usize);
+    for &HeldTaxel { taxel, by } in &held {
+        let taxel = PlacedTaxel::new(patch.layout(), patch.taxels(), taxel as usize);
         let [object, part] = by.map(|number| number as usize);
         let pose = &patch_from_objects[object];
         let needed = match &objects[object] {

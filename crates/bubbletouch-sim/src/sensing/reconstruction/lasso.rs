@@ -53,7 +53,7 @@ impl Lasso {
         sensed: &SensedDictionary,
         measurements: ArrayView2<f64>,
     ) -> Result<Solved> {
-        self.solve_with(&Curvature::of(sensed), sensed, measurements)
+        self.solve_with(&Curvature::new(sensed), sensed, measurements)
     }
 
     /// Solves like [`solve`](Self::solve), with a [`Curvature`] that was computed before.
@@ -98,7 +98,7 @@ impl Lasso {
 pub(crate) struct Curvature(f64);
 
 impl Curvature {
-    pub(crate) fn of(sensed: &SensedDictionary) -> Self {
+    pub(crate) fn new(sensed: &SensedDictionary) -> Self {
         let atoms = sensed.atoms();
         // A fixed start, so that results are repeatable; in practice it is not orthogonal to any eigenvector.
         let mut x = Array1::from_shape_fn(atoms.nrows(), |j| 1.0 + 0.5 * (j as f64 * 1.7).sin());

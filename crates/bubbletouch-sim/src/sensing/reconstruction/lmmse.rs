@@ -83,10 +83,10 @@ impl Lmmse {
         if let Some(shrinkage) = shrinkage {
             to_coefficients *= shrinkage;
         }
-        Ok(Self::of(sensed, to_coefficients))
+        Ok(Self::from_coefficients(sensed, to_coefficients))
     }
 
-    fn of(sensed: &SensedDictionary, to_coefficients: Array2<f64>) -> Self {
+    fn from_coefficients(sensed: &SensedDictionary, to_coefficients: Array2<f64>) -> Self {
         let dictionary = sensed.dictionary();
         let (m, k) = to_coefficients.dim();
         let n = dictionary.n_taxels();

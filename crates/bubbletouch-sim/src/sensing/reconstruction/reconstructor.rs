@@ -118,7 +118,7 @@ impl<'a> Reconstructor<'a> {
                     tolerance: effort.tolerance,
                     most_steps: effort.most_steps,
                 };
-                Prepared::L1(lasso, Curvature::of(sensed))
+                Prepared::L1(lasso, Curvature::new(sensed))
             }
         };
         Ok(Self { sensed, prepared })

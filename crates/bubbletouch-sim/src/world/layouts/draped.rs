@@ -63,7 +63,7 @@ impl Layout {
                 "a pitch that some 100,000 taxels cover the surface with",
             )
         };
-        let pieces = pieces(mesh, PIECE * pitch).ok_or_else(too_fine)?;
+        let pieces = subdivide(mesh, PIECE * pitch).ok_or_else(too_fine)?;
         if pieces.is_empty() {
             return Err(Error::input(
                 "draped layout",
@@ -115,7 +115,7 @@ impl Layout {
 }
 
 /// Small triangle of the surface.
-struct Piece {
+struct SurfaceTriangle {
     /// Number of the mesh's triangle that contains the piece.
     triangle: usize,
     middle: DVec3,
@@ -126,7 +126,7 @@ struct Piece {
 }
 
 /// Divides every triangle with a normal until no edge is longer than `longest_edge`; `None` if this takes too many pieces.
-fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
+fn subdivide(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<SurfaceTriangle>> {
     // The largest possible piece is an equilateral triangle.
     let largest = 0.25 * 3f64.sqrt() * longest_edge * longest_edge;
     if mesh.area() / largest > MAX_PIECES as f64 {
@@ -149,7 +149,7 @@ fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
             if pieces.len() == MAX_PIECES {
                 return None;
             }
-            pieces.push(Piece {
+            pieces.push(SurfaceTriangle {
                 triangle: number,
                 middle: triangle.middle(),
                 normal,
@@ -162,7 +162,7 @@ fn pieces(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<Piece>> {
 
 /// Returns the mean normal of the surface around each taxel, of length one, in the order of their pieces. Pieces that face away from the
 /// taxel's own piece are ignored.
-fn mean_normals(pieces: &[Piece], taxels: &Taken, within: f64) -> BTreeMap<usize, DVec3> {
+fn mean_normals(pieces: &[SurfaceTriangle], taxels: &Taken, within: f64) -> BTreeMap<usize, DVec3> {
     let mut sums: BTreeMap<usize, DVec3> = BTreeMap::new();
     for piece in pieces {
         for taxel in taxels.near(piece.middle, within) {

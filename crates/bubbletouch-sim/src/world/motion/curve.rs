@@ -161,7 +161,7 @@ pub(super) enum Moment {
 
 impl Moment {
     /// Locates a time in seconds among the way-points; NaN counts as before the first.
-    pub fn of(time: f64, times: &[f64]) -> Self {
+    pub fn new(time: f64, times: &[f64]) -> Self {
         let passed = times.partition_point(|&way_point| way_point <= time);
         match passed {
             0 => Self::Before,
@@ -234,13 +234,13 @@ mod tests {
         for kind in KINDS {
             let curve = curve(kind);
             for (&time, &value) in TIMES.iter().zip(&VALUES) {
-                assert_eq!(curve.value(Moment::of(time, &TIMES)), value, "{kind:?}");
+                assert_eq!(curve.value(Moment::new(time, &TIMES)), value, "{kind:?}");
             }
-            assert_eq!(curve.value(Moment::of(-1.0, &TIMES)), VALUES[0]);
-            assert_eq!(curve.value(Moment::of(9.0, &TIMES)), VALUES[4]);
+            assert_eq!(curve.value(Moment::new(-1.0, &TIMES)), VALUES[0]);
+            assert_eq!(curve.value(Moment::new(9.0, &TIMES)), VALUES[4]);
             if kind != Interpolation::Linear {
-                assert_eq!(curve.velocity(Moment::of(0.0, &TIMES)), 0.0);
-                assert!(curve.velocity(Moment::of(4.0 - 1e-12, &TIMES)).abs() < 1e-10);
+                assert_eq!(curve.velocity(Moment::new(0.0, &TIMES)), 0.0);
+                assert!(curve.velocity(Moment::new(4.0 - 1e-12, &TIMES)).abs() < 1e-10);
             }
         }
     }
@@ -251,7 +251,7 @@ mod tests {
             let curve = curve(kind);
             let found = curve.extremes(&TIMES);
             let samples: Vec<Moment> = (0..400_000)
-                .map(|i| Moment::of(1e-5 * f64::from(i), &TIMES))
+                .map(|i| Moment::new(1e-5 * f64::from(i), &TIMES))
                 .collect();
             let values = samples.iter().map(|&at| curve.value(at));
             let lowest = values.clone().fold(f64::INFINITY, f64::min);
@@ -270,7 +270,7 @@ mod tests {
                 (found.fastest.value.abs() - fastest).abs() < 1e-4,
                 "{kind:?}: {found:?}"
             );
-            let at = Moment::of(found.highest.time, &TIMES);
+            let at = Moment::new(found.highest.time, &TIMES);
             assert!((curve.value(at) - found.highest.value).abs() < 1e-12);
         }
     }

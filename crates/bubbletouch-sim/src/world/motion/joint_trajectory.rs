@@ -160,7 +160,7 @@ impl JointTrajectory {
     /// If the length of the slice differs from the number of positions.
     pub fn positions_into(&self, time: f64, positions: &mut [f64]) {
         assert_eq!(positions.len(), self.curves.len(), "one place a position");
-        let at = Moment::of(time, &self.times);
+        let at = Moment::new(time, &self.times);
         for (position, curve) in positions.iter_mut().zip(&self.curves) {
             *position = curve.value(at);
         }
@@ -168,7 +168,7 @@ impl JointTrajectory {
 
     /// Returns the velocities of the positions, rad/s and m/s; zero outside the way-points. At a jump, the velocity after the jump.
     pub fn velocities_at(&self, time: f64) -> Vec<f64> {
-        let at = Moment::of(time, &self.times);
+        let at = Moment::new(time, &self.times);
         self.curves.iter().map(|curve| curve.velocity(at)).collect()
     }
 }

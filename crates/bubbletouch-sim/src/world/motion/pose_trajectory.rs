@@ -100,7 +100,7 @@ impl PoseTrajectory {
 
     /// Returns `world_from_body` at a time in seconds.
     pub fn pose_at(&self, time: f64) -> Pose {
-        let at = Moment::of(time, &self.times);
+        let at = Moment::new(time, &self.times);
         let [x, y, z] = &self.position;
         let translation = DVec3::new(x.value(at), y.value(at), z.value(at));
         Pose::new(self.rotation.rotation(at), translation)

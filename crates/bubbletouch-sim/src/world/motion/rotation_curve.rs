@@ -12,12 +12,12 @@ use glam::{DQuat, DVec3};
 /// the curve is slerp.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RotationCurve {
-    pieces: Vec<Piece>,
+    segments: Vec<CurveSegment>,
     last: DQuat,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Piece {
+struct CurveSegment {
     start: DQuat,
     /// ω₁, ω₂, ω₃: rotation vectors in the body's frame, radians.
     turns: [DVec3; 3],
@@ -51,16 +51,16 @@ impl RotationCurve {
                     [first, middle, third]
                 }
             };
-            Piece {
+            CurveSegment {
                 start: at[i],
                 turns,
                 duration: h,
             }
         };
-        let pieces: Vec<Piece> = (0..steps.len()).map(piece).collect();
-        let is_finite = pieces.iter().flat_map(|p| p.turns).all(DVec3::is_finite);
+        let segments: Vec<CurveSegment> = (0..steps.len()).map(piece).collect();
+        let is_finite = segments.iter().flat_map(|p| p.turns).all(DVec3::is_finite);
         is_finite.then_some(Self {
-            pieces,
+            segments,
             last: at[at.len() - 1],
         })
     }
@@ -68,14 +68,14 @@ impl RotationCurve {
     /// Returns the unit quaternion at a moment.
     pub fn rotation(&self, at: Moment) -> DQuat {
         match at {
-            Moment::Before => self.pieces.first().map_or(self.last, |piece| piece.start),
+            Moment::Before => self.segments.first().map_or(self.last, |piece| piece.start),
             Moment::After => self.last,
             Moment::In { piece, elapsed } => {
-                let Piece {
+                let CurveSegment {
                     start,
                     turns,
                     duration,
-                } = self.pieces[piece];
+                } = self.segments[piece];
                 let s = elapsed / duration;
                 let left = 1.0 - s;
                 let shares = [1.0 - left * left * left, s * s * (3.0 - 2.0 * s), s * s * s];
@@ -145,7 +145,7 @@ mod tests {
     }
 
     fn angular_velocity(curve: &RotationCurve, time: f64, dt: f64) -> DVec3 {
-        let at = |time| curve.rotation(Moment::of(time, &TIMES));
+        let at = |time| curve.rotation(Moment::new(time, &TIMES));
         rotation_vector(at(time).conjugate() * at(time + dt)) / dt
     }
 
@@ -154,7 +154,7 @@ mod tests {
         let at = way_points();
         let curve = RotationCurve::through(&TIMES, &at, Interpolation::Linear).unwrap();
         for share in [0.1, 0.5, 0.9] {
-            let found = curve.rotation(Moment::of(0.7 + 0.3 * share, &TIMES));
+            let found = curve.rotation(Moment::new(0.7 + 0.3 * share, &TIMES));
             assert!(
                 found.angle_between(at[1].slerp(at[2], share)) < 1e-7,
                 "{share}"
@@ -188,7 +188,7 @@ mod tests {
         let curve = RotationCurve::through(&TIMES, &at, Interpolation::Monotone).unwrap();
         let mut last = 0.0;
         for k in 0..=2500 {
-            let turn = rotation_vector(curve.rotation(Moment::of(1e-3 * f64::from(k), &TIMES)));
+            let turn = rotation_vector(curve.rotation(Moment::new(1e-3 * f64::from(k), &TIMES)));
             assert!(turn.truncate().length() < 1e-15, "about z: {turn}");
             assert!(
                 turn.z >= last - 1e-15 && turn.z <= FRAC_PI_2 + 1e-15,
@@ -212,7 +212,7 @@ mod tests {
                 for step in 0..=50 {
                     let share = f64::from(step) / 50.0;
                     let time = TIMES[piece] + share * (TIMES[piece + 1] - TIMES[piece]);
-                    let here = curve.rotation(Moment::of(time, &TIMES));
+                    let here = curve.rotation(Moment::new(time, &TIMES));
                     let farthest = apart(at[piece], here).max(apart(here, at[piece + 1]));
                     assert!(
                         farthest <= whole + 1e-7,
@@ -230,7 +230,7 @@ mod tests {
             let curve = RotationCurve::through(&TIMES, &way_points(), kind).unwrap();
             for (&time, q) in TIMES.iter().zip(way_points()) {
                 for time in [time, time - 1e-13] {
-                    let found = curve.rotation(Moment::of(time, &TIMES));
+                    let found = curve.rotation(Moment::new(time, &TIMES));
                     assert!((1.0 - found.dot(q).abs()).abs() < 1e-14, "{kind:?} {time}");
                 }
             }

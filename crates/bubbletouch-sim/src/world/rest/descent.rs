@@ -57,12 +57,12 @@ pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
 
 /// Linearised sphere: z ≥ `value` + `slope` · t in the tangent plane.
 #[derive(Clone, Copy)]
-struct Piece {
+struct LinearBound {
     value: f64,
     slope: [f64; 2],
 }
 
-impl Piece {
+impl LinearBound {
     fn at(&self, t: [f64; 2]) -> f64 {
         self.value + self.slope[0] * t[0] + self.slope[1] * t[1]
     }
@@ -70,13 +70,18 @@ impl Piece {
 
 /// Returns the tangent step that minimises the linearised height inside the walls, and this height. Spheres below `lowest` are
 /// ignored.
-fn linear_step(spheres: &[Sphere], down: DVec3, lowest: f64, walls: [Piece; 3]) -> (DVec3, f64) {
+fn linear_step(
+    spheres: &[Sphere],
+    down: DVec3,
+    lowest: f64,
+    walls: [LinearBound; 3],
+) -> (DVec3, f64) {
     let (u, v) = down.any_orthonormal_pair();
-    let piece = |sphere: &Sphere| Piece {
+    let piece = |sphere: &Sphere| LinearBound {
         value: sphere.center.dot(down) + sphere.radius,
         slope: [sphere.center.dot(u), sphere.center.dot(v)],
     };
-    let counts = |piece: &Piece| piece.value >= lowest;
+    let counts = |piece: &LinearBound| piece.value >= lowest;
     let pieces: Vec<_> = spheres.iter().map(piece).filter(counts).collect();
     let (t, z) = lowest_maximum(&pieces, walls);
     (t[0] * u + t[1] * v, z)
@@ -84,11 +89,11 @@ fn linear_step(spheres: &[Sphere], down: DVec3, lowest: f64, walls: [Piece; 3]) 
 
 /// Returns three pieces, steeper than any sphere, that exceed `height` outside a triangle of inradius `reach` and stay below
 /// every possible minimum well inside it.
-fn walls(radius: f64, height: f64, reach: f64) -> [Piece; 3] {
+fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
     let steep = 4.0 * radius;
     [0.0, 1.0, 2.0].map(|third| {
         let (sin, cos) = (std::f64::consts::TAU * third / 3.0).sin_cos();
-        Piece {
+        LinearBound {
             value: height - steep * reach,
             slope: [steep * cos, steep * sin],
         }
@@ -99,7 +104,7 @@ fn walls(radius: f64, height: f64, reach: f64) -> [Piece; 3] {
 ///
 /// The basis has three pieces whose slopes have 0 as their mean with `weights` ≥ 0. The common point of the three pieces is the
 /// minimum of their maximum. The piece that is highest there enters the basis, and the one whose weight reaches zero first leaves.
-fn lowest_maximum(pieces: &[Piece], walls: [Piece; 3]) -> ([f64; 2], f64) {
+fn lowest_maximum(pieces: &[LinearBound], walls: [LinearBound; 3]) -> ([f64; 2], f64) {
     let mut basis = walls;
     let mut weights = [1.0 / 3.0; 3];
     let mut answer = ([0.0; 2], walls[0].value);
@@ -116,7 +121,7 @@ fn lowest_maximum(pieces: &[Piece], walls: [Piece; 3]) -> ([f64; 2], f64) {
         if highest <= z + 1e-15 * z.abs().max(f64::MIN_POSITIVE) {
             break;
         }
-        let column = |piece: &Piece| DVec3::new(piece.slope[0], piece.slope[1], 1.0);
+        let column = |piece: &LinearBound| DVec3::new(piece.slope[0], piece.slope[1], 1.0);
         let columns = DMat3::from_cols(column(&basis[0]), column(&basis[1]), column(&basis[2]));
         let mix = (columns.inverse() * column(enters)).to_array();
         let ratio = |i: &usize| weights[*i] / mix[*i];
@@ -141,8 +146,8 @@ fn lowest_maximum(pieces: &[Piece], walls: [Piece; 3]) -> ([f64; 2], f64) {
 }
 
 /// Returns the point where three pieces are equally high, and their height; `None` if their slopes lie on a line.
-fn common_point(basis: &[Piece; 3]) -> Option<([f64; 2], f64)> {
-    let row = |p: &Piece| DVec3::new(p.slope[0], p.slope[1], -1.0);
+fn common_point(basis: &[LinearBound; 3]) -> Option<([f64; 2], f64)> {
+    let row = |p: &LinearBound| DVec3::new(p.slope[0], p.slope[1], -1.0);
     let rows = DMat3::from_cols(row(&basis[0]), row(&basis[1]), row(&basis[2])).transpose();
     let values = DVec3::new(basis[0].value, basis[1].value, basis[2].value);
     let solution = rows.inverse() * -values;
@@ -164,7 +169,7 @@ mod tests {
         for n in [1, 2, 3, 10, 100] {
             let mut random = || 2.0 * rng.r#gen::<f64>() - 1.0;
             let pieces: Vec<_> = (0..n)
-                .map(|_| Piece {
+                .map(|_| LinearBound {
                     value: random(),
                     slope: [random(), random()],
                 })

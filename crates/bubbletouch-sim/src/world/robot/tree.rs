@@ -15,7 +15,7 @@ pub(super) struct Tree {
 
 impl Tree {
     /// Checks that the joints connect the links to one tree. `robot` and `elements` (one per joint) locate errors.
-    pub fn of(
+    pub fn new(
         links: &[Link],
         joints: &[Joint],
         robot: Element,

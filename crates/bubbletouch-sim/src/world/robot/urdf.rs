@@ -66,7 +66,7 @@ fn read_parts(root: Element) -> Result<Parts> {
     add_world(root, &mut links, &mut link_of);
     let (mut joints, elements) = read_joints(root, &links, &link_of)?;
     drop_mimics_of_several(&mut joints, &elements);
-    let tree = Tree::of(&links, &joints, root, &elements)?;
+    let tree = Tree::new(&links, &joints, root, &elements)?;
     let drives = drives(&joints, &elements)?;
     let name = root.or_note(root.name(), "robot", "the robot is called `robot`");
     Ok((name.to_owned(), links, joints, tree, drives))

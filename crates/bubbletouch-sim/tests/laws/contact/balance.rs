@@ -43,7 +43,7 @@ fn ball(radius: f64) -> SphereUnion {
     SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
 }
 
-fn settle(object: &FreeObject, skins: &[PlacedSkin], start: &Pose) -> Equilibrium {
+fn equilibrium(object: &FreeObject, skins: &[PlacedSkin], start: &Pose) -> Equilibrium {
     EquilibriumSolver::new()
         .solve(object, skins, DOWN, start)
         .unwrap()
@@ -59,7 +59,7 @@ fn a_ball_rests_as_deep_as_its_weight_asks() {
     let patch = bed(32, stiffness);
     let union = ball(radius);
     let object = FreeObject::new(&union, mass, DVec3::ZERO).unwrap();
-    let rest = settle(
+    let rest = equilibrium(
         &object,
         &[placed(&patch, Pose::IDENTITY)],
         &at(1e-3, 1e-3, 0.05),
@@ -96,7 +96,7 @@ fn forces_balance_for_every_weight_and_stiffness() {
             let object = FreeObject::new(&union, mass, DVec3::new(2e-3, 0.0, -5e-3)).unwrap();
             let patch = bed(64, stiffness);
             let skins = [placed(&patch, Pose::IDENTITY)];
-            let rest = settle(&object, &skins, &at(0.3e-3, 0.2e-3, 0.04));
+            let rest = equilibrium(&object, &skins, &at(0.3e-3, 0.2e-3, 0.04));
             let case = format!("{mass} kg on {stiffness} N/m: {rest:?}");
             assert_eq!(rest.outcome, Outcome::AtRest, "{case}");
             assert!(rest.imbalance <= 1e-6, "{case}");
@@ -118,7 +118,7 @@ fn the_skin_feels_the_weight_that_rests_on_it() {
     let union = SphereUnion::new(spheres.collect()).unwrap();
     let mass = 0.08;
     let object = FreeObject::new(&union, mass, center_of_mass(&union)).unwrap();
-    let rest = settle(
+    let rest = equilibrium(
         &object,
         &[placed(&patch, Pose::IDENTITY)],
         &at(0.0, 0.0, 0.06),
@@ -156,7 +156,7 @@ fn moving_the_whole_world_moves_the_rest() {
     .unwrap();
     let object = FreeObject::new(&union, 0.06, DVec3::new(0.0, -2e-3, 1e-3)).unwrap();
     let start = at(1.3e-3, -0.7e-3, 0.03);
-    let here = settle(&object, &[placed(&patch, Pose::IDENTITY)], &start);
+    let here = equilibrium(&object, &[placed(&patch, Pose::IDENTITY)], &start);
     assert_eq!(here.outcome, Outcome::AtRest);
     let world = Pose::new(
         DQuat::from_euler(glam::EulerRot::XYZ, 0.7, -1.1, 2.0),
@@ -191,7 +191,7 @@ fn two_skins_in_a_v_carry_a_ball_together() {
     let union = ball(0.02);
     let mass = 0.1;
     let object = FreeObject::new(&union, mass, DVec3::ZERO).unwrap();
-    let rest = settle(&object, &skins, &at(0.0, 1e-3, 0.08));
+    let rest = equilibrium(&object, &skins, &at(0.0, 1e-3, 0.08));
     assert_eq!(rest.outcome, Outcome::AtRest);
     assert!(rest.imbalance < 1e-6);
     assert!(rest.pose.translation.x.abs() < 1.1e-3, "{rest:?}");
@@ -221,7 +221,7 @@ fn a_ball_on_a_slope_rolls_off_downhill() {
         let skins = [placed(&patch, Pose::from_rotation(rotation))];
         let union = ball(0.03);
         let object = FreeObject::new(&union, 0.05, DVec3::ZERO).unwrap();
-        let rest = settle(&object, &skins, &at(0.0, 0.0, 0.06));
+        let rest = equilibrium(&object, &skins, &at(0.0, 0.0, 0.06));
         let downhill = (rotation * DVec3::X).with_z(0.0).normalize();
         let Outcome::Escaped { direction } = rest.outcome else {
             panic!("{rest:?}");
@@ -236,7 +236,7 @@ fn what_misses_the_skin_falls_and_says_so() {
     let patch = bed(8, 100.0);
     let union = ball(0.01);
     let object = FreeObject::new(&union, 0.01, DVec3::ZERO).unwrap();
-    let rest = settle(
+    let rest = equilibrium(
         &object,
         &[placed(&patch, Pose::IDENTITY)],
         &at(0.5, 0.0, 0.1),
@@ -247,7 +247,7 @@ fn what_misses_the_skin_falls_and_says_so() {
             direction: -DVec3::Z
         }
     );
-    let nothing = settle(&object, &[], &at(0.0, 0.0, 0.1));
+    let nothing = equilibrium(&object, &[], &at(0.0, 0.0, 0.1));
     assert_eq!(
         nothing.outcome,
         Outcome::Escaped {
@@ -263,7 +263,7 @@ fn a_ball_on_the_point_of_a_single_taxel_does_not_stay_there() {
     let union = ball(0.02);
     let object = FreeObject::new(&union, 0.01, DVec3::ZERO).unwrap();
     // Exactly above it every force balances at some height; a saddle of the energy.
-    let rest = settle(
+    let rest = equilibrium(
         &object,
         &[placed(&patch, Pose::IDENTITY)],
         &at(0.0, 0.0, 0.05),
@@ -297,7 +297,7 @@ fn others_that_push_the_taxels_take_their_part() {
     let patch = bed(32, 100.0);
     let union = ball(0.03);
     let object = FreeObject::new(&union, 0.05, DVec3::ZERO).unwrap();
-    let alone = settle(
+    let alone = equilibrium(
         &object,
         &[placed(&patch, Pose::IDENTITY)],
         &at(0.0, 0.0, 0.05),
@@ -308,7 +308,7 @@ fn others_that_push_the_taxels_take_their_part() {
         pushed: &held,
         ..placed(&patch, Pose::IDENTITY)
     }];
-    let lower = settle(&object, &skins, &at(0.0, 0.0, 0.05));
+    let lower = equilibrium(&object, &skins, &at(0.0, 0.0, 0.05));
     assert_eq!(lower.outcome, Outcome::AtRest);
     assert!(lower.imbalance < 1e-6);
     assert!(
@@ -435,7 +435,7 @@ fn random_objects_settle_or_leave() {
                 turn.normalize(),
                 DVec3::new(random(-0.03, 0.03), random(-0.03, 0.03), 0.2),
             );
-            let rest = settle(&object, &[placed(&patch, Pose::IDENTITY)], &start);
+            let rest = equilibrium(&object, &[placed(&patch, Pose::IDENTITY)], &start);
             assert!(rest.pose.translation.is_finite() && rest.pose.rotation.is_finite());
             match rest.outcome {
                 Outcome::AtRest => {

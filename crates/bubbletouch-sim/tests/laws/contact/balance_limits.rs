@@ -36,7 +36,7 @@ fn settle_on(skin: &Patch, at: Pose, object: &FreeObject, start: &Pose) -> Equil
         .unwrap()
 }
 
-fn settle(skin: &Patch, object: &FreeObject, start: &Pose) -> Equilibrium {
+fn equilibrium(skin: &Patch, object: &FreeObject, start: &Pose) -> Equilibrium {
     settle_on(skin, Pose::IDENTITY, object, start)
 }
 
@@ -101,7 +101,7 @@ fn a_million_metres_from_the_origin_objects_rest_as_at_it() {
         let skin = bed(32, stiffness);
         for mass in [1e-3, 1.0] {
             let body = FreeObject::new(&object, mass, DVec3::new(0.0, 1.5e-3, 0.0)).unwrap();
-            let here = settle(&skin, &body, &height(0.0625));
+            let here = equilibrium(&skin, &body, &height(0.0625));
             let far = DVec3::new(1e6, -1e6, 1e6);
             let there = settle_on(
                 &skin,
@@ -153,7 +153,7 @@ fn neighbours_a_trillion_times_as_stiff_share_a_load_as_they_must() {
         );
         let mass = 10f64.powf(rng.gen_range(-3.0..1.0));
         let body = FreeObject::new(&object, mass, DVec3::ZERO).unwrap();
-        let rest = settle(&skin, &body, &height(0.05));
+        let rest = equilibrium(&skin, &body, &height(0.05));
         let about = format!("case {case}, {mass} kg on {soft} N/m and {:e}", 1e12 * soft);
         let size = object.reach_from(DVec3::ZERO);
         if is_beyond_last_bits(&rest, 1e12 * soft, size, mass * G) {
@@ -186,7 +186,7 @@ fn a_ball_rests_on_a_pattern_of_springs_at_the_height_of_the_formula() {
         let ball = union([DVec3::ZERO], 0.02);
         for mass in [1e-3, 1.0, 1e3] {
             let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
-            let rest = settle(&skin, &body, &height(0.05));
+            let rest = equilibrium(&skin, &body, &height(0.05));
             let case = format!("{mass} kg on {soft} N/m");
             if is_beyond_last_bits(&rest, 1e12 * soft, 0.02, mass * G) {
                 n_unsettled += 1;
@@ -230,7 +230,7 @@ fn what_balances_on_an_edge_or_a_point_does_not_stay_there() {
                 let upright = DQuat::from_rotation_z(turn)
                     * DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2 + lean);
                 let start = Pose::new(upright, DVec3::new(0.0, 0.0, 0.02));
-                let rest = settle(&skin, &body, &start);
+                let rest = equilibrium(&skin, &body, &start);
                 let case = format!("{name}, {lean} off the vertical, turned by {turn}");
                 assert_rests(&rest, 0.01 * G, &case);
                 let flat = match name {
@@ -268,7 +268,7 @@ fn a_thin_sheet_that_falls_from_any_height_is_caught() {
             rng.gen_range(-5e-3..5e-3),
             above,
         );
-        let rest = settle(&skin, &body, &Pose::new(turn, place));
+        let rest = equilibrium(&skin, &body, &Pose::new(turn, place));
         let about = format!("case {case}: {thickness} m thick, {mass} kg, from {above} m");
         faults.extend(fault(&rest, mass * G).map(|fault| format!("{about}: {fault}")));
         let middle = rest.pose.translation.z;
@@ -290,7 +290,7 @@ fn stops_carry_what_saturated_springs_do_not() {
     for mass in [100.0, 1e4, 1e6] {
         for off in [0.0, 3e-3] {
             let body = FreeObject::new(&foot, mass, DVec3::new(off, -0.5 * off, 0.01)).unwrap();
-            let rest = settle(&skin, &body, &height(0.02));
+            let rest = equilibrium(&skin, &body, &height(0.02));
             let case = format!("{mass} kg, {off} m off the middle");
             assert_rests(&rest, mass * G, &case);
             assert!(rest.force.z > 50.0 * springs);
@@ -317,7 +317,7 @@ fn a_taxel_exactly_between_three_spheres_carries_what_hangs_on_them() {
         let body = FreeObject::new(&mobile, mass, DVec3::new(0.0, 0.0, -0.05)).unwrap();
         for (x, y) in [(0.0, 0.0), (3e-4, -2e-4)] {
             let start = Pose::from_translation(DVec3::new(x, y, 0.01));
-            let rest = settle(&skin, &body, &start);
+            let rest = equilibrium(&skin, &body, &start);
             let case = format!("{mass} kg from {x}, {y}");
             assert_rests(&rest, mass * G, &case);
             let deflection = mass * G / TAXEL.stiffness;
@@ -339,16 +339,16 @@ fn what_starts_inside_the_skin_comes_up_and_what_starts_behind_it_falls() {
     let skin = bed(32, 100.0);
     let ball = union([DVec3::ZERO], 0.02);
     let body = FreeObject::new(&ball, 0.05, DVec3::ZERO).unwrap();
-    let above = settle(&skin, &body, &height(0.05));
+    let above = equilibrium(&skin, &body, &height(0.05));
     // S is 21 mm and the substrate 6 mm behind the skin.
     for start in [0.02, 0.01, 0.0, -0.004, -0.0061, -0.012] {
-        let rest = settle(&skin, &body, &height(start));
+        let rest = equilibrium(&skin, &body, &height(start));
         assert_rests(&rest, 0.05 * G, &format!("from {start} m"));
         let apart = (rest.pose.translation.z - above.pose.translation.z).abs();
         assert!(apart < 1e-6, "from {start} m: {rest:?}");
     }
     for start in [-0.0271, -0.03, -10.0] {
-        let rest = settle(&skin, &body, &height(start));
+        let rest = equilibrium(&skin, &body, &height(start));
         let is_gone = matches!(rest.outcome, Outcome::Escaped { .. });
         assert!(is_gone, "from {start} m: {rest:?}");
     }
@@ -365,7 +365,7 @@ fn balls_of_all_sizes_rest_at_the_height_of_the_formula_or_fall_between_the_taxe
         let radius = 10f64.powi(exponent);
         let ball = union([DVec3::ZERO], radius);
         let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
-        let rest = settle(&skin, &body, &height(radius + 0.01));
+        let rest = equilibrium(&skin, &body, &height(radius + 0.01));
         let case = format!("{radius} m, {mass} kg");
         // The holes between taxels are (√2 − 1) mm wide: smaller balls fall through.
         if radius < 0.4e-3 {

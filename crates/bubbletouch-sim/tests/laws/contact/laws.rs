@@ -325,7 +325,7 @@ fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
         pitch: 5e-3,
     };
     let scene = Scene::of_one(&Patch::grid(grid, TAXEL).unwrap(), model);
-    let rest = &RestPoses::AsModelled.of(model)[0];
+    let rest = &RestPoses::AsModelled.poses(model)[0];
     let touch = Touch {
         rest: 0,
         offset: [1e-3, -2e-3],

@@ -61,7 +61,7 @@ struct Rest<'a> {
     balancer: EquilibriumSolver,
 }
 
-fn settle<'a>(ground: Ground<'a>, objects: &[Free<'a>], starts: &[Pose]) -> Rest<'a> {
+fn equilibrium<'a>(ground: Ground<'a>, objects: &[Free<'a>], starts: &[Pose]) -> Rest<'a> {
     let free = objects
         .iter()
         .map(|object| FreeObject::new(object.union, object.mass, object.center).unwrap());
@@ -535,7 +535,7 @@ fn random_scene(case: u64, scans: &[SphereUnion], skins: &[Patch]) -> (Vec<Strin
         },
         obstacles: Vec::new(),
     };
-    let rest = settle(ground, &objects, &starts);
+    let rest = equilibrium(ground, &objects, &starts);
     let mut faults = rest.faults();
     rest.try_motions(100, case, &mut faults);
     let faults = faults.iter().map(|fault| format!("scene {case}, {fault}"));
@@ -587,7 +587,7 @@ fn two_balls_on_the_same_taxels_carry_both_weights() {
                     0.02 + 0.02 * side,
                 ))
             });
-            let rest = settle(
+            let rest = equilibrium(
                 ground.clone(),
                 &masses.map(|mass| Free::new(&ball, mass)),
                 &starts,
@@ -621,7 +621,7 @@ fn stacks_of_two_and_four_balls_come_down_between_walls_and_in_a_bowl_and_the_sk
             let place =
                 |k| Pose::from_translation(f64::from(k) * 0.031 * DVec3::Z + 0.02 * DVec3::Z);
             let starts: Vec<Pose> = (0..n).map(place).collect();
-            let rest = settle(ground, &vec![Free::new(&ball, 0.05); starts.len()], &starts);
+            let rest = equilibrium(ground, &vec![Free::new(&ball, 0.05); starts.len()], &starts);
             assert_eq!(rest.faults(), NO_FAULTS, "{n}");
             assert_eq!(rest.there().count(), starts.len());
             let mut faults = Vec::new();
@@ -647,7 +647,7 @@ fn what_has_no_room_is_said_not_to_rest_and_what_does_not_touch_it_rests() {
     let [large, small] = [ball(0.02), ball(0.01)];
     let objects = [Free::new(&large, 0.1), Free::new(&small, 0.1)];
     let starts = [0.0, 0.1].map(|x| Pose::from_translation(DVec3::new(x, 0.0, 0.012)));
-    let rest = settle(ground, &objects, &starts);
+    let rest = equilibrium(ground, &objects, &starts);
     let outcomes = [0, 1].map(|object| rest.balances[object].outcome);
     assert_eq!(outcomes, [Outcome::NotConverged, Outcome::AtRest]);
     assert!(rest.balances[0].imbalance > BALANCED || rest.faults().len() > 1);
@@ -673,7 +673,7 @@ fn what_slides_on_a_slope_escapes_down_it_and_what_lies_in_a_gutter_of_planes_st
             planes: planes.to_vec(),
             ..Ground::default()
         };
-        let rest = settle(ground, &[Free::new(&union, 0.1)], &start);
+        let rest = equilibrium(ground, &[Free::new(&union, 0.1)], &start);
         match (rest.balances[0].outcome, way) {
             (Outcome::AtRest, None) => assert_eq!(rest.faults(), NO_FAULTS),
             (Outcome::Escaped { direction }, Some(way)) => {
@@ -707,7 +707,7 @@ fn a_pyramid_of_balls_stands_in_a_corner_of_planes_and_says_what_each_touch_carr
         .map(|k| Pose::from_translation(beside * side(k) + (radius + 1e-3 * k as f64) * DVec3::Z))
         .collect();
     starts.push(Pose::from_translation(DVec3::new(1e-4, 2e-4, 0.1)));
-    let rest = settle(ground, &[Free::new(&unions[0], 0.1); 4], &starts);
+    let rest = equilibrium(ground, &[Free::new(&unions[0], 0.1); 4], &starts);
     assert_eq!(rest.faults(), NO_FAULTS);
     let touches = rest.balancer.touches().iter();
     let on_top: Vec<f64> = touches
@@ -745,7 +745,7 @@ fn a_ball_lies_in_the_valley_of_an_obstacle_beside_a_wall_but_not_on_its_ridge()
             ..Ground::default()
         };
         let start = [Pose::from_translation(DVec3::new(0.0, 0.0, 0.1))];
-        let rest = settle(ground, &[Free::new(&ball, 0.1)], &start);
+        let rest = equilibrium(ground, &[Free::new(&ball, 0.1)], &start);
         assert_eq!(rest.faults(), NO_FAULTS);
         assert_eq!(rest.there().count(), n_there);
     }

@@ -403,7 +403,7 @@ fn a_mesh_behind_the_substrate_does_not_count_unless_it_was_pressed_through_the_
 fn a_mesh_lies_on_the_table_like_its_solid() {
     let brick = Model::from(MeshModel::new(cuboid(DVec3::new(0.05, 0.03, 0.01))));
     assert!(brick.center_of_mass().length() < 1e-15);
-    let poses = RestPoses::Stable.of(&brick);
+    let poses = RestPoses::Stable.poses(&brick);
     let heights: Vec<f64> = poses.iter().map(|pose| 0.5 * pose.height).collect();
     assert!(
         (heights[0] - 0.01).abs() < 1e-9 && poses[0].probability > 0.3,

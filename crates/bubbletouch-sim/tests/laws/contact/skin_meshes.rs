@@ -17,7 +17,7 @@ fn random_turn(rng: &mut impl Rng) -> DQuat {
 }
 
 /// A crumpled sheet, its triangles turned alike.
-fn sheet(rng: &mut impl Rng, size: f64) -> TriangleMesh {
+fn crumpled_surface(rng: &mut impl Rng, size: f64) -> TriangleMesh {
     let n = 9_u32;
     let corner = |i: u32| DVec3::new(f64::from(i % n), f64::from(i / n), 0.0) / f64::from(n);
     let corners = (0..n * n).map(|i| size * (corner(i) + 0.15 * direction(rng) - 0.5));
@@ -31,7 +31,7 @@ fn random_mesh(rng: &mut impl Rng, kind: u64) -> TriangleMesh {
     match kind % 3 {
         0 => cuboid(size * DVec3::new(1.0, rng.gen_range(0.1..1.0), rng.gen_range(0.05..1.0))),
         1 => icosphere(size, rng.gen_range(0..3)),
-        _ => sheet(rng, 2.0 * size),
+        _ => crumpled_surface(rng, 2.0 * size),
     }
 }
 

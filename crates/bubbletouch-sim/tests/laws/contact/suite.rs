@@ -94,10 +94,10 @@ impl Scene {
         let patch = Patch::new("skin", layout, taxels).unwrap();
         let shapes = (0..rng.gen_range(1..4)).map(|_| shape(&mut rng, &patch));
         let shapes = shapes.collect();
-        Self::of(patch, shapes, &mut rng)
+        Self::new(patch, shapes, &mut rng)
     }
 
-    fn of(patch: Patch, shapes: Vec<Shape>, rng: &mut impl Rng) -> Self {
+    fn new(patch: Patch, shapes: Vec<Shape>, rng: &mut impl Rng) -> Self {
         let poses: Vec<Pose> = shapes.iter().map(|_| random_pose(rng, 0.3)).collect();
         let models = shapes.iter().zip(&poses);
         Self {
@@ -147,9 +147,9 @@ fn near_a_taxel(rng: &mut impl Rng, patch: &Patch, radius: f64) -> DVec3 {
 }
 
 /// A way to press a patch on objects where they are; none of scenes that it does not know.
-type Way = fn(&Scene) -> Option<Vec<f64>>;
+type Perturbation = fn(&Scene) -> Option<Vec<f64>>;
 
-const WAYS: [(&str, Way); 4] = [
+const WAYS: [(&str, Perturbation); 4] = [
     ("at a pose", |scene| {
         let mut workspace = Workspace::new();
         press_at_pose(&scene.patch, &scene.models, &scene.poses, &mut workspace);
@@ -362,7 +362,7 @@ fn a_rigid_motion_of_the_world_changes_nothing() {
         });
         let taxels = scene.patch.taxels().clone();
         let patch = Patch::new("moved", scene.patch.layout().moved(&motion), taxels).unwrap();
-        let there = Scene::of(patch, moved.collect(), &mut rng);
+        let there = Scene::new(patch, moved.collect(), &mut rng);
         for (name, way) in WAYS {
             let (Some(a), Some(b)) = (way(&scene), way(&there)) else {
                 continue;

@@ -343,10 +343,10 @@ fn a_unit_is_what_it_says_and_a_name_says_the_format() {
         "expected one of m, cm, mm, in"
     );
     assert_eq!(
-        MeshFormat::of(Path::new("a/b.PLY")).unwrap(),
+        MeshFormat::from_path(Path::new("a/b.PLY")).unwrap(),
         MeshFormat::Ply
     );
-    let error = MeshFormat::of(Path::new("a/b.step"))
+    let error = MeshFormat::from_path(Path::new("a/b.step"))
         .unwrap_err()
         .to_string();
     assert_eq!(

@@ -76,7 +76,7 @@ fn random_solids_pack_within_the_tolerance() {
     for case in 0..600 {
         let mut rng = Seed::new(2).named("packing").numbered(case).rng();
         let shape = random_shape(&mut rng);
-        let solid = Solid::of(shape.clone()).unwrap();
+        let solid = Solid::from_shape(shape.clone()).unwrap();
         let size = solid.bounds().size().max_element();
         let tolerance = size * 10f64.powf(rng.gen_range(-2.7..0.7));
         assert_packs(&solid, tolerance, &format!("case {case}: {shape:?}"));

@@ -180,7 +180,7 @@ fn nut(hole: f64) -> Solid {
         height: hole,
     };
     let hole = Part::new(hole, Pose::IDENTITY).unwrap();
-    Solid::of(prism).unwrap().less(vec![hole]).unwrap()
+    Solid::from_shape(prism).unwrap().less(vec![hole]).unwrap()
 }
 
 #[test]
@@ -252,13 +252,16 @@ fn whatever_is_subtracted_the_rest_packs_within_the_tolerance() {
 fn a_shape_that_is_subtracted_from_itself_leaves_nothing_to_touch() {
     let ball = Shape::Ball { diameter: 10. * MM };
     let part = Part::new(ball.clone(), Pose::IDENTITY).unwrap();
-    let error = Solid::of(ball).unwrap().less(vec![part]).unwrap_err();
+    let error = Solid::from_shape(ball)
+        .unwrap()
+        .less(vec![part])
+        .unwrap_err();
     assert!(error.to_string().starts_with("subtract: "), "{error}");
 }
 
 #[test]
 fn the_measured_surface_error_sees_a_sphere_that_is_missing_or_too_large() {
-    let solid = Solid::of(Shape::Cylinder {
+    let solid = Solid::from_shape(Shape::Cylinder {
         diameter: 30. * MM,
         height: 20. * MM,
     })
@@ -277,7 +280,7 @@ fn the_measured_surface_error_sees_a_sphere_that_is_missing_or_too_large() {
 #[test]
 fn simple_shapes_take_few_spheres() {
     let count = |shape: Shape, tolerance: f64| {
-        pack(&Solid::of(shape).unwrap(), tolerance)
+        pack(&Solid::from_shape(shape).unwrap(), tolerance)
             .unwrap()
             .n_spheres()
     };
@@ -316,7 +319,7 @@ fn simple_shapes_take_few_spheres() {
 #[test]
 fn packing_twice_gives_the_same_bits() {
     for shape in one_of_each() {
-        let solid = Solid::of(shape).unwrap();
+        let solid = Solid::from_shape(shape).unwrap();
         assert_eq!(
             pack(&solid, 0.2 * MM).unwrap(),
             pack(&solid, 0.2 * MM).unwrap()
@@ -332,7 +335,7 @@ fn spheres_deep_inside_another_part_are_left_out() {
     };
     let ball = Shape::Ball { diameter: 60. * MM };
     let part = |shape: &Shape| Part::new(shape.clone(), Pose::IDENTITY).unwrap();
-    let alone = pack(&Solid::of(rod.clone()).unwrap(), 0.2 * MM)
+    let alone = pack(&Solid::from_shape(rod.clone()).unwrap(), 0.2 * MM)
         .unwrap()
         .n_spheres();
     let both = Solid::new(vec![part(&ball), part(&rod)]).unwrap();
@@ -428,7 +431,7 @@ fn dimensions_out_of_range_are_refused_by_name() {
         ),
     ];
     for (shape, expected) in cases {
-        let error = Solid::of(shape).unwrap_err().to_string();
+        let error = Solid::from_shape(shape).unwrap_err().to_string();
         assert!(
             error.starts_with(expected),
             "expected `{expected}` in: {error}"

@@ -4,8 +4,8 @@ use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereClusters, SphereUnion};
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::{
-    BodyReading, BodyReadout, Chain, Moment, Noise, NoiseUnit, Quantity, Recording, Scratch,
-    SensorError, SignalStep,
+    BodyReading, BodyReadout, Chain, Moment, Noise, NoiseUnit, Quantity, Recording, SensorError,
+    SignalStep, SignalWorkspace,
 };
 use bubbletouch_sim::whole_body::{BodyState, WholeBody};
 use bubbletouch_sim::world::{Dome, Extrusion, Grid, Patch, Taxel};
@@ -335,7 +335,7 @@ fn a_chain_reads_values_of_the_same_distribution() {
             time: Some(end.time),
         };
         let chain = Chain::new(&[step], &patch).unwrap();
-        chain.apply_recording(recording, &skin(), &mut Scratch::default());
+        chain.apply_recording(recording, &skin(), &mut SignalWorkspace::default());
         let mut dense: Vec<f64> = frames.iter().map(|value| value / STROKE).collect();
         assert_eq!(
             sparse == dense,

@@ -2,7 +2,7 @@
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::{
-    Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep,
+    Chain, Noise, NoiseUnit, Recording, SensorError, SignalStep, SignalWorkspace,
 };
 use bubbletouch_sim::world::{Grid, Patch, Taxel};
 
@@ -42,7 +42,7 @@ fn touches_after_the_first_allocate_nothing() {
     let chain = Chain::new(&steps, &Patch::grid(grid, taxel).unwrap()).unwrap();
     let mut frames = vec![1e-3; 3 * 64 * 48];
     let rates = vec![0.01; 3 * 64 * 48];
-    let mut scratch = Scratch::default();
+    let mut scratch = SignalWorkspace::default();
     let mut touch = |number| {
         let seed = Seed::new(2018).numbered(number);
         frames.fill(1e-3);

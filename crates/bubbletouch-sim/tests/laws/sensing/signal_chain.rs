@@ -2,7 +2,7 @@
 
 use crate::standard_errors::{assert_expected, mean_and_std, of_mean, of_std};
 use bubbletouch_sim::random::Seed;
-use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, Quantity, Scratch, SignalStep};
+use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, Quantity, SignalStep, SignalWorkspace};
 use bubbletouch_sim::world::{Grid, Patch, Taxel};
 
 const PITCH: f64 = 2e-3;
@@ -33,7 +33,7 @@ fn applied(steps: &[SignalStep], patch: &Patch, frame: &[f64], touch: u64) -> Ve
     let chain = Chain::new(steps, patch).unwrap();
     let mut out = frame.to_vec();
     let seed = Seed::new(2018).numbered(touch);
-    chain.apply(&mut out, None, &seed, &mut Scratch::default());
+    chain.apply(&mut out, None, &seed, &mut SignalWorkspace::default());
     out
 }
 

@@ -2,7 +2,7 @@
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::{
-    Chain, Noise, NoiseUnit, Recording, Scratch, SensorError, SignalStep,
+    Chain, Noise, NoiseUnit, Recording, SensorError, SignalStep, SignalWorkspace,
 };
 use bubbletouch_sim::world::{Grid, Patch, Taxel};
 
@@ -31,7 +31,7 @@ fn skin() -> Seed {
     Seed::new(1).named("skin")
 }
 
-fn is_of(step: &SignalStep, wanted: SensorError) -> bool {
+fn is_error(step: &SignalStep, wanted: SensorError) -> bool {
     matches!(step, SignalStep::Error { error, .. } if *error == wanted)
 }
 
@@ -71,7 +71,7 @@ fn read(steps: &[SignalStep], frames: &[f64], n_before: usize, touch: u64) -> Ve
     };
     let chain = Chain::new(steps, &patch()).unwrap();
     let touch = Seed::new(2018).numbered(touch);
-    chain.apply_recording(recording, &touch, &mut Scratch::default());
+    chain.apply_recording(recording, &touch, &mut SignalWorkspace::default());
     frames.split_off(n_before * N)
 }
 
@@ -109,7 +109,7 @@ fn gains_and_faults_stay_with_the_skin_and_zeros_wander_from_touch_to_touch() {
     let frames = press(2);
     for step in imperfections(1.0) {
         let is_same = read(&[step], &frames, 0, 4) == read(&[step], &frames, 0, 5);
-        let wanders = is_of(&step, SensorError::Drift);
+        let wanders = is_error(&step, SensorError::Drift);
         assert_eq!(is_same, !wanders, "{step:?}");
     }
     let drift = imperfections(1.0)[4];
@@ -149,7 +149,7 @@ fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
         SensorError::Scan,
         SensorError::Drift,
     ];
-    steps.retain(|step| !connects.iter().any(|error| is_of(step, *error)));
+    steps.retain(|step| !connects.iter().any(|error| is_error(step, *error)));
     steps.insert(2, NOISE);
     let frames = press(3);
     let together = read(&steps, &frames, 0, 4);
@@ -163,7 +163,7 @@ fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
     ];
     for (frame, name) in names.iter().enumerate() {
         let mut alone = frames[frame * N..(frame + 1) * N].to_vec();
-        chain.apply(&mut alone, None, name, &mut Scratch::default());
+        chain.apply(&mut alone, None, name, &mut SignalWorkspace::default());
         assert_eq!(together[frame * N..(frame + 1) * N], alone);
     }
     // What came before such a chain's touch is nothing to it.

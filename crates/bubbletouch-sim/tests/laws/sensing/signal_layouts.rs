@@ -2,7 +2,7 @@
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::{
-    Chain, Noise, NoiseUnit, SENSOR_ERRORS, Scratch, SensorError, SignalStep,
+    Chain, Noise, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, SignalWorkspace,
 };
 use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::{DQuat, DVec3};
@@ -35,7 +35,7 @@ fn read(steps: &[SignalStep], skin: &Patch, frame: &[f64]) -> Vec<f64> {
     let chain = Chain::new(steps, skin).unwrap();
     let mut out = frame.to_vec();
     let touch = Seed::new(2018).numbered(3);
-    chain.apply(&mut out, None, &touch, &mut Scratch::default());
+    chain.apply(&mut out, None, &touch, &mut SignalWorkspace::default());
     out
 }
 

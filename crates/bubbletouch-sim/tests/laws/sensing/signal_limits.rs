@@ -4,7 +4,7 @@
 use crate::standard_errors::assert_expected;
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::sensing::{Ensemble, Projection};
-use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, Scratch, SensorError, SignalStep};
+use bubbletouch_sim::signal::{Chain, Noise, NoiseUnit, SensorError, SignalStep, SignalWorkspace};
 use bubbletouch_sim::world::{Grid, Patch, Taxel};
 use ndarray::Array2;
 use rand::Rng;
@@ -37,7 +37,12 @@ fn patch(n: usize) -> Patch {
 fn applied(steps: &[SignalStep], patch: &Patch, frame: &[f64]) -> Vec<f64> {
     let mut frame = frame.to_vec();
     let chain = Chain::new(steps, patch).unwrap();
-    chain.apply(&mut frame, None, &Seed::new(11), &mut Scratch::default());
+    chain.apply(
+        &mut frame,
+        None,
+        &Seed::new(11),
+        &mut SignalWorkspace::default(),
+    );
     frame
 }
 

@@ -5,7 +5,7 @@
 //! rounding of the kernel values. The error due to δ is corrected by repeated steps, because f contains the remaining residual.
 
 use crate::gram::matrix::Gram;
-use crate::linalg::factors::{LANES, Piece, add_product, eliminate, substitute, substitute_back};
+use crate::linalg::factors::{LANES, Lanes, add_product, eliminate, substitute, substitute_back};
 use crate::linalg::scalar::Scalar;
 
 /// Ridge δ as a fraction of the largest diagonal kernel value; above the rounding error of kernel values in f32.
@@ -21,7 +21,7 @@ pub(crate) struct FreeFactor {
     /// Number of pieces per row: the capacity in positions.
     width: usize,
     /// Rows of `D Lᵀ`, one per position. Entries are 0 up to the diagonal, beyond the last position, and for removed variables.
-    rows: Vec<Piece>,
+    rows: Vec<Lanes>,
     /// Inverse of D; 0 for removed variables.
     inverse: Vec<f64>,
     ridge: f64,
@@ -101,13 +101,13 @@ impl FreeFactor {
             ];
         }
         let level = sums[0] / sums[1];
-        let difference = |[of_f, of_one]: [Piece; 2]| {
+        let difference = |[of_f, of_one]: [Lanes; 2]| {
             let mut side = of_f;
             let both = side.iter_mut().zip(of_one);
             both.for_each(|(of_f, of_one)| *of_f -= level * of_one);
             side
         };
-        let mut side: Vec<Piece> = sides.into_iter().map(difference).collect();
+        let mut side: Vec<Lanes> = sides.into_iter().map(difference).collect();
         let steps = side.as_flattened_mut();
         substitute_back(&self.rows, self.width, &self.inverse, steps);
         let steps = steps[..self.places.len()].to_vec();

@@ -123,7 +123,7 @@ impl<'a> ActiveSet<'a> {
                 return n_ways;
             };
             self.level = level;
-            let (share, blocked) = self.way(&steps);
+            let (share, blocked) = self.step_fraction(&steps);
             let ridge = self.factor.ridge();
             for (place, variable) in self.factor.variables() {
                 let step = share * steps[place];
@@ -145,7 +145,7 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// Returns the fraction of the given steps up to the first bound, at most 1, and the blocking variable, if any: its position and its bound.
-    fn way(&self, steps: &[f64]) -> (f64, Option<(usize, f64)>) {
+    fn step_fraction(&self, steps: &[f64]) -> (f64, Option<(usize, f64)>) {
         let (mut share, mut blocked) = (1.0, None);
         for (place, variable) in self.factor.variables() {
             let (beta, step) = (self.beta[variable], steps[place]);

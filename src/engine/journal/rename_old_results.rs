@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// If the folder has files but no results, or contains a file that this command reads. If a run is still writing to it. If it cannot be renamed.
-pub fn set_aside(folder: &Path) -> Result<Option<PathBuf>> {
+pub fn rename_old_results(folder: &Path) -> Result<Option<PathBuf>> {
     check_set_aside(folder)?;
     if !folder.exists() {
         return Ok(None);

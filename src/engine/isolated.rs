@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Runs `work` and returns its result. An error or a panic becomes a message, so that one failed work item does not end a long run. If `fail_fast` is set, the
 /// first failure is returned as the error.
-pub fn attempt<T>(
+pub fn run_isolated<T>(
     fail_fast: bool,
     work: impl FnOnce() -> Result<T>,
 ) -> Result<std::result::Result<T, String>> {

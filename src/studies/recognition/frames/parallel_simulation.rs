@@ -1,7 +1,7 @@
 //! Simulation of frames on all threads, with results in a fixed order.
 
 use crate::engine::progress::Progress;
-use crate::studies::recognition::frames::kept::{FrameFacts, Frames};
+use crate::studies::recognition::frames::frame_store::{FrameFacts, Frames};
 use bubbletouch_sim::frame_coding::encode;
 use ndarray::{Array2, ArrayViewMut2};
 use rayon::prelude::*;
