@@ -40,7 +40,7 @@ struct Row {
     gb_per_s: Option<f64>,
     /// Which ceiling is the lowest.
     bound: Option<&'static str>,
-    share_of_roofline: Option<f64>,
+    fraction_of_roofline: Option<f64>,
 }
 
 /// What the machine can do, a second.
@@ -201,7 +201,7 @@ fn achieved(mut path: HotPath, ceilings: &Ceilings, is_test: bool) -> Row {
         giga_roots_per_s: Some(work.roots / time * 1e-9),
         gb_per_s: Some(work.bytes / time * 1e-9),
         bound: Some(bound),
-        share_of_roofline: Some(least / time),
+        fraction_of_roofline: Some(least / time),
     }
 }
 
@@ -215,7 +215,7 @@ fn print(row: &Row) {
         number(row.giga_roots_per_s),
         number(row.gb_per_s),
         row.bound.unwrap_or_default(),
-        number(row.share_of_roofline),
+        number(row.fraction_of_roofline),
     );
 }
 
@@ -227,8 +227,9 @@ fn page(rows: &[Row]) -> String {
         "# Roofline\n\nOne core; `cargo bench --bench roofline -- --write`. What is counted is said in benches/README.md.\n\n\
          ## Ceilings of the machine\n\n| ceiling | 10⁹ operations/s | 10⁹ roots/s | GB/s |\n|---|---|---|---|\n",
     );
-    let (ceilings, paths): (Vec<&Row>, Vec<&Row>) =
-        rows.iter().partition(|row| row.share_of_roofline.is_none());
+    let (ceilings, paths): (Vec<&Row>, Vec<&Row>) = rows
+        .iter()
+        .partition(|row| row.fraction_of_roofline.is_none());
     for row in ceilings {
         let per_s = [
             row.giga_operations_per_s,
@@ -250,7 +251,10 @@ fn page(rows: &[Row]) -> String {
         ]
         .map(number);
         let (asked, per_s) = (asked.join(" | "), per_s.join(" | "));
-        let (bound, share) = (row.bound.unwrap_or_default(), number(row.share_of_roofline));
+        let (bound, share) = (
+            row.bound.unwrap_or_default(),
+            number(row.fraction_of_roofline),
+        );
         page += &format!(
             "| {} | {asked} | {time} | {per_s} | {bound} | {share} |\n",
             row.name

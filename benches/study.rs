@@ -150,19 +150,23 @@ fn time_cells(folder: &Path) -> Result<()> {
     let objects = load_objects(&plan.spec.objects, None)?;
     let touched = draw_touches(objects, &plan.placement, &Seed::new(plan.spec.seed))?;
     let study = RecognitionStudy::new(plan, Box::new(touched))?;
-    let n_cells = study.n_cells();
+    let n_configurations = study.n_configurations();
     println!(
-        "{n_cells} cells of {} classes",
+        "{n_configurations} cells of {} classes",
         study.first().touched.class_names().len()
     );
     let n_items = study.work_items().len();
     println!("{n_items} work items");
-    say("a cell, planned", start.elapsed().as_secs_f64(), n_cells);
+    say(
+        "a cell, planned",
+        start.elapsed().as_secs_f64(),
+        n_configurations,
+    );
     for what in ["done and kept", "read and tabulated"] {
         say(
             &format!("a cell, {what}"),
             time_run(folder, &study)?,
-            n_cells,
+            n_configurations,
         );
     }
     let journal = journal(folder, "cells")?;
@@ -174,7 +178,7 @@ fn time_cells(folder: &Path) -> Result<()> {
     say(
         "a cell, seen to be done",
         start.elapsed().as_secs_f64(),
-        n_cells,
+        n_configurations,
     );
     Ok(())
 }
@@ -199,7 +203,7 @@ fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<f64> {
     assert!(failures.is_empty(), "{:?}", failures[0]);
     let outcome = study.outcome(rows)?;
     journal.sync()?;
-    assert_eq!(outcome.summary.len(), study.n_cells());
+    assert_eq!(outcome.summary.len(), study.n_configurations());
     Ok(start.elapsed().as_secs_f64())
 }
 

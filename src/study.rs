@@ -14,7 +14,7 @@ pub use crate::inputs::object_files::{
 };
 pub use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
 pub use crate::inputs::packings::{Packed, pack_within, packing_path};
-pub use crate::inputs::sensor_errors::{Strengths, TestedOn, all_strengths, strength_columns};
+pub use crate::inputs::sensor_errors::{Strengths, TestSensor, all_strengths, strength_columns};
 pub use crate::inputs::units::millimetres;
 pub use crate::report::pictures::snapshots::Snapshots;
 pub use crate::statistics::p_status::CONFIDENCE;
@@ -50,6 +50,6 @@ pub use crate::studies::recognition::touches::drawn_touches::{TouchedObject, dra
 /// The rows of the result tables.
 pub mod table {
     pub use crate::statistics::p_status::PStatus;
-    pub use crate::studies::recognition::rows::cell::Cell;
+    pub use crate::studies::recognition::rows::configuration::Configuration;
     pub use crate::studies::recognition::rows::table_rows::*;
 }

@@ -70,7 +70,7 @@ if IntelSVC:
 COLUMNS = [
     "date", "machine", "bubbletouch", "scikit_learn", "numpy", "threads", "noise_std", "smoothing_mm", "measurements", "n_train", "n_test",
     "peer", "ours", "peer_fit_s", "our_fit_s", "fit_ratio", "our_cold_fit_s", "peer_predict_s", "our_predict_s", "predict_ratio",
-    "peer_accuracy", "our_accuracy", "identical_share", "peer_dual", "our_dual", "dual_difference", "peer_warnings",
+    "peer_accuracy", "our_accuracy", "identical_fraction", "peer_dual", "our_dual", "dual_difference", "peer_warnings",
 ]
 
 
@@ -199,7 +199,7 @@ def compare(folder, ours, comparison, threads, repeats, slow):
     row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
     row["predict_ratio"] = row["peer_predict_s"] / row["our_predict_s"]
     row["our_accuracy"] = found["accuracy"]
-    row["identical_share"] = np.mean(labels == predicted)
+    row["identical_fraction"] = np.mean(labels == predicted)
     if is_same_problem:
         row["peer_dual"], row["our_dual"] = dual_objective(model, folder.train_labels), found["svm"]["dual_objective"]
         row["dual_difference"] = (row["our_dual"] - row["peer_dual"]) / abs(row["peer_dual"])
@@ -228,7 +228,7 @@ def compare_grid(folder, ours, threads, repeats):
     row["fit_ratio"] = row["peer_fit_s"] / row["our_fit_s"]
     predicted = peer.predict(folder.test)
     row["peer_accuracy"], row["our_accuracy"] = np.mean(predicted == folder.test_labels), found["accuracy"]
-    row["identical_share"] = np.mean(labels == predicted)
+    row["identical_fraction"] = np.mean(labels == predicted)
     return [row]
 
 
@@ -240,7 +240,7 @@ def show(row):
         f"{row['threads']:>7} {row['measurements']:>5.0f} {row['noise_std']:>5g} {row['peer']:<22} {row.get('ours', 'none'):<26}"
         f"{number('peer_fit_s', '9.3f'):>9}{number('our_fit_s', '9.3f'):>9}{number('fit_ratio', '8.1f'):>8}"
         f"{number('peer_predict_s', '10.3f'):>10}{number('our_predict_s', '9.4f'):>9}{number('predict_ratio', '8.1f'):>8}"
-        f"{number('peer_accuracy', '9.4f'):>9}{number('our_accuracy', '8.4f'):>8}{number('identical_share', '10.4f'):>10}"
+        f"{number('peer_accuracy', '9.4f'):>9}{number('our_accuracy', '8.4f'):>8}{number('identical_fraction', '10.4f'):>10}"
         f"{number('dual_difference', '+11.1e'):>11}",
         flush=True,
     )
@@ -258,7 +258,7 @@ def make_folders(arguments):
     for cell in arguments.cells:
         path = arguments.work / f"{arguments.study.stem}_cell_{cell}"
         if not (path / "cell.toml").exists():
-            command = [arguments.binary, "features", str(arguments.study), "--cell", str(cell), "--out", str(path)]
+            command = [arguments.binary, "features", str(arguments.study), "--configuration", str(cell), "--out", str(path)]
             if arguments.objects:
                 command += ["--objects", str(arguments.objects)]
             subprocess.run(command, check=True)
@@ -270,7 +270,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--objects", type=Path, help="a folder of PLY meshes in metres; replaces the study's objects")
     parser.add_argument("--study", type=Path, default=ROOT / "experiments/peers.toml")
-    parser.add_argument("--cells", type=int, nargs="+", default=[0, 1, 2, 9, 10, 11], help="cells of the study")
+    parser.add_argument("--configurations", type=int, nargs="+", default=[0, 1, 2, 9, 10, 11], help="cells of the study")
     parser.add_argument("--work", type=Path, default=ROOT / "target/peers", help="where the features go")
     parser.add_argument("--binary", default=str(ROOT / "target/release/bubbletouch"))
     parser.add_argument("--train-rows", type=int, default=6000)

@@ -170,7 +170,7 @@ impl Chain {
                 false => Quantity::Deflection,
             };
             let patch = patch.get().inner();
-            let chain = signal::Chain::new(&prepared, patch, quantity);
+            let chain = signal::Chain::with_quantity(&prepared, patch, quantity);
             let grid = patch.layout().as_grid();
             Ok(Self {
                 sides: grid.map(|grid| [grid.ny, grid.nx]),

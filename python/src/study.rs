@@ -253,7 +253,7 @@ pub fn advise(
             }
         };
         let (_, tables) = read_tables(&results).map_err(exception)?;
-        let asked = advice::StudySource {
+        let asked = advice::AdviceQuery {
             table,
             value,
             cost,

@@ -34,7 +34,7 @@ pub struct Args {
     /// The table to read, by its file's name, if several have choices
     #[arg(long, value_name = "FILE")]
     table: Option<String>,
-    /// Only where a condition has this value: noise=0.05, "noise=5 %", tested_on=another_skin, none where it has no value; as often as needed
+    /// Only where a condition has this value: noise=0.05, "noise=5 %", test_sensor=another_skin, none where it has no value; as often as needed
     #[arg(long, value_name = "CONDITION=VALUE")]
     given: Vec<String>,
     /// One answer for all conditions: each choice counts as accurate as in the condition that is worst for it

@@ -48,7 +48,7 @@ pub struct Args {
         value_delimiter = ',',
         conflicts_with = "c"
     )]
-    choose_c: Vec<f64>,
+    c_grid: Vec<f64>,
     /// Choose γ among these multiples of scale as well
     #[arg(
         long,
@@ -56,10 +56,10 @@ pub struct Args {
         value_delimiter = ',',
         conflicts_with = "gamma"
     )]
-    choose_gamma: Vec<f64>,
+    gamma_grid: Vec<f64>,
     /// Folds of that cross-validation [default: 5]
     #[arg(long, value_name = "K")]
-    choose_folds: Option<usize>,
+    cv_folds: Option<usize>,
     /// What trains an SVM: smo or coordinate_descent [default: smo]
     #[arg(long, value_name = "NAME", value_parser = word::<Solver>)]
     solver: Option<Solver>,
@@ -262,11 +262,11 @@ impl Args {
 
     /// Folds of the choice, if there is one, each of whole groups, if there are groups.
     fn folds(&self, training: &Dataset, groups: Option<&Array1<usize>>) -> Result<Vec<Split>> {
-        if self.choose_c.is_empty() {
+        if self.c_grid.is_empty() {
             return Ok(Vec::new());
         }
         let seed = Seed::new(self.seed).named("validation");
-        let (labels, k) = (training.targets.view(), self.choose_folds.unwrap_or(5));
+        let (labels, k) = (training.targets.view(), self.cv_folds.unwrap_or(5));
         match groups {
             None => Ok(stratified_k_fold(labels, k, &seed)?),
             Some(groups) => Ok(group_k_fold(labels, groups.view(), k, &seed)?),
@@ -275,16 +275,16 @@ impl Args {
 
     /// Refuses options of a choice that is not made, and hyper-parameters that the classifier does not use.
     fn check_parameters(&self) -> Result<()> {
-        let chooses = !self.choose_c.is_empty();
-        let chooses_gamma = !self.choose_gamma.is_empty();
+        let chooses = !self.c_grid.is_empty();
+        let chooses_gamma = !self.gamma_grid.is_empty();
         check_used("--choose-gamma", chooses_gamma, chooses, "--choose-c")?;
-        let folds = self.choose_folds.is_some();
+        let folds = self.cv_folds.is_some();
         check_used("--choose-folds", folds, chooses, "--choose-c")?;
         let given = [
             ("c", self.c.is_some()),
-            ("choose_c", chooses),
+            ("c_grid", chooses),
             ("gamma", self.gamma.is_some()),
-            ("choose_gamma", chooses_gamma),
+            ("gamma_grid", chooses_gamma),
             ("degree", self.degree.is_some()),
             ("coef0", self.coef0.is_some()),
             ("multiclass", self.multiclass.is_some()),
@@ -309,11 +309,11 @@ impl Args {
             scaling: self.scaling,
             multiclass: self.multiclass.unwrap_or(usual.multiclass),
             solver: self.solver.unwrap_or(usual.solver),
-            c: match &self.choose_c[..] {
+            c: match &self.c_grid[..] {
                 [] => Cost::Fixed(self.c.unwrap_or(1.0)),
                 candidates => Cost::Chosen(Candidates {
                     c: candidates.to_vec(),
-                    gamma_scales: self.choose_gamma.clone(),
+                    gamma_scales: self.gamma_grid.clone(),
                 }),
             },
             gamma: self.gamma.unwrap_or(usual.gamma),

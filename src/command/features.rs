@@ -1,4 +1,4 @@
-//! `bubbletouch features`: what one cell of a study learns from.
+//! `bubbletouch features`: what one configuration of a study learns from.
 
 use crate::command::options::study_args::StudyArgs;
 use crate::command::terminal::output::output_folder;
@@ -13,13 +13,13 @@ use std::path::PathBuf;
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
-    /// Which cell, by its number in the study's tables
+    /// Which configuration, by its number in the study's tables
     #[arg(long, value_name = "N", default_value_t = 0)]
-    cell: usize,
+    configuration: usize,
     /// Which trial, from 0
     #[arg(long, value_name = "T", default_value_t = 0)]
     trial: usize,
-    /// Where to write features.npy, labels.npy, train.npy, test.npy, objects.csv and cell.toml
+    /// Where to write features.npy, labels.npy, train.npy, test.npy, objects.csv and configuration.toml
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
 }
@@ -28,7 +28,10 @@ pub fn features(args: &Args) -> Result<()> {
     // Before objects are packed; again below, once it is known which files the study reads.
     DataFolder::claim(&args.out, "features", FEATURE_FILES)?;
     let loaded = load_study(&args.study.source(&args.out)?)?;
-    let (part, which) = (loaded.part_of(args.cell), (args.cell, args.trial));
+    let (part, which) = (
+        loaded.part_of(args.configuration),
+        (args.configuration, args.trial),
+    );
     let progress = progress::to_stderr();
     let claimed = DataFolder::claim(&args.out, "features", FEATURE_FILES)?;
     output_folder(&args.out)?;

@@ -65,7 +65,7 @@ enum Command {
     Advise(advise::Args),
     /// Write a study's touches as NumPy files, to train elsewhere
     ///
-    /// Frames are the deflections of the press: without noise, smoothing and sensor errors. With --cell they are what that cell of the
+    /// Frames are the deflections of the press: without noise, smoothing and sensor errors. With --configuration they are what that cell of the
     /// study reads, with all of these.
     Touches(touches::Args),
     /// Write what one cell of a study learns from as NumPy files, to train on exactly those rows elsewhere

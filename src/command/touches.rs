@@ -23,12 +23,17 @@ pub struct Args {
     /// (quantities and units of frames and shear); one folder for each array, and for each value of an axis that changes touches, if the study has several
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
-    /// Frames as this cell of the study reads them (its number in the study's tables), with noise and whatever else its signal has;
+    /// Frames as this configuration of the study reads them (its number in the study's tables), with noise and whatever else its signal has;
     /// on its array alone, the deepest frame of each touch
     #[arg(long, value_name = "N")]
-    cell: Option<usize>,
+    configuration: Option<usize>,
     /// The trial that they are read in, from 0
-    #[arg(long, value_name = "T", default_value_t = 0, requires = "cell")]
+    #[arg(
+        long,
+        value_name = "T",
+        default_value_t = 0,
+        requires = "configuration"
+    )]
     trial: usize,
 }
 
@@ -47,15 +52,15 @@ struct DataSet<'a> {
 pub fn touches(args: &Args) -> Result<()> {
     let source = args.study.source(&args.out)?;
     let progress = progress::to_stderr();
-    let (plans, read) = match args.cell {
+    let (plans, read) = match args.configuration {
         None => (read_plans(&source)?, None),
-        Some(cell) => {
+        Some(configuration) => {
             // Before objects are packed; again below, once all files are known.
             DataFolder::claim(&args.out, "touches", TOUCH_FILES)?;
             let study = load_study(&source)?;
-            let part = study.part_of(cell);
+            let part = study.part_of(configuration);
             args.check(&part.plan)?;
-            let which = (cell, args.trial);
+            let which = (configuration, args.trial);
             let read = ReadFrames::of_cell(part, which, progress.as_ref())?;
             (vec![(AxisValues::default(), part.plan.clone())], Some(read))
         }
@@ -93,9 +98,9 @@ pub fn touches(args: &Args) -> Result<()> {
             }
         };
     }
-    let how = match args.cell {
-        None => "without noise (--cell N writes them as cell N of the study reads them)".to_owned(),
-        Some(cell) => format!("as cell {cell} reads them in trial {}", args.trial),
+    let how = match args.configuration {
+        None => "without noise (--configuration N writes them as configuration N of the study reads them)".to_owned(),
+        Some(configuration) => format!("as configuration {configuration} reads them in trial {}", args.trial),
     };
     progress.finish(&format!(
         "{n_touches} touches, {how}, in {}",
@@ -198,9 +203,9 @@ fn number_equal_names(sets: &mut [DataSet]) {
 }
 
 impl Args {
-    /// An error for recorded frames, which are files already, and for frames of human touches as a cell reads them.
+    /// An error for recorded frames, which are files already, and for frames of human touches as a configuration reads them.
     fn check(&self, plan: &Plan) -> Result<()> {
-        let is_human = plan.spec.human_touch.is_some() && self.cell.is_none();
+        let is_human = plan.spec.human_touch.is_some() && self.configuration.is_none();
         if plan.spec.places_objects() || is_human {
             return Ok(());
         }
@@ -211,7 +216,7 @@ impl Args {
                 "a study that presses objects or simulates human touches (bubbletouch features writes what others learn from)",
             ),
             None => (
-                "--cell in a study of human touches",
+                "--configuration in a study of human touches",
                 "a study that presses objects (bubbletouch features writes what others learn from)",
             ),
         };

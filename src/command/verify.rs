@@ -16,7 +16,7 @@ pub struct Args {
     results: PathBuf,
     /// How many work items to run again, drawn at random
     #[arg(long, value_name = "N", default_value_t = 5)]
-    cells: usize,
+    configurations: usize,
     /// Seed of the random draw: another one draws other work items
     #[arg(long, value_name = "N", default_value_t = 0)]
     draw: u64,
@@ -48,6 +48,6 @@ pub fn verify(args: &Args) -> Result<()> {
     }
     set_threads(args.threads)?;
     let study = load_study(folder, Some(&manifest), args.memory.bytes()?)?;
-    let said = study.verify(folder, args.cells, args.draw, to_stderr().as_ref())?;
+    let said = study.verify(folder, args.configurations, args.draw, to_stderr().as_ref())?;
     say(format_args!("{}: {said}", folder.display()))
 }

@@ -13,6 +13,7 @@
 
 use crate::error::{Error, Result};
 use crate::inputs::check::MAX_VALUES;
+use crate::inputs::renamed_keys::check_renamed;
 use crate::inputs::toml_value::{is_at, number, value_at};
 use crate::table::{Column, Role, Scale};
 use crate::toml_lines::line_of;
@@ -156,6 +157,7 @@ pub fn read<S: DeserializeOwned>(
     check_numbers(place, text)?;
     let said = |error| Error::toml(place, text, &error);
     let mut table = DeTable::parse(text).map_err(said)?;
+    check_renamed(place, text, table.get_ref())?;
     let mut found = Vec::new();
     if let Some((name, given)) = table.get_mut().remove_entry("axes") {
         let line = line_of(text, name.span().start);
@@ -403,7 +405,7 @@ const OF_TESTS: &str = "test.";
 /// Descriptions of keys whose last part is not clear by itself.
 const WORDS: [(&str, &str); 3] = [
     ("skin.sensed", "sensed quantity"),
-    ("recognition.keep_together", "group held out"),
+    ("recognition.group_by", "group held out"),
     ("recognition.split", "poses held out"),
 ];
 
@@ -433,7 +435,7 @@ const ROLES: [(&str, Role); 19] = [
     ("seed", Role::Subject),
     ("recorded.", Role::Condition),
     ("recognition.split", Role::Condition),
-    ("recognition.keep_together", Role::Condition),
+    ("recognition.group_by", Role::Condition),
     ("recognition.test_fraction", Role::Condition),
     ("recognition.folds", Role::Condition),
     ("skin.friction", Role::Condition),
@@ -774,9 +776,9 @@ mod tests {
         // The split and the recorded data are not choices of a designer.
         for key in [
             "recognition.split",
-            "recognition.keep_together",
-            "recognition.keep_together_mm",
-            "recognition.keep_together_deg",
+            "recognition.group_by",
+            "recognition.group_by_mm",
+            "recognition.group_by_deg",
             "recognition.test_fraction",
             "recognition.folds",
             "recorded.groups",

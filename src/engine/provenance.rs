@@ -22,6 +22,9 @@ const TARGET: &str = env!("BUBBLETOUCH_TARGET");
 
 pub use crate::files::MANIFEST_FILE;
 
+/// Version of the names and meanings of the tables' columns. It increases when a column is renamed or changes its meaning.
+pub const SCHEMA: u32 = 1;
+
 /// Subcommand in the manifest of a folder without a run whose charts and page were made again.
 pub const REPORT: &str = "report";
 
@@ -37,6 +40,9 @@ pub struct Manifest {
     /// Folder of the study file, to which paths in the study are relative; empty in manifests of earlier versions.
     #[serde(default)]
     pub paths_from: PathBuf,
+    /// Version of the tables' format: [`SCHEMA`]. 0 in folders of versions whose columns had other names.
+    #[serde(default)]
+    pub schema: u32,
     /// Name and version of the program.
     pub program: String,
     /// Hash of the program's source code.
@@ -68,7 +74,7 @@ pub struct Manifest {
     /// Seed of all random numbers.
     pub seed: u64,
     /// Number of configurations, or of work items, of the study.
-    pub n_cells: usize,
+    pub n_configurations: usize,
     /// Number of trials per configuration; 1 if trials are part of a work item.
     pub n_trials: usize,
     /// Number of failed configurations, counted once per trial.
@@ -94,6 +100,7 @@ impl Manifest {
     /// Returns the manifest of a run on this machine that began at `started` and ends now. Fields that describe the study's results are empty.
     pub fn ended(identity: &Identity, started: SystemTime) -> Self {
         Self {
+            schema: SCHEMA,
             program: identity.program.clone(),
             source: identity.source.clone(),
             commit: COMMIT.to_owned(),
@@ -115,7 +122,7 @@ impl Manifest {
     /// Reads the manifest of a result folder. Returns `None` if there is no manifest, or only the manifest of a page made by `bubbletouch report`.
     ///
     /// # Errors
-    /// If the file cannot be read or was not written by this program.
+    /// If the file cannot be read, was not written by this program, or belongs to tables of another [`SCHEMA`].
     pub fn read(folder: &Path) -> Result<Option<Self>> {
         let path = folder.join(MANIFEST_FILE);
         if !path.exists() {
@@ -126,9 +133,17 @@ impl Manifest {
         if serde_json::from_str(&text).is_ok_and(|json| is_of_page(&json)) {
             return Ok(None);
         }
-        let read = serde_json::from_str(&text);
-        read.map(Some)
-            .map_err(|e| Error::input(path.display(), e, "a manifest of this program"))
+        let not_ours = |e| Error::input(path.display(), e, "a manifest of this program");
+        let json: serde_json::Value = serde_json::from_str(&text).map_err(not_ours)?;
+        let schema = json["schema"].as_u64().unwrap_or(0);
+        if schema != u64::from(SCHEMA) {
+            let given = format!("results with schema = {schema}");
+            let allowed = format!(
+                "schema = {SCHEMA}, since columns were renamed: run the study again with --fresh"
+            );
+            return Err(Error::input(path.display(), given, allowed));
+        }
+        serde_json::from_value(json).map(Some).map_err(not_ours)
     }
 
     /// Returns the wall-clock time of the last run, seconds; `None` if its start or end is not a valid time.

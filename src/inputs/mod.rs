@@ -9,6 +9,7 @@ pub mod npy;
 pub mod object_files;
 pub mod objects_spec;
 pub mod packings;
+pub(crate) mod renamed_keys;
 pub mod sensor_errors;
 pub(crate) mod toml_value;
 pub(crate) mod units;

@@ -26,7 +26,7 @@ pub struct Packed {
     /// The spheres.
     pub spheres: SphereUnion,
     /// Whether the spheres were read from the folder.
-    pub was_kept: bool,
+    pub cached: bool,
 }
 
 /// Packs a closed mesh within `tolerance` (metres), or reads the stored packing from `folder`. The folder is created if it is missing; without a folder,
@@ -42,8 +42,8 @@ pub fn pack_within(
 ) -> Result<Packed> {
     let path = folder.map(|folder| packing_path(folder, surface.mesh(), tolerance));
     if let Some(spheres) = path.as_deref().map(read_packing).transpose()?.flatten() {
-        let was_kept = true;
-        return Ok(Packed { spheres, was_kept });
+        let cached = true;
+        return Ok(Packed { spheres, cached });
     }
     if let Some(slow) = slow_packing(surface, Body::Solid, tolerance) {
         note(format_args!("{place}: {slow}"));
@@ -61,7 +61,7 @@ pub fn pack_within(
     }
     Ok(Packed {
         spheres: packing.spheres,
-        was_kept: false,
+        cached: false,
     })
 }
 

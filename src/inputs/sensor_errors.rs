@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 /// Sensor whose touches test a classifier.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum TestedOn {
+pub enum TestSensor {
     /// The sensor used for training: its individual errors may be learned.
     #[default]
     SameSkin,

@@ -19,11 +19,11 @@ const GIVEN_UP_FIRST: [&str; 16] = [
     "train_touches",
     "mislabelled_fraction",
     "class_imbalance",
-    "fused_touches",
+    "touches_per_decision",
     "smoothing_mm",
     "noise_std",
     "frames",
-    "over_time",
+    "temporal_features",
     "features",
 ];
 

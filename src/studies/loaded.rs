@@ -159,7 +159,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
         let words = |&(columns, method): &(&str, &str)| (columns.to_owned(), method.to_owned());
         let manifest = Manifest {
             seed: self.facts.seed,
-            n_cells: self.items.len(),
+            n_configurations: self.items.len(),
             n_trials: 1,
             n_failed: outcome.n_failed,
             tables_sha256: hashes(true),

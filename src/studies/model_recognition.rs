@@ -38,8 +38,8 @@ pub(super) fn touches_of<'a>(
 pub(super) fn accuracy(classifier: &TrainedClassifier, test: &Dataset) -> Result<(f64, Interval)> {
     let answers = classifier.labels(test.records.view())?;
     let pairs = answers.iter().zip(&test.targets);
-    let n_right = pairs.filter(|(answer, truth)| answer == truth).count();
+    let n_correct = pairs.filter(|(answer, truth)| answer == truth).count();
     let n_test = test.targets.len();
-    let interval = Interval::wilson(n_right, n_test, CONFIDENCE)?;
-    Ok((n_right as f64 / n_test as f64, interval))
+    let interval = Interval::wilson(n_correct, n_test, CONFIDENCE)?;
+    Ok((n_correct as f64 / n_test as f64, interval))
 }

@@ -500,14 +500,18 @@ fn keys_of_features_frames_and_fused_touches_are_checked() {
     );
     refuses(
         "[recognition]",
-        "fused_touches = [1, 0]",
-        &["recognition.fused_touches", "at least 1"],
+        "touches_per_decision = [1, 0]",
+        &["recognition.touches_per_decision", "at least 1"],
     );
     // Two of eight touches are for testing.
     refuses(
         "[recognition]",
-        "fused_touches = 3",
-        &["recognition.fused_touches", "at most 2", "test touches"],
+        "touches_per_decision = 3",
+        &[
+            "recognition.touches_per_decision",
+            "at most 2",
+            "test touches",
+        ],
     );
 }
 
@@ -517,19 +521,19 @@ fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
         Case::new().refuses("[recognition]", &format!("[recognition]\n{line}"), words);
     };
     refuses(
-        "choose_gamma = [1.0]",
-        &["choose_gamma", "no classifier", "rbf_svm"],
+        "gamma_grid = [1.0]",
+        &["gamma_grid", "no classifier", "rbf_svm"],
     );
     refuses("gamma = 1.0", &["recognition.gamma", "no classifier"]);
-    refuses("choose_folds = 3", &["choose_folds", "choose_c"]);
-    refuses("choose_touches = 3", &["choose_touches", "choose_c"]);
+    refuses("cv_folds = 3", &["cv_folds", "c_grid"]);
+    refuses("cv_touches = 3", &["cv_touches", "c_grid"]);
     refuses(
-        "choose_c = [1.0, 2.0]\nchoose_folds = 1",
-        &["choose_folds", "at least 2"],
+        "c_grid = [1.0, 2.0]\nchoose_folds = 1",
+        &["cv_folds", "at least 2"],
     );
     refuses(
-        "choose_c = [1.0, 2.0]\nchoose_folds = 7",
-        &["choose_folds", "at most 6", "training touches"],
+        "c_grid = [1.0, 2.0]\nchoose_folds = 7",
+        &["cv_folds", "at most 6", "training touches"],
     );
     let rbf = |line: &str, words: &[&str]| {
         let old = "classifier = \"linear_svm\"";
@@ -537,12 +541,9 @@ fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
     };
     rbf(
         "gamma = 1.0\nchoose_gamma = [1.0]",
-        &["both gamma and choose_gamma"],
+        &["both gamma and gamma_grid"],
     );
-    rbf(
-        "choose_gamma = [1.0, -1.0]",
-        &["choose_gamma", "-1", "above 0"],
-    );
+    rbf("gamma_grid = [1.0, -1.0]", &["gamma_grid", "-1", "above 0"]);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `bubbletouch features`: the rows that a study's cell is trained on, and no others.
+//! `bubbletouch features`: the rows that a study's configuration is trained on, and no others.
 
 use crate::command::Case;
 use bubbletouch::random::Seed;
@@ -10,9 +10,9 @@ use ndarray::{Array1, Array2, Axis};
 use ndarray_npy::read_npy;
 use std::fs;
 
-/// Two levels of noise, a nested and another ensemble, two m and two training sizes: 16 cells, two trials each.
+/// Two levels of noise, a nested and another ensemble, two m and two training sizes: 16 configurations, two trials each.
 const STUDY: &str = r#"
-question = "What does a cell learn from?"
+question = "What does a configuration learn from?"
 trials = 2
 
 [objects]
@@ -44,14 +44,14 @@ classifier = "linear_svm"
 train_touches = [4, 12]
 "#;
 
-fn written(case: &Case, cell: usize, trial: usize) -> std::path::PathBuf {
-    let folder = format!("cell_{cell}_{trial}");
-    let (cell, trial) = (cell.to_string(), trial.to_string());
+fn written(case: &Case, configuration: usize, trial: usize) -> std::path::PathBuf {
+    let folder = format!("cell_{configuration}_{trial}");
+    let (configuration, trial) = (configuration.to_string(), trial.to_string());
     let (said, _) = case.succeeds(&[
         "features",
         "study.toml",
-        "--cell",
-        &cell,
+        "--configuration",
+        &configuration,
         "--trial",
         &trial,
         "--out",
@@ -73,7 +73,7 @@ fn training_on_the_files_gives_the_accuracy_of_the_run() {
     for row in table.records() {
         let row = row.unwrap();
         let number = |name: &str| row[column(name)].parse::<usize>().unwrap();
-        let folder = written(&case, number("cell"), number("trial"));
+        let folder = written(&case, number("configuration"), number("trial"));
         let features: Array2<f64> = read_npy(folder.join("features.npy")).unwrap();
         let labels: Array1<i64> = read_npy(folder.join("labels.npy")).unwrap();
         let train: Array1<i64> = read_npy(folder.join("train.npy")).unwrap();
@@ -98,7 +98,7 @@ fn training_on_the_files_gives_the_accuracy_of_the_run() {
     assert_eq!(n_rows, 32);
     counts.sort_unstable();
     counts.dedup();
-    assert!(counts.len() > 4, "cells differ: {counts:?}");
+    assert!(counts.len() > 4, "configurations differ: {counts:?}");
 }
 
 #[test]
@@ -106,11 +106,17 @@ fn the_library_reads_what_the_command_writes_at_any_number_of_threads() {
     let case = Case::new();
     case.file("study.toml", STUDY);
     for threads in ["1", "3"] {
-        let cell = ["features", "study.toml", "--cell", "9"];
-        case.succeeds(&[&cell[..], &["--threads", threads, "--out", threads]].concat());
+        let configuration = ["features", "study.toml", "--configuration", "9"];
+        case.succeeds(
+            &[
+                &configuration[..],
+                &["--threads", threads, "--out", threads],
+            ]
+            .concat(),
+        );
     }
     let names = [
-        "cell.toml",
+        "configuration.toml",
         "features.npy",
         "labels.npy",
         "manifest.json",
@@ -132,18 +138,21 @@ fn the_library_reads_what_the_command_writes_at_any_number_of_threads() {
     assert_eq!(set.training(Some(5)).unwrap().records.nrows(), 5);
     let objects = fs::read_to_string(case.path("1/objects.csv")).unwrap();
     assert_eq!(objects, "label,object\n0,mug\n1,banana\n2,scissors\n");
-    let settings: toml::Table = fs::read_to_string(case.path("1/cell.toml"))
+    let settings: toml::Table = fs::read_to_string(case.path("1/configuration.toml"))
         .unwrap()
         .parse()
         .unwrap();
-    assert_eq!(settings["cell"]["cell"].as_integer(), Some(9));
+    assert_eq!(
+        settings["configuration"]["configuration"].as_integer(),
+        Some(9)
+    );
     assert_eq!(settings["n_train"].as_integer(), Some(36));
 }
 
 #[test]
 fn groups_that_a_study_keeps_together_are_written_for_classify() {
     let case = Case::new();
-    let keys = "keep_together = \"yaw\"\nkeep_together_deg = 3.0\ntrain_touches = [4";
+    let keys = "group_by = \"yaw\"\nkeep_together_deg = 3.0\ntrain_touches = [4";
     case.file("study.toml", STUDY.replace("train_touches = [4", keys));
     let folder = written(&case, 0, 0);
     let groups: Array1<i64> = read_npy(folder.join("groups.npy")).unwrap();
@@ -164,7 +173,7 @@ fn groups_that_a_study_keeps_together_are_written_for_classify() {
 fn a_cell_or_a_trial_that_the_study_has_not_is_refused() {
     let case = Case::new();
     case.file("study.toml", STUDY);
-    for (option, allowed) in [("--cell", "0 to 15"), ("--trial", "0 to 1")] {
+    for (option, allowed) in [("--configuration", "0 to 15"), ("--trial", "0 to 1")] {
         let output = case.run(&["features", "study.toml", option, "16", "--out", "data"]);
         let error = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{error}");

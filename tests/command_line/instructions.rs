@@ -43,8 +43,8 @@ measurements = 36
 
 [recognition]
 classifier = ["linear_svm", "rbf_svm", "polynomial_svm", "laplacian_svm", "logistic_regression", "k_nearest"]
-choose_c = [0.1, 1.0, 10.0]
-choose_folds = 3
+c_grid = [0.1, 1.0, 10.0]
+cv_folds = 3
 "#;
 
 /// The command on this machine, or on a processor that is emulated.

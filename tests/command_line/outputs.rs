@@ -216,7 +216,7 @@ fn a_folder_of_results_takes_its_study_again() {
     case.succeeds(&run);
     case.succeeds(&["report", "found"]);
     case.succeeds(&["report", "found", "--all-charts"]);
-    case.succeeds(&["verify", "found", "--cells", "1000"]);
+    case.succeeds(&["verify", "found", "--configurations", "1000"]);
     case.succeeds(&run);
     assert!(fs::read(case.path("found/summary.csv")).unwrap() == first);
     let (_, said) = case.succeeds(&["run", "study.toml", "--out", "found", "--fresh"]);
@@ -286,7 +286,7 @@ fn every_edit_of_a_folder_of_results_is_noticed_and_its_file_named() {
         let longer = [&bytes[..], b"\n1,2,3\n"].concat();
         for damaged in [edited, longer, bytes[..middle].to_vec()] {
             fs::write(&path, damaged).unwrap();
-            let output = case.run(&["verify", "found", "--cells", "1"]);
+            let output = case.run(&["verify", "found", "--configurations", "1"]);
             let error = String::from_utf8(output.stderr).unwrap();
             assert_eq!(output.status.code(), Some(2), "{name}: {error}");
             assert!(error.contains(&format!("found/{name}")), "{name}: {error}");
@@ -311,7 +311,7 @@ fn edits_that_the_manifest_hides_are_noticed_when_all_work_runs_again() {
         let hidden = manifest.replace(&from, &to);
         assert_ne!(hidden, manifest);
         fs::write(case.path("found/manifest.json"), hidden).unwrap();
-        let output = case.run(&["verify", "found", "--cells", "1000"]);
+        let output = case.run(&["verify", "found", "--configurations", "1000"]);
         let error = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{name}: {error}");
         assert!(error.contains(&format!("found/{name}")), "{name}: {error}");

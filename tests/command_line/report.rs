@@ -107,14 +107,14 @@ fn charts_are_svg_files_unless_another_format_is_given() {
     assert!(case.path("svg/snapshots.png").exists());
     case.succeeds(&["report", "svg", "--chart-format", "both"]);
     assert_eq!(chart_files(&case.path("svg")).len(), 2 * svg.len());
-    case.succeeds(&["verify", "svg", "--cells", "1"]);
+    case.succeeds(&["verify", "svg", "--configurations", "1"]);
     // A missing chart is a note, because it is no result; a chart that was edited is an error.
     fs::remove_file(case.path("png").join(&png[0])).unwrap();
-    let (said, _) = case.succeeds(&["verify", "png", "--cells", "1"]);
+    let (said, _) = case.succeeds(&["verify", "png", "--configurations", "1"]);
     let note = "missing charts, pictures or page: 1 files; bubbletouch report png draws them";
     assert!(said.contains(note), "{said}");
     case.file(&format!("svg/{}", svg[0]), "<svg/>");
-    let verified = case.run(&["verify", "svg", "--cells", "1"]);
+    let verified = case.run(&["verify", "svg", "--configurations", "1"]);
     assert_eq!(verified.status.code(), Some(2));
     let refused = case.run(&["run", "asked.toml", "--out", "new", "--chart-format", "pdf"]);
     assert_eq!(refused.status.code(), Some(2));
@@ -130,7 +130,10 @@ fn charts_are_svg_files_unless_another_format_is_given() {
 #[test]
 fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are() {
     let case = Case::new();
-    let fused = STUDY.replace("classifier =", "fused_touches = [1, 4]\nclassifier =");
+    let fused = STUDY.replace(
+        "classifier =",
+        "touches_per_decision = [1, 4]\nclassifier =",
+    );
     case.file("all.toml", &fused);
     case.file(
         "best.toml",
@@ -179,8 +182,8 @@ fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are
     assert!(read("best", chart).contains("chance (1 in 3)"));
     assert_eq!(read("best", chart), read("all", chart));
     case.succeeds(&["report", "best"]);
-    case.succeeds(&["verify", "best", "--cells", "2"]);
-    case.succeeds(&["verify", "best", "--cells", "1000"]);
+    case.succeeds(&["verify", "best", "--configurations", "2"]);
+    case.succeeds(&["verify", "best", "--configurations", "1000"]);
     case.succeeds(&["advise", "best", "--accuracy", "0.1"]);
     // Where the number of objects is an axis, the matrices of all configurations are needed.
     let axes = "[axes]\n\"objects.names\" = [[\"mug\", \"banana\"], [\"mug\", \"banana\", \"scissors\"]]\n";
@@ -220,7 +223,7 @@ fn verify_takes_a_few_work_items_of_a_study_with_groups_and_repeated_splits() {
     assert!(header.contains("distinct_split") && header.contains("n_groups"));
     for draw in 0..8 {
         let draw = draw.to_string();
-        case.succeeds(&["verify", "found", "--cells", "1", "--draw", &draw]);
+        case.succeeds(&["verify", "found", "--configurations", "1", "--draw", &draw]);
     }
     // A row that differs is found in a table of fewer columns, too. The manifest is edited with the table, so that its hash is right.
     let n_correct = header.split(',').position(|name| name == "n_correct");
@@ -243,7 +246,7 @@ fn verify_takes_a_few_work_items_of_a_study_with_groups_and_repeated_splits() {
     case.file("found/accuracy.csv", edited);
     for draw in 0..8 {
         let draw = draw.to_string();
-        let verified = case.run(&["verify", "found", "--cells", "1", "--draw", &draw]);
+        let verified = case.run(&["verify", "found", "--configurations", "1", "--draw", &draw]);
         assert_eq!(verified.status.code(), Some(2));
         let said = String::from_utf8(verified.stderr).unwrap();
         assert!(said.contains("found/accuracy.csv:"), "{said}");

@@ -146,12 +146,23 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
     case.file("study.toml", study);
     let (_, said) = case.succeeds(&["touches", "study.toml", "--out", "clean"]);
     assert!(said.contains("without noise"), "{said}");
-    // Array 1 (24 × 24) with noise of 10 % is cell 3.
-    let cell = ["--cell", "3", "--trial", "0"];
-    let (_, said) =
-        case.succeeds(&[&["touches", "study.toml", "--out", "read"], &cell[..]].concat());
-    assert!(said.contains("as cell 3 reads them"), "{said}");
-    case.succeeds(&[&["features", "study.toml", "--out", "features"], &cell[..]].concat());
+    // Array 1 (24 × 24) with noise of 10 % is configuration 3.
+    let configuration = ["--configuration", "3", "--trial", "0"];
+    let (_, said) = case.succeeds(
+        &[
+            &["touches", "study.toml", "--out", "read"],
+            &configuration[..],
+        ]
+        .concat(),
+    );
+    assert!(said.contains("as configuration 3 reads them"), "{said}");
+    case.succeeds(
+        &[
+            &["features", "study.toml", "--out", "features"],
+            &configuration[..],
+        ]
+        .concat(),
+    );
     let features: Array2<f64> = read_npy(case.path("features/features.npy")).unwrap();
     let (clean, read) = (
         Files::read(&case.path("clean/24x24_at_2_mm")),
@@ -173,7 +184,14 @@ fn frames_of_a_cell_are_what_its_identity_measures_and_the_rest_is_the_same() {
         let bytes = |folder: &str| std::fs::read(case.path(folder).join(name)).unwrap();
         assert!(bytes("clean/24x24_at_2_mm") == bytes("read"), "{name}");
     }
-    let refused = case.run(&["touches", "study.toml", "--out", "x", "--cell", "99"]);
+    let refused = case.run(&[
+        "touches",
+        "study.toml",
+        "--out",
+        "x",
+        "--configuration",
+        "99",
+    ]);
     assert_eq!(refused.status.code(), Some(2));
 }
 
@@ -475,8 +493,15 @@ fn the_manifest_has_the_units_of_all_channels() {
     // Metres within the stroke; more newtons than that.
     assert!(frames.iter().all(|&d| (0.0..=5e-3).contains(&d)));
     assert!(across.iter().any(|&force| force.abs() > 5e-3));
-    case.succeeds(&["touches", "shear.toml", "--out", "cell", "--cell", "0"]);
+    case.succeeds(&[
+        "touches",
+        "shear.toml",
+        "--out",
+        "configuration",
+        "--configuration",
+        "0",
+    ]);
     let three = serde_json::json!(["N", "N", "N"]);
-    assert_eq!(units("cell", "frames.npy"), three);
-    assert!(!case.path("cell/shear.npy").exists());
+    assert_eq!(units("configuration", "frames.npy"), three);
+    assert!(!case.path("configuration/shear.npy").exists());
 }

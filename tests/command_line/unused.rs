@@ -101,8 +101,8 @@ fn a_key_that_cannot_act_is_refused_with_its_line_by_plan_and_by_run() {
             ["key touches.slide_deg", "recognition"],
         ),
         (
-            with("[signal]", "tested_on = \"another_skin\""),
-            ["key signal.tested_on", "recognition"],
+            with("[signal]", "test_sensor = \"another_skin\""),
+            ["key signal.test_sensor", "recognition"],
         ),
         (
             with("[signal]", "combine = \"one_at_a_time\""),
@@ -128,9 +128,9 @@ fn a_key_that_cannot_act_is_refused_with_its_line_by_plan_and_by_run() {
         (
             recognition(
                 "\"linear_svm\"",
-                "fused_touches = 2\nnext_touch = \"farthest\"\nchoose_folds = 3",
+                "touches_per_decision = 2\nnext_touch = \"farthest\"\nchoose_folds = 3",
             ),
-            ["key recognition.choose_folds: 3", "most_informative"],
+            ["key recognition.cv_folds: 3", "most_informative"],
         ),
         (
             recognition("\"linear_svm\"", "degree = 2"),

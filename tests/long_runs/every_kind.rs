@@ -114,7 +114,7 @@ impl Faults {
             !same.is_empty() && said.contains("0 in the first alone, 0 in the"),
             "{said}"
         );
-        let is_same = |row: &Significance| row.difference == 0.0 && row.moved == "same";
+        let is_same = |row: &DifferenceRow| row.difference == 0.0 && row.significance == "same";
         assert!(same.iter().all(is_same));
         let (said, moved) = compared(case, ["whole", "changed"]);
         assert!(said.contains("settings are in both runs"), "{said}");
@@ -142,7 +142,7 @@ impl Faults {
         let n = self.n_pieces();
         let (output, _) =
             self.case
-                .succeeds(&["verify", "whole", "--cells", &n.min(5).to_string()]);
+                .succeeds(&["verify", "whole", "--configurations", &n.min(5).to_string()]);
         let expected = format!("{} of {n} work items ran again", n.min(5));
         assert!(output.contains(&expected), "{output}");
         let path = self.case.path("whole").join(self.kind.repeatable[0]);
@@ -150,7 +150,7 @@ impl Faults {
         let text = fs::read_to_string(&path).unwrap();
         let changed = text.replacen(['1', '2', '3'], "4", 60);
         fs::write(&path, &changed).unwrap();
-        let all = ["verify", "whole", "--cells", &n.to_string()];
+        let all = ["verify", "whole", "--configurations", &n.to_string()];
         let error = refused(&self.case, &all);
         assert!(error.contains("was changed after its run"), "{error}");
         // If the manifest was changed as well, only running the work items again shows it.
@@ -218,17 +218,17 @@ fn best_of_each_condition(table: &Table, value: &str) -> Vec<f64> {
 
 /// What `compare` writes.
 #[derive(serde::Deserialize)]
-struct Significance {
+struct DifferenceRow {
     table: String,
     column: String,
     row: usize,
     n_trials: usize,
     second: f64,
     difference: f64,
-    moved: String,
+    significance: String,
 }
 
-fn compared(case: &Case, [first, second]: [&str; 2]) -> (String, Vec<Significance>) {
+fn compared(case: &Case, [first, second]: [&str; 2]) -> (String, Vec<DifferenceRow>) {
     let files = ["--out", "moved.csv", "--html", "moved.html"];
     let (said, _) = case.succeeds(&[&["compare", first, second], &files[..]].concat());
     let mut rows = csv::Reader::from_path(case.path("moved.csv")).unwrap();

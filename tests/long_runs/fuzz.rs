@@ -482,7 +482,7 @@ fn tables_of_results() {
             ",",
             "\"",
             "\n",
-            "cell",
+            "configuration",
             "accuracy",
             "linear_svm",
             "rbf_svm",

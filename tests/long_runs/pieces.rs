@@ -51,7 +51,7 @@ impl Faults {
         let faults = Self { kind, case };
         let manifest = fs::read_to_string(faults.case.path("whole/manifest.json")).unwrap();
         let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
-        assert_eq!(manifest["n_cells"], faults.n_pieces());
+        assert_eq!(manifest["n_configurations"], faults.n_pieces());
         assert_eq!(manifest["n_failed"], 0);
         let best = serde_json::to_value(Instructions::here().last()).unwrap();
         assert_eq!(manifest["instructions"], best);

@@ -242,7 +242,7 @@ fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_i
     let twice = [&ours[..], &ours[1..]].concat().concat();
     case.file("whole/journal.jsonl", twice);
     case.succeeds(&["run", "study.toml", "--out", "whole"]);
-    let (said_of, _) = case.succeeds(&["verify", "whole", "--cells", "3"]);
+    let (said_of, _) = case.succeeds(&["verify", "whole", "--configurations", "3"]);
     assert!(said_of.contains("3 of 66 work items"), "{said_of}");
 }
 
@@ -270,7 +270,7 @@ fn assert_grows(case: &Case, (more, n_before, n_all): (&str, usize, usize)) {
         let read = |folder: &str| fs::read(case.path(folder).join(name)).unwrap();
         assert!(read("fresh") == read(&folder), "{folder}/{name}");
     }
-    case.succeeds(&["verify", &folder, "--cells", "5"]);
+    case.succeeds(&["verify", &folder, "--configurations", "5"]);
 }
 
 #[test]
@@ -391,7 +391,7 @@ fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
     assert_eq!(again.status.code(), Some(1));
     let done = pieces(&case.path("failing/journal.jsonl"));
     assert_eq!(done.len(), 9 + 2, "{done:?}");
-    let (output, _) = case.succeeds(&["verify", "failing", "--cells", "9"]);
+    let (output, _) = case.succeeds(&["verify", "failing", "--configurations", "9"]);
     assert!(output.contains("7 of 9 work items"), "{output}");
     let strict = case.run(&["run", "failing.toml", "--out", "strict", "--fail-fast"]);
     assert_eq!(strict.status.code(), Some(2));

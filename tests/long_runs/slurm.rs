@@ -39,7 +39,7 @@ ratio = [1, 4]
 
 [recognition]
 classifier = ["linear_svm", "rbf_svm"]
-choose_c = [0.1, 1.0, 10.0]
+c_grid = [0.1, 1.0, 10.0]
 "#;
 
 /// Daemons of a cluster of one node, ended with the test.
@@ -187,7 +187,7 @@ fn configuration(folder: &Path) -> String {
     )
 }
 
-fn n_cells(journal: &Path) -> usize {
+fn n_configurations(journal: &Path) -> usize {
     let text = fs::read_to_string(journal).unwrap_or_default();
     text.matches("\"key\":\"piece ").count()
 }
@@ -221,7 +221,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     let job = queue.lines().next().unwrap_or_default().trim();
     let journal = case.path("jobs/journal.3-of-8.jsonl");
     let start = Instant::now();
-    while n_cells(&journal) == 0 {
+    while n_configurations(&journal) == 0 {
         assert!(
             start.elapsed() < Duration::from_secs(200),
             "the third job does not begin"
@@ -230,7 +230,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     }
     cluster.ask("scancel", &["--signal=KILL", "--full", &format!("{job}_3")]);
     cluster.wait_until_empty();
-    let finished = n_cells(&journal);
+    let finished = n_configurations(&journal);
     assert!(
         !case.path("jobs/summary.csv").exists(),
         "{finished} cells of the killed job"
@@ -238,7 +238,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     let said = cluster.submit(&case);
     assert!(said.contains("submitted 1 of 8 shards"), "{said}");
     cluster.wait_until_empty();
-    assert!(n_cells(&journal) > finished);
+    assert!(n_configurations(&journal) > finished);
     case.succeeds(&["run", "study.toml", "--out", "whole"]);
     for name in [
         "accuracy.csv",

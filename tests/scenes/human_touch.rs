@@ -335,7 +335,7 @@ noise_std_full_scale = 0.002
 ratio = 16
 
 [recognition]
-over_time = ["deepest", "stacked_8", "summarised", "course"]
+temporal_features = ["deepest", "stacked_8", "summarised", "course"]
 classifier = "rbf_svm"
 c = 10.0
 "#;
@@ -463,7 +463,9 @@ fn tables_name_frames_and_temporal_features_and_the_written_study_runs_again() {
     case.succeeds(&["run", "study.toml", "--out", "found"]);
     let read = |name: &str| fs::read(case.path("found").join(name)).unwrap();
     let text = String::from_utf8(read("summary.csv")).unwrap();
-    assert!(text.contains(",frames,over_time,features,") && text.contains(",49,stacked_8,raw,"));
+    assert!(
+        text.contains(",frames,temporal_features,features,") && text.contains(",49,stacked_8,raw,")
+    );
     let picture = String::from_utf8(read("confusion.svg")).unwrap();
     assert!(picture.contains("What was taken for what"));
     // What was resolved can run again.
@@ -518,7 +520,7 @@ fn a_study_that_cannot_be_is_refused_by_its_key() {
         (
             "stacked_8",
             "stacked_50",
-            "study.toml, key recognition.over_time: stacked_50; at most 49",
+            "study.toml, key recognition.temporal_features: stacked_50; at most 49",
         ),
         (
             "stroke_mm",
@@ -528,7 +530,7 @@ fn a_study_that_cannot_be_is_refused_by_its_key() {
         (
             "c = 10.0",
             "c = 10.0\nkeep_together = \"yaw\"",
-            "study.toml, key recognition.keep_together: given; ",
+            "study.toml, key recognition.group_by: given; ",
         ),
         (
             "[skin]",

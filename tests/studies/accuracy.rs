@@ -4,7 +4,7 @@
 
 use crate::study::Study;
 use bubbletouch::sensing::Ensemble;
-use bubbletouch::study::table::{Cell, CellScore, Tables};
+use bubbletouch::study::table::{CellScore, Configuration, Tables};
 
 const STUDY: &str = r#"
 question = "What does accuracy obey?"
@@ -40,10 +40,13 @@ classifier = "linear_svm"
 /// One in this many guesses is right.
 const N_OBJECTS: f64 = 8.0;
 
-fn score(outcome: &Tables, is_wanted: impl Fn(&Cell) -> bool) -> &CellScore {
+fn score(outcome: &Tables, is_wanted: impl Fn(&Configuration) -> bool) -> &CellScore {
     let mut rows = outcome.summary.iter().filter(|(c, _)| is_wanted(c));
-    let (_, score) = rows.next().expect("a cell with these settings");
-    assert!(rows.next().is_none(), "one cell with these settings");
+    let (_, score) = rows.next().expect("a configuration with these settings");
+    assert!(
+        rows.next().is_none(),
+        "one configuration with these settings"
+    );
     score
 }
 

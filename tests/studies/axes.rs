@@ -75,9 +75,13 @@ fn each_combination_scores_what_the_study_with_its_values_scores() {
     }
     assert_eq!(scores(&outcome), expected);
     let places = outcome.summary.iter().enumerate();
-    for (place, (cell, _)) in places {
-        assert_eq!(cell.cell, place);
-        let columns = cell.variant.values.iter().map(|v| &v.column.name[..]);
+    for (place, (configuration, _)) in places {
+        assert_eq!(configuration.configuration, place);
+        let columns = configuration
+            .variant
+            .values
+            .iter()
+            .map(|v| &v.column.name[..]);
         let columns: Vec<&str> = columns.collect();
         assert_eq!(columns, ["depth_mm", "stroke_mm", "n_neighbours", "seed"]);
     }

@@ -75,14 +75,17 @@ fn every_experiment_can_run() {
             let spec = ReconstructionStudySpec::parse(&place, &text).unwrap();
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = ReconstructionPlan::new(&place, spec).unwrap();
-            assert!(plan.cells().len() > 1, "{place} compares something");
+            assert!(
+                plan.configurations().len() > 1,
+                "{place} compares something"
+            );
             continue;
         }
         if table == Some("stability") {
             let spec = StabilityStudySpec::parse(&place, &text).unwrap();
             assert!(!spec.question.is_empty() && !spec.expected.is_empty());
             let plan = StabilityPlan::new(&place, path.parent().unwrap(), spec).unwrap();
-            assert!(plan.cells.len() > 1, "{place} compares something");
+            assert!(plan.configurations.len() > 1, "{place} compares something");
             continue;
         }
         let mut spec = StudySpec::parse(&place, &text).unwrap();
@@ -103,19 +106,19 @@ fn every_experiment_can_run() {
         if let Some(human) = &plan.spec.human_touch {
             let touches = HumanTouches::draw(human, &seed).unwrap();
             let sweep = Sweep::new(&plan, &touches).unwrap();
-            assert!(sweep.n_cells() > 1, "{place} compares something");
+            assert!(sweep.n_configurations() > 1, "{place} compares something");
             continue;
         }
         if let Some(recorded) = &plan.spec.recorded {
             let touches = RecordedFrames::read(recorded, None).unwrap();
             let sweep = Sweep::new(&plan, &touches).unwrap();
-            assert!(sweep.n_cells() > 1, "{place} compares something");
+            assert!(sweep.n_configurations() > 1, "{place} compares something");
             continue;
         }
         let objects = load_objects(&plan.spec.objects, None).unwrap();
         let touched = draw_touches(objects, &plan.placement, &seed).unwrap();
         let sweep = Sweep::new(&plan, &touched).unwrap();
-        assert!(sweep.n_cells() > 1, "{place} compares something");
+        assert!(sweep.n_configurations() > 1, "{place} compares something");
     }
 }
 

@@ -12,7 +12,7 @@ use bubbletouch::recognition::evaluation::fusion::fuse_rows;
 use bubbletouch::recognition::features::Features;
 use bubbletouch::sensing::Projection;
 use bubbletouch::signal::{Chain, Noise, NoiseUnit, SignalStep, SignalWorkspace};
-use bubbletouch::study::table::{Cell, Tables, TrialScore};
+use bubbletouch::study::table::{Configuration, Tables, TrialScore};
 use ndarray::{Array1, Array2, Axis};
 use std::collections::BTreeMap;
 
@@ -57,24 +57,24 @@ fn with(touches: &str, recognition: &str) -> String {
 
 const ALL_FEATURES: &str = r#"features = ["raw", "centred", "unit_norm", "centred_unit_norm"]"#;
 
-/// The rows of a cell in a trial, one touch, one frame, one number after the other.
-fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
+/// The rows of a configuration in a trial, one touch, one frame, one number after the other.
+fn slow_rows(study: &Study, configuration: &Configuration, trial: u64) -> Array2<f64> {
     let array = &study.plan.arrays[0];
     let seed = Seed::new(study.plan.spec.seed);
     let steps = [SignalStep::Noise(Noise {
-        std: cell.noise_std,
+        std: configuration.noise_std,
         unit: NoiseUnit::FullScale,
     })];
     let chain = Chain::new(&steps, array.patch()).unwrap();
     let projection = Projection::new(
-        cell.ensemble,
+        configuration.ensemble,
         array.shape(),
-        cell.measurements,
+        configuration.measurements,
         &seed.named("projection").numbered(trial),
     )
     .unwrap();
     let matrix = projection.matrix();
-    let (m, depths) = (cell.measurements, cell.frames);
+    let (m, depths) = (configuration.measurements, configuration.frames);
     let mut rows = Array2::zeros((study.sweep.labels.len(), depths * m));
     let mut row = 0;
     for touched in &study.touched {
@@ -100,13 +100,16 @@ fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
                 }
                 let u = matrix.sum_axis(Axis(1));
                 let mut part = rows.slice_mut(ndarray::s![row, (frame - 1) * m..frame * m]);
-                if matches!(cell.features, Features::Centred | Features::CentredUnitNorm) {
+                if matches!(
+                    configuration.features,
+                    Features::Centred | Features::CentredUnitNorm
+                ) {
                     let share = u.dot(&part) / u.dot(&u);
                     part.zip_mut_with(&u, |y, u| *y -= share * u);
                 }
             }
             if matches!(
-                cell.features,
+                configuration.features,
                 Features::UnitNorm | Features::CentredUnitNorm
             ) {
                 let norm = rows.row(row).iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -121,16 +124,16 @@ fn slow_rows(study: &Study, cell: &Cell, trial: u64) -> Array2<f64> {
 /// A classifier of the slow rows, and the test rows with their labels.
 fn slow_fit(
     study: &Study,
-    cell: &Cell,
+    configuration: &Configuration,
     trial: usize,
 ) -> (TrainedClassifier, Array2<f64>, Array1<usize>) {
-    let rows = slow_rows(study, cell, trial as u64);
+    let rows = slow_rows(study, configuration, trial as u64);
     let split = &study.sweep.splits[trial];
     let labels = |rows: &[usize]| study.sweep.labels.select(Axis(0), rows);
     let training = dataset(rows.select(Axis(0), &split.train), labels(&split.train)).unwrap();
     let classifier = Classifier {
-        c: Cost::Fixed(cell.c.unwrap()),
-        ..Classifier::new(cell.classifier)
+        c: Cost::Fixed(configuration.c.unwrap()),
+        ..Classifier::new(configuration.classifier)
     };
     let trained = classifier.train(&training, &Seed::new(0)).unwrap();
     let test = rows.select(Axis(0), &split.test);
@@ -146,13 +149,13 @@ fn frames_and_features_are_what_a_slow_pipeline_makes_of_each_touch() {
     let study = Study::new(&with("frames = [1, 3]", ALL_FEATURES));
     let outcome = study.run();
     assert_eq!(outcome.accuracy.len(), 2 * 4 * 2);
-    for (cell, score) in &outcome.accuracy {
-        let (trained, test, truth) = slow_fit(&study, cell, score.trial);
+    for (configuration, score) in &outcome.accuracy {
+        let (trained, test, truth) = slow_fit(&study, configuration, score.trial);
         let n_correct = n_equal(&trained.labels(test.view()).unwrap(), &truth);
         // Sums in another order can turn a row that is close to two objects.
         assert!(
             n_correct.abs_diff(score.n_correct) <= 1,
-            "{cell:?}: {n_correct}, not {}",
+            "{configuration:?}: {n_correct}, not {}",
             score.n_correct
         );
         assert_eq!((score.n_test, score.n_left_out), (truth.len(), 0));
@@ -161,30 +164,33 @@ fn frames_and_features_are_what_a_slow_pipeline_makes_of_each_touch() {
 
 #[test]
 fn fused_touches_are_decided_on_by_the_sum_of_their_scores() {
-    let study = Study::new(&with("", "fused_touches = [1, 2, 5]"));
+    let study = Study::new(&with("", "touches_per_decision = [1, 2, 5]"));
     let outcome = study.run();
-    for (cell, score) in &outcome.accuracy {
-        let (trained, test, truth) = slow_fit(&study, cell, score.trial);
+    for (configuration, score) in &outcome.accuracy {
+        let (trained, test, truth) = slow_fit(&study, configuration, score.trial);
         let scores = trained.scores(test.view()).unwrap();
-        if cell.fused_touches == 1 {
+        if configuration.touches_per_decision == 1 {
             let labels = trained.labels(test.view()).unwrap();
             assert_eq!(labels, trained.labels_of_scores(scores.view()));
         }
         let seed = Seed::new(2018)
-            .named("fused_touches")
+            .named("touches_per_decision")
             .numbered(score.trial as u64);
-        let fused = fuse_rows(truth.view(), cell.fused_touches, &seed);
+        let fused = fuse_rows(truth.view(), configuration.touches_per_decision, &seed);
         let mut n_correct = 0;
         for group in &fused.groups {
             let sum = scores.select(Axis(0), group).sum_axis(Axis(0));
             let label = trained.labels_of_scores(sum.insert_axis(Axis(0)).view())[0];
             n_correct += usize::from(label == truth[group[0]]);
         }
-        assert!(n_correct.abs_diff(score.n_correct) <= 1, "{cell:?}");
+        assert!(
+            n_correct.abs_diff(score.n_correct) <= 1,
+            "{configuration:?}"
+        );
         // Twelve test touches of each of six objects.
         let (n_groups, n_left) = [(72, 0), (36, 0), (12, 12)][[1, 2, 5]
             .iter()
-            .position(|&k| k == cell.fused_touches)
+            .position(|&k| k == configuration.touches_per_decision)
             .unwrap()];
         assert_eq!((score.n_test, score.n_left_out), (n_groups, n_left));
     }
@@ -192,14 +198,17 @@ fn fused_touches_are_decided_on_by_the_sum_of_their_scores() {
 
 #[test]
 fn cells_that_differ_in_fused_touches_share_one_fit_and_all_c_are_trained_together() {
-    let study = Study::new(&with("", "fused_touches = [1, 2, 4]\nc = [0.1, 1.0]"));
+    let study = Study::new(&with(
+        "",
+        "touches_per_decision = [1, 2, 4]\nc = [0.1, 1.0]",
+    ));
     let groups = &study.sweep.groups;
     assert_eq!(groups.iter().flat_map(|g| g.families()).count(), 1);
-    assert_eq!(study.sweep.n_cells(), 6);
+    assert_eq!(study.sweep.n_configurations(), 6);
     let outcome = study.run();
     let mut fits: BTreeMap<(usize, String), Vec<u64>> = BTreeMap::new();
-    for (cell, time) in &outcome.timing {
-        let key = (time.trial, format!("{:?}", cell.c));
+    for (configuration, time) in &outcome.timing {
+        let key = (time.trial, format!("{:?}", configuration.c));
         fits.entry(key).or_default().push(time.fit_s.to_bits());
     }
     assert_eq!(fits.len(), 4);
@@ -226,27 +235,33 @@ fn a_cell_does_not_depend_on_the_other_values_of_these_axes() {
         "features = [\"unit_norm\", \"raw\"]\nfused_touches = [3, 1]\nc = [0.1, 1.0]",
     );
     let among = Study::new(&wide).run();
-    let cell = &alone.accuracy[0].0;
+    let configuration = &alone.accuracy[0].0;
     let expected: Vec<&TrialScore> = alone.accuracy.iter().map(|(_, s)| s).collect();
     assert_eq!(expected.len(), 2);
-    assert_eq!(trials_of(&among, cell), expected);
-    assert_eq!((cell.frames, cell.fused_touches), (1, 1));
+    assert_eq!(trials_of(&among, configuration), expected);
+    assert_eq!(
+        (configuration.frames, configuration.touches_per_decision),
+        (1, 1)
+    );
 }
 
-fn accuracy(outcome: &Tables, is_wanted: impl Fn(&Cell) -> bool) -> f64 {
+fn accuracy(outcome: &Tables, is_wanted: impl Fn(&Configuration) -> bool) -> f64 {
     let mut rows = outcome.summary.iter().filter(|(c, _)| is_wanted(c));
-    let (_, score) = rows.next().expect("a cell with these settings");
-    assert!(rows.next().is_none(), "one cell with these settings");
+    let (_, score) = rows.next().expect("a configuration with these settings");
+    assert!(
+        rows.next().is_none(),
+        "one configuration with these settings"
+    );
     score.accuracy
 }
 
 #[test]
 fn touching_again_recognises_more_in_noise() {
-    let text = with("", "fused_touches = [1, 2, 6]")
+    let text = with("", "touches_per_decision = [1, 2, 6]")
         .replace("trials = 2", "trials = 4")
         .replace("full_scale = 0.2", "full_scale = 0.1");
     let outcome = Study::new(&text).run();
-    let by_k = [1, 2, 6].map(|k| accuracy(&outcome, |c| c.fused_touches == k));
+    let by_k = [1, 2, 6].map(|k| accuracy(&outcome, |c| c.touches_per_decision == k));
     println!("{by_k:.3?}");
     assert!(
         by_k[1] > by_k[0] && by_k[2] > by_k[0] + 0.1,
@@ -262,14 +277,14 @@ fn the_only_candidate_is_what_is_given_and_a_useless_one_is_not_chosen() {
         Study::new(&text).run().accuracy
     };
     let given = with("c = 10.0");
-    let only = with("choose_c = [10.0]\nchoose_gamma = [1.0]");
-    for ((_, given), (cell, only)) in given.iter().zip(&only) {
+    let only = with("c_grid = [10.0]\nchoose_gamma = [1.0]");
+    for ((_, given), (configuration, only)) in given.iter().zip(&only) {
         assert_eq!(given, only);
-        assert_eq!(cell.c, None);
+        assert_eq!(configuration.c, None);
         let gamma = given.gamma_used.unwrap();
         // Standardised features: γ 'scale' is 1 / m.
         assert!((gamma - 1.0 / 16.0).abs() < 1e-12);
-        let multiple = with("choose_c = [10.0]\nchoose_gamma = [1.0, 1e6]\nchoose_folds = 3");
+        let multiple = with("c_grid = [10.0]\nchoose_gamma = [1.0, 1e6]\nchoose_folds = 3");
         for (_, chosen) in multiple {
             assert_eq!(chosen.c_used, Some(10.0));
             assert!((chosen.gamma_used.unwrap() - gamma).abs() < 1e-12);
@@ -282,12 +297,12 @@ fn the_only_candidate_is_what_is_given_and_a_useless_one_is_not_chosen() {
 
 #[test]
 fn a_choice_by_some_of_the_touches_does_not_see_the_others() {
-    let keys = "choose_c = [0.01, 1.0]\nchoose_touches = 5\nchoose_folds = 5";
+    let keys = "c_grid = [0.01, 1.0]\nchoose_touches = 5\nchoose_folds = 5";
     let few = Study::new(&with("", &format!("{keys}\ntrain_touches = 5"))).run();
     let many = Study::new(&with("", &format!("{keys}\ntrain_touches = [5, 20]"))).run();
     let chosen = |outcome: &Tables, touches: usize| -> Vec<Option<f64>> {
         let rows = outcome.accuracy.iter();
-        rows.filter(|(cell, _)| cell.train_touches == touches)
+        rows.filter(|(configuration, _)| configuration.train_touches == touches)
             .map(|(_, score)| score.c_used)
             .collect()
     };

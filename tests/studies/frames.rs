@@ -150,7 +150,7 @@ fn missed_and_saturated_touches_are_counted_as_the_equations_say() {
     assert_eq!(frames.facts.n_saturated, n_saturated);
     let limits = study.run().limits;
     for (limit, count) in limits.iter().zip([n_missed, n_saturated]) {
-        assert_eq!((limit.count, limit.of), (count as u64, n_touches as u64));
+        assert_eq!((limit.count, limit.total), (count as u64, n_touches as u64));
     }
 }
 
@@ -183,7 +183,7 @@ fn what_is_kept_together_is_never_on_both_sides() {
         ),
     ];
     for (kind, axes, keys) in kinds {
-        let study = with_recognition(&format!("keep_together = \"{kind}\"\n{keys}"));
+        let study = with_recognition(&format!("group_by = \"{kind}\"\n{keys}"));
         let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
         assert_eq!(study.sweep.splits.len(), 6);
         for split in &study.sweep.splits {
@@ -221,11 +221,11 @@ fn with_drawn_poses(keys: &str) -> String {
 fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together() {
     let (near_mm, near_deg) = (6.0, 40.0);
     for (kind, keys) in [
-        ("pose", "keep_together_mm = 6.0\nkeep_together_deg = 40.0"),
-        ("offset", "keep_together_mm = 1.5"),
-        ("yaw", "keep_together_deg = 1.0\nfolds = 3"),
+        ("pose", "group_by_mm = 6.0\nkeep_together_deg = 40.0"),
+        ("offset", "group_by_mm = 1.5"),
+        ("yaw", "group_by_deg = 1.0\nfolds = 3"),
     ] {
-        let keys = format!("keep_together = \"{kind}\"\n{keys}\n");
+        let keys = format!("group_by = \"{kind}\"\n{keys}\n");
         let study = Study::new(&with_drawn_poses(&keys));
         let (near_mm, near_deg) = match kind {
             "pose" => (near_mm, near_deg),
@@ -294,20 +294,17 @@ fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together
 fn a_drawn_pose_without_a_distance_and_a_distance_without_a_group_are_refused() {
     for (keys, said) in [
         (
-            "keep_together = \"offset\"\n",
-            "key recognition.keep_together_mm: left out, and offset_x is spread uniformly",
+            "group_by = \"offset\"\n",
+            "key recognition.group_by_mm: left out, and offset_x is spread uniformly",
         ),
         (
-            "keep_together = \"yaw\"\nkeep_together_mm = 2.0\n",
-            "key recognition.keep_together_deg: left out, and yaw is spread uniformly",
+            "group_by = \"yaw\"\nkeep_together_mm = 2.0\n",
+            "key recognition.group_by_deg: left out, and yaw is spread uniformly",
         ),
+        ("group_by_mm = 2.0\n", "without recognition.group_by"),
         (
-            "keep_together_mm = 2.0\n",
-            "without recognition.keep_together",
-        ),
-        (
-            "keep_together = \"offset\"\nkeep_together_mm = 0.0\n",
-            "key recognition.keep_together_mm: 0; a positive number",
+            "group_by = \"offset\"\nkeep_together_mm = 0.0\n",
+            "key recognition.group_by_mm: 0; a positive number",
         ),
     ] {
         let error = Study::error(&with_drawn_poses(keys));
@@ -349,9 +346,9 @@ fn over_the_folds_each_touch_is_tested_exactly_once() {
 #[test]
 fn a_study_tests_what_its_splits_hold_out() {
     let study = with_recognition("folds = 3\ntrain_touches = [5, 10]");
-    for (cell, score) in &study.run().accuracy {
+    for (configuration, score) in &study.run().accuracy {
         assert_eq!(score.n_test, study.sweep.splits[score.trial].test.len());
-        assert_eq!(score.n_train, 3 * cell.train_touches);
+        assert_eq!(score.n_train, 3 * configuration.train_touches);
         assert_eq!(score.accuracy, score.n_correct as f64 / score.n_test as f64);
     }
 }

@@ -69,7 +69,11 @@ fn one_at_a_time_scores_what_all_combinations_score_there() {
     let alone = format!("{signal}\ncombine = \"one_at_a_time\"");
     let alone = Study::new(&with_signal(&alone)).run();
     assert_eq!(all.summary.len(), 3 * 2 * 2);
-    let settings: Vec<_> = alone.summary.iter().map(|(cell, _)| cell).collect();
+    let settings: Vec<_> = alone
+        .summary
+        .iter()
+        .map(|(configuration, _)| configuration)
+        .collect();
     let told: Vec<_> = settings
         .iter()
         .map(|c| {
@@ -89,10 +93,10 @@ fn one_at_a_time_scores_what_all_combinations_score_there() {
         (0.01, Some(0.0), Some(0.2)),
     ];
     assert_eq!(told, expected);
-    for cell in settings {
-        let trials = trials_of(&alone, cell);
+    for configuration in settings {
+        let trials = trials_of(&alone, configuration);
         assert_eq!(trials.len(), 2);
-        assert_eq!(trials, trials_of(&all, cell));
+        assert_eq!(trials, trials_of(&all, configuration));
     }
 }
 
@@ -101,12 +105,13 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
     let with = Study::new(&with_signal(ALL)).run();
     let without = Study::new(&with_signal("noise_std_full_scale = [0.0, 0.1]")).run();
     for (plain, score) in &without.accuracy {
-        let same = |cell: &bubbletouch::study::table::Cell| {
-            cell.noise_std == plain.noise_std && cell.strengths.present().count() == 0
+        let same = |configuration: &bubbletouch::study::table::Configuration| {
+            configuration.noise_std == plain.noise_std
+                && configuration.strengths.present().count() == 0
         };
         let mut rows = with.accuracy.iter();
-        let found = rows.find(|(cell, s)| same(cell) && s.trial == score.trial);
-        assert_eq!(&found.expect("a cell of no strength").1, score);
+        let found = rows.find(|(configuration, s)| same(configuration) && s.trial == score.trial);
+        assert_eq!(&found.expect("a configuration of no strength").1, score);
         let strengths = plain.strengths;
         assert_eq!(strengths.get("gain_std"), None);
     }
@@ -127,7 +132,12 @@ fn another_skin_reads_test_touches_and_nothing_else() {
         "steps = [\"gain\"]\ngain_std = 0.5\ntested_on = [\"same_skin\", \"another_skin\"]";
     let study = Study::new(&with_signal(signal));
     let items = study.of_items();
-    let read = |cell, trial| items.first().features((cell, trial), &Silent).unwrap();
+    let read = |configuration, trial| {
+        items
+            .first()
+            .features((configuration, trial), &Silent)
+            .unwrap()
+    };
     let (same, other) = (read(0, 0), read(1, 0));
     assert_eq!(same.split, other.split);
     let rows = |touches: &[usize], set: &bubbletouch::study::FeatureSet| {
@@ -303,7 +313,7 @@ fn keys_that_make_no_sense_are_refused_with_what_does() {
         ),
         (
             "steps = [\"crosstalk\"]\ncrosstalk = 0.1\ntested_on = \"another_skin\"",
-            "signal.tested_on: given for skins without a difference; gain or drift or faults",
+            "signal.test_sensor: given for skins without a difference; gain or drift or faults",
         ),
         (
             "steps = [\"gain\", \"gain\"]\ngain_std = 0.1",

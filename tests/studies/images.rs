@@ -44,7 +44,9 @@ fn accuracies(text: &str) -> [f64; 2] {
         .iter()
         .map(|(_, score)| score.accuracy)
         .collect();
-    accuracies.try_into().expect("a trial of two cells")
+    accuracies
+        .try_into()
+        .expect("a trial of two configurations")
 }
 
 #[test]
@@ -57,15 +59,18 @@ fn invariants_recognise_what_is_turned_any_way_and_so_do_estimated_images() {
     assert!(invariant > raw + 0.1, "{raw} {invariant}");
 }
 
-/// What a cell learns from and is tested on in a trial.
-fn features(text: &str, cell: usize, trial: usize) -> FeatureSet {
+/// What a configuration learns from and is tested on in a trial.
+fn features(text: &str, configuration: usize, trial: usize) -> FeatureSet {
     let study = laid_out(text).unwrap();
-    study.first().features((cell, trial), &Silent).unwrap()
+    study
+        .first()
+        .features((configuration, trial), &Silent)
+        .unwrap()
 }
 
 #[test]
 fn features_of_a_whole_frame_are_those_of_the_frame() {
-    let [raw, found] = [0, 1].map(|cell| features(STUDY, cell, 0).data.records);
+    let [raw, found] = [0, 1].map(|configuration| features(STUDY, configuration, 0).data.records);
     let join = Features::try_from("fourier_mellin+polar_harmonics+descriptors".to_owned());
     let join = join.unwrap().of_image().unwrap();
     let features = ImageFeatures::new(join, (24, 24), 5e-3, Cut::default());
@@ -98,7 +103,10 @@ fn a_depth_changes_no_feature_of_what_is_behind_the_foremost_point() {
     let at = |depth: &str| {
         let text = STUDY
             .replace("depth_mm = 3.0", &format!("depth_mm = {depth}"))
-            .replace("classifier =", "foremost_full_scale = 0.3\nclassifier =");
+            .replace(
+                "classifier =",
+                "depth_window_full_scale = 0.3\nclassifier =",
+            );
         features(&text, 1, 0).data.records
     };
     let [shallow, deep] = ["2.0", "4.0"].map(at);
@@ -167,11 +175,16 @@ fn every_layout_has_images_and_their_invariants_recognise_as_those_of_the_grid()
 fn what_has_no_image_stands_in_the_same_tables_as_what_is_behind_the_foremost_point() {
     let text = STUDY.replace(
         "classifier =",
-        "foremost_full_scale = [0.3, 1.0]\nclassifier =",
+        "depth_window_full_scale = [0.3, 1.0]\nclassifier =",
     );
     let tables = laid_out(&text).unwrap().run(&Silent).unwrap();
-    let cells = tables.summary.iter().map(|(cell, _)| cell);
-    let seen: Vec<_> = cells.map(|cell| cell.foremost_full_scale).collect();
+    let configurations = tables
+        .summary
+        .iter()
+        .map(|(configuration, _)| configuration);
+    let seen: Vec<_> = configurations
+        .map(|configuration| configuration.depth_window_full_scale)
+        .collect();
     assert_eq!(seen, [Some(1.0), Some(0.3), Some(1.0)]);
     let summary = tables_of(&tables).unwrap();
     let summary = summary.iter().find(|table| table.file == "summary.csv");
@@ -191,9 +204,9 @@ fn with_copies(keys: &str) -> String {
 
 #[test]
 fn copies_follow_all_touches_are_as_deep_as_those_that_they_are_of_and_change_no_other() {
-    let [none, copied] = [0, 1].map(|cell| {
+    let [none, copied] = [0, 1].map(|configuration| {
         let keys = "split = \"unseen_tilt\"\ntilted_copies = [0, 2]\ntrain_touches = 20";
-        features(&with_copies(keys), cell, 0)
+        features(&with_copies(keys), configuration, 0)
     });
     let (n_touches, n_train) = (none.data.records.nrows(), none.split.train.len());
     assert_eq!((n_touches, n_train), (360, 6 * 20));
@@ -244,11 +257,11 @@ fn copies_are_of_images_and_their_tilt_belongs_to_them() {
             "no features of the study are of images",
         ),
         (
-            "tilted_copies_deg = 2.0",
-            "no such key without recognition.tilted_copies",
+            "tilt_augmentation_deg = 2.0",
+            "no such key without recognition.tilt_augmentation",
         ),
         (
-            "tilted_copies = 2\ntilted_copies_deg = 60.0",
+            "tilt_augmentation = 2\ntilted_copies_deg = 60.0",
             "above 0, at most 45",
         ),
     ] {

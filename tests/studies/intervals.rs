@@ -31,13 +31,13 @@ fn run(keys: &str) -> Tables {
     Study::new(&format!("{head}\n{STUDY}{recognition}")).run()
 }
 
-/// Of each cell its summary, the numbers of test rows and of right answers of all trials.
-fn cells(tables: &Tables) -> Vec<(CellScore, usize, usize)> {
-    let found = tables.summary.iter().map(|(cell, score)| {
+/// Of each configuration its summary, the numbers of test rows and of right answers of all trials.
+fn configurations(tables: &Tables) -> Vec<(CellScore, usize, usize)> {
+    let found = tables.summary.iter().map(|(configuration, score)| {
         let trials = tables
             .accuracy
             .iter()
-            .filter(|(of, _)| of.cell == cell.cell);
+            .filter(|(of, _)| of.configuration == configuration.configuration);
         let (n_test, n_correct) = trials.fold((0, 0), |sums, (_, trial)| {
             (sums.0 + trial.n_test, sums.1 + trial.n_correct)
         });
@@ -49,7 +49,7 @@ fn cells(tables: &Tables) -> Vec<(CellScore, usize, usize)> {
 #[test]
 fn five_folds_have_the_interval_of_all_rows_that_they_test() {
     let once = run("trials = 5|folds = 5");
-    for (score, n_test, n_correct) in cells(&once) {
+    for (score, n_test, n_correct) in configurations(&once) {
         assert_eq!((score.n_test, n_test), (24, 120));
         let all = Interval::wilson(n_correct, n_test, 0.95).unwrap();
         assert_eq!(
@@ -58,7 +58,7 @@ fn five_folds_have_the_interval_of_all_rows_that_they_test() {
         );
     }
     // The second round of folds tests the same touches again.
-    for (score, _, n_correct) in cells(&run("trials = 10|folds = 5")) {
+    for (score, _, n_correct) in configurations(&run("trials = 10|folds = 5")) {
         let share = n_correct as f64 / 240.0;
         let below = Interval::wilson((120.0 * share).floor() as usize, 120, 0.95).unwrap();
         let above = Interval::wilson((120.0 * share).ceil() as usize, 120, 0.95).unwrap();
@@ -69,7 +69,7 @@ fn five_folds_have_the_interval_of_all_rows_that_they_test() {
 
 #[test]
 fn cells_with_other_counts_over_their_trials_have_other_intervals() {
-    let mut found = cells(&run("trials = 7"));
+    let mut found = configurations(&run("trials = 7"));
     found.sort_by_key(|(.., n_correct)| *n_correct);
     assert!(found[0].2 < found[3].2);
     for pair in found.windows(2) {

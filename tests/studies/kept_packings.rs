@@ -19,8 +19,8 @@ fn a_folder_gives_back_what_was_packed_and_knows_what_from() {
     let surface = Surface::new(cuboid(DVec3::new(4.0, 3.0, 2.0) * MM));
     let pack = |tolerance| kept(folder.path(), &surface, tolerance).unwrap();
     let (first, again, finer) = (pack(0.6 * MM), pack(0.6 * MM), pack(0.4 * MM));
-    let was_kept = [&first, &again, &finer].map(|packed| packed.was_kept);
-    assert_eq!(was_kept, [false, true, false]);
+    let cached = [&first, &again, &finer].map(|packed| packed.cached);
+    assert_eq!(cached, [false, true, false]);
     assert_eq!(first.spheres, again.spheres);
     assert_ne!(first.spheres, finer.spheres);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
@@ -37,7 +37,7 @@ fn a_kept_packing_that_is_damaged_in_any_way_is_made_again() {
     let fresh = pack().unwrap().spheres;
     let path = packing_path(folder.path(), surface.mesh(), 0.6 * MM);
     let whole = std::fs::read(&path).unwrap();
-    assert!(pack().unwrap().was_kept);
+    assert!(pack().unwrap().cached);
     let lines: Vec<&[u8]> = whole.split_inclusive(|&byte| byte == b'\n').collect();
     let seal = lines[lines.len() - 1];
     let flipped = |at: usize, bit: u8| {
@@ -68,7 +68,7 @@ fn a_kept_packing_that_is_damaged_in_any_way_is_made_again() {
         assert_ne!(bytes, whole, "{what}");
         std::fs::write(&path, bytes).unwrap();
         let again = pack().unwrap();
-        assert_eq!((again.was_kept, &again.spheres), (false, &fresh), "{what}");
+        assert_eq!((again.cached, &again.spheres), (false, &fresh), "{what}");
         assert_eq!(std::fs::read(&path).unwrap(), whole, "{what}");
     }
     std::fs::remove_file(&path).unwrap();

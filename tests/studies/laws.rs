@@ -110,7 +110,7 @@ fn n_correct(set: &FeatureSet) -> usize {
         .count()
 }
 
-/// What is learned for measurements is learned from the whole split, however few touches a cell learns from.
+/// What is learned for measurements is learned from the whole split, however few touches a configuration learns from.
 #[test]
 fn exported_rows_classified_elsewhere_give_the_answers_of_the_run() {
     let signal = "noise_std_full_scale = 0.1";
@@ -129,13 +129,18 @@ fn exported_rows_classified_elsewhere_give_the_answers_of_the_run() {
         ),
         (
             "ratio = 4",
-            "training_readings = 2\ntrain_touches = [3, 18]",
+            "readings_per_touch = 2\ntrain_touches = [3, 18]",
         ),
     ] {
         let study = laid_out(&study(signal, sensing, recognition)).unwrap();
-        for (cell, score) in study.run(&Silent).unwrap().accuracy {
-            let set = study.first().features((cell.cell, score.trial), &Silent);
-            let what = format!("{recognition}, cell {}, trial {}", cell.cell, score.trial);
+        for (configuration, score) in study.run(&Silent).unwrap().accuracy {
+            let set = study
+                .first()
+                .features((configuration.configuration, score.trial), &Silent);
+            let what = format!(
+                "{recognition}, configuration {}, trial {}",
+                configuration.configuration, score.trial
+            );
             assert_eq!(n_correct(&set.unwrap()), score.n_correct, "{what}");
         }
     }
@@ -223,10 +228,10 @@ fn a_choice_among_one_value_is_that_value() {
         let scaled = |keys: &str| fits(&format!("scaling = \"{scaling}\"\n{keys}"));
         let given = scaled("c = 10.0");
         for keys in [
-            "choose_c = [10.0]\nchoose_touches = 5",
-            "choose_c = [10.0]\nchoose_touches = 5\nchoose_folds = 2",
-            "choose_c = [10.0]\nchoose_gamma = [1.0]\nchoose_touches = 5",
-            "choose_c = [10.0]",
+            "c_grid = [10.0]\nchoose_touches = 5",
+            "c_grid = [10.0]\nchoose_touches = 5\nchoose_folds = 2",
+            "c_grid = [10.0]\nchoose_gamma = [1.0]\nchoose_touches = 5",
+            "c_grid = [10.0]",
         ] {
             assert_eq!(scaled(keys), given, "{scaling}: {keys}");
         }
@@ -236,7 +241,7 @@ fn a_choice_among_one_value_is_that_value() {
     let gammas = |scores: &[TrialScore]| -> Vec<f64> {
         scores.iter().filter_map(|score| score.gamma_used).collect()
     };
-    let chosen = rows("choose_c = [1.0, 10.0]\nchoose_gamma = [1.0, 2.0]\nchoose_touches = 5");
+    let chosen = rows("c_grid = [1.0, 10.0]\nchoose_gamma = [1.0, 2.0]\nchoose_touches = 5");
     let scale = gammas(&rows("c = 10.0"));
     for (chosen, scale) in gammas(&chosen).iter().zip(&scale) {
         assert!([*scale, 2.0 * scale].contains(chosen), "{chosen} {scale}");
@@ -270,11 +275,11 @@ fn chance_is_that_of_each_configuration() {
             .into_iter()
             .flat_map(|chart| chart.rules);
         let rules: Vec<(At, String)> = rules.map(|rule| (rule.at, rule.words)).collect();
-        let cells = tables
+        let configurations = tables
             .iter()
-            .find(|table| table.file == "cells.csv")
+            .find(|table| table.file == "configurations.csv")
             .unwrap();
-        (rules, cells.numbers("chance").map(<[f64]>::to_vec))
+        (rules, configurations.numbers("chance").map(<[f64]>::to_vec))
     };
     let (rules, column) = axes(r#"[["mug", "bowl"], ["apple", "pear"]]"#);
     let expected = (At::Value(0.5), "chance (1 in 2)".to_owned());
@@ -353,7 +358,7 @@ fn more_readings_change_the_training_rows_if_and_only_if_the_error_is_random_by_
             });
         let signal = format!("steps = [\"{}\"]\n{}", about.step, keys.collect::<String>());
         let features = |readings: usize| {
-            let keys = format!("training_readings = {readings}");
+            let keys = format!("readings_per_touch = {readings}");
             let text = study(&signal, "ensemble = \"identity\"", &keys);
             let motion = match about.needs_motion {
                 true => "frames = 2\nspeed_mm_per_s = 20.0\n",

@@ -64,7 +64,7 @@ fn a_layout_is_an_axis_and_its_grid_is_the_grid() {
     let alone = study(STUDY).run(&Silent).unwrap();
     let accuracy = |number: usize| {
         let rows = layouts.accuracy.iter();
-        let rows = rows.filter(|(cell, _)| cell.variant.number == number);
+        let rows = rows.filter(|(configuration, _)| configuration.variant.number == number);
         rows.map(|(_, score)| score.clone()).collect::<Vec<_>>()
     };
     let expected: Vec<_> = alone
@@ -73,7 +73,10 @@ fn a_layout_is_an_axis_and_its_grid_is_the_grid() {
         .map(|(_, score)| score.clone())
         .collect();
     assert_eq!(accuracy(1), expected);
-    let sides = layouts.summary.iter().map(|(cell, _)| (cell.nx, cell.ny));
+    let sides = layouts
+        .summary
+        .iter()
+        .map(|(configuration, _)| (configuration.nx, configuration.ny));
     let sides: Vec<_> = sides.collect();
     assert_eq!(sides[1..3], [(8, 8), (7, 9)]);
     assert_eq!(sides[4], (8, 8));

@@ -205,8 +205,8 @@ fn touches_that_memory_cannot_hold_are_refused_before_any_is_drawn() {
     }
 }
 
-/// Cells of so many values on each of three axes, in as many groups as cells of two of them.
-fn cells(values: [usize; 3]) -> String {
+/// Cells of so many values on each of three axes, in as many groups as configurations of two of them.
+fn configurations(values: [usize; 3]) -> String {
     let [noise, smoothing, ratio] = values.map(|n| {
         let values: Vec<String> = (1..=n)
             .map(|k| format!("{}", 1.0 + k as f64 / 64.0))
@@ -224,14 +224,14 @@ fn cells(values: [usize; 3]) -> String {
 fn a_study_is_planned_in_time_that_grows_as_its_cells_do_and_more_than_a_million_are_refused() {
     let case = Case::new();
     // Ratios near 1 name few different m of 64 taxels.
-    case.file("large.toml", cells([250, 200, 1]));
+    case.file("large.toml", configurations([250, 200, 1]));
     let start = Instant::now();
     let (said, _) = case.succeeds(&["plan", "large.toml"]);
     assert!(said.contains("50001, of 50000 configurations"), "{said}");
-    // With every group counting all cells before it, minutes.
+    // With every group counting all configurations before it, minutes.
     assert!(start.elapsed() < Duration::from_secs(20));
-    case.file("huge.toml", cells([1000, 1001, 1]));
-    case.file("endless.toml", cells([10_000, 10_000, 30]));
+    case.file("huge.toml", configurations([1000, 1001, 1]));
+    case.file("endless.toml", configurations([10_000, 10_000, 30]));
     for command in ["plan", "run"] {
         let huge = ["huge.toml: 1001000 configurations", "at most 1000000"];
         assert_refused_at_once(&case, &[command, "huge.toml"], &huge);

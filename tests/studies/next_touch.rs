@@ -12,7 +12,7 @@ use bubbletouch::recognition::evaluation::next_touch::{
 };
 use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
-use bubbletouch::study::table::Cell;
+use bubbletouch::study::table::Configuration;
 use ndarray::{Array2, Axis};
 use std::f64::consts::TAU;
 
@@ -74,8 +74,12 @@ fn with(keys: &str) -> String {
     format!("{STUDY}{keys}\n")
 }
 
-/// Decisions of a cell, each after one touch after the other.
-fn n_correct_by_hand(study: &Study, set: &FeatureSet, (cell, trial): (&Cell, usize)) -> usize {
+/// Decisions of a configuration, each after one touch after the other.
+fn n_correct_by_hand(
+    study: &Study,
+    set: &FeatureSet,
+    (configuration, trial): (&Configuration, usize),
+) -> usize {
     let classifier = Classifier {
         c: Cost::Fixed(1.0),
         ..Classifier::new(ClassifierKind::LinearSvm)
@@ -115,18 +119,22 @@ fn n_correct_by_hand(study: &Study, set: &FeatureSet, (cell, trial): (&Cell, usi
         places.iter().map(|&place| set.split.test[place]).collect()
     };
     let seed = Seed::new(2018)
-        .named("fused_touches")
+        .named("touches_per_decision")
         .numbered(trial as u64);
-    let fused = fuse_rows(test.targets.view(), cell.fused_touches, &seed);
+    let fused = fuse_rows(
+        test.targets.view(),
+        configuration.touches_per_decision,
+        &seed,
+    );
     let mut n_correct = 0;
     for group in &fused.groups {
         let object = test.targets[group[0]];
         let mut made = vec![group[0]];
-        while made.len() < cell.fused_touches {
+        while made.len() < configuration.touches_per_decision {
             let all = 0..test.targets.len();
             let left = all.filter(|place| test.targets[*place] == object && !made.contains(place));
             let left: Vec<usize> = left.collect();
-            let next = match cell.next_touch.unwrap() {
+            let next = match configuration.next_touch.unwrap() {
                 NextTouch::Random => group[made.len()],
                 NextTouch::Farthest => left[poses.farthest(&numbers(&made), &numbers(&left))],
                 NextTouch::MostInformative => left[most_informative((&at, &answers), &made, &left)],
@@ -156,17 +164,17 @@ fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
     // One touch has no next.
     assert_eq!(tables.accuracy.len(), 2 * (1 + 3 + 3));
     let mut found = Vec::new();
-    for (cell, score) in &tables.accuracy {
-        let by_hand = n_correct_by_hand(&study, &sets[score.trial], (cell, score.trial));
-        assert_eq!(score.n_correct, by_hand, "{cell:?}");
-        assert_eq!(score.n_test, 72 / cell.fused_touches);
+    for (configuration, score) in &tables.accuracy {
+        let by_hand = n_correct_by_hand(&study, &sets[score.trial], (configuration, score.trial));
+        assert_eq!(score.n_correct, by_hand, "{configuration:?}");
+        assert_eq!(score.n_test, 72 / configuration.touches_per_decision);
         found.push(score.n_correct);
     }
     println!("{found:?}");
-    let random = |cells: &[usize]| {
-        cells
+    let random = |configurations: &[usize]| {
+        configurations
             .iter()
-            .map(|cell| &found[2 * cell..][..2])
+            .map(|configuration| &found[2 * configuration..][..2])
             .collect::<Vec<_>>()
     };
     assert_ne!(random(&[1, 4]), random(&[2, 5]));
@@ -175,19 +183,19 @@ fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
 
 #[test]
 fn random_is_what_a_study_without_the_key_does_and_neither_changes_beside_others() {
-    let without = Study::new(&with("fused_touches = [1, 3]")).run();
+    let without = Study::new(&with("touches_per_decision = [1, 3]")).run();
     let random = Study::new(&with("next_touch = \"random\"\nfused_touches = [1, 3]")).run();
     let among = Study::new(&with(&format!(
         "{ALL}\nfused_touches = [1, 3]\nc = [0.1, 1.0]"
     )))
     .run();
-    for (cell, score) in &without.accuracy {
-        let named = Cell {
+    for (configuration, score) in &without.accuracy {
+        let named = Configuration {
             next_touch: Some(NextTouch::Random),
-            ..cell.clone()
+            ..configuration.clone()
         };
         assert!(trials_of(&random, &named).contains(&score));
-        let named = Cell {
+        let named = Configuration {
             c: Some(1.0),
             ..named
         };
@@ -202,7 +210,7 @@ fn a_choice_that_cannot_be_made_is_refused_by_its_key() {
     for (text, said) in [
         (
             with(ALL),
-            "key recognition.next_touch: \"farthest\" beside recognition.fused_touches = 1",
+            "key recognition.next_touch: \"farthest\" beside recognition.touches_per_decision = 1",
         ),
         (
             with(&fused).replace("[touches]", "[touches]\nrest = \"stable\""),
@@ -214,7 +222,7 @@ fn a_choice_that_cannot_be_made_is_refused_by_its_key() {
         ),
         (
             with(&format!("{fused}train_touches = 4")),
-            "key recognition.choose_folds: 5; at most 4",
+            "key recognition.cv_folds: 5; at most 4",
         ),
         (
             with("next_touch = [\"random\", \"random\"]"),
@@ -225,8 +233,8 @@ fn a_choice_that_cannot_be_made_is_refused_by_its_key() {
             "unknown variant `nearest`",
         ),
         (
-            with("choose_folds = 3"),
-            "key recognition.choose_folds: 3, but nothing is chosen by folds",
+            with("cv_folds = 3"),
+            "key recognition.cv_folds: 3, but nothing is chosen by folds",
         ),
         (
             HUMAN.to_owned() + &recorded,

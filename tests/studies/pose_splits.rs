@@ -171,8 +171,8 @@ fn a_split_that_poses_cannot_make_is_refused() {
             "key recognition.split: one depth; at least two",
         ),
         (
-            with_split("unseen_tilt") + "keep_together = \"yaw\"\n",
-            "key recognition.keep_together: given beside split = \"unseen_tilt\"",
+            with_split("unseen_tilt") + "group_by = \"yaw\"\n",
+            "key recognition.group_by: given beside split = \"unseen_tilt\"",
         ),
         (
             with_split("unseen_tilt") + "test_fraction = 0.5\n",
@@ -270,14 +270,14 @@ fn the_interval_of_poses_held_out_comes_from_them_and_not_from_touches() {
 
 #[test]
 fn groups_kept_together_count_once_however_many_touches_are_decided_on_together() {
-    let keys = "keep_together = \"yaw\"\ntest_fraction = 0.4\nfused_touches = [1, 3]\n";
+    let keys = "group_by = \"yaw\"\ntest_fraction = 0.4\nfused_touches = [1, 3]\n";
     let tables = run(&format!("{STUDY}{keys}"));
-    for (cell, score) in &tables.accuracy {
-        assert_eq!(score.n_groups, Some(2), "{cell:?}");
+    for (configuration, score) in &tables.accuracy {
+        assert_eq!(score.n_groups, Some(2), "{configuration:?}");
     }
-    for (cell, score) in &tables.summary {
+    for (configuration, score) in &tables.summary {
         assert_eq!(score.n_groups, Some(5), "all yaws are tested in some trial");
         assert!(score.accuracy_low <= score.accuracy && score.accuracy <= score.accuracy_high);
-        assert!(score.accuracy_low > 0.0, "{cell:?}: {score:?}");
+        assert!(score.accuracy_low > 0.0, "{configuration:?}: {score:?}");
     }
 }

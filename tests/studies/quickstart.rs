@@ -27,7 +27,7 @@ fn the_quickstart_still_gives_its_committed_results() {
     let computed = Study::new(&text).run().accuracy;
     let committed: Vec<TrialScore> = committed.into_iter().filter(|s| s.trial == 0).collect();
     assert_eq!(computed.len(), committed.len());
-    for ((cell, score), old) in computed.iter().zip(&committed) {
+    for ((configuration, score), old) in computed.iter().zip(&committed) {
         assert_eq!(
             (score.trial, score.n_train, score.n_test),
             (old.trial, old.n_train, old.n_test)
@@ -35,8 +35,8 @@ fn the_quickstart_still_gives_its_committed_results() {
         // Processors round differently, which can turn a row that is close to two objects.
         assert!(
             score.n_correct.abs_diff(old.n_correct) <= 1,
-            "cell {} trial {}: {} of {} are correct, {} were",
-            cell.cell,
+            "configuration {} trial {}: {} of {} are correct, {} were",
+            configuration.configuration,
             score.trial,
             score.n_correct,
             score.n_test,

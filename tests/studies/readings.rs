@@ -59,7 +59,7 @@ fn n_correct(text: &str) -> Vec<usize> {
 
 #[test]
 fn readings_differ_by_their_noise_alone_and_only_training_learns_of_them() {
-    let (once, thrice) = (features(STUDY), features(&with("training_readings = 3")));
+    let (once, thrice) = (features(STUDY), features(&with("readings_per_touch = 3")));
     let n = once.data.targets.len();
     let reading = |k: usize| {
         thrice
@@ -89,7 +89,7 @@ fn readings_differ_by_their_noise_alone_and_only_training_learns_of_them() {
 #[test]
 fn a_run_learns_all_readings_and_is_tested_on_one() {
     let trials = |text: &str| text.replace("trials = 1", "trials = 5");
-    let text = trials(&with("training_readings = 4"));
+    let text = trials(&with("readings_per_touch = 4"));
     let study = laid_out(&text).unwrap();
     let by_hand = (0..5).map(|trial| {
         let set = study.first().features((0, trial), &Silent).unwrap();
@@ -111,7 +111,7 @@ fn a_run_learns_all_readings_and_is_tested_on_one() {
 #[test]
 fn without_noise_a_touch_is_learned_once() {
     let silent = |text: &str| text.replace("full_scale = 0.1", "full_scale = 0.0");
-    let (once, twice) = (silent(STUDY), silent(&with("training_readings = 2")));
+    let (once, twice) = (silent(STUDY), silent(&with("readings_per_touch = 2")));
     assert_eq!(features(&twice).data, features(&once).data);
     assert_eq!(features(&once).data.records.len_of(Axis(0)), 120);
 }
@@ -138,7 +138,7 @@ fn tilted_copies_come_after_all_readings_and_are_of_the_first() {
 #[test]
 fn readings_and_copies_are_of_the_group_of_their_touch() {
     let keys = "features = \"descriptors\"\ntilted_copies = 2\ntraining_readings = 2\n\
-                keep_together = \"yaw\"\nkeep_together_deg = 12.0";
+                group_by = \"yaw\"\nkeep_together_deg = 12.0";
     let study = laid_out(&with(keys)).unwrap();
     let keys = study.first().sweep.group_keys.as_ref().unwrap();
     let set = study.first().features((0, 0), &Silent).unwrap();
@@ -160,26 +160,26 @@ fn readings_and_copies_are_of_the_group_of_their_touch() {
 #[test]
 fn a_choice_of_c_sees_first_readings_alone() {
     let choose =
-        |keys: &str| STUDY.replace("c = 0.1", &format!("choose_c = [0.001, 0.1, 10.0]\n{keys}"));
+        |keys: &str| STUDY.replace("c = 0.1", &format!("c_grid = [0.001, 0.1, 10.0]\n{keys}"));
     let chosen = |keys: &str| {
         let tables = laid_out(&choose(keys)).unwrap().run(&Silent).unwrap();
         tables.accuracy[0].1.c_used
     };
-    assert_eq!(chosen("training_readings = 5"), chosen(""));
+    assert_eq!(chosen("readings_per_touch = 5"), chosen(""));
 }
 
 #[test]
 fn readings_that_cannot_be_are_refused() {
     for (keys, allowed) in [
-        ("training_readings = 0", "at least 1 and at most 100"),
-        ("training_readings = 101", "at most 100"),
+        ("readings_per_touch = 0", "at least 1 and at most 100"),
+        ("readings_per_touch = 101", "at most 100"),
     ] {
         let said = laid_out(&with(keys))
             .err()
             .expect("it is refused")
             .to_string();
         assert!(
-            said.contains("recognition.training_readings") && said.contains(allowed),
+            said.contains("recognition.readings_per_touch") && said.contains(allowed),
             "{said}"
         );
     }

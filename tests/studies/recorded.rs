@@ -146,12 +146,12 @@ fn an_array_of_any_sides_is_measured_by_every_ensemble() {
     let study = laid_out(&recorded(case.folder(), "", &rest)).unwrap();
     let tables = study.run(&Silent).unwrap();
     assert_eq!(tables.summary.len(), 6);
-    for (cell, summary) in &tables.summary {
-        assert_eq!((cell.nx, cell.ny), (12, 7));
+    for (configuration, summary) in &tables.summary {
+        assert_eq!((configuration.nx, configuration.ny), (12, 7));
         assert!(
             summary.accuracy > 0.7,
             "{:?}: {}",
-            cell.ensemble,
+            configuration.ensemble,
             summary.accuracy
         );
     }
@@ -200,7 +200,7 @@ fn what_does_not_fit_is_refused_by_its_name() {
         "[touches]\ndepth_mm = 1.0",
         "key recorded: beside [objects]",
     );
-    let grouped = REST.replace("classifier", "keep_together = \"pose\"\nclassifier");
+    let grouped = REST.replace("classifier", "group_by = \"pose\"\nclassifier");
     assert!(said("", &grouped).contains("recorded.groups says"));
     let sided = recorded(folder, "", REST).replace("stroke_mm", "taxels = 4\nstroke_mm");
     let sided = laid_out(&sided).err().unwrap().to_string();

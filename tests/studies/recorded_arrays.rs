@@ -157,8 +157,8 @@ fn frames_of_every_type_and_file_are_the_same_touches() {
     case.file("fortran.npy", npy("<f8", true, &shape, &fortran));
     let mut table = String::from("# a comment\n");
     for frame in frames.outer_iter() {
-        let cells: Vec<String> = frame.iter().map(f64::to_string).collect();
-        table += &(cells.join(",") + "\n");
+        let configurations: Vec<String> = frame.iter().map(f64::to_string).collect();
+        table += &(configurations.join(",") + "\n");
     }
     case.file("frames.csv", &table);
     let names: Vec<String> = (0..64).map(|taxel| format!("taxel {taxel}")).collect();
@@ -346,8 +346,8 @@ fn each_taxel_may_rest_at_a_reading_of_its_own() {
     let list = zeros.iter().copied().collect::<ndarray::Array1<f64>>();
     write_npy(&case.path("list.npy"), &list).unwrap();
     let rows = zeros.outer_iter().map(|row| {
-        let cells: Vec<String> = row.iter().map(f64::to_string).collect();
-        cells.join(",") + "\n"
+        let configurations: Vec<String> = row.iter().map(f64::to_string).collect();
+        configurations.join(",") + "\n"
     });
     std::fs::write(case.path("zero.csv"), rows.collect::<String>()).unwrap();
     assert_eq!(scores(&with("list.npy")), usual);
@@ -403,8 +403,8 @@ fn clipped_readings_are_saturated_and_others_are_not() {
     let saturated = |name: &str, more: &str| {
         let study = study(&(keys(folder, name, "labels.npy") + more)).unwrap();
         let limits = study.run(&Silent).unwrap().limits;
-        assert_eq!(limits[1].what, "touches with a saturated taxel");
-        (limits[1].count, limits[1].of)
+        assert_eq!(limits[1].limit, "touches with a saturated taxel");
+        (limits[1].count, limits[1].total)
     };
     let reaches = |level: f64| {
         let frames = frames();
@@ -463,7 +463,7 @@ fn a_taxel_that_is_often_nan_is_masked_and_another_is_refused_with_the_rule() {
         let limits = found.run(&Silent).unwrap().limits;
         let last = limits.last().unwrap();
         assert_eq!(
-            (&last.what[..], last.count, last.of),
+            (&last.limit[..], last.count, last.total),
             ("taxels that are masked", 1, 64)
         );
         // Zeros there give the same touches.

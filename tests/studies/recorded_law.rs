@@ -127,7 +127,7 @@ fn recorded_human_touches_give_the_results_of_the_simulated_ones() {
     is_the_same(
         HUMAN,
         skin,
-        &format!("{signal}{LEARNED}over_time = [\"deepest\", \"course\"]\n"),
+        &format!("{signal}{LEARNED}temporal_features = [\"deepest\", \"course\"]\n"),
     );
 }
 

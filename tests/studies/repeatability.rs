@@ -1,4 +1,4 @@
-//! What a study's tables depend on: its text and its seed; not other cells, not other objects.
+//! What a study's tables depend on: its text and its seed; not other configurations, not other objects.
 
 use crate::command::Case;
 use crate::kinds::Kind;
@@ -29,9 +29,9 @@ fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_i
     }
 }
 
-/// One cell an ensemble; the axes of `ENSEMBLE` and below are then widened.
+/// One configuration an ensemble; the axes of `ENSEMBLE` and below are then widened.
 const NARROW: &str = r#"
-question = "What does a cell depend on?"
+question = "What does a configuration depend on?"
 trials = 2
 
 [objects]
@@ -90,8 +90,8 @@ fn a_cell_does_not_depend_on_the_other_cells_of_its_study() {
         let among = Study::new(&wide).run();
         assert_eq!(alone.accuracy.len(), 2);
         assert!(among.accuracy.len() > 100);
-        let cell = &alone.accuracy[0].0;
-        let trials = trials_of(&among, cell);
+        let configuration = &alone.accuracy[0].0;
+        let trials = trials_of(&among, configuration);
         let expected: Vec<_> = alone.accuracy.iter().map(|(_, s)| s).collect();
         assert_eq!(trials, expected, "{ensemble}");
     }

@@ -52,7 +52,7 @@ fn with(old: &str, new: &str) -> String {
     text
 }
 
-/// What a study of one cell gives its classifier: touches × numbers of a frame.
+/// What a study of one configuration gives its classifier: touches × numbers of a frame.
 fn read(text: &str) -> Array2<f64> {
     let study = laid_out(text).unwrap();
     let features = study.first().features((0, 0), &Silent).unwrap();
@@ -169,11 +169,14 @@ fn what_is_sensed_is_an_axis() {
         .replace("ensemble = \"identity\"", "measurements = 16")
         + "[axes]\n\"skin.sensed\" = [\"deflection\", \"force\", \"shear\"]\n";
     let tables = laid_out(&text).unwrap().run(&Silent).unwrap();
-    let ratios = tables.summary.iter().map(|(cell, _)| cell.ratio);
+    let ratios = tables
+        .summary
+        .iter()
+        .map(|(configuration, _)| configuration.ratio);
     assert_eq!(ratios.collect::<Vec<_>>(), [4.0, 4.0, 12.0]);
     let scores = |number: usize| {
         let rows = tables.accuracy.iter();
-        let rows = rows.filter(|(cell, _)| cell.variant.number == number);
+        let rows = rows.filter(|(configuration, _)| configuration.variant.number == number);
         rows.map(|(_, score)| score.n_correct).collect::<Vec<_>>()
     };
     // A force is the deflection in another unit.

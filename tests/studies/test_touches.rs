@@ -64,7 +64,7 @@ fn accuracies(tables: &Tables) -> Vec<f64> {
     rows.map(|(_, score)| score.accuracy).collect()
 }
 
-/// Rows of features that a cell's classifier trains on and is tested with.
+/// Rows of features that a configuration's classifier trains on and is tested with.
 fn rows(text: &str) -> [Vec<f64>; 2] {
     let study = study::laid_out(text).unwrap();
     let set = study.first().features((0, 1), &Silent).unwrap();
@@ -217,8 +217,8 @@ combine = "one_at_a_time"
 #[test]
 fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
     let study = study::laid_out(&base(ONE_AT_A_TIME)).unwrap();
-    let settings = study.all_cells().map(|cell| {
-        let values = cell.variant.values.iter();
+    let settings = study.all_cells().map(|configuration| {
+        let values = configuration.variant.values.iter();
         let names: Vec<&str> = values.clone().map(|v| v.column.name.as_ref()).collect();
         // The noise has a column of its own already.
         assert_eq!(names, ["test_offset_xy_mm", "depth_mm"]);
@@ -227,7 +227,7 @@ fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
             value.as_float().or(value.as_integer().map(|n| n as f64))
         };
         let values: Vec<Option<f64>> = values.map(|v| number(&v.value)).collect();
-        (cell.noise_std, values[0], values[1])
+        (configuration.noise_std, values[0], values[1])
     });
     let settings: Vec<_> = settings.collect();
     // A value that the study has already is not run twice.
@@ -322,7 +322,8 @@ fn what_test_touches_cannot_have_is_refused_by_its_key() {
         let said = refused(&base(&format!("[test]\n{test}")));
         assert!(said.contains(wanted), "{said}\nis not\n{wanted}");
     }
-    let chosen = "fused_touches = 2\nnext_touch = \"farthest\"\n[test]\ntouches.depth_mm = 1.0";
+    let chosen =
+        "touches_per_decision = 2\nnext_touch = \"farthest\"\n[test]\ntouches.depth_mm = 1.0";
     let said = refused(&base(chosen));
     assert!(
         said.contains("key test.touches: given where touches are chosen"),

@@ -3,7 +3,7 @@
 use crate::study::Study;
 use bubbletouch::report::folder::{table_files, write_files};
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
-use bubbletouch::study::table::{Cell, PStatus, Source, Tables, TrialScore, Variance};
+use bubbletouch::study::table::{Configuration, PStatus, Source, Tables, TrialScore, Variance};
 use bubbletouch::study::{Plan, StudySpec};
 use std::path::Path;
 
@@ -44,15 +44,16 @@ classifier = "linear_svm"
     )
 }
 
-fn row(outcome: &Tables, cell: usize, source: Source) -> &Variance {
+fn row(outcome: &Tables, configuration: usize, source: Source) -> &Variance {
     let mut rows = outcome.variance.iter();
-    rows.find(|row| row.cell == cell && row.source == source)
+    rows.find(|row| row.configuration == configuration && row.source == source)
         .unwrap()
 }
 
-fn trials(outcome: &Tables, cell: usize) -> Vec<&TrialScore> {
+fn trials(outcome: &Tables, configuration: usize) -> Vec<&TrialScore> {
     let rows = outcome.accuracy.iter();
-    let of_cell = rows.filter(|(row, _): &&(Cell, TrialScore)| row.cell == cell);
+    let of_cell =
+        rows.filter(|(row, _): &&(Configuration, TrialScore)| row.configuration == configuration);
     of_cell.map(|(_, score)| score).collect()
 }
 
@@ -75,14 +76,14 @@ fn without_noise_all_that_varies_is_the_split_unless_a_projection_is_drawn() {
         row(&outcome, 0, Source::Rest),
     );
     assert!(
-        split.accuracy_std > 0.0 && split.share.unwrap() > 1.0 - 1e-9,
+        split.accuracy_std > 0.0 && split.fraction.unwrap() > 1.0 - 1e-9,
         "{split:?}"
     );
     assert!(rest.accuracy_std < 1e-9, "{rest:?}");
     assert!(row(&outcome, 0, Source::Projection).accuracy_std < 1e-9);
     // Eight random measurements: which ones matters.
     let shares: f64 = [Source::Split, Source::Projection, Source::Rest]
-        .map(|source| row(&outcome, 1, source).share.unwrap())
+        .map(|source| row(&outcome, 1, source).fraction.unwrap())
         .iter()
         .sum();
     assert!((shares - 1.0).abs() < 1e-12);
@@ -108,8 +109,8 @@ fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_o
     }
     let (crossed, own) = (crossed.run(), own.run());
     let numbers = |trial: &TrialScore| (trial.split.unwrap(), trial.projection.unwrap());
-    for cell in 0..2 {
-        let (trials, own) = (trials(&crossed, cell), trials(&own, cell));
+    for configuration in 0..2 {
+        let (trials, own) = (trials(&crossed, configuration), trials(&own, configuration));
         let met: Vec<_> = trials.iter().map(|trial| numbers(trial)).collect();
         assert_eq!(met, [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)]);
         assert_eq!((own[0].split, own[0].projection), (None, None));
@@ -120,7 +121,9 @@ fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_o
     }
     // Two splits and three projections are few: an interval, but no p-value below four splits.
     let compared = crossed.comparison.iter();
-    let compared: Vec<_> = compared.filter(|row| row.cell != row.best_cell).collect();
+    let compared: Vec<_> = compared
+        .filter(|row| row.configuration != row.best_configuration)
+        .collect();
     assert_eq!(compared.len(), 1);
     assert!(compared[0].difference_low.is_some() && compared[0].p_value.is_none());
     assert_eq!(compared[0].p_status, PStatus::TooFewTrials);

@@ -45,7 +45,8 @@ pub fn differences_page(
     (found, ranks, entries): (&[ColumnDifferences], Option<&RankAgreement>, &[String]),
     (first, second): (&str, &str),
 ) -> Result<String> {
-    let note = format!("First: {first}; second: {second}. What moved most surely comes first.");
+    let note =
+        format!("First: {first}; second: {second}. The most significant differences come first.");
     let about = StudyAbout {
         name: format!("{first} and {second}"),
         program: PROGRAM.to_owned(),
@@ -89,7 +90,7 @@ fn chart(
     ChartSpec {
         note: format!("Up: {second}. Across: {first}. Each point is a setting of {table}."),
         shown: vec![shown("table", table), shown("column", column)],
-        lines: vec!["moved".to_owned()],
+        lines: vec!["significance".to_owned()],
         mark: Mark::Points,
         rules: vec![Rule {
             along: Along::Y,
@@ -118,7 +119,10 @@ fn table<'a>(
     rows.sort_by(|a, b| {
         let p = |row: &Difference| row.p_holm.unwrap_or(1.0);
         let size = |row: &Difference| row.difference.abs() / row.first.abs().max(row.second.abs());
-        let by_p = a.moved.cmp(&b.moved).then(p(a).total_cmp(&p(b)));
+        let by_p = a
+            .significance
+            .cmp(&b.significance)
+            .then(p(a).total_cmp(&p(b)));
         by_p.then(size(b).total_cmp(&size(a)))
     });
     file.table(&rows)
@@ -270,15 +274,19 @@ fn value_words(one: &ColumnDifferences) -> Vec<String> {
         "{}: {n_same} the same, {better} {} in the second, {worse} {}.",
         one.column.words, words[0], words[1]
     );
-    let [better, worse] = one.counts(|row| row.moved == Significance::Surely);
+    let [better, worse] = one.counts(|row| row.significance == Significance::Significant);
     let surely = format!(
         "More than chance explains: {better} {}, {worse} {}",
         words[0], words[1]
     );
     let rows = || one.rows.iter();
     let n_tested = rows().filter(|row| row.p_holm.is_some()).count();
-    let has_intervals =
-        rows().any(|row| matches!(row.moved, Significance::Surely | Significance::ByChance));
+    let has_intervals = rows().any(|row| {
+        matches!(
+            row.significance,
+            Significance::Significant | Significance::NotSignificant
+        )
+    });
     let too_few = rows().find(|row| row.p_status == Some(PStatus::TooFewTrials));
     let needed =
         too_few.and_then(|row| Some((counted(row.n_trials, "trial"), row.n_trials_needed?)));

@@ -20,19 +20,19 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 #[serde(rename_all = "snake_case")]
 pub enum Significance {
     /// Significant: p < 0.05 after correction, or the intervals are disjoint.
-    Surely,
+    Significant,
     /// Not tested: there are no intervals, and no trials or too few.
     Untested,
     /// Not significant: chance explains the difference.
-    ByChance,
+    NotSignificant,
     /// No difference: both values are equal.
     Same,
 }
 
-const MOVED: &[(&str, &str)] = &[
-    ("surely", "more than chance explains"),
+const SIGNIFICANCE: &[(&str, &str)] = &[
+    ("significant", "more than chance explains"),
     ("untested", "not tested"),
-    ("by_chance", "chance explains it"),
+    ("not_significant", "chance explains it"),
     ("same", "none"),
 ];
 
@@ -60,7 +60,7 @@ pub struct Difference {
     /// Upper end of the 95 % confidence interval of the difference; absent if trials are not paired.
     difference_high: Option<f64> => Note "95 % interval, upper end": Linear;
     /// Significance of the difference between both folders.
-    moved: Significance => Outcome "difference" named MOVED;
+    significance: Significance => Outcome "difference" named SIGNIFICANCE;
     /// Two-sided p-value of the hypothesis of no difference; absent if there are too few trials.
     p_value: Option<f64> => Note "p-value": Linear;
     /// The p-value after Holm's correction for all settings of the column.
@@ -140,7 +140,7 @@ impl<'a> Settings<'a> {
         let groups = Setting::groups(&columns, table, &all);
         let is_repeated = table.place("trial").is_some();
         let is_told_apart = is_repeated || groups.len() == table.n_rows;
-        let has_cells = columns.iter().any(|one| one.column.name == "cell");
+        let has_cells = columns.iter().any(|one| one.column.name == "configuration");
         let is_known = !columns.is_empty() && !has_cells && is_told_apart;
         is_known.then_some(Self {
             table,
@@ -198,7 +198,8 @@ impl<'a> Settings<'a> {
         Some(TrialSize {
             n_train: self.count("n_train", row)?,
             // The overlap of trials is counted in touches; a decision can use several touches.
-            n_test: self.count("n_test", row)? * self.count("fused_touches", row).unwrap_or(1),
+            n_test: self.count("n_test", row)?
+                * self.count("touches_per_decision", row).unwrap_or(1),
         })
     }
 }
@@ -217,8 +218,8 @@ fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<Col
     let p_values: Vec<Option<f64>> = rows.iter().map(|row| row.p_value).collect();
     for (row, p_holm) in rows.iter_mut().zip(holm_of_some(&p_values)) {
         row.p_holm = p_holm;
-        if let Some(p) = p_holm.filter(|_| row.moved != Significance::Same) {
-            row.moved = explained(p >= 1.0 - CONFIDENCE);
+        if let Some(p) = p_holm.filter(|_| row.significance != Significance::Same) {
+            row.significance = explained(p >= 1.0 - CONFIDENCE);
         }
     }
     Ok(ColumnDifferences {
@@ -232,8 +233,8 @@ fn of_column(column: &Column, first: &Settings, second: &Settings) -> Result<Col
 
 fn explained(is_by_chance: bool) -> Significance {
     match is_by_chance {
-        true => Significance::ByChance,
-        false => Significance::Surely,
+        true => Significance::NotSignificant,
+        false => Significance::Significant,
     }
 }
 
@@ -277,7 +278,7 @@ fn of_setting(
         difference: ours_mean - theirs_mean,
         difference_low: interval.map(|interval| interval.low),
         difference_high: interval.map(|interval| interval.high),
-        moved: match intervals {
+        significance: match intervals {
             _ if ours_mean == theirs_mean => Significance::Same,
             // Intervals of single trials do not apply to the means over trials.
             Some(([low, high], [from, to])) if !first.is_repeated && !second.is_repeated => {

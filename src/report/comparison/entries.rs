@@ -8,7 +8,7 @@ use crate::table::{Column, Role, Table, Value};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Columns whose numbers name configurations. Another run can number the configurations differently.
-const CONFIGURATION_NUMBERS: [&str; 2] = ["cell", "best_cell"];
+const CONFIGURATION_NUMBERS: [&str; 2] = ["configuration", "best_configuration"];
 
 /// Roles of the columns that distinguish rows.
 const KEY_ROLES: [Role; 3] = [Role::Choice, Role::Condition, Role::Subject];
@@ -78,7 +78,7 @@ fn configurations(tables: &[Table]) -> Configurations {
     let mut known = Configurations::new();
     let mut named = HashSet::new();
     for table in tables {
-        let Some((column, numbers)) = table.column("cell") else {
+        let Some((column, numbers)) = table.column("configuration") else {
             continue;
         };
         // In a table of configurations the number is a note beside their settings.

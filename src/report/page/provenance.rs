@@ -26,7 +26,10 @@ pub(crate) fn provenance_html(manifest: &Manifest) -> String {
             "Cells",
             format!(
                 "{} in {} trials; {} evaluations were finished before this run, {} failed",
-                manifest.n_cells, manifest.n_trials, manifest.n_finished_before, manifest.n_failed
+                manifest.n_configurations,
+                manifest.n_trials,
+                manifest.n_finished_before,
+                manifest.n_failed
             ),
         ),
         ("Seed", manifest.seed.to_string()),

@@ -40,7 +40,7 @@ impl<'a> Measured<'a> {
 
     /// Returns one row per model.
     fn rows<T>(&self, row: impl Fn(&Variant) -> T) -> Vec<(DetailCell, T)> {
-        let cell = |variant: &Variant| DetailCell {
+        let configuration = |variant: &Variant| DetailCell {
             object: self.mesh.name.clone(),
             method: variant.level.0,
             tolerance_mm: variant.level.1,
@@ -48,7 +48,7 @@ impl<'a> Measured<'a> {
         };
         let variants = self.variants.iter();
         variants
-            .map(|variant| (cell(variant), row(variant)))
+            .map(|variant| (configuration(variant), row(variant)))
             .collect()
     }
 
@@ -61,7 +61,7 @@ impl<'a> Measured<'a> {
         self.rows(|variant| DetailTime {
             us_per_touch: 1e6 * self.truth.seconds_per_touch(&variant.model),
             prepare_s: variant.prepare_s,
-            was_kept: variant.was_kept,
+            cached: variant.cached,
         })
     }
 

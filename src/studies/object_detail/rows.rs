@@ -65,7 +65,7 @@ pub struct DetailTime {
     /// Time to compute the model while other work runs on all threads, or to read a cached model, seconds.
     prepare_s: f64 => Cost "time to make the model" in "s": Log;
     /// Whether the model was cached by an earlier run.
-    was_kept: bool => Note "kept from a run before";
+    cached: bool => Note "kept from a run before";
 } }
 
 row! {

@@ -10,13 +10,13 @@ use crate::studies::object_detail::variants::Level;
 
 type Row = (DetailCell, DetailScore);
 
-fn level(cell: &DetailCell) -> Level {
-    (cell.method, cell.tolerance_mm)
+fn level(configuration: &DetailCell) -> Level {
+    (configuration.method, configuration.tolerance_mm)
 }
 
 /// Returns one row per method and tolerance, in the order of first occurrence.
 pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
-    let levels = grouped(rows, |(cell, _)| level(cell)).into_iter();
+    let levels = grouped(rows, |(configuration, _)| level(configuration)).into_iter();
     levels
         .map(|(level, of_level)| summary_row(level, &of_level, rows))
         .collect()
@@ -27,15 +27,16 @@ fn summary_row((method, tolerance_mm): Level, of_level: &[&Row], rows: &[Row]) -
         let mut values: Vec<f64> = of_level.iter().map(|row| value(row)).collect();
         [0.25, 0.5, 0.75, 1.0].map(|part| quantile(&mut values, part))
     };
-    let spheres = quartiles(&|(cell, _)| cell.n_spheres as f64);
+    let spheres = quartiles(&|(configuration, _)| configuration.n_spheres as f64);
     let surface = quartiles(&|(_, score)| score.surface_error_mm);
     let farthest = quartiles(&|(_, score)| score.protrusion_max_mm.max(score.gap_max_mm));
     let error = quartiles(&|(_, score)| score.error_mm);
     let after = quartiles(&|(_, score)| score.error_after_offset_mm);
     let own = quartiles(&|(_, score)| score.error_own_contact_mm);
-    let ratios = of_level.iter().filter_map(|(cell, score)| {
+    let ratios = of_level.iter().filter_map(|(configuration, score)| {
         let packing = rows.iter().find(|(other, _)| {
-            other.object == cell.object && level(other) == (DetailMethod::Packing, tolerance_mm)
+            other.object == configuration.object
+                && level(other) == (DetailMethod::Packing, tolerance_mm)
         })?;
         Some(score.error_after_offset_mm / packing.1.error_after_offset_mm)
     });
@@ -74,7 +75,9 @@ pub(super) fn costs(
 ) -> Vec<(DetailSummary, LevelTime)> {
     let cost = |row: &DetailSummary| {
         let of_level = (row.method, row.tolerance_mm);
-        let times = timing.iter().filter(|(cell, _)| level(cell) == of_level);
+        let times = timing
+            .iter()
+            .filter(|(configuration, _)| level(configuration) == of_level);
         let mut times: Vec<f64> = times.map(|(_, time)| time.us_per_touch).collect();
         let us_per_touch_median = quantile(&mut times, 0.5);
         (

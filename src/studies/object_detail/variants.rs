@@ -28,7 +28,7 @@ pub(super) struct Variant {
     /// Time to compute the model, seconds.
     pub prepare_s: f64,
     /// Whether the model was cached.
-    pub was_kept: bool,
+    pub cached: bool,
 }
 
 /// Returns all models of a mesh in the order of [`levels`]; the mesh is the first. Errors name `place`, the mesh's file.
@@ -49,13 +49,13 @@ pub(super) fn variants(
             packed = (tolerance_mm, pack(mm)?.spheres.spheres().len());
         }
         let start = Instant::now();
-        let (model, was_kept): (Model, bool) = match method {
+        let (model, cached): (Model, bool) = match method {
             DetailMethod::Mesh => (MeshModel::new(mesh.clone()).into(), false),
             DetailMethod::VertexSpheres => (vertex_spheres(place, mesh.vertices())?.into(), false),
             DetailMethod::Packing => {
                 let made = pack(mm)?;
                 packed = (tolerance_mm, made.spheres.spheres().len());
-                (made.spheres.into(), made.was_kept)
+                (made.spheres.into(), made.cached)
             }
             DetailMethod::DecimatedVertexSpheres => {
                 let chosen = evenly_chosen(mesh.vertices(), packed.1);
@@ -67,7 +67,7 @@ pub(super) fn variants(
             level: (method, tolerance_mm),
             model,
             prepare_s: start.elapsed().as_secs_f64(),
-            was_kept,
+            cached,
         });
     }
     Ok(found)

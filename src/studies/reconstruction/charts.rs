@@ -8,18 +8,21 @@ use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
 impl ReconstructionStudy {
     /// Returns charts for each noise level: error by measurements for each ensemble, then error against time.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let (cells, pareto) = (&tables[0], &tables[3]);
+        let (configurations, pareto) = (&tables[0], &tables[3]);
         let mut charts = Vec::new();
-        for of_level in cells.groups(&["noise_std"], 0..cells.n_rows) {
-            let ensembles = cells.groups(&["ensemble"], of_level.iter().copied());
+        for of_level in configurations.groups(&["noise_std"], 0..configurations.n_rows) {
+            let ensembles = configurations.groups(&["ensemble"], of_level.iter().copied());
             let compressed = ensembles
                 .iter()
-                .filter(|rows| cells.word("ensemble", rows[0]) != "identity");
-            charts.extend(compressed.map(|rows| by_measurements(cells, rows)));
-            let noise = noise_words(cells, of_level[0]);
-            let level = cells.number("noise_std", of_level[0]);
+                .filter(|rows| configurations.word("ensemble", rows[0]) != "identity");
+            charts.extend(compressed.map(|rows| by_measurements(configurations, rows)));
+            let noise = noise_words(configurations, of_level[0]);
+            let level = configurations.number("noise_std", of_level[0]);
             charts.push(ChartSpec {
-                shown: cells.shown("noise_std", of_level[0]).into_iter().collect(),
+                shown: configurations
+                    .shown("noise_std", of_level[0])
+                    .into_iter()
+                    .collect(),
                 lines: vec!["solver".to_owned()],
                 mark: Mark::Points,
                 front: true,
@@ -39,11 +42,11 @@ impl ReconstructionStudy {
 
     /// Returns answers for each noise level: the best configuration, and the fewest measurements with which a configuration is as good as full sampling.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
-        let (cells, timing) = (&tables[0], &tables[2]);
-        let error = |row: usize| cells.number("error", row);
-        let full = |row: usize| cells.number("full_sampling_error", row);
+        let (configurations, timing) = (&tables[0], &tables[2]);
+        let error = |row: usize| configurations.number("error", row);
+        let full = |row: usize| configurations.number("full_sampling_error", row);
         let mut sentences = Vec::new();
-        for rows in cells.groups(&["noise_std"], 0..cells.n_rows) {
+        for rows in configurations.groups(&["noise_std"], 0..configurations.n_rows) {
             let least = rows
                 .iter()
                 .copied()
@@ -51,24 +54,24 @@ impl ReconstructionStudy {
             sentences.extend(least.map(|row| {
                 format!(
                     "With {}: least error {:.3} ({}; {:.0} frames/s a core).",
-                    noise_words(cells, row),
+                    noise_words(configurations, row),
                     error(row),
-                    cell_words(cells, row),
+                    cell_words(configurations, row),
                     timing.number("frames_per_s_per_core", row)
                 )
             }));
             let as_good = rows.into_iter().filter(|&row| error(row) <= full(row));
-            let key = |row: usize| (cells.number("measurements", row), error(row));
+            let key = |row: usize| (configurations.number("measurements", row), error(row));
             let fewest =
                 as_good.min_by(|&a, &b| key(a).partial_cmp(&key(b)).expect("errors are numbers"));
             sentences.extend(fewest.map(|row| {
                 format!(
                     "As good as full sampling ({:.3}) from {} measurements ({:.0}:1): {:.3} ({}).",
                     full(row),
-                    cells.number("measurements", row),
-                    cells.number("ratio", row),
+                    configurations.number("measurements", row),
+                    configurations.number("ratio", row),
                     error(row),
-                    cell_words(cells, row)
+                    cell_words(configurations, row)
                 )
             }));
         }
@@ -77,24 +80,24 @@ impl ReconstructionStudy {
 }
 
 /// Returns a chart with a panel per dictionary and a line per solver; a rule shows the error of the noisy frame.
-fn by_measurements(cells: &Table, rows: &[usize]) -> ChartSpec {
+fn by_measurements(configurations: &Table, rows: &[usize]) -> ChartSpec {
     let (code, ensemble) = (
-        cells.word("ensemble", rows[0]),
-        cells.words("ensemble", rows[0]),
+        configurations.word("ensemble", rows[0]),
+        configurations.words("ensemble", rows[0]),
     );
-    let level = cells.number("noise_std", rows[0]);
-    let noise = noise_words(cells, rows[0]);
-    let full = cells.number("full_sampling_error", rows[0]);
+    let level = configurations.number("noise_std", rows[0]);
+    let noise = noise_words(configurations, rows[0]);
+    let full = configurations.number("full_sampling_error", rows[0]);
     let rule = Rule::at(Along::Y, full, "full sampling: the noisy frame itself");
     let shown = ["noise_std", "ensemble"].into_iter();
     ChartSpec {
         shown: shown
-            .filter_map(|column| cells.shown(column, rows[0]))
+            .filter_map(|column| configurations.shown(column, rows[0]))
             .collect(),
         lines: vec!["solver".to_owned()],
         panels: Some("dictionary".to_owned()),
         rules: (full > 0.0).then_some(rule).into_iter().collect(),
-        ..cells.chart(
+        ..configurations.chart(
             format!("error_{code}_noise_{level}"),
             format!("Error of reconstructed frames by measurements, {ensemble}, {noise}"),
             ("error", "measurements"),
@@ -103,9 +106,9 @@ fn by_measurements(cells: &Table, rows: &[usize]) -> ChartSpec {
 }
 
 /// Returns the noise of a configuration in words: `noise of 10 % of full scale`.
-pub(super) fn noise_words(cells: &Table, row: usize) -> String {
-    let level = cells.number("noise_std", row);
-    match (level, cells.word("noise_unit", row)) {
+pub(super) fn noise_words(configurations: &Table, row: usize) -> String {
+    let level = configurations.number("noise_std", row);
+    match (level, configurations.word("noise_unit", row)) {
         (0.0, _) => "no noise".to_owned(),
         (_, "full_scale") => format!("noise of {} % of full scale", short_number(100.0 * level)),
         (_, "n") => format!("noise of {} N", short_number(level)),
@@ -114,8 +117,8 @@ pub(super) fn noise_words(cells: &Table, row: usize) -> String {
 }
 
 /// Returns the settings of a configuration in words: `LMMSE, PCA, SBHE, m = 1024`.
-pub(super) fn cell_words(cells: &Table, row: usize) -> String {
+pub(super) fn cell_words(configurations: &Table, row: usize) -> String {
     let names = ["solver", "dictionary", "ensemble", "measurements"];
-    let [solver, dictionary, ensemble, m] = names.map(|column| cells.words(column, row));
+    let [solver, dictionary, ensemble, m] = names.map(|column| configurations.words(column, row));
     format!("{solver}, {dictionary}, {ensemble}, m = {m}")
 }

@@ -14,7 +14,10 @@ use ndarray::Array2;
 impl ReconstructionStudy {
     /// Returns the picture at the largest noise; empty without results.
     pub(super) fn sample_frames(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
-        let Some(cells) = tables.first().filter(|cells| cells.n_rows > 0) else {
+        let Some(configurations) = tables
+            .first()
+            .filter(|configurations| configurations.n_rows > 0)
+        else {
             return Ok(Vec::new());
         };
         let touches = self.frames(&Silent)?;
@@ -25,18 +28,22 @@ impl ReconstructionStudy {
         let Some(noisy) = loudest else {
             return Ok(Vec::new());
         };
-        let all = self.plan.cells();
-        let shown = shown_rows(cells, noisy.level);
+        let all = self.plan.configurations();
+        let shown = shown_rows(configurations, noisy.level);
         let read = touches.pick(&noisy.frames);
         let back = |&row: &usize| {
-            let cell = &all[cells.number("cell", row) as usize];
-            let dictionary = touches.dictionary(&self.plan, cell.dictionary)?;
-            let projection = self.plan.projection(cell.ensemble, cell.measurements)?;
+            let configuration = &all[configurations.number("configuration", row) as usize];
+            let dictionary = touches.dictionary(&self.plan, configuration.dictionary)?;
+            let projection = self
+                .plan
+                .projection(configuration.ensemble, configuration.measurements)?;
             let sensed = SensedDictionary::new(&projection, dictionary)?;
             let effort = &self.plan.spec.reconstruction.effort();
-            let reconstructor = Reconstructor::new(cell.solver, &sensed, effort, noisy.std)?;
+            let reconstructor =
+                Reconstructor::new(configuration.solver, &sensed, effort, noisy.std)?;
             let measured = projection.measure(read.view());
-            let [solver, m] = ["solver", "measurements"].map(|name| cells.words(name, row));
+            let [solver, m] =
+                ["solver", "measurements"].map(|name| configurations.words(name, row));
             let back = reconstructor.reconstruct(measured.view())?.frames;
             Ok((format!("{solver} of m = {m}"), back))
         };
@@ -55,8 +62,11 @@ impl ReconstructionStudy {
                 add(name.clone(), back);
             }
         }
-        let noise = noise_words(cells, shown.first().copied().unwrap_or(0));
-        let words: Vec<String> = shown.iter().map(|&row| cell_words(cells, row)).collect();
+        let noise = noise_words(configurations, shown.first().copied().unwrap_or(0));
+        let words: Vec<String> = shown
+            .iter()
+            .map(|&row| cell_words(configurations, row))
+            .collect();
         let picture = snapshots(&Snapshots {
             frames,
             pitch_mm: millimetres(self.plan.array.pitch()),
@@ -73,20 +83,20 @@ impl ReconstructionStudy {
 }
 
 /// Returns the best configuration at the m nearest to a quarter of the taxels, and at the fewest measurements.
-fn shown_rows(cells: &Table, level: f64) -> Vec<usize> {
-    let of_level: Vec<usize> = (0..cells.n_rows)
-        .filter(|&row| cells.number("noise_std", row) == level)
-        .filter(|&row| cells.word("ensemble", row) != "identity")
+fn shown_rows(configurations: &Table, level: f64) -> Vec<usize> {
+    let of_level: Vec<usize> = (0..configurations.n_rows)
+        .filter(|&row| configurations.number("noise_std", row) == level)
+        .filter(|&row| configurations.word("ensemble", row) != "identity")
         .collect();
     let least = |of: &dyn Fn(usize) -> f64| {
         let rows = of_level.iter().copied();
         rows.min_by(|&a, &b| of(a).total_cmp(&of(b)))
     };
-    let m = |row| cells.number("measurements", row);
-    let quarter = least(&|row| (cells.number("ratio", row) / 4.0).ln().abs());
+    let m = |row| configurations.number("measurements", row);
+    let quarter = least(&|row| (configurations.number("ratio", row) / 4.0).ln().abs());
     let best = |like: usize| {
         least(&|row| match m(row) == m(like) {
-            true => cells.number("error", row),
+            true => configurations.number("error", row),
             false => f64::INFINITY,
         })
     };

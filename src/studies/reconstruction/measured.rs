@@ -22,13 +22,13 @@ const BLOCK: usize = 64;
 /// Computes the pending configurations of one ensemble and m, given by index; dictionaries are computed when an item needs them.
 pub(super) fn measure_cells(
     (plan, touches): (&ReconstructionPlan, &Touches),
-    (group, cells): (usize, &[ReconstructionCell]),
+    (group, configurations): (usize, &[ReconstructionCell]),
     left: &PendingItems<ReconstructionRows>,
 ) -> Result<()> {
-    let first = &cells[0];
+    let first = &configurations[0];
     // In each group, the isometries of all dictionaries precede the configurations.
     let n_dictionaries = plan.dictionaries.len();
-    let isometries = first.cell + group * n_dictionaries;
+    let isometries = first.configuration + group * n_dictionaries;
     let projection = Shared::default();
     let projection = || projection.get(|| plan.projection(first.ensemble, first.measurements));
     let sensed = plan.of_each_dictionary();
@@ -42,17 +42,25 @@ pub(super) fn measure_cells(
             Ok((Vec::new(), statistics(plan, sense(basis)?)?))
         })
     })?;
-    let of_levels = cells.chunk_by(|a, b| a.noise_std == b.noise_std);
-    for (noisy, cells) in touches.noisy.iter().zip(of_levels) {
+    let of_levels = configurations.chunk_by(|a, b| a.noise_std == b.noise_std);
+    for (noisy, configurations) in touches.noisy.iter().zip(of_levels) {
         let measurements = Shared::default();
-        for cell in cells {
-            left.finish(cell.cell + (group + 1) * n_dictionaries, || {
-                let measure = || Ok(projection()?.measure(noisy.frames.view()));
-                let measurements = measurements.get(measure)?;
-                let sensed = sense(cell.dictionary)?;
-                let row = reconstruct((plan, touches), cell, sensed, (noisy, measurements))?;
-                Ok((vec![row], Vec::new()))
-            })?;
+        for configuration in configurations {
+            left.finish(
+                configuration.configuration + (group + 1) * n_dictionaries,
+                || {
+                    let measure = || Ok(projection()?.measure(noisy.frames.view()));
+                    let measurements = measurements.get(measure)?;
+                    let sensed = sense(configuration.dictionary)?;
+                    let row = reconstruct(
+                        (plan, touches),
+                        configuration,
+                        sensed,
+                        (noisy, measurements),
+                    )?;
+                    Ok((vec![row], Vec::new()))
+                },
+            )?;
         }
     }
     Ok(())
@@ -61,13 +69,13 @@ pub(super) fn measure_cells(
 /// Returns errors and times of a configuration.
 fn reconstruct(
     (plan, touches): (&ReconstructionPlan, &Touches),
-    cell: &ReconstructionCell,
+    configuration: &ReconstructionCell,
     sensed: &SensedDictionary,
     (noisy, measurements): (&Noisy, &Array2<f64>),
 ) -> Result<ReconstructionRow> {
     let start = Instant::now();
     let effort = &plan.spec.reconstruction.effort();
-    let reconstructor = Reconstructor::new(cell.solver, sensed, effort, noisy.std)?;
+    let reconstructor = Reconstructor::new(configuration.solver, sensed, effort, noisy.std)?;
     let prepare_s = start.elapsed().as_secs_f64();
     let clean = touches.test.axis_chunks_iter(Axis(0), BLOCK);
     let blocks = measurements.axis_chunks_iter(Axis(0), BLOCK);
@@ -85,16 +93,20 @@ fn reconstruct(
     let found = found.collect::<Result<Vec<Found>>>()?;
     let seconds: f64 = found.iter().map(|block| block.seconds).sum();
     let us_per_frame = 1e6 * seconds / measurements.nrows() as f64;
-    let cell = ReconstructionCell {
+    let configuration = ReconstructionCell {
         atoms: sensed.dictionary().n_atoms(),
-        ..cell.clone()
+        ..configuration.clone()
     };
     let time = ReconstructionTime {
         prepare_s,
         us_per_frame,
         frames_per_s_per_core: 1e6 / us_per_frame,
     };
-    Ok((cell, touches.truth.score(&found, &noisy.errors), time))
+    Ok((
+        configuration,
+        touches.truth.score(&found, &noisy.errors),
+        time,
+    ))
 }
 
 /// Returns the isometry statistics of a dictionary seen through a projection; one row per size of supports.

@@ -148,21 +148,21 @@ impl ReconstructionPlan {
     /// Returns the index of a dictionary in the plan.
     pub(super) fn place_of(&self, basis: Basis) -> usize {
         let place = self.dictionaries.iter().position(|&known| known == basis);
-        place.expect("cells have the dictionaries of their plan")
+        place.expect("configurations have the dictionaries of their plan")
     }
 
     /// Returns all configurations, ordered by ensemble and m. The numbers of atoms are set once dictionaries are computed.
-    pub fn cells(&self) -> Vec<ReconstructionCell> {
+    pub fn configurations(&self) -> Vec<ReconstructionCell> {
         let n_taxels = self.array.n_taxels() as f64;
-        let mut cells = Vec::new();
+        let mut configurations = Vec::new();
         nested! {
             ensemble in self.spec.sensing.ensemble.values();
             measurements in self.measurement_counts(ensemble);
             &noise_std in &self.noise;
             &dictionary in &self.dictionaries;
             solver in self.spec.reconstruction.solver.values();
-            cells.push(ReconstructionCell {
-                cell: cells.len(),
+            configurations.push(ReconstructionCell {
+                configuration: configurations.len(),
                 noise_std,
                 noise_unit: self.noise_unit,
                 ensemble,
@@ -173,7 +173,7 @@ impl ReconstructionPlan {
                 solver,
             })
         }
-        cells
+        configurations
     }
 }
 
@@ -181,9 +181,9 @@ impl Check<'_> {
     /// Checks that no step follows the noise. Solvers assume independent noise on every taxel and need a clean frame for comparison.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
         let refuse = |key, given: &str, allowed| Err(self.error(key, given, allowed));
-        if signal.tested_on.is_some() {
+        if signal.test_sensor.is_some() {
             let allowed = "no such key: only studies of recognition test on another skin";
-            return refuse("signal.tested_on", "given", allowed);
+            return refuse("signal.test_sensor", "given", allowed);
         }
         if signal.combine != CombineSpec::All {
             let allowed = "no such key: noise is the only axis of the signal, so that there is nothing to combine";

@@ -18,7 +18,7 @@ row! {
 /// One configuration: one value of every axis.
 pub struct ReconstructionCell {
     /// Number of the configuration, from 0.
-    cell: usize => Note: Linear;
+    configuration: usize => Note: Linear;
     /// Noise standard deviation on each taxel, in `noise_unit`.
     noise_std: f64 => Condition "noise": Linear;
     /// Unit of `noise_std`.

@@ -84,18 +84,20 @@ pub(super) fn pareto(
     rows: &[ReconstructionRow],
     levels: &[f64],
 ) -> Vec<(ReconstructionCell, ReconstructionPareto)> {
-    let row = |(cell, score, time): &ReconstructionRow| {
+    let row = |(configuration, score, time): &ReconstructionRow| {
         let row = ReconstructionPareto {
             error: score.error,
             us_per_frame: time.us_per_frame,
             frames_per_s_per_core: time.frames_per_s_per_core,
             on_front: false,
         };
-        (cell.clone(), row)
+        (configuration.clone(), row)
     };
     let mut all: Vec<_> = rows.iter().map(row).collect();
     for &level in levels {
-        let of_level = all.iter_mut().filter(|(cell, _)| cell.noise_std == level);
+        let of_level = all
+            .iter_mut()
+            .filter(|(configuration, _)| configuration.noise_std == level);
         let of_level: Vec<_> = of_level.map(|(_, row)| row).collect();
         let points = of_level.iter().map(|row| (row.us_per_frame, row.error));
         let on_front = front(&points.collect::<Vec<_>>(), |a, b| a < b);

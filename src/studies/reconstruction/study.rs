@@ -37,7 +37,7 @@ pub struct ReconstructionStudy {
 
 const CELLS: File<(ReconstructionCell, ReconstructionScore)> = File::new(
     "reconstruction.csv",
-    "Every cell",
+    "Every configuration",
     "Errors are relative to the clean frames: 0 is perfect, 1 is as wrong as an empty frame.",
 );
 const ENSEMBLES: File<EnsembleStatistics> = File::new(
@@ -46,10 +46,10 @@ const ENSEMBLES: File<EnsembleStatistics> = File::new(
     "Squared singular values of supports drawn at random, whose columns have a mean square norm of 1.",
 );
 const TIMING: File<(ReconstructionCell, ReconstructionTime)> =
-    File::new("timing.csv", "Time of every cell", "").of_times();
+    File::new("timing.csv", "Time of every configuration", "").of_times();
 const PARETO: File<(ReconstructionCell, ReconstructionPareto)> = File::new(
     "pareto.csv",
-    "Error and time of every cell",
+    "Error and time of every configuration",
     "One core, frames in blocks of 64.",
 )
 .summary()
@@ -103,7 +103,7 @@ impl Study for ReconstructionStudy {
         Scale {
             objects: self.touched.len().to_string(),
             touches: format!("{n_touches} on one array"),
-            n_configurations: self.plan.cells().len(),
+            n_configurations: self.plan.configurations().len(),
             bytes: 8.0 * (frames + n_taxels * n_taxels),
             ..Scale::default()
         }
@@ -112,13 +112,13 @@ impl Study for ReconstructionStudy {
     /// For each ensemble and m, the isometry of every dictionary is followed by the configurations.
     fn work_items(&self) -> Vec<WorkItem> {
         let mut items = Vec::new();
-        for (group, cells) in on_measured(&self.plan.cells()).enumerate() {
+        for (group, configurations) in on_measured(&self.plan.configurations()).enumerate() {
             let mut add = |name| items.push(WorkItem::new(name, group));
             for &basis in &self.plan.dictionaries {
-                add(cells[0].isometry_name(basis));
+                add(configurations[0].isometry_name(basis));
             }
-            for cell in cells {
-                add(cell.name());
+            for configuration in configurations {
+                add(configuration.name());
             }
         }
         items
@@ -127,23 +127,29 @@ impl Study for ReconstructionStudy {
     fn measure(&self, left: &PendingItems<ReconstructionRows>) -> Result<()> {
         let touches = self.frames(left.progress)?;
         left.progress.stage("reconstruct", left.n() as u64);
-        let cells = self.plan.cells();
-        let mut groups = on_measured(&cells).enumerate();
+        let configurations = self.plan.configurations();
+        let mut groups = on_measured(&configurations).enumerate();
         groups.try_for_each(|group| measure_cells((&self.plan, touches), group, left))
     }
 
     fn tables(&self, (mut rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
         // Configurations are renumbered, because the axes of an earlier run may have had other values.
-        let numbers = self.plan.cells().into_iter();
-        let numbers: BTreeMap<String, usize> =
-            numbers.map(|cell| (cell.name(), cell.cell)).collect();
-        for (cell, ..) in &mut rows {
-            cell.cell = numbers[&cell.name()];
+        let numbers = self.plan.configurations().into_iter();
+        let numbers: BTreeMap<String, usize> = numbers
+            .map(|configuration| (configuration.name(), configuration.configuration))
+            .collect();
+        for (configuration, ..) in &mut rows {
+            configuration.configuration = numbers[&configuration.name()];
         }
         let pareto = pareto(&rows, &self.plan.noise);
-        let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
+        let [configurations, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
         let ensembles = ENSEMBLES.table(&statistics)?;
-        Ok(vec![cells, ensembles, timing, PARETO.table(&pareto)?])
+        Ok(vec![
+            configurations,
+            ensembles,
+            timing,
+            PARETO.table(&pareto)?,
+        ])
     }
 
     fn findings(&self, tables: &[Table]) -> Findings {
@@ -162,8 +168,10 @@ impl Study for ReconstructionStudy {
 }
 
 /// Returns the configurations in groups that share their measurements.
-fn on_measured(cells: &[ReconstructionCell]) -> impl Iterator<Item = &[ReconstructionCell]> {
-    cells.chunk_by(|a, b| (a.ensemble, a.measurements) == (b.ensemble, b.measurements))
+fn on_measured(
+    configurations: &[ReconstructionCell],
+) -> impl Iterator<Item = &[ReconstructionCell]> {
+    configurations.chunk_by(|a, b| (a.ensemble, a.measurements) == (b.ensemble, b.measurements))
 }
 
 impl ReconstructionStudy {

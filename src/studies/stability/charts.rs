@@ -8,14 +8,14 @@ impl StabilityPlan {
     /// Returns the charts: maps for parts with several methods and several time steps or masses, followed by charts of growing arrays. A map has time steps
     /// along x and taxel masses along y, one column of panels per method and one row per setting.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
-        let (cells, joints) = (&tables[0], &tables[3]);
+        let (configurations, joints) = (&tables[0], &tables[3]);
         let mut charts: Vec<ChartSpec> = Vec::new();
-        for rows in cells.groups(&["part"], 0..cells.n_rows) {
-            let n = |columns: &[&str]| cells.groups(columns, rows.iter().copied()).len();
+        for rows in configurations.groups(&["part"], 0..configurations.n_rows) {
+            let n = |columns: &[&str]| configurations.groups(columns, rows.iter().copied()).len();
             if n(&["method", "solver_iterations"]) < 2 || n(&["dt_s", "taxel_mass_kg"]) < 2 {
                 continue;
             }
-            let mut map = map(cells, &rows);
+            let mut map = map(configurations, &rows);
             let of_scene = charts.iter().filter(|chart| chart.title == map.title);
             let n_before = of_scene.count();
             if n_before > 0 {
@@ -33,8 +33,8 @@ impl StabilityPlan {
         let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
         let found = methods.iter().map(|rows| {
             let sum = |column| rows.iter().map(|&row| summary.number(column, row)).sum();
-            let (n_right, n_cells): (f64, f64) = (sum("n_right"), sum("n_cells"));
-            let share = n_right / n_cells.max(1.0);
+            let (n_correct, n_configurations): (f64, f64) = (sum("n_correct"), sum("n_configurations"));
+            let share = n_correct / n_configurations.max(1.0);
             let mut method = summary.words("method", rows[0]);
             let iterations = summary.words("solver_iterations", rows[0]);
             if !iterations.is_empty() {
@@ -42,7 +42,7 @@ impl StabilityPlan {
             }
             let percent = 100.0 * share;
             let sentence =
-                format!("Right in {n_right} of {n_cells} cells ({percent:.0} %): {method}.");
+                format!("Right in {n_correct} of {n_configurations} configurations ({percent:.0} %): {method}.");
             (share, sentence)
         });
         let mut found: Vec<(f64, String)> = found.collect();
@@ -52,8 +52,8 @@ impl StabilityPlan {
 }
 
 /// Returns the map of one part.
-fn map(cells: &Table, rows: &[usize]) -> ChartSpec {
-    let scene = cells.word("scene", rows[0]);
+fn map(configurations: &Table, rows: &[usize]) -> ChartSpec {
+    let scene = configurations.word("scene", rows[0]);
     let what = match scene {
         "rest" => "A ball is let go on taxels and comes to rest",
         "press" => "A ball is pressed on taxels with 0.5 m/s, held, and taken off",
@@ -68,8 +68,8 @@ fn map(cells: &Table, rows: &[usize]) -> ChartSpec {
         "solver_iterations",
     ];
     let mut chart = ChartSpec {
-        shown: cells.shown("part", rows[0]).into_iter().collect(),
-        lines: varying(cells, &settings, rows),
+        shown: configurations.shown("part", rows[0]).into_iter().collect(),
+        lines: varying(configurations, &settings, rows),
         panels: Some("method".to_owned()),
         mark: tiles("deflection_error"),
         rules: vec![Rule {
@@ -77,13 +77,13 @@ fn map(cells: &Table, rows: &[usize]) -> ChartSpec {
             at: At::Column("explicit_limit_s".to_owned()),
             words: "limit of an explicit spring without damper, Δt = 2 √(m / k)".to_owned(),
         }],
-        ..cells.chart(
+        ..configurations.chart(
             format!("stability_{scene}"),
             format!("{what}: what is right, and what breaks"),
             ("taxel_mass_kg", "dt_s"),
         )
     };
-    let mut methods = rows.iter().map(|&row| cells.word("method", row));
+    let mut methods = rows.iter().map(|&row| configurations.word("method", row));
     if !methods.any(|method| method.starts_with("mujoco")) {
         chart.note.clear();
     }
@@ -111,7 +111,7 @@ fn joint_charts(joints: &Table) -> Vec<ChartSpec> {
     if all.is_empty() {
         return Vec::new();
     }
-    let carried = joints.words("carried_kg", 0);
+    let carried = joints.words("load_kg", 0);
     let limit = "SkinSim's authors: unstable near 280 joints";
     let chart = |name: String, title: String, y: &str| ChartSpec {
         note: format!("Each taxel carries {carried}. {}", joints.note),

@@ -17,8 +17,8 @@
 //!
 //! Dynamic methods run until the slowest motion of a scene has decayed to 5e-5, and for at least [`LEAST_STEPS`] steps and half a second.
 
-mod cell;
 mod charts;
+mod configuration;
 mod peers;
 mod plan;
 pub mod rows;

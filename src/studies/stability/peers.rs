@@ -15,13 +15,13 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
         return Ok(Default::default());
     };
     // Each line is read once for each struct, because serde's flattening reads an empty field as an empty text.
-    let cells = read_rows::<StabilityCell>(path)?.into_iter();
-    let found = cells.zip(read_rows(path)?).zip(read_rows(path)?);
+    let configurations = read_rows::<StabilityCell>(path)?.into_iter();
+    let found = configurations.zip(read_rows(path)?).zip(read_rows(path)?);
     let mut sources: Vec<String> = Vec::new();
     let mut rows = Vec::new();
-    for (((cell, score), time), source) in found.zip(read_rows::<PeerSource>(path)?) {
-        if is_asked(plan, &cell) {
-            rows.push((cell, score, time));
+    for (((configuration, score), time), source) in found.zip(read_rows::<PeerSource>(path)?) {
+        if is_asked(plan, &configuration) {
+            rows.push((configuration, score, time));
             let source = format!("{} {}, {}", source.program, source.version, source.date);
             if !sources.contains(&source) {
                 sources.push(source);
@@ -32,14 +32,14 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
 }
 
 /// Returns whether the plan has a configuration that differs only in the method.
-fn is_asked(plan: &StabilityPlan, cell: &StabilityCell) -> bool {
+fn is_asked(plan: &StabilityPlan, configuration: &StabilityCell) -> bool {
     let is_like = |(other, _): &(StabilityCell, _)| {
         let of_method = StabilityCell {
-            method: cell.method,
-            solver_iterations: cell.solver_iterations,
+            method: configuration.method,
+            solver_iterations: configuration.solver_iterations,
             ..other.clone()
         };
-        of_method == *cell
+        of_method == *configuration
     };
-    cell.method.is_peer() && plan.cells.iter().any(is_like)
+    configuration.method.is_peer() && plan.configurations.iter().any(is_like)
 }

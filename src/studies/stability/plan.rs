@@ -17,7 +17,7 @@ pub struct StabilityPlan {
     /// Specification as written in the file.
     pub spec: StabilityStudySpec,
     /// Configurations, ordered by part, each with its taxel without damper. Methods that this build does not contain are omitted.
-    pub cells: Vec<(StabilityCell, Taxel)>,
+    pub configurations: Vec<(StabilityCell, Taxel)>,
     /// Path of the rows of other programs.
     pub peers: Option<PathBuf>,
 }
@@ -48,19 +48,21 @@ impl StabilityPlan {
         let wanted = &spec.stability;
         check.keys("stability", wanted, [("pitch_mm", Range::Positive)])?;
         check.list("stability.parts", wanted.parts.clone())?;
-        let mut cells = Vec::new();
+        let mut configurations = Vec::new();
         for (number, part) in wanted.parts.iter().enumerate() {
-            let taxel = |cell: &StabilityCell| Taxel {
+            let taxel = |configuration: &StabilityCell| Taxel {
                 radius: 0.5 * wanted.pitch_mm * MM,
-                stiffness: cell.stiffness_n_per_m,
+                stiffness: configuration.stiffness_n_per_m,
                 damping: 0.0,
                 stroke: part.stroke_mm * MM,
             };
             let of_part = check.stability_part(number + 1, part)?.into_iter();
-            cells.extend(of_part.map(|cell| (cell.clone(), taxel(&cell))));
+            configurations.extend(
+                of_part.map(|configuration| (configuration.clone(), taxel(&configuration))),
+            );
         }
         Ok(Self {
-            cells,
+            configurations,
             peers: wanted.peers.as_ref().map(|path| path.within(folder)),
             spec,
         })
@@ -105,7 +107,7 @@ impl Check<'_> {
             wanted.dt_s.values().len(),
         ];
         self.configurations(axes.iter().map(|&n| n as f64).product())?;
-        let mut cells = Vec::new();
+        let mut configurations = Vec::new();
         nested! {
             method in methods;
             solver_iterations in iterations(method);
@@ -119,7 +121,7 @@ impl Check<'_> {
                     Some(_) => taxels * taxels,
                     None => 1,
                 };
-                cells.push(StabilityCell {
+                configurations.push(StabilityCell {
                     part,
                     scene: wanted.scene,
                     method,
@@ -132,7 +134,7 @@ impl Check<'_> {
                 });
             }
         }
-        Ok(cells)
+        Ok(configurations)
     }
 }
 

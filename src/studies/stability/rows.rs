@@ -95,9 +95,9 @@ pub struct StabilitySummary {
     /// Iterations of an engine's solver per step.
     solver_iterations: Option<usize> => Choice: Linear;
     /// Number of configurations.
-    n_cells: usize => Note "cells": Linear;
+    n_configurations: usize => Note "configurations": Linear;
     /// Number of configurations with the right result.
-    n_right: usize => Value(More) "right": Linear;
+    n_correct: usize => Value(More) "right": Linear;
     /// Number of configurations that ended with a wrong result.
     n_inaccurate: usize => Value(Less) "inaccurate": Linear;
     /// Number of configurations that missed a contact.
@@ -126,7 +126,7 @@ pub struct Joints {
     /// Number of taxels; each is a body on a joint.
     joints: usize => Condition: Log;
     /// Mass M of the plunger divided by the number of taxels, kg.
-    carried_kg: f64 => Note "load of a taxel" in "kg": Log;
+    load_kg: f64 => Note "load of a taxel" in "kg": Log;
     /// Whether the result is right, and if not, the kind of failure.
     outcome: Outcome => Outcome;
     /// Wall-clock seconds per simulated second; in total if the method does not step through time.

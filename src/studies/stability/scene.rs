@@ -118,14 +118,19 @@ impl TestBed {
     }
 
     /// Returns the system for dynamic methods. It contains the taxels within `reach` metres of the ball's start and the balls stacked on the first one.
-    fn system(&self, cell: &StabilityCell, drive: &Drive, reach: f64) -> Result<System<'_>> {
+    fn system(
+        &self,
+        configuration: &StabilityCell,
+        drive: &Drive,
+        reach: f64,
+    ) -> Result<System<'_>> {
         let pose = match drive {
             Drive::Free { .. } => self.pose,
             Drive::Imposed(_) => self.above(),
         };
-        let mass = cell.taxel_mass_kg;
+        let mass = configuration.taxel_mass_kg;
         let system = System::new(&self.patch, mass, &self.ball, pose, drive.clone(), reach)?;
-        match (drive, cell.scene.n_balls()) {
+        match (drive, configuration.scene.n_balls()) {
             (&Drive::Free { mass, .. }, n_balls @ 2..) => system.stacked(&vec![mass; n_balls - 1]),
             _ => Ok(system),
         }
@@ -134,11 +139,11 @@ impl TestBed {
 
 impl CellScene {
     /// Creates the scene of a configuration from the taxel without its damper.
-    pub fn new(cell: &StabilityCell, undamped: Taxel) -> Result<Self> {
-        let cradle = TestBed::new(cell.taxels, undamped)?;
-        let mut scene = match cell.object_mass_kg {
-            Some(mass) => Self::of_free(cell, cradle, undamped, mass)?,
-            None => Self::of_imposed(cell, cradle, undamped)?,
+    pub fn new(configuration: &StabilityCell, undamped: Taxel) -> Result<Self> {
+        let cradle = TestBed::new(configuration.taxels, undamped)?;
+        let mut scene = match configuration.object_mass_kg {
+            Some(mass) => Self::of_free(configuration, cradle, undamped, mass)?,
+            None => Self::of_imposed(configuration, cradle, undamped)?,
         };
         let layout = scene.cradle.patch.layout().clone();
         scene.cradle.patch = Patch::new("cradle", layout, Taxels::Equal(scene.taxel))?;
@@ -146,9 +151,9 @@ impl CellScene {
     }
 
     /// Returns the system for dynamic methods.
-    pub fn system(&self, cell: &StabilityCell) -> Result<System<'_>> {
+    pub fn system(&self, configuration: &StabilityCell) -> Result<System<'_>> {
         let reach = APPROACH + REACH * self.taxel.stroke;
-        self.cradle.system(cell, &self.drive, reach)
+        self.cradle.system(configuration, &self.drive, reach)
     }
 
     /// Returns the steps of `dt` seconds after which the state is evaluated, from 1: the time of evaluation, and the end if it differs.
@@ -160,26 +165,31 @@ impl CellScene {
         }
     }
 
-    fn of_free(cell: &StabilityCell, cradle: TestBed, taxel: Taxel, mass: f64) -> Result<Self> {
+    fn of_free(
+        configuration: &StabilityCell,
+        cradle: TestBed,
+        taxel: Taxel,
+        mass: f64,
+    ) -> Result<Self> {
         let drive = Drive::Free {
             mass,
             gravity: GRAVITY,
             travel: 0.0,
         };
-        let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
-        let system = cradle.system(cell, &drive, REACH * taxel.stroke)?;
+        let (k, m) = (taxel.stiffness, configuration.taxel_mass_kg);
+        let system = cradle.system(configuration, &drive, REACH * taxel.stroke)?;
         let truth = rest(&system).expect("a free ball over taxels comes to rest");
         let n_touched = truth.deflection.iter().filter(|d| **d > 0.0).count();
-        let all = cell.scene.n_balls() as f64 * mass;
+        let all = configuration.scene.n_balls() as f64 * mass;
         // Mass that each taxel moves, including its own.
         let share = all / n_touched as f64 + m;
-        let damping = match cell.scene {
+        let damping = match configuration.scene {
             StabilityScene::Plunger => k * skin_sim::DAMPING / skin_sim::STIFFNESS,
             _ => 2.0 * (k * share).sqrt(),
         };
         let end = LEAST_TIME
             .max(DECAY / slowest(k, damping, share))
-            .max(LEAST_STEPS * cell.dt_s);
+            .max(LEAST_STEPS * configuration.dt_s);
         Ok(Self {
             cradle,
             truth,
@@ -193,13 +203,13 @@ impl CellScene {
         })
     }
 
-    fn of_imposed(cell: &StabilityCell, cradle: TestBed, taxel: Taxel) -> Result<Self> {
-        let (k, m) = (taxel.stiffness, cell.taxel_mass_kg);
+    fn of_imposed(configuration: &StabilityCell, cradle: TestBed, taxel: Taxel) -> Result<Self> {
+        let (k, m) = (taxel.stiffness, configuration.taxel_mass_kg);
         let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
         let damping = 2.0 * ratio * (k * m).sqrt();
         let hold = LEAST_HOLD
             .max(DECAY / slowest(k, damping, m))
-            .max(LEAST_HOLD_STEPS * cell.dt_s);
+            .max(LEAST_HOLD_STEPS * configuration.dt_s);
         let depth = 0.5 * taxel.stroke;
         let way = (APPROACH + depth) / SPEED;
         let phase = |duration, speed| Phase {
@@ -209,7 +219,7 @@ impl CellScene {
         };
         let phases = vec![phase(way, -SPEED), phase(hold, 0.0), phase(way, SPEED)];
         let drive = Drive::Imposed(VelocityPlan::new(cradle.above(), phases)?);
-        let system = cradle.system(cell, &drive, APPROACH + REACH * taxel.stroke)?;
+        let system = cradle.system(configuration, &drive, APPROACH + REACH * taxel.stroke)?;
         let travel = APPROACH + depth;
         let starts = system.starts().iter();
         let deflection: Vec<f64> = starts.map(|start| (travel - start).max(0.0)).collect();
@@ -257,7 +267,7 @@ mod tests {
     fn the_ball_meets_the_innermost_taxels_where_it_starts_and_all_within_a_quarter_of_the_stroke()
     {
         for taxels in [2, 8, 16] {
-            let cell = StabilityCell {
+            let configuration = StabilityCell {
                 part: 1,
                 scene: StabilityScene::Rest,
                 method: ContactMethod::QuasiStatic,
@@ -274,8 +284,8 @@ mod tests {
                 damping: 0.0,
                 stroke: 2e-3,
             };
-            let scene = CellScene::new(&cell, undamped).unwrap();
-            let system = scene.system(&cell).unwrap();
+            let scene = CellScene::new(&configuration, undamped).unwrap();
+            let system = scene.system(&configuration).unwrap();
             let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
             for &start in system.starts() {
                 low = low.min(start);

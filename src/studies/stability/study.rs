@@ -6,7 +6,7 @@ use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
 use crate::inputs::units::millimetres;
 use crate::studies::source::Source;
-use crate::studies::stability::cell::measure;
+use crate::studies::stability::configuration::measure;
 use crate::studies::stability::peers::peer_rows;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{
@@ -64,12 +64,15 @@ impl Study for StabilityPlan {
     fn scale(&self) -> Scale {
         // Memory of a taxel: its state, its history and an engine's body.
         const TAXEL_BYTES: f64 = 2000.0;
-        let n_taxels = self.cells.iter().map(|(cell, _)| cell.n_taxels());
+        let n_taxels = self
+            .configurations
+            .iter()
+            .map(|(configuration, _)| configuration.n_taxels());
         let most = n_taxels.max().unwrap_or(0);
         Scale {
             objects: "a ball and a plunger".to_owned(),
             touches: format!("one a configuration, on up to {most} taxels"),
-            n_configurations: self.cells.len(),
+            n_configurations: self.configurations.len(),
             item_bytes: TAXEL_BYTES * most as f64,
             ..Scale::default()
         }
@@ -77,9 +80,9 @@ impl Study for StabilityPlan {
 
     /// Items are named by their settings, because the list of configurations depends on the features of the build.
     fn work_items(&self) -> Vec<WorkItem> {
-        let items = self.cells.iter().enumerate();
-        let items = items.map(|(group, (cell, taxel))| {
-            let settings = format!("{cell:?}");
+        let items = self.configurations.iter().enumerate();
+        let items = items.map(|(group, (configuration, taxel))| {
+            let settings = format!("{configuration:?}");
             let settings = settings.trim_start_matches("StabilityCell ");
             let stroke_mm = millimetres(taxel.stroke);
             let name = format!("{settings} and a stroke of {stroke_mm} mm");
@@ -90,13 +93,13 @@ impl Study for StabilityPlan {
 
     fn measure(&self, left: &PendingItems<Self::Rows>) -> Result<()> {
         left.progress.stage("stability", left.n() as u64);
-        let cells = self.cells.par_iter().enumerate();
+        let configurations = self.configurations.par_iter().enumerate();
         // Items are distributed one by one, because their times range from microseconds to a minute.
-        let cells = cells.with_max_len(1);
-        cells.try_for_each(|(number, (cell, undamped))| {
+        let configurations = configurations.with_max_len(1);
+        configurations.try_for_each(|(number, (configuration, undamped))| {
             left.finish(number, || {
-                let (score, time) = measure(cell, *undamped)?;
-                Ok(vec![(cell.clone(), score, time)])
+                let (score, time) = measure(configuration, *undamped)?;
+                Ok(vec![(configuration.clone(), score, time)])
             })
         })
     }
@@ -105,13 +108,14 @@ impl Study for StabilityPlan {
         let (peers, _) = peer_rows(self)?;
         // Rows of other programs follow the rows of the parts that contain their configuration.
         for row in peers {
-            let behind = rows.partition_point(|(cell, ..)| cell.part <= row.0.part);
+            let behind =
+                rows.partition_point(|(configuration, ..)| configuration.part <= row.0.part);
             rows.insert(behind, row);
         }
-        let [cells, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
+        let [configurations, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
         let summary = SUMMARY.table(&summary(&rows))?;
         let joints = JOINTS.table(&joints(&rows))?;
-        Ok(vec![cells, summary, timing, joints])
+        Ok(vec![configurations, summary, timing, joints])
     }
 
     fn findings(&self, tables: &[Table]) -> Findings {
@@ -124,8 +128,12 @@ impl Study for StabilityPlan {
 
 /// Returns one row per scene, method and number of iterations, in the order of first occurrence.
 fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
-    let settings = grouped(rows, |(cell, ..)| {
-        (cell.scene, cell.method, cell.solver_iterations)
+    let settings = grouped(rows, |(configuration, ..)| {
+        (
+            configuration.scene,
+            configuration.method,
+            configuration.solver_iterations,
+        )
     });
     let summarise = |((scene, method, solver_iterations), rows): (_, Vec<&StabilityRow>)| {
         let scores: Vec<&StabilityScore> = rows.iter().map(|(_, score, _)| score).collect();
@@ -138,8 +146,8 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
             scene,
             method,
             solver_iterations,
-            n_cells: scores.len(),
-            n_right: count(Outcome::Right),
+            n_configurations: scores.len(),
+            n_correct: count(Outcome::Right),
             n_inaccurate: count(Outcome::Inaccurate),
             n_missed_contact: count(Outcome::MissedContact),
             n_energy_growth: count(Outcome::EnergyGrowth),
@@ -157,33 +165,34 @@ const LEAST_RUNGS: usize = 3;
 /// Returns the plunger configurations with the load per taxel that occurs on the most array sizes; empty if fewer than three sizes share a load.
 fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
     let plungers = rows.iter();
-    let plungers = plungers.filter(|(cell, ..)| cell.scene == StabilityScene::Plunger);
+    let plungers =
+        plungers.filter(|(configuration, ..)| configuration.scene == StabilityScene::Plunger);
     let mut all: Vec<Joints> = plungers
-        .map(|(cell, score, time)| Joints {
-            method: cell.method,
-            solver_iterations: cell.solver_iterations,
-            taxel_mass_kg: cell.taxel_mass_kg,
-            dt_s: cell.dt_s,
-            joints: cell.n_taxels(),
-            carried_kg: carried(cell),
+        .map(|(configuration, score, time)| Joints {
+            method: configuration.method,
+            solver_iterations: configuration.solver_iterations,
+            taxel_mass_kg: configuration.taxel_mass_kg,
+            dt_s: configuration.dt_s,
+            joints: configuration.n_taxels(),
+            load_kg: carried(configuration),
             outcome: score.outcome,
             time_s: time.per_simulated_s.unwrap_or(time.wall_s),
         })
         .collect();
     let n_sizes = |load: f64| {
-        let of_load = all.iter().filter(|row| row.carried_kg == load);
+        let of_load = all.iter().filter(|row| row.load_kg == load);
         of_load.map(|row| row.joints).collect::<BTreeSet<_>>().len()
     };
-    let loads = all.iter().map(|row| row.carried_kg);
+    let loads = all.iter().map(|row| row.load_kg);
     let most = loads.max_by_key(|&load| n_sizes(load));
     let most = most.filter(|&load| n_sizes(load) >= LEAST_RUNGS);
-    all.retain(|row| most == Some(row.carried_kg));
+    all.retain(|row| most == Some(row.load_kg));
     all
 }
 
 /// Returns the ball's mass divided by the number of taxels, kg, rounded so that equal loads compare equal.
-fn carried(cell: &StabilityCell) -> f64 {
-    let load = cell.object_mass_kg.unwrap_or(0.0) / cell.n_taxels() as f64;
+fn carried(configuration: &StabilityCell) -> f64 {
+    let load = configuration.object_mass_kg.unwrap_or(0.0) / configuration.n_taxels() as f64;
     let digits = format!("{load:.9e}");
     digits.parse().expect("a number is written as one")
 }

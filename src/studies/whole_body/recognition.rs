@@ -140,7 +140,7 @@ fn train(
             compression: name.to_owned(),
             n_measurements: columns.n_measurements(),
             entries_per_taxel: per_taxel(columns.n_entries()),
-            read_share: per_taxel(columns.n_read()),
+            read_fraction: per_taxel(columns.n_read()),
             bytes_per_taxel: per_taxel(columns.n_bytes()),
             n_objects: wanted.objects.len(),
             n_training: training.targets.len(),

@@ -71,7 +71,7 @@ pub struct BodySensed {
     /// Most frequent decision over the steps; in a tie the first of the objects.
     decision: String => Outcome;
     /// Fraction of the steps with this decision.
-    decision_share: f64 => Note "share of the steps": Share;
+    decision_fraction: f64 => Note "share of the steps": Share;
 } }
 
 row! {
@@ -84,7 +84,7 @@ pub struct BodyRecognition {
     /// Number of non-zero entries of Φ per taxel.
     entries_per_taxel: f64 => Cost "entries of a taxel": Log;
     /// Fraction of the taxels that at least one measurement reads.
-    read_share: f64 => Note "share of the taxels read": Share;
+    read_fraction: f64 => Note "share of the taxels read": Share;
     /// Memory of Φ, stored by columns, bytes per taxel.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Log;
     /// Number of objects to distinguish.

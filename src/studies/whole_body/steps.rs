@@ -179,7 +179,7 @@ fn decision(
         compression: compression.to_owned(),
         measurement_sum_mm: millimetres(steps.iter().map(|step| step.size).sum()),
         decision: objects[label].clone(),
-        decision_share: votes(label) as f64 / steps.len() as f64,
+        decision_fraction: votes(label) as f64 / steps.len() as f64,
     }
 }
 

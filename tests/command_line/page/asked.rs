@@ -74,8 +74,17 @@ fn what_was_taken_for_what_is_read_by_keyboard() {
         return;
     };
     let tiles = "return document.querySelectorAll('.tiles [data-row]').length";
-    let of_cell = |cell: usize| made.confusion.iter().filter(|row| row.cell == cell).count() as u64;
-    assert_eq!(browser.count(tiles), of_cell(4), "of the best cell");
+    let of_cell = |configuration: usize| {
+        made.confusion
+            .iter()
+            .filter(|row| row.configuration == configuration)
+            .count() as u64
+    };
+    assert_eq!(
+        browser.count(tiles),
+        of_cell(4),
+        "of the best configuration"
+    );
     browser.run("document.querySelector('.tiles svg').focus({ preventScroll: true })");
     browser.press(ARROW_RIGHT);
     let said = browser.text(SPOKEN);
@@ -89,9 +98,10 @@ fn what_was_taken_for_what_is_read_by_keyboard() {
 #[test]
 fn the_page_lists_the_front_of_each_condition_and_each_cost() {
     let mut made = tables(noise_cells(), 3, 24);
-    for (cell, row) in &mut made.pareto {
-        row.predict_us_per_decision = 2.0 + 40.0 * row.accuracy + ((cell.cell * 7) % 5) as f64;
-        row.fit_s = 0.01 + 0.001 * ((cell.cell * 11) % 13) as f64;
+    for (configuration, row) in &mut made.pareto {
+        row.predict_us_per_decision =
+            2.0 + 40.0 * row.accuracy + ((configuration.configuration * 7) % 5) as f64;
+        row.fit_s = 0.01 + 0.001 * ((configuration.configuration * 11) % 13) as f64;
     }
     let page = html(&made, &about());
     let (_, choices) = page.split_once("<section id=\"choices\"").unwrap();

@@ -165,7 +165,7 @@ fn ten_thousand_cells_are_a_light_page() {
 #[test]
 fn a_study_of_one_cell_or_of_none_has_a_page_without_faults() {
     for made in [
-        tables(vec![crate::report_synthetic::cell()], 1, 24),
+        tables(vec![crate::report_synthetic::configuration()], 1, 24),
         Tables::default(),
     ] {
         let Some(Shown { browser, .. }) = show(&made, &about()) else {

@@ -1,33 +1,33 @@
 //! Charts of accuracy against time: when they are drawn, and what stands on them.
 
-use crate::report_synthetic::{cell, noise_cells, tables};
+use crate::report_synthetic::{configuration, noise_cells, tables};
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::report::chart::draw;
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
-use bubbletouch::study::table::Cell;
+use bubbletouch::study::table::Configuration;
 use bubbletouch::table::{ChartSpec, Table};
 
-fn of_three_classifiers() -> Vec<Cell> {
+fn of_three_classifiers() -> Vec<Configuration> {
     use ClassifierKind::{LinearSvm, PolynomialSvm, RbfSvm};
-    let mut cells = Vec::new();
+    let mut configurations = Vec::new();
     for noise_std in [0.0, 0.1] {
         for classifier in [LinearSvm, RbfSvm, PolynomialSvm] {
             for measurements in [16, 64, 256] {
-                cells.push(Cell {
+                configurations.push(Configuration {
                     noise_std,
                     classifier,
                     measurements,
                     ratio: 4096.0 / measurements as f64,
-                    ..cell()
+                    ..configuration()
                 });
             }
         }
     }
-    cells
+    configurations
 }
 
-fn fronts(cells: Vec<Cell>, asked: Option<bool>) -> (Vec<Table>, Vec<ChartSpec>) {
-    let made = tables_of(&tables(cells, 3, 24)).unwrap();
+fn fronts(configurations: Vec<Configuration>, asked: Option<bool>) -> (Vec<Table>, Vec<ChartSpec>) {
+    let made = tables_of(&tables(configurations, 3, 24)).unwrap();
     let mut specs = charts(&made, asked);
     specs.retain(|spec| spec.front);
     (made, specs)
@@ -35,8 +35,8 @@ fn fronts(cells: Vec<Cell>, asked: Option<bool>) -> (Vec<Table>, Vec<ChartSpec>)
 
 #[test]
 fn accuracy_is_charted_against_time_when_classifiers_are_compared_or_a_study_asks() {
-    let names = |cells: Vec<Cell>, asked: Option<bool>| -> Vec<String> {
-        fronts(cells, asked)
+    let names = |configurations: Vec<Configuration>, asked: Option<bool>| -> Vec<String> {
+        fronts(configurations, asked)
             .1
             .into_iter()
             .map(|spec| spec.name)

@@ -1,6 +1,6 @@
-//! Pictures: every cell is drawn, every frame is readable, names are only names.
+//! Pictures: every configuration is drawn, every frame is readable, names are only names.
 
-use crate::report_synthetic::{cell, many_cells, noise_cells, quickstart_cells, tables};
+use crate::report_synthetic::{configuration, many_cells, noise_cells, quickstart_cells, tables};
 use bubbletouch::report::chart::{draw, places};
 use bubbletouch::report::colours::heat;
 use bubbletouch::report::drawing::{Drawing, TextStyle};
@@ -11,7 +11,7 @@ use bubbletouch::report::terminal::Ink;
 use bubbletouch::signal::Quantity;
 use bubbletouch::studies::recognition::charts::{charts, tables_of};
 use bubbletouch::study::Snapshots;
-use bubbletouch::study::table::{Cell, Tables};
+use bubbletouch::study::table::{Configuration, Tables};
 use bubbletouch::table::{ChartSpec, Table};
 use bubbletouch::world::Grid;
 use ndarray::{Array1, Array2, array};
@@ -36,14 +36,14 @@ fn main_charts(made: &[Table]) -> Vec<ChartSpec> {
 
 #[test]
 fn every_cell_is_a_point_in_exactly_one_of_the_main_charts() {
-    for (cells, n_charts) in [
+    for (configurations, n_charts) in [
         (quickstart_cells(), 1),
         (noise_cells(), 1),
         (many_cells(), 4),
-        (vec![cell()], 1),
+        (vec![configuration()], 1),
     ] {
-        let n_cells = cells.len();
-        let made = tables_of(&tables(cells, 2, 4)).unwrap();
+        let n_configurations = configurations.len();
+        let made = tables_of(&tables(configurations, 2, 4)).unwrap();
         let specs = main_charts(&made);
         assert_eq!(specs.len(), n_charts);
         let mut rows: Vec<usize> = Vec::new();
@@ -51,7 +51,7 @@ fn every_cell_is_a_point_in_exactly_one_of_the_main_charts() {
             rows.extend(places(spec, &made).unwrap().iter().map(|place| place.row));
         }
         rows.sort_unstable();
-        assert_eq!(rows, (0..n_cells).collect::<Vec<_>>());
+        assert_eq!(rows, (0..n_configurations).collect::<Vec<_>>());
     }
 }
 
@@ -115,7 +115,7 @@ fn a_confusion_matrix_holds_every_count_of_the_best_cell() {
         .max_by(|a, b| a.1.accuracy.total_cmp(&b.1.accuracy))
         .unwrap();
     let rows: Vec<usize> = (0..typed.confusion.len())
-        .filter(|&row| typed.confusion[row].cell == best.0.cell)
+        .filter(|&row| typed.confusion[row].configuration == best.0.configuration)
         .collect();
     let mut shown: Vec<usize> = places(&spec, &made)
         .unwrap()
@@ -316,12 +316,15 @@ fn a_frame_file_of_another_kind_is_refused_before_anything_is_written() {
 
 #[test]
 fn between_words_nothing_is_drawn_and_many_lines_have_whiskers() {
-    let ensembles = many_cells().into_iter().filter(|cell| {
-        cell.pitch_mm == 2.0 && cell.size_mm == 64.0 && cell.noise_std == 0.0 && cell.ratio == 4.0
+    let ensembles = many_cells().into_iter().filter(|configuration| {
+        configuration.pitch_mm == 2.0
+            && configuration.size_mm == 64.0
+            && configuration.noise_std == 0.0
+            && configuration.ratio == 4.0
     });
     let count = |svg: &str, what: &str| svg.matches(what).count();
-    let first = |cells: Vec<Cell>| {
-        let made = tables_of(&tables(cells, 1, 4)).unwrap();
+    let first = |configurations: Vec<Configuration>| {
+        let made = tables_of(&tables(configurations, 1, 4)).unwrap();
         let spec = charts(&made, None).swap_remove(0);
         let svg = draw(&spec, &made).unwrap().svg("");
         (spec.name, svg)
@@ -331,9 +334,11 @@ fn between_words_nothing_is_drawn_and_many_lines_have_whiskers() {
     assert_eq!(count(&svg, r#"stroke-width="1.5""#), 5 + 1);
     assert!(!svg.contains("fill-opacity"));
     // Five lines over ratios: five polylines, a whisker a point, one in the legend.
-    let over_ratios = many_cells()
-        .into_iter()
-        .filter(|cell| cell.pitch_mm == 2.0 && cell.size_mm == 64.0 && cell.noise_std == 0.0);
+    let over_ratios = many_cells().into_iter().filter(|configuration| {
+        configuration.pitch_mm == 2.0
+            && configuration.size_mm == 64.0
+            && configuration.noise_std == 0.0
+    });
     let (_, svg) = first(over_ratios.collect());
     assert_eq!(count(&svg, r#"stroke-width="1.5""#), 25 + 1);
 }

@@ -74,9 +74,9 @@ fn a_touched_taxel_is_one_spot_of_its_colour_and_neighbours_stand_side_by_side()
         };
         let across = if patch.grid.is_some() { 10 } else { 12 };
         let (first, n_first) = spot(0);
-        let (right, n_right) = spot(1);
+        let (right, n_correct) = spot(1);
         let (above, n_above) = spot(across);
-        assert!(n_first > 100 && n_first.abs_diff(n_right) < 9 && n_first.abs_diff(n_above) < 9);
+        assert!(n_first > 100 && n_first.abs_diff(n_correct) < 9 && n_first.abs_diff(n_above) < 9);
         // The distance of neighbours in pixels: 2 mm each way on the grid, an arc and a step of 6 mm on the tube.
         let (dx, dy) = (right[0] - first[0], first[1] - above[1]);
         assert!((right[1] - first[1]).abs() < 0.6 && (above[0] - first[0]).abs() < 0.6);

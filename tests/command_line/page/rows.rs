@@ -2,25 +2,25 @@
 
 use crate::chart_tables;
 use crate::report_synthetic::{
-    about, add_headlines, cell, noise_cells, quickstart_cells, tables, write_all,
+    about, add_headlines, configuration, noise_cells, quickstart_cells, tables, write_all,
 };
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::report::chart::{draw, omitted, places};
 use bubbletouch::report::entries::entries;
 use bubbletouch::studies::recognition::charts::{answers, charts, read_tables, tables_of, words};
-use bubbletouch::study::table::{Cell, Limit};
+use bubbletouch::study::table::{Configuration, Limit};
 use bubbletouch::table::{ChartSpec, Mark, Table};
 
 /// A linear SVM at three C, and a k-NN, which has none.
-fn with_k_nearest() -> Vec<Cell> {
-    let of_svm = [0.1, 1.0, 10.0].map(|c| Cell {
+fn with_k_nearest() -> Vec<Configuration> {
+    let of_svm = [0.1, 1.0, 10.0].map(|c| Configuration {
         c: Some(c),
-        ..cell()
+        ..configuration()
     });
-    let of_k_nearest = Cell {
+    let of_k_nearest = Configuration {
         classifier: ClassifierKind::KNearest,
         c: None,
-        ..cell()
+        ..configuration()
     };
     of_svm.into_iter().chain([of_k_nearest]).collect()
 }
@@ -76,8 +76,8 @@ fn n_seen(spec: &ChartSpec, tables: &[Table]) -> usize {
 
 #[test]
 fn every_row_is_a_point_or_is_counted_on_the_chart() {
-    let of = |cells| {
-        let made = tables_of(&tables(cells, 3, 24)).unwrap();
+    let of = |configurations| {
+        let made = tables_of(&tables(configurations, 3, 24)).unwrap();
         let specs = charts(&made, Some(true));
         (made, specs)
     };
@@ -109,18 +109,18 @@ fn every_row_is_a_point_or_is_counted_on_the_chart() {
 
 #[test]
 fn charts_of_accuracies_stand_together() {
-    let mut cells = Vec::new();
-    for cell in noise_cells() {
+    let mut configurations = Vec::new();
+    for configuration in noise_cells() {
         for tested in [16, 64, 256] {
-            let cell = cell.clone();
-            cells.push(Cell {
+            let configuration = configuration.clone();
+            configurations.push(Configuration {
                 measurements: tested,
                 ratio: 4096.0 / tested as f64,
-                ..cell
+                ..configuration
             });
         }
     }
-    let made = tables_of(&tables(cells, 3, 24)).unwrap();
+    let made = tables_of(&tables(configurations, 3, 24)).unwrap();
     let is_accuracy = |spec: &ChartSpec| spec.name.starts_with("accuracy_by");
     let specs = charts(&made, Some(true));
     let drawn: Vec<bool> = specs.iter().take(24).map(is_accuracy).collect();
@@ -132,9 +132,9 @@ fn charts_of_accuracies_stand_together() {
 fn touches_that_met_nothing_are_in_the_last_lines_and_among_the_first_answers() {
     let mut typed = tables(quickstart_cells(), 3, 24);
     let limit = |count| Limit {
-        what: "touches that met nothing".to_owned(),
+        limit: "touches that met nothing".to_owned(),
         count,
-        of: 9120,
+        total: 9120,
         meaning: "their frames hold no contact".to_owned(),
     };
     typed.limits = vec![limit(0)];
@@ -218,7 +218,7 @@ fn an_edit_of_any_entry_of_any_table_is_found_by_comparing() {
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         for (place, column) in table.columns.iter().enumerate() {
             // The numbers of configurations are names: other numbers of all rows are no difference.
-            if column.name == "cell" {
+            if column.name == "configuration" {
                 continue;
             }
             let mut writer = csv::Writer::from_path(&path).unwrap();

@@ -1,14 +1,14 @@
 //! The tables as files: what goes out comes back, equal tables are equal bytes, and nothing is half-written.
 
 use crate::report_synthetic::{
-    ReportPage, about, add_headlines, cell, noise_cells, quickstart_cells, tables, write_all,
-    write_tables,
+    ReportPage, about, add_headlines, configuration, noise_cells, quickstart_cells, tables,
+    write_all, write_tables,
 };
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::report::study_folder::{ChartFormat, MAX_CHARTS};
 use bubbletouch::sensing::Ensemble;
 use bubbletouch::studies::recognition::charts::{read_tables, tables_of};
-use bubbletouch::study::table::{Cell, Comparison, PStatus, Tables};
+use bubbletouch::study::table::{Comparison, Configuration, PStatus, Tables};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -60,8 +60,8 @@ fn tables_read_back_as_they_were_written() {
     add_headlines(&mut written);
     write_tables(dir.path(), &written);
     assert_reads_as(dir.path(), &written);
-    // One cell with one trial has no interval of a difference.
-    let single = tables(vec![cell()], 1, 2);
+    // One configuration with one trial has no interval of a difference.
+    let single = tables(vec![configuration()], 1, 2);
     write_tables(dir.path(), &single);
     assert_reads_as(dir.path(), &single);
     write_tables(dir.path(), &Tables::default());
@@ -77,15 +77,15 @@ fn csv_of(tables: &Tables, file: &str) -> String {
 
 #[test]
 fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
-    let mut one = tables(vec![cell()], 1, 2);
+    let mut one = tables(vec![configuration()], 1, 2);
     one.summary[0].0.c = None;
     (
         one.summary[0].1.accuracy_low,
         one.summary[0].1.accuracy_high,
     ) = (0.5625, 1e-7);
     one.comparison = vec![Comparison {
-        cell: 3,
-        best_cell: 1,
+        configuration: 3,
+        best_configuration: 1,
         n_trials: 1,
         difference: -0.25,
         difference_low: None,
@@ -97,15 +97,15 @@ fn a_row_is_the_cell_then_the_score_and_nothing_stands_for_absent() {
     }];
     assert_eq!(
         csv_of(&one, "summary.csv"),
-        "cell,pitch_mm,nx,ny,size_mm,noise_std,noise_unit,smoothing_mm,ensemble,measurements,ratio,frames,features,\
-         classifier,c,train_touches,fused_touches,n_trials,n_test,accuracy,accuracy_std,accuracy_low,accuracy_high,\
+        "configuration,pitch_mm,nx,ny,size_mm,noise_std,noise_unit,smoothing_mm,ensemble,measurements,ratio,frames,features,\
+         classifier,c,train_touches,touches_per_decision,n_trials,n_test,accuracy,accuracy_std,accuracy_low,accuracy_high,\
          bootstrap_low,bootstrap_high,macro_f1,n_capped\n\
          0,2.0,64,64,128.0,0.05,full_scale,0.0,gaussian,256,16.0,1,raw,linear_svm,,75,1,1,50,0.7,0.0,0.5625,\
          1e-7,,,0.696,0\n"
     );
     assert_eq!(
         csv_of(&one, "comparison.csv"),
-        "cell,best_cell,n_trials,difference,difference_low,difference_high,p_value,p_holm,p_status,\
+        "configuration,best_configuration,n_trials,difference,difference_low,difference_high,p_value,p_holm,p_status,\
          n_trials_needed\n3,1,1,-0.25,,,,,too_few_trials,4\n"
     );
 }
@@ -134,24 +134,24 @@ fn a_table_without_rows_has_the_header_of_one_with_rows_and_reads_as_none() {
 #[test]
 fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
     // Along x the ratio, ensembles as lines, pitches in panels: what is left makes 27 charts.
-    let mut cells = Vec::new();
+    let mut configurations = Vec::new();
     for ratio in [4.0, 16.0, 64.0, 256.0] {
         for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe, Ensemble::Sparse] {
             for place in 0..81_u8 {
                 let [pitch, noise, smoothing, touches] = [1, 3, 9, 27].map(|n| place / n % 3);
-                cells.push(Cell {
+                configurations.push(Configuration {
                     pitch_mm: 2.0 + f64::from(pitch),
                     noise_std: 0.05 * f64::from(noise),
                     smoothing_mm: f64::from(smoothing),
                     train_touches: 50 + usize::from(touches),
                     ratio,
                     ensemble,
-                    ..cell()
+                    ..configuration()
                 });
             }
         }
     }
-    let made = tables(cells, 1, 8);
+    let made = tables(configurations, 1, 8);
     let dir = tempfile::tempdir().unwrap();
     let drawn = |name: &str, all_charts, chart_format| {
         let folder = dir.path().join(name);
@@ -205,8 +205,8 @@ fn notes_say_which_intervals_come_from_groups_and_which_hold_less_often_than_the
         assert!(!enough.contains("ootstrap"), "{enough}");
     }
     let mut grouped = made(10);
-    for (cell, score) in &mut grouped.summary {
-        score.n_groups = Some(12 - cell.cell % 2);
+    for (configuration, score) in &mut grouped.summary {
+        score.n_groups = Some(12 - configuration.configuration % 2);
     }
     let said = note(&grouped, "summary.csv");
     let all = "from the groups that are held out, not from single test decisions, at least 11.";
@@ -259,10 +259,10 @@ fn a_table_that_cannot_be_read_is_named_with_its_line() {
     let dir = tempfile::tempdir().unwrap();
     let made = tables(
         vec![
-            cell(),
-            Cell {
+            configuration(),
+            Configuration {
                 ratio: 4.0,
-                ..cell()
+                ..configuration()
             },
         ],
         2,
@@ -298,7 +298,7 @@ fn a_table_that_cannot_be_read_is_named_with_its_line() {
 #[test]
 fn a_folder_that_cannot_be_written_stays_as_it_was() {
     let dir = tempfile::tempdir().unwrap();
-    let made = tables(vec![cell()], 1, 2);
+    let made = tables(vec![configuration()], 1, 2);
     let taken = dir.path().join("taken");
     fs::write(&taken, "mine").unwrap();
     let said = write_all(&taken, &made, &ReportPage::default()).unwrap_err();

@@ -9,7 +9,7 @@ row! {
 /// A configuration.
 pub struct Scored {
     /// Its number.
-    cell: usize => Note: Linear;
+    configuration: usize => Note: Linear;
     /// A choice that not every design has.
     c: Option<f64> => Choice "C": Log;
     /// A trial.
@@ -25,7 +25,7 @@ row! {
 /// A pair of objects.
 pub struct Counted {
     /// The number of its configuration.
-    cell: usize => Subject: Linear;
+    configuration: usize => Subject: Linear;
     /// What was touched.
     object: String => Subject;
     /// How often.
@@ -35,7 +35,7 @@ pub struct Counted {
 fn tables(numbers: [usize; 2], edit: impl Fn(usize, &mut Scored), count: usize) -> Vec<Table> {
     let row = |row: usize| {
         let mut scored = Scored {
-            cell: numbers[row / 3],
+            configuration: numbers[row / 3],
             c: (row < 3).then_some(1.0),
             trial: row % 3,
             outcome: "right".to_owned(),
@@ -46,10 +46,10 @@ fn tables(numbers: [usize; 2], edit: impl Fn(usize, &mut Scored), count: usize) 
         scored
     };
     let rows: Vec<Scored> = (0..6).map(row).collect();
-    let counted = |cell| Counted {
-        cell: numbers[cell],
+    let counted = |configuration| Counted {
+        configuration: numbers[configuration],
         object: "mug".to_owned(),
-        count: [7, count][cell],
+        count: [7, count][configuration],
     };
     let scores: File<Scored> = File::new("scores.csv", "Scores", "");
     let counts: File<Counted> = File::new("counts.csv", "Counts", "");

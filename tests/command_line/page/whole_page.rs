@@ -1,12 +1,13 @@
 //! What people read of a study of recognition: the terminal table, the answer and the page.
 
 use crate::report_synthetic::{
-    ReportPage, about, add_headlines, cell, many_cells, noise_cells, quickstart_cells, tables,
+    ReportPage, about, add_headlines, configuration, many_cells, noise_cells, quickstart_cells,
+    tables,
 };
 use crate::shown::html;
 use bubbletouch::report::page::StudyAbout;
 use bubbletouch::studies::recognition::charts::{answers, tables_of, words};
-use bubbletouch::study::table::{Cell, Limit, Tables};
+use bubbletouch::study::table::{Configuration, Limit, Tables};
 
 fn words_of(made: &Tables, width: usize) -> String {
     words(&tables_of(made).unwrap(), width)
@@ -18,13 +19,13 @@ fn answers_of(made: &Tables) -> Vec<String> {
 
 #[test]
 fn the_terminal_table_fits_its_width_without_escape_codes() {
-    for cells in [
+    for configurations in [
         quickstart_cells(),
-        vec![cell()],
+        vec![configuration()],
         noise_cells(),
         many_cells(),
     ] {
-        let mut made = tables(cells, 3, 24);
+        let mut made = tables(configurations, 3, 24);
         add_headlines_if_long(&mut made);
         for width in [80, 100, 120] {
             let text = words_of(&made, width);
@@ -43,14 +44,14 @@ fn add_headlines_if_long(made: &mut Tables) {
 
 #[test]
 fn each_of_few_cells_has_one_line_with_its_interval() {
-    for (cells, heading) in [
+    for (configurations, heading) in [
         (
             quickstart_cells(),
             "pitch array m compression accuracy macro F1",
         ),
         (noise_cells(), "noise smoothing classifier accuracy"),
     ] {
-        let made = tables(cells, 3, 24);
+        let made = tables(configurations, 3, 24);
         for width in [100, 120] {
             let text = words_of(&made, width);
             let spaced = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -84,14 +85,14 @@ fn many_cells_stand_compactly_and_what_is_left_out_is_said() {
     );
     assert_eq!(
         words_of(&Tables::default(), 80),
-        "No cell has been computed.\n"
+        "No configuration has been computed.\n"
     );
 }
 
 #[test]
 fn the_answer_names_the_best_the_frugal_and_each_effect() {
     let mut made = tables(quickstart_cells(), 3, 24);
-    // Cell 4 is the best (0.76); let 16:1 there come within its interval.
+    // Configuration 4 is the best (0.76); let 16:1 there come within its interval.
     made.summary[5].1.accuracy = 0.74;
     let sentences = answers_of(&made);
     assert!(
@@ -115,7 +116,10 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
     }
     // Each effect's means are those of a plain average over the other settings.
     let mean = |ratio: f64| {
-        let rows = made.summary.iter().filter(|(cell, _)| cell.ratio == ratio);
+        let rows = made
+            .summary
+            .iter()
+            .filter(|(configuration, _)| configuration.ratio == ratio);
         rows.map(|(_, score)| score.accuracy).sum::<f64>() / 4.0
     };
     let effect = format!(
@@ -138,25 +142,25 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
     );
     assert_eq!(
         answers_of(&Tables::default()),
-        ["No cell has been computed."]
+        ["No configuration has been computed."]
     );
 }
 
 #[test]
 fn each_condition_has_a_best_of_its_own_and_one_answer_to_fewest_measurements() {
     // Two noises; in each the most accurate has most measurements, and half as many are as good.
-    let mut cells = Vec::new();
+    let mut configurations = Vec::new();
     for noise_std in [0.0, 0.1] {
         for measurements in [512, 256, 128] {
-            cells.push(Cell {
+            configurations.push(Configuration {
                 noise_std,
                 measurements,
                 ratio: 4096.0 / measurements as f64,
-                ..cell()
+                ..configuration()
             });
         }
     }
-    let mut made = tables(cells, 3, 24);
+    let mut made = tables(configurations, 3, 24);
     for (number, accuracy) in [0.90, 0.895, 0.60, 0.50, 0.495, 0.30]
         .into_iter()
         .enumerate()
@@ -197,12 +201,12 @@ fn an_effect_leaves_out_settings_that_lack_a_value() {
     let mut made = tables(quickstart_cells(), 1, 24);
     // Without the finest array's 256:1, that array must not lift the other ratios' means.
     made.summary
-        .retain(|(cell, _)| !(cell.nx == 64 && cell.ratio == 256.0));
+        .retain(|(configuration, _)| !(configuration.nx == 64 && configuration.ratio == 256.0));
     let mean = |ratio: f64| {
         let rows = made
             .summary
             .iter()
-            .filter(|(cell, _)| cell.ratio == ratio && cell.nx != 64);
+            .filter(|(configuration, _)| configuration.ratio == ratio && configuration.nx != 64);
         rows.map(|(_, score)| score.accuracy).sum::<f64>() / 3.0
     };
     let wanted = format!("Mean accuracy by compression: {:.2} (4:1)", mean(4.0));
@@ -251,14 +255,14 @@ fn nothing_a_user_writes_becomes_markup() {
         },
         settings: vec![(evil.clone(), evil.clone())],
         limits: vec![Limit {
-            what: evil.clone(),
+            limit: evil.clone(),
             count: 1,
-            of: 0,
+            total: 0,
             meaning: evil.clone(),
         }],
         ..ReportPage::default()
     };
-    let mut made = tables(vec![cell()], 1, 3);
+    let mut made = tables(vec![configuration()], 1, 3);
     for row in &mut made.confusion {
         row.object = evil.clone();
     }
@@ -271,7 +275,7 @@ fn nothing_a_user_writes_becomes_markup() {
 #[test]
 fn a_study_without_anything_still_has_a_page() {
     let html = html(&Tables::default(), &ReportPage::default());
-    assert!(html.contains("No cell has been computed."));
+    assert!(html.contains("No configuration has been computed."));
 }
 
 #[test]

@@ -32,12 +32,12 @@ const AXES: &[&str] = &[
     "recognition.train_touches",
     "recognition.mislabelled_fraction",
     "recognition.class_imbalance",
-    "recognition.fused_touches",
-    "recognition.training_readings",
+    "recognition.touches_per_decision",
+    "recognition.readings_per_touch",
     "recognition.test_fraction",
-    "recognition.over_time",
-    "recognition.tilted_copies",
-    "recognition.foremost_full_scale",
+    "recognition.temporal_features",
+    "recognition.tilt_augmentation",
+    "recognition.depth_window_full_scale",
     "recognition.gamma",
 ];
 
@@ -46,7 +46,7 @@ fn common(rows: Vec<Row>, columns: &BTreeSet<String>) -> Vec<Row> {
     let other: Vec<String> = rows
         .iter()
         .flat_map(|row| row.keys())
-        .filter(|column| !columns.contains(*column) || *column == "cell")
+        .filter(|column| !columns.contains(*column) || *column == "configuration")
         .cloned()
         .collect();
     let other: Vec<&str> = other.iter().map(String::as_str).collect();
@@ -150,7 +150,7 @@ fn a_test_sensor_alone_gives_the_rows_that_it_gives_beside_another() {
     let mut n_compared = 0;
     for number in 0..n_studies() {
         let sensors = ["same_skin", "another_skin"].map(Value::from);
-        let axis = ("signal.tested_on", sensors.to_vec());
+        let axis = ("signal.test_sensor", sensors.to_vec());
         n_compared += check(
             &mut Generator::new("test sensors", number),
             Some(axis),

@@ -100,15 +100,15 @@ fn a_changed_key_changes_some_byte_of_the_results() {
         "recognition.classifier",
         "recognition.train_touches",
         "recognition.mislabelled_fraction",
-        "recognition.fused_touches",
+        "recognition.touches_per_decision",
         "recognition.test_fraction",
         "recognition.gamma",
         "recognition.n_neighbours",
         "recognition.n_trees",
-        "recognition.over_time",
-        "recognition.tilted_copies",
-        "recognition.foremost_full_scale",
-        "recognition.training_readings",
+        "recognition.temporal_features",
+        "recognition.tilt_augmentation",
+        "recognition.depth_window_full_scale",
+        "recognition.readings_per_touch",
     ];
     for key in keys.iter().take(if is_sample() { 5 } else { keys.len() }) {
         assert!(has_effect(key, &[], &[]), "{key} has no effect");

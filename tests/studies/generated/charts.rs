@@ -24,7 +24,7 @@ const AXES: &[&str] = &[
     "recognition.classifier",
     "recognition.c",
     "recognition.train_touches",
-    "recognition.fused_touches",
+    "recognition.touches_per_decision",
 ];
 
 /// The text of a picture: that of all its elements, one after the other.

@@ -100,7 +100,7 @@ fn check(law: &str, with_times: bool, is_noticed: impl Fn(&Case, &str) -> Result
 #[test]
 fn an_edited_table_is_noticed_by_verify() {
     check("edited tables", true, |case, name| {
-        let verified = case.run(&["verify", "results", "--cells", "1"]);
+        let verified = case.run(&["verify", "results", "--configurations", "1"]);
         let error = String::from_utf8_lossy(&verified.stderr).into_owned();
         match !verified.status.success() && error.contains(name) {
             true => Ok(()),

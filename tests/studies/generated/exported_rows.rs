@@ -50,7 +50,7 @@ fn exported_rows_give_the_answers_of_the_run() {
         let mut generator = Generator::new("exported rows", number);
         let study = generator.study(|study| {
             // Decisions on several touches together are no answers to rows.
-            study.get("recognition.fused_touches").is_none()
+            study.get("recognition.touches_per_decision").is_none()
         });
         let train_touches = generator.values("recognition.train_touches");
         let study = study
@@ -65,14 +65,17 @@ fn exported_rows_give_the_answers_of_the_run() {
         };
         n_checked += 1;
         for row in rows(&tables["accuracy.csv"]) {
-            let (cell, trial) = (row["cell"].parse().unwrap(), row["trial"].parse().unwrap());
-            let part = loaded.part_of(cell);
-            let set = part.features((cell, trial), &Silent).unwrap();
+            let (configuration, trial) = (
+                row["configuration"].parse().unwrap(),
+                row["trial"].parse().unwrap(),
+            );
+            let part = loaded.part_of(configuration);
+            let set = part.features((configuration, trial), &Silent).unwrap();
             let n_correct = n_correct_of_nearest_centroid(&set).to_string();
             assert_eq!(
                 n_correct,
                 row["n_correct"],
-                "cell {cell}, trial {trial} of\n{}",
+                "configuration {configuration}, trial {trial} of\n{}",
                 study.text()
             );
         }

@@ -128,14 +128,14 @@ const CHANGED: &[&str] = &[
     "recognition.gamma",
     "recognition.n_neighbours",
     "recognition.n_trees",
-    "recognition.over_time",
-    "recognition.tilted_copies",
-    "recognition.foremost_full_scale",
+    "recognition.temporal_features",
+    "recognition.tilt_augmentation",
+    "recognition.depth_window_full_scale",
     "recognition.train_touches",
     "recognition.mislabelled_fraction",
     "recognition.class_imbalance",
-    "recognition.fused_touches",
-    "recognition.training_readings",
+    "recognition.touches_per_decision",
+    "recognition.readings_per_touch",
     "recognition.test_fraction",
 ];
 
@@ -149,7 +149,7 @@ fn changed(study: &GeneratedStudy, generator: &mut Generator) -> GeneratedStudy 
             study.with("signal.steps", steps)
         }
         1 => study.with("signal.combine", "one_at_a_time"),
-        2 => study.with("signal.tested_on", "another_skin"),
+        2 => study.with("signal.test_sensor", "another_skin"),
         3 => match study.get("signal.noise_std_full_scale").cloned() {
             Some(noise) => study
                 .without("signal.noise_std_full_scale")

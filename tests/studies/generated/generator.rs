@@ -89,8 +89,8 @@ impl GeneratedStudy {
         let keys = [
             "c",
             "gamma",
-            "choose_c",
-            "choose_folds",
+            "c_grid",
+            "cv_folds",
             "n_neighbours",
             "n_trees",
         ];
@@ -189,12 +189,14 @@ impl Generator {
             "recognition.train_touches" => vec![4.into(), 6.into(), 8.into()],
             "recognition.mislabelled_fraction" => vec![0.0.into(), 0.2.into(), 0.4.into()],
             "recognition.class_imbalance" => vec![1.0.into(), 2.0.into()],
-            "recognition.fused_touches" => vec![1.into(), 2.into()],
-            "recognition.training_readings" => vec![1.into(), 2.into(), 3.into()],
+            "recognition.touches_per_decision" => vec![1.into(), 2.into()],
+            "recognition.readings_per_touch" => vec![1.into(), 2.into(), 3.into()],
             "recognition.test_fraction" => vec![0.25.into(), 0.5.into()],
-            "recognition.over_time" => words(&["deepest", "moments", "course", "summarised"]),
-            "recognition.tilted_copies" => vec![1.into(), 2.into()],
-            "recognition.foremost_full_scale" => vec![0.2.into(), 0.6.into()],
+            "recognition.temporal_features" => {
+                words(&["deepest", "moments", "course", "summarised"])
+            }
+            "recognition.tilt_augmentation" => vec![1.into(), 2.into()],
+            "recognition.depth_window_full_scale" => vec![0.2.into(), 0.6.into()],
             "recognition.gamma" => vec![0.01.into(), 0.1.into(), 1.0.into()],
             key => strength_values(key.strip_prefix("signal.").unwrap_or_default()),
         };
@@ -250,8 +252,8 @@ impl Generator {
             ("recognition.train_touches", 0.3),
             ("recognition.mislabelled_fraction", 0.2),
             ("recognition.class_imbalance", 0.2),
-            ("recognition.fused_touches", 0.2),
-            ("recognition.training_readings", 0.3),
+            ("recognition.touches_per_decision", 0.2),
+            ("recognition.readings_per_touch", 0.3),
             ("recognition.test_fraction", 0.3),
         ];
         for (key, chance) in sometimes {
@@ -273,7 +275,7 @@ impl Generator {
                 study = self.with_any(study, "skin.damping_n_s_per_m");
             }
             if self.happens(0.3) {
-                study = self.with_any(study, "recognition.over_time");
+                study = self.with_any(study, "recognition.temporal_features");
             }
         }
         if self.happens(0.1) {
@@ -287,8 +289,8 @@ impl Generator {
         let mut names = ImageFeature::NAMES.iter();
         if features.is_some_and(|features| names.any(|(name, _)| *name == features)) {
             for key in [
-                "recognition.tilted_copies",
-                "recognition.foremost_full_scale",
+                "recognition.tilt_augmentation",
+                "recognition.depth_window_full_scale",
             ] {
                 if self.happens(0.3) {
                     study = self.with_any(study, key);
@@ -358,8 +360,8 @@ impl Generator {
                 };
                 if self.happens(0.2) {
                     let candidates = vec![Value::from(0.1), Value::from(10.0)];
-                    let study = study.with("recognition.choose_c", candidates);
-                    return study.with("recognition.choose_folds", 2);
+                    let study = study.with("recognition.c_grid", candidates);
+                    return study.with("recognition.cv_folds", 2);
                 }
                 return self.with_any(study, "recognition.c");
             }

@@ -77,7 +77,7 @@ fn changed_test_rows_change_no_answer_to_other_rows() {
             let study = recorded(study, folder.path()).with("trials", 1);
             // A touch that comes after another has a trace of it in its own reading, whichever is learned.
             let remembers = study.get("signal.hysteresis_full_scale").is_some();
-            let is_fused = study.get("recognition.fused_touches").is_some();
+            let is_fused = study.get("recognition.touches_per_decision").is_some();
             !remembers && !is_fused && study.load().is_ok()
         });
         drawn = recorded(&drawn, folder.path()).with("trials", 1);
@@ -86,10 +86,10 @@ fn changed_test_rows_change_no_answer_to_other_rows() {
             continue;
         };
         let before = before["confusion.csv"].clone();
-        let cell = before_study.all_cells().next().unwrap().cell;
+        let configuration = before_study.all_cells().next().unwrap().configuration;
         let set = before_study
-            .part_of(cell)
-            .features((cell, 0), &Silent)
+            .part_of(configuration)
+            .features((configuration, 0), &Silent)
             .unwrap();
         let mut other = frames.clone();
         for &row in set

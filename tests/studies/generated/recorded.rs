@@ -15,8 +15,8 @@ const AXES: &[&str] = &[
     "sensing.ratio",
     "recognition.features",
     "recognition.classifier",
-    "recognition.over_time",
-    "recognition.fused_touches",
+    "recognition.temporal_features",
+    "recognition.touches_per_decision",
     "recognition.train_touches",
 ];
 
@@ -75,7 +75,7 @@ fn of_folder(study: &GeneratedStudy, folder: &Path) -> GeneratedStudy {
 fn found(study: &GeneratedStudy) -> Option<Tables> {
     let mut tables = without_times(run(&study.load().ok()?).ok()?);
     let limits = rows(&tables["limits.csv"]).into_iter();
-    let counts = limits.map(|row| format!("{} {} {}\n", row["what"], row["count"], row["of"]));
+    let counts = limits.map(|row| format!("{} {} {}\n", row["limit"], row["count"], row["total"]));
     let counts: String = counts.collect();
     tables.insert("limits.csv".to_owned(), counts.into());
     Some(tables)

@@ -203,27 +203,27 @@ fn detail_tables_obey_their_laws() {
         said.contains("most exact model of spheres is packing"),
         "{said}"
     );
-    let cells: Vec<DetailCell> = read_rows(&case.path("1/object_detail.csv")).unwrap();
+    let configurations: Vec<DetailCell> = read_rows(&case.path("1/object_detail.csv")).unwrap();
     let scores: Vec<DetailScore> = read_rows(&case.path("1/object_detail.csv")).unwrap();
-    assert_eq!(cells.len(), 2 * (1 + 1 + 3 + 3 + 3));
-    for (cell, score) in cells.iter().zip(&scores) {
+    assert_eq!(configurations.len(), 2 * (1 + 1 + 3 + 3 + 3));
+    for (configuration, score) in configurations.iter().zip(&scores) {
         assert!(
             score.n_touches == 8 && score.n_missed == 0 && score.n_taxels > 100,
             "{score:?}"
         );
         assert!(
             score.error_after_offset_mm <= score.error_mm,
-            "{cell:?} {score:?}"
+            "{configuration:?} {score:?}"
         );
-        match (cell.method, cell.tolerance_mm) {
+        match (configuration.method, configuration.tolerance_mm) {
             (DetailMethod::Mesh, _) => {
                 assert_eq!((score.error_mm, score.error_p95_mm), (0.0, 0.0), "itself");
                 assert_eq!(score.error_own_contact_mm, 0.0);
-                assert_eq!(cell.n_spheres, 0);
+                assert_eq!(configuration.n_spheres, 0);
             }
             (DetailMethod::Packing, Some(tolerance)) => {
                 let farthest = score.protrusion_max_mm.max(score.gap_max_mm);
-                assert!(farthest <= tolerance, "{cell:?} {score:?}");
+                assert!(farthest <= tolerance, "{configuration:?} {score:?}");
             }
             _ => assert!(score.surface_error_mm > 0.0),
         }
@@ -243,7 +243,9 @@ fn detail_tables_obey_their_laws() {
         assert_eq!(pair[1].times_packing, Some(1.0));
     }
     let times: Vec<DetailTime> = read_rows(&case.path("1/timing.csv")).unwrap();
-    assert!(times.len() == cells.len() && times.iter().all(|time| time.us_per_touch > 0.0));
+    assert!(
+        times.len() == configurations.len() && times.iter().all(|time| time.us_per_touch > 0.0)
+    );
     for chart in ["surface_error_by_spheres", "deflection_error_by_spheres"] {
         let svg = fs::read_to_string(case.path(&format!("1/{chart}.svg"))).unwrap();
         assert!(svg.contains("spheres an object") && svg.contains("(mm)"));

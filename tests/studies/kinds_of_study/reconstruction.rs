@@ -59,26 +59,33 @@ fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
     case.succeeds(&["run", "1/study.toml", "--out", "again"]);
     assert!(read("1", "reconstruction.csv") == read("again", "reconstruction.csv"));
 
-    let cells: Vec<ReconstructionCell> = rows(&case, "1/reconstruction.csv");
+    let configurations: Vec<ReconstructionCell> = rows(&case, "1/reconstruction.csv");
     let scores: Vec<ReconstructionScore> = rows(&case, "1/reconstruction.csv");
     // Two ensembles at two m and identity at one; two levels of noise, three dictionaries, three solvers.
-    assert_eq!(cells.len(), 5 * 2 * 3 * 3);
-    for (cell, score) in cells.iter().zip(&scores) {
+    assert_eq!(configurations.len(), 5 * 2 * 3 * 3);
+    for (configuration, score) in configurations.iter().zip(&scores) {
         assert!(score.error_low <= score.error && score.error <= score.error_high);
         assert!((score.snr_db + 20.0 * score.error.log10()).abs() < 1e-9);
-        assert_eq!(score.full_sampling_error == 0.0, cell.noise_std == 0.0);
+        assert_eq!(
+            score.full_sampling_error == 0.0,
+            configuration.noise_std == 0.0
+        );
         assert_eq!(score.n_frames, 32, "a quarter of 30 each, rounded");
         // The linear estimate beats the noisy frame even from a quarter of the measurements; in the coarse steps of Haar it hardly does.
-        let is_smooth = cell.dictionary != Basis::Haar;
-        if cell.solver == Solver::Lmmse && is_smooth && cell.ratio <= 4.0 && cell.noise_std > 0.0 {
+        let is_smooth = configuration.dictionary != Basis::Haar;
+        if configuration.solver == Solver::Lmmse
+            && is_smooth
+            && configuration.ratio <= 4.0
+            && configuration.noise_std > 0.0
+        {
             assert!(
                 score.error < score.full_sampling_error,
-                "{cell:?} {score:?}"
+                "{configuration:?} {score:?}"
             );
         }
     }
     let error = |ensemble, dictionary, measurements, noise_std| {
-        let mut found = cells.iter().zip(&scores).filter(|(c, _)| {
+        let mut found = configurations.iter().zip(&scores).filter(|(c, _)| {
             (c.ensemble, c.dictionary, c.measurements) == (ensemble, dictionary, measurements)
                 && c.solver == Solver::Lmmse
                 && c.noise_std == noise_std
@@ -95,7 +102,7 @@ fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
     }
 
     let times: Vec<ReconstructionTime> = rows(&case, "1/timing.csv");
-    assert!(times.len() == cells.len() && times.iter().all(|t| t.us_per_frame > 0.0));
+    assert!(times.len() == configurations.len() && times.iter().all(|t| t.us_per_frame > 0.0));
     let pareto: Vec<ReconstructionPareto> = rows(&case, "1/pareto.csv");
     let best = scores
         .iter()
@@ -103,16 +110,20 @@ fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
         .min_by(|a, b| a.0.error.total_cmp(&b.0.error));
     assert!(best.unwrap().1.on_front, "nothing beats the least error");
     let is_beaten = |row: &ReconstructionPareto, noise: f64| {
-        let others = pareto.iter().zip(&cells);
-        let mut others = others.filter(|(_, cell)| cell.noise_std == noise);
+        let others = pareto.iter().zip(&configurations);
+        let mut others = others.filter(|(_, configuration)| configuration.noise_std == noise);
         others.any(|(other, _)| {
             let costs = |row: &ReconstructionPareto| [row.error, row.us_per_frame];
             let mut pairs = costs(other).into_iter().zip(costs(row));
             pairs.all(|(other, own)| other <= own) && costs(other) != costs(row)
         })
     };
-    for (row, cell) in pareto.iter().zip(&cells) {
-        assert_eq!(row.on_front, !is_beaten(row, cell.noise_std), "{cell:?}");
+    for (row, configuration) in pareto.iter().zip(&configurations) {
+        assert_eq!(
+            row.on_front,
+            !is_beaten(row, configuration.noise_std),
+            "{configuration:?}"
+        );
     }
     let statistics: Vec<EnsembleStatistics> = rows(&case, "1/ensembles.csv");
     assert_eq!(statistics.len(), 5 * 3 * 2);

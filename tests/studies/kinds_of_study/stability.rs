@@ -50,12 +50,12 @@ fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
     let (said, _) = case.succeeds(&["run", "study.toml", "--out", "1"]);
     assert!(said.contains("quasi-static"), "{said}");
     let path = case.path("1/stability.csv");
-    let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let configurations: Vec<StabilityCell> = read_rows(&path).unwrap();
     let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
-    assert_eq!(cells.len(), 3 * (16 + 4 + 4));
-    for (cell, score) in cells.iter().zip(&scores) {
-        let about = format!("{cell:?} {score:?}");
-        match cell.method {
+    assert_eq!(configurations.len(), 3 * (16 + 4 + 4));
+    for (configuration, score) in configurations.iter().zip(&scores) {
+        let about = format!("{configuration:?} {score:?}");
+        match configuration.method {
             ContactMethod::QuasiStatic => {
                 assert_eq!(score.outcome, Outcome::Right, "{about}");
                 assert!(score.force_imbalance.unwrap() <= 1e-6, "{about}");
@@ -63,8 +63,8 @@ fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
             }
             ContactMethod::ImplicitEuler => assert_eq!(score.outcome, Outcome::Right, "{about}"),
             _ => {
-                let is_beyond = cell.dt_s > 10.0 * score.explicit_limit_s;
-                let is_press = cell.scene == StabilityScene::Press;
+                let is_beyond = configuration.dt_s > 10.0 * score.explicit_limit_s;
+                let is_press = configuration.scene == StabilityScene::Press;
                 assert!(
                     !(is_beyond && is_press && score.outcome == Outcome::Right),
                     "{about}"
@@ -78,8 +78,9 @@ fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
             "{about}"
         );
     }
-    let explicit = scores.iter().zip(&cells);
-    let explicit = explicit.filter(|(_, cell)| cell.method == ContactMethod::SemiImplicit);
+    let explicit = scores.iter().zip(&configurations);
+    let explicit =
+        explicit.filter(|(_, configuration)| configuration.method == ContactMethod::SemiImplicit);
     let right = explicit
         .clone()
         .filter(|(score, _)| score.outcome == Outcome::Right);
@@ -90,13 +91,13 @@ fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
     assert_eq!(summary.len(), 3 * 3);
     for row in summary {
         let kinds = [
-            row.n_right,
+            row.n_correct,
             row.n_inaccurate,
             row.n_missed_contact,
             row.n_energy_growth,
             row.n_not_finite,
         ];
-        assert_eq!(kinds.iter().sum::<usize>(), row.n_cells);
+        assert_eq!(kinds.iter().sum::<usize>(), row.n_configurations);
     }
     let svg = fs::read_to_string(case.path("1/stability_rest.svg")).unwrap();
     assert!(svg.contains("limit of an explicit spring") && svg.contains("taxel mass"));
@@ -131,26 +132,29 @@ fn stacked_balls_come_to_rest_with_the_weight_of_all_on_the_skin() {
     case.file("study.toml", STACKS);
     case.succeeds(&["run", "study.toml", "--out", "out"]);
     let path = case.path("out/stability.csv");
-    let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let configurations: Vec<StabilityCell> = read_rows(&path).unwrap();
     let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
-    for (cell, score) in cells.iter().zip(&scores) {
-        let about = format!("{cell:?} {score:?}");
+    for (configuration, score) in configurations.iter().zip(&scores) {
+        let about = format!("{configuration:?} {score:?}");
         let is_exact = matches!(
-            cell.method,
+            configuration.method,
             ContactMethod::QuasiStatic | ContactMethod::ImplicitEuler
         );
         assert!(!is_exact || score.outcome == Outcome::Right, "{about}");
-        if cell.method == ContactMethod::QuasiStatic {
+        if configuration.method == ContactMethod::QuasiStatic {
             assert!(score.force_imbalance.unwrap() <= 1e-6, "{about}");
             // The lightest balls push the stiffest taxels in by 1e-8 m, and lean on the walls by 1e-13 m.
             assert!(score.deflection_error.unwrap() <= 1e-4, "{about}");
         }
     }
     let n_engines = if cfg!(feature = "rapier") { 24 } else { 0 };
-    assert_eq!(cells.len(), 2 * 24 + n_engines + 3 * 12);
-    let broken = cells.iter().zip(&scores).filter(|(cell, score)| {
-        cell.method == ContactMethod::SemiImplicit && score.outcome != Outcome::Right
-    });
+    assert_eq!(configurations.len(), 2 * 24 + n_engines + 3 * 12);
+    let broken = configurations
+        .iter()
+        .zip(&scores)
+        .filter(|(configuration, score)| {
+            configuration.method == ContactMethod::SemiImplicit && score.outcome != Outcome::Right
+        });
     assert!(
         broken.count() >= 4,
         "explicit springs break under stacks too"
@@ -180,31 +184,38 @@ fn a_ladder_of_joints_carries_the_same_on_each_and_is_charted() {
     case.file("study.toml", JOINTS);
     case.succeeds(&["run", "study.toml", "--out", "out"]);
     let path = case.path("out/stability.csv");
-    let cells: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let configurations: Vec<StabilityCell> = read_rows(&path).unwrap();
     let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
-    for (cell, score) in cells.iter().zip(&scores) {
-        let about = format!("{cell:?} {score:?}");
-        let carried = cell.object_mass_kg.unwrap() / (cell.taxels * cell.taxels) as f64;
+    for (configuration, score) in configurations.iter().zip(&scores) {
+        let about = format!("{configuration:?} {score:?}");
+        let carried = configuration.object_mass_kg.unwrap()
+            / (configuration.taxels * configuration.taxels) as f64;
         assert!((carried / 3.5e-3 - 1.0).abs() < 1e-12, "{about}");
         let is_right = score.outcome == Outcome::Right;
-        match cell.method {
+        match configuration.method {
             ContactMethod::QuasiStatic | ContactMethod::ImplicitEuler => {
                 assert!(is_right, "{about}");
             }
             // Dampers as forces gain energy beyond Δt = 2 m / c = 0.15 ms of the lighter taxels, whatever the solver.
-            ContactMethod::RapierSkinSim if cell.taxel_mass_kg == 1e-5 => {
+            ContactMethod::RapierSkinSim if configuration.taxel_mass_kg == 1e-5 => {
                 assert!(!is_right, "{about}");
             }
             _ => {}
         }
     }
     let n_methods = if cfg!(feature = "rapier") { 4 } else { 2 };
-    assert_eq!(cells.len(), n_methods * 3 * 2);
+    assert_eq!(configurations.len(), n_methods * 3 * 2);
     let ladder: Vec<Joints> = read_rows(&case.path("out/joints.csv")).unwrap();
-    assert_eq!(ladder.len(), cells.len());
-    for ((row, cell), score) in ladder.iter().zip(&cells).zip(&scores) {
-        assert_eq!((row.method, row.outcome), (cell.method, score.outcome));
-        assert_eq!((row.joints, row.carried_kg), (cell.n_taxels(), 3.5e-3));
+    assert_eq!(ladder.len(), configurations.len());
+    for ((row, configuration), score) in ladder.iter().zip(&configurations).zip(&scores) {
+        assert_eq!(
+            (row.method, row.outcome),
+            (configuration.method, score.outcome)
+        );
+        assert_eq!(
+            (row.joints, row.load_kg),
+            (configuration.n_taxels(), 3.5e-3)
+        );
     }
     for chart in ["stability_joints", "stability_joints_dt_0.002"] {
         let svg = fs::read_to_string(case.path(&format!("out/{chart}.svg"))).unwrap();
@@ -300,9 +311,11 @@ fn rows_of_other_programs_stand_in_the_parts_that_ask_for_such_cells() {
     case.file("peers.csv", format!("{header}{asked}{foreign}"));
     let (with, _) = case.succeeds(&["run", "study.toml", "--out", "with"]);
     assert!(with.contains("MuJoCo"), "{with}");
-    let cells: Vec<StabilityCell> = read_rows(&case.path("with/stability.csv")).unwrap();
-    let peers = cells.iter().filter(|cell| cell.method.is_peer());
-    assert_eq!(peers.count(), 1, "only cells that the study has");
+    let configurations: Vec<StabilityCell> = read_rows(&case.path("with/stability.csv")).unwrap();
+    let peers = configurations
+        .iter()
+        .filter(|configuration| configuration.method.is_peer());
+    assert_eq!(peers.count(), 1, "only configurations that the study has");
     let svg = fs::read_to_string(case.path("with/stability_rest.svg")).unwrap();
     assert!(svg.contains("MuJoCo 4.0.0, 2026-11-22"));
     let press = fs::read_to_string(case.path("with/stability_press.svg")).unwrap();

@@ -144,7 +144,7 @@ fn tables_obey_their_laws() {
         );
     }
     assert!(
-        learned[0].read_share < learned[1].read_share,
+        learned[0].read_fraction < learned[1].read_fraction,
         "larger blocks read more"
     );
     let timed: Vec<BodyCase> = read_rows(&case.path("1/timing.csv")).unwrap();

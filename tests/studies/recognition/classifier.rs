@@ -208,8 +208,8 @@ fn whatever_implements_linfas_traits_plugs_in() {
     let split = stratified_hold_out(data.targets.view(), 0.3, &Seed::new(1)).unwrap();
     let truth = data.targets.select(Axis(0), &split.test);
     let accuracy = |labels: Array1<usize>| {
-        let n_right = labels.iter().zip(&truth).filter(|(a, b)| a == b).count();
-        n_right as f64 / truth.len() as f64
+        let n_correct = labels.iter().zip(&truth).filter(|(a, b)| a == b).count();
+        n_correct as f64 / truth.len() as f64
     };
     let foreign = accuracy(predict_split(&NearestMean, &data, &split).unwrap());
     let svm = accuracy(predict_split(&SvmParams::default(), &data, &split).unwrap());

@@ -68,8 +68,8 @@ fn at(data: &Dataset, n: usize) -> (Dataset, Dataset) {
 }
 
 fn accuracy(predicted: &Array1<usize>, truth: &Array1<usize>) -> f64 {
-    let n_right = predicted.iter().zip(truth).filter(|(a, b)| a == b).count();
-    n_right as f64 / truth.len() as f64
+    let n_correct = predicted.iter().zip(truth).filter(|(a, b)| a == b).count();
+    n_correct as f64 / truth.len() as f64
 }
 
 #[test]

@@ -106,8 +106,8 @@ fn wrong_labels_cost_a_wide_margin_nothing_until_they_are_the_majority() {
             classifier.c = Cost::Fixed(0.01);
             let model = classifier.train(&data, &Seed::new(1)).unwrap();
             let labels = model.labels(test.records.view()).unwrap();
-            let n_right = labels.iter().zip(&test.targets).filter(|(a, b)| a == b);
-            let accuracy = n_right.count() as f64 / labels.len() as f64;
+            let n_correct = labels.iter().zip(&test.targets).filter(|(a, b)| a == b);
+            let accuracy = n_correct.count() as f64 / labels.len() as f64;
             assert!(
                 range.contains(&accuracy),
                 "{kind:?}, {share} wrong: {accuracy}"

@@ -95,7 +95,7 @@ mod tests {
             tetrahedron(0.9, true),
             tetrahedron(0.3, false),
         ];
-        let bvh = Bvh::new(parts.concat()).unwrap();
+        let bvh = Bvh::from_triangles(parts.concat()).unwrap();
         for (place, expected) in [(0.05, 1), (0.2, 2), (0.31, 1), (0.34, 0), (-0.01, 0)] {
             assert_eq!(winding(&bvh, DVec3::splat(place)), expected, "at {place}");
         }

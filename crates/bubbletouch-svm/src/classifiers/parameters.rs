@@ -17,11 +17,11 @@ pub const PARAMETERS: [Parameter; 8] = [
         is_used: ClassifierKind::has_c,
     },
     Parameter {
-        keys: &["c", "choose_c"],
+        keys: &["c", "c_grid"],
         is_used: ClassifierKind::has_c,
     },
     Parameter {
-        keys: &["gamma", "choose_gamma"],
+        keys: &["gamma", "gamma_grid"],
         is_used: ClassifierKind::has_gamma,
     },
     Parameter {

@@ -205,8 +205,8 @@ impl Grower<'_> {
                 continue;
             }
             let n_left = (i + 1) as f64;
-            let n_right = rows.len() as f64 - n_left;
-            let score = squares[0] / n_left + squares[1] / n_right;
+            let n_correct = rows.len() as f64 - n_left;
+            let score = squares[0] / n_left + squares[1] / n_correct;
             if best.is_none_or(|best| score > best.0) {
                 best = Some((score, rank, next));
             }

@@ -58,7 +58,7 @@ impl<T: SolverScalar> Grid<'_, T> {
             for folds in folds.chunks(FOLDS_AT_ONCE) {
                 for scorer in self.score(folds, &kernel, goal) {
                     n_capped += scorer.n_capped();
-                    counts += &Array1::from(scorer.n_right(&kernel));
+                    counts += &Array1::from(scorer.n_correct(&kernel));
                 }
             }
         }

@@ -113,23 +113,23 @@ impl<T: Scalar> ValidationScorer<T> {
     }
 
     /// Returns the number of recognised rows for each C.
-    pub fn n_right(&self, kernel: &ProductKernel<T>) -> Vec<usize> {
+    pub fn n_correct(&self, kernel: &ProductKernel<T>) -> Vec<usize> {
         let is_settled =
             |at: &usize| self.is_pairs() && !self.is_beaten.row(*at).iter().any(|x| *x);
         let (settled, open): (Vec<usize>, Vec<usize>) = (0..self.rows.len()).partition(is_settled);
-        let mut n_right = vec![settled.len(); self.weights.len()];
+        let mut n_correct = vec![settled.len(); self.weights.len()];
         for some in open.chunks(ROWS_AT_ONCE) {
             let rows: Vec<usize> = some.iter().map(|&at| self.rows[at].0).collect();
             let values = kernel.rows(&rows);
             let mut n_elected = 0;
-            for (number, n_right) in n_right.iter_mut().enumerate() {
+            for (number, n_correct) in n_correct.iter_mut().enumerate() {
                 if self.is_new[number] {
                     n_elected = self.n_elected(number, some, values.view());
                 }
-                *n_right += n_elected;
+                *n_correct += n_elected;
             }
         }
-        n_right
+        n_correct
     }
 
     /// Counts the rows whose own class wins all its pairs or wins the vote, given their kernel values.
@@ -236,7 +236,7 @@ mod tests {
                         .count()
                 })
                 .collect();
-            let found = scorer.n_right(&product_kernel);
+            let found = scorer.n_correct(&product_kernel);
             assert_eq!(found, expected, "{multiclass:?}");
             assert!(
                 expected.iter().all(|&n| n > 3 && n < rows.len()),

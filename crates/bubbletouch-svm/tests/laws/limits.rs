@@ -104,12 +104,12 @@ fn at_a_tiny_c_every_multiplier_of_equal_classes_is_c_and_the_middles_decide() {
                     .all(|a| (a.abs() / c - 1.0).abs() < 1e-12)
             );
             let labels = model.labels(data.records.view()).unwrap();
-            let n_right = labels
+            let n_correct = labels
                 .iter()
                 .zip(&data.targets)
                 .filter(|(a, b)| a == b)
                 .count();
-            assert!(n_right >= 27, "{kernel:?}, {c}: {n_right} of 30");
+            assert!(n_correct >= 27, "{kernel:?}, {c}: {n_correct} of 30");
         }
     }
 }

@@ -15,12 +15,12 @@ const MAX_LISTED: usize = 8;
 
 /// Returns the answers: the best configuration in each condition, the cheapest one within its interval, the effect of each setting, and remarks on omissions.
 pub fn answers(tables: &[Table]) -> Vec<String> {
-    let Some(cells) = filled(tables, CELLS) else {
-        return vec!["No cell has been computed.".to_owned()];
+    let Some(configurations) = filled(tables, CELLS) else {
+        return vec!["No configuration has been computed.".to_owned()];
     };
-    let mut sentences = bests(cells).unwrap_or_default();
+    let mut sentences = bests(configurations).unwrap_or_default();
     sentences.extend(missed(tables));
-    sentences.extend(effects(cells).unwrap_or_default());
+    sentences.extend(effects(configurations).unwrap_or_default());
     sentences.extend(robustness_words(tables));
     sentences.extend(remarks(tables));
     sentences
@@ -50,18 +50,18 @@ pub fn words(tables: &[Table], width: usize) -> String {
 /// Returns a note on the number of touches that touched nothing; `None` if all touched something.
 fn missed(tables: &[Table]) -> Option<String> {
     let limits = filled(tables, LIMITS_FILE)?;
-    let row = (0..limits.n_rows).find(|&row| limits.word("what", row) == MISSED_TOUCHES)?;
-    let (count, of) = (limits.number("count", row), limits.number("of", row));
+    let row = (0..limits.n_rows).find(|&row| limits.word("limit", row) == MISSED_TOUCHES)?;
+    let (count, of) = (limits.number("count", row), limits.number("total", row));
     let share = short_number(100.0 * count / of);
     let meaning = limits.word("meaning", row);
     (count > 0.0).then(|| format!("{count} of {of} {MISSED_TOUCHES} ({share} %): {meaning}."))
 }
 
 /// Returns the best configuration of each condition; of the first conditions if there are many.
-fn bests(cells: &Table) -> Option<Vec<String>> {
-    let (accuracy, _) = cells.column("accuracy")?;
-    let (measurements, _) = cells.column("measurements_per_decision")?;
-    let offers = Candidates::of_columns(cells, accuracy, measurements);
+fn bests(configurations: &Table) -> Option<Vec<String>> {
+    let (accuracy, _) = configurations.column("accuracy")?;
+    let (measurements, _) = configurations.column("measurements_per_decision")?;
+    let offers = Candidates::of_columns(configurations, accuracy, measurements);
     let conditions = offers.by_condition();
     let listed = conditions.iter().take(MAX_LISTED);
     let mut sentences: Vec<String> = listed
@@ -102,17 +102,19 @@ fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
                 "Within the interval of the best{with}, with the fewest measurements: {}.",
                 said(&advice.choice)
             ),
-            _ => format!("No cell with fewer measurements reaches the interval of the best{with}."),
+            _ => format!(
+                "No configuration with fewer measurements reaches the interval of the best{with}."
+            ),
         });
     }
     Some(sentences)
 }
 
 /// Returns the mean accuracy at each value of each setting, over the combinations of other settings that have all of these values.
-fn effects(cells: &Table) -> Option<Vec<String>> {
-    let rows: Vec<usize> = (0..cells.n_rows).collect();
-    let swept = Swept::new(cells, &rows);
-    let accuracy = cells.numbers("accuracy")?;
+fn effects(configurations: &Table) -> Option<Vec<String>> {
+    let rows: Vec<usize> = (0..configurations.n_rows).collect();
+    let swept = Swept::new(configurations, &rows);
+    let accuracy = configurations.numbers("accuracy")?;
     let effect = |setting: &Setting| {
         let levels = setting.levels(&rows);
         let alike = swept.groups(&without(&swept.free, setting), &rows);
@@ -162,7 +164,7 @@ fn remarks(tables: &[Table]) -> Vec<String> {
             "Up to {n_left_out} test touches of a trial fill no whole group of fused touches and are left out."
         )),
         (n_capped > 0.0).then(|| format!(
-            "{n_capped} binary SVMs stopped at the iteration cap: their cells may do better with more iterations or a smaller C."
+            "{n_capped} binary SVMs stopped at the iteration cap: their configurations may do better with more iterations or a smaller C."
         )),
         n_needed.map(|(_, n)| format!("No p-values where trials are too few: {n} are needed.")),
     ];

@@ -30,7 +30,7 @@ row! {
 /// Robustness of a design to a condition: a row of `robustness.csv`.
 pub struct Robustness {
     /// Number of the design's most accurate configuration along the condition: a row of `summary.csv`.
-    cell: usize => Subject: Linear;
+    configuration: usize => Subject: Linear;
     /// Design: the settings that differ between the designs.
     design: String => Subject;
     /// Column of the condition.
@@ -286,8 +286,8 @@ fn both_sides(
     };
     let best = curve.best();
     let row = along[best];
-    let cell = summary.number("cell", row);
-    curve.chance = 1.0 / n_objects.n_objects(cell) as f64;
+    let configuration = summary.number("configuration", row);
+    curve.chance = 1.0 / n_objects.n_objects(configuration) as f64;
     let said = |one: &&Setting| {
         let has_value = one.data.value(row).is_some() || !one.column.word("").is_empty();
         has_value && one.column.name != condition
@@ -296,7 +296,7 @@ fn both_sides(
     let design = said.collect::<Vec<_>>().join(", ");
     let clean = curve.accuracy[best];
     let seed = Seed::new(0).named("robustness").named(condition);
-    let seed = seed.numbered(cell as u64);
+    let seed = seed.numbered(configuration as u64);
     let side = |direction: Direction| {
         let outwards = curve.outwards(direction);
         let end = *outwards[1..].last()?;
@@ -307,7 +307,7 @@ fn both_sides(
             _ => (HalfStatus::Found, halves),
         };
         Some(Robustness {
-            cell: cell as usize,
+            configuration: configuration as usize,
             design: design.clone(),
             condition: condition.to_owned(),
             direction,
@@ -336,22 +336,22 @@ pub(super) struct ObjectCounts {
 impl ObjectCounts {
     pub(super) fn new(confusion: &Table) -> Self {
         let mut of_cells = HashMap::new();
-        for rows in confusion.groups(&["cell", "object"], 0..confusion.n_rows) {
-            let cell = confusion.number("cell", rows[0]);
-            *of_cells.entry(cell.to_bits()).or_default() += 1;
+        for rows in confusion.groups(&["configuration", "object"], 0..confusion.n_rows) {
+            let configuration = confusion.number("configuration", rows[0]);
+            *of_cells.entry(configuration.to_bits()).or_default() += 1;
         }
         let of_all = confusion.groups(&["object"], 0..confusion.n_rows).len();
         Self { of_cells, of_all }
     }
 
     /// Returns the number of objects of a configuration, at least 1. If a study stores only some confusion matrices, all configurations have the same objects.
-    fn n_objects(&self, cell: f64) -> usize {
-        self.own(cell).unwrap_or(self.of_all).max(1)
+    fn n_objects(&self, configuration: f64) -> usize {
+        self.own(configuration).unwrap_or(self.of_all).max(1)
     }
 
     /// Returns the number of objects of a configuration, or `None` if its confusion matrix is not stored.
-    pub(super) fn own(&self, cell: f64) -> Option<usize> {
-        self.of_cells.get(&cell.to_bits()).copied()
+    pub(super) fn own(&self, configuration: f64) -> Option<usize> {
+        self.of_cells.get(&configuration.to_bits()).copied()
     }
 }
 
@@ -415,8 +415,8 @@ fn three_digits(value: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::statistics::interval::Interval;
-    use crate::studies::recognition::rows::cell::Cell;
-    use crate::studies::recognition::rows::cell::tests::cell;
+    use crate::studies::recognition::rows::configuration::Configuration;
+    use crate::studies::recognition::rows::configuration::tests::configuration;
     use crate::studies::recognition::rows::table_rows::{CellScore, Confusion};
     use rand_distr::Binomial;
 
@@ -432,13 +432,13 @@ mod tests {
     /// Returns the table of configurations that differ in C and noise, with ten objects.
     fn tables_of(accuracies: &[(f64, f64, f64)]) -> (Table, Option<Table>) {
         let n_test = 1000;
-        let cells = accuracies.iter().enumerate();
-        let cells = cells.map(|(number, &(c, noise_std, accuracy))| {
-            let cell = Cell {
-                cell: number,
+        let configurations = accuracies.iter().enumerate();
+        let configurations = configurations.map(|(number, &(c, noise_std, accuracy))| {
+            let configuration = Configuration {
+                configuration: number,
                 c: Some(c),
                 noise_std,
-                ..cell()
+                ..configuration()
             };
             let n_correct = (accuracy * n_test as f64) as usize;
             let interval = Interval::wilson(n_correct, n_test, 0.95).unwrap();
@@ -455,16 +455,16 @@ mod tests {
                 macro_f1: accuracy,
                 n_capped: 0,
             };
-            (cell, score)
+            (configuration, score)
         });
         let rows = (0..10).map(|object| Confusion {
-            cell: 0,
+            configuration: 0,
             object: format!("object {object}"),
             predicted: "object 0".to_owned(),
             count: 1,
         });
-        let summary = File::<(Cell, CellScore)>::new("summary.csv", "", "");
-        let summary = summary.table(&cells.collect::<Vec<_>>()).unwrap();
+        let summary = File::<(Configuration, CellScore)>::new("summary.csv", "", "");
+        let summary = summary.table(&configurations.collect::<Vec<_>>()).unwrap();
         let confusion = File::<Confusion>::new("confusion.csv", "", "");
         let confusion = confusion.table(&rows.collect::<Vec<_>>()).unwrap();
         let robustness = robustness(&summary, &confusion).unwrap();

@@ -33,9 +33,9 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     let mut html: String = settings
         .map(|(name, value)| definition(&escape(name), value))
         .collect();
-    if let Some(cells) = filled(tables, CELLS) {
-        let rows: Vec<usize> = (0..cells.n_rows).collect();
-        let Swept { free, fixed, .. } = Swept::new(cells, &rows);
+    if let Some(configurations) = filled(tables, CELLS) {
+        let rows: Vec<usize> = (0..configurations.n_rows).collect();
+        let Swept { free, fixed, .. } = Swept::new(configurations, &rows);
         let free = free
             .iter()
             .map(|one| (one, " <span class=\"tag\">swept</span>"));
@@ -55,9 +55,9 @@ fn limits_html(tables: &[Table]) -> String {
         return String::new();
     };
     let item = |row: usize| {
-        let (count, of) = (table.number("count", row), table.number("of", row));
+        let (count, of) = (table.number("count", row), table.number("total", row));
         let share = short_number(100.0 * count / of.max(1.0));
-        let [what, meaning] = ["what", "meaning"].map(|name| escape(table.word(name, row)));
+        let [what, meaning] = ["limit", "meaning"].map(|name| escape(table.word(name, row)));
         format!("<li><b>{count} of {of}</b> {what} ({share} %). {meaning}</li>")
     };
     let items: String = (0..table.n_rows).map(item).collect();

@@ -19,12 +19,12 @@ const MANY_CLASSIFIERS: usize = 3;
 /// Returns the charts: accuracy by the settings that vary, accuracy against time if classifiers are compared or the study requests it, and the confusions of
 /// the best configuration.
 pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
-    let Some(cells) = filled(tables, CELLS) else {
+    let Some(configurations) = filled(tables, CELLS) else {
         return Vec::new();
     };
     let confusion = filled(tables, "confusion.csv");
     let summary_note = filled(tables, "summary.csv").map_or("", |table| &table.note);
-    let over = match note_of_groups(cells) {
+    let over = match note_of_groups(configurations) {
         Some(note) => note,
         None if summary_note.contains(OVER_FOLDS) => OVER_FOLDS.to_owned(),
         None => OVER_TRIAL.to_owned(),
@@ -33,16 +33,18 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
         note: format!("Points are means over trials. {over}"),
         table: CELLS,
         y: "accuracy".to_owned(),
-        rules: chance(cells, confusion).into_iter().collect(),
+        rules: chance(configurations, confusion).into_iter().collect(),
         ..ChartSpec::default()
     };
-    let mut charts = accuracy_charts(cells, &chart);
-    let n_classifiers = cells.groups(&["classifier"], 0..cells.n_rows).len();
+    let mut charts = accuracy_charts(configurations, &chart);
+    let n_classifiers = configurations
+        .groups(&["classifier"], 0..configurations.n_rows)
+        .len();
     let mut others = Vec::new();
     if pareto.unwrap_or(n_classifiers >= MANY_CLASSIFIERS) {
-        others.extend(time_charts(cells, &chart));
+        others.extend(time_charts(configurations, &chart));
     }
-    others.extend(confusion.and_then(|table| confusion_chart(cells, table)));
+    others.extend(confusion.and_then(|table| confusion_chart(configurations, table)));
     // Charts of accuracies are adjacent, and leave room for the other charts.
     let place = charts.len().min(MAX_CHARTS - others.len());
     charts.splice(place..place, others);
@@ -50,8 +52,8 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
 }
 
 /// Returns a line at chance level; if configurations differ in their number of objects, at the level of each configuration.
-fn chance(cells: &Table, confusion: Option<&Table>) -> Option<Rule> {
-    if cells.numbers(CHANCE).is_some() {
+fn chance(configurations: &Table, confusion: Option<&Table>) -> Option<Rule> {
+    if configurations.numbers(CHANCE).is_some() {
         return Some(Rule {
             along: Along::Y,
             at: At::Column(CHANCE.to_owned()),
@@ -60,7 +62,7 @@ fn chance(cells: &Table, confusion: Option<&Table>) -> Option<Rule> {
     }
     let confusion = confusion?;
     let first = confusion
-        .groups(&["cell"], 0..confusion.n_rows)
+        .groups(&["configuration"], 0..confusion.n_rows)
         .swap_remove(0);
     let n_objects = confusion.groups(&["object"], first).len();
     let words = format!("chance (1 in {n_objects})");
@@ -68,17 +70,17 @@ fn chance(cells: &Table, confusion: Option<&Table>) -> Option<Rule> {
 }
 
 /// Returns the charts of accuracy that together show every configuration. Settings of the signal that change one at a time have their own charts, along x.
-fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
-    let all: Vec<usize> = (0..cells.n_rows).collect();
-    let signal = Swept::new(cells, &all).one_at_a_time;
+fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
+    let all: Vec<usize> = (0..configurations.n_rows).collect();
+    let signal = Swept::new(configurations, &all).one_at_a_time;
     if signal.is_empty() {
-        let mut charts = charts_along(cells, chart, None, &all);
+        let mut charts = charts_along(configurations, chart, None, &all);
         // A setting that only some classifiers have also gets its own chart, over the rows that have it.
-        for setting in &Swept::new(cells, &all).free {
+        for setting in &Swept::new(configurations, &all).free {
             let has_it = |row: &usize| setting.data.value(*row).is_some();
             let rows: Vec<usize> = all.iter().copied().filter(has_it).collect();
             if setting.is_number() && rows.len() < all.len() && setting.levels(&rows).len() > 2 {
-                charts.extend(charts_along(cells, chart, Some(*setting), &rows));
+                charts.extend(charts_along(configurations, chart, Some(*setting), &rows));
             }
         }
         return charts;
@@ -100,7 +102,7 @@ fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
             shown: others.iter().map(first).collect(),
             ..chart.clone()
         };
-        charts_along(cells, &chart, Some(*setting), &rows)
+        charts_along(configurations, &chart, Some(*setting), &rows)
     };
     signal.iter().flat_map(charts_of).collect()
 }
@@ -108,12 +110,12 @@ fn accuracy_charts(cells: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
 /// Returns the charts of rows along a given setting, or along the main one. If lines and panels are in use and no setting remains, a second chart exchanges
 /// the two. Both effects can then be read from lines within one panel.
 fn charts_along(
-    cells: &Table,
+    configurations: &Table,
     chart: &ChartSpec,
     x: Option<Setting>,
     rows: &[usize],
 ) -> Vec<ChartSpec> {
-    let swept = Swept::new(cells, rows);
+    let swept = Swept::new(configurations, rows);
     let x = x.or_else(|| swept.main(rows));
     let mut others = x.map_or_else(|| swept.free.clone(), |x| without(&swept.free, &x));
     others.sort_by_key(|one| (Reverse(one.levels(rows).len()), one.is_number()));
@@ -122,10 +124,10 @@ fn charts_along(
     let x = x.map_or_else(|| "ratio".to_owned(), |x| name_of(&x));
     let of_rows = |rows: Vec<usize>| {
         let here = fixed.iter().map(|one| &one.column.name);
-        let here = here.filter_map(|name| cells.shown(name, rows[0]));
+        let here = here.filter_map(|name| configurations.shown(name, rows[0]));
         ChartSpec {
             name: format!("accuracy_by_{}{}", word(&x), name_ending(fixed, rows[0])),
-            title: title(cells, &x, (used, fixed), rows[0]),
+            title: title(configurations, &x, (used, fixed), rows[0]),
             shown: chart.shown.iter().cloned().chain(here).collect(),
             x: x.clone(),
             lines: lines.iter().cloned().collect(),
@@ -151,8 +153,15 @@ fn name_of(setting: &Setting) -> String {
 }
 
 /// Returns the title of a chart: `Accuracy by compression, for each pitch and array size (noise 10 %)`.
-fn title(cells: &Table, x: &str, (used, fixed): (&[Setting], &[Setting]), row: usize) -> String {
-    let along = cells.column(x).map_or(x, |(column, _)| &column.words);
+fn title(
+    configurations: &Table,
+    x: &str,
+    (used, fixed): (&[Setting], &[Setting]),
+    row: usize,
+) -> String {
+    let along = configurations
+        .column(x)
+        .map_or(x, |(column, _)| &column.words);
     let mut title = format!("Accuracy by {along}");
     let each = used.iter().map(|one| match &one.column.words[..] {
         "features" => "kind of features",
@@ -198,9 +207,9 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
 
 /// Returns charts of accuracy against the times to train and to decide. There is one panel for each value of the first condition, and one colour for each
 /// classifier. With one classifier, colours show the values of the first other choice that varies.
-fn time_charts(cells: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
-    let all: Vec<usize> = (0..cells.n_rows).collect();
-    let free = Swept::new(cells, &all).free;
+fn time_charts(configurations: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
+    let all: Vec<usize> = (0..configurations.n_rows).collect();
+    let free = Swept::new(configurations, &all).free;
     let of = |role: Role| free.iter().filter(move |one| one.column.role == role);
     let classifier = of(Role::Choice).find(|one| one.column.name == "classifier");
     let lines = classifier.or_else(|| of(Role::Choice).next());
@@ -227,23 +236,23 @@ fn time_charts(cells: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
 }
 
 /// Returns the chart of the confusions of the best configuration.
-fn confusion_chart(cells: &Table, confusion: &Table) -> Option<ChartSpec> {
-    let accuracy = cells.numbers("accuracy")?;
+fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpec> {
+    let accuracy = configurations.numbers("accuracy")?;
     let best = (0..accuracy.len()).reduce(|a, b| if accuracy[b] > accuracy[a] { b } else { a })?;
-    let cell = cells.number("cell", best);
-    let mut cells_there = confusion.numbers("cell")?.iter();
-    let row = cells_there.position(|known| *known == cell)?;
-    let all: Vec<usize> = (0..cells.n_rows).collect();
-    let swept = Swept::new(cells, &all);
+    let configuration = configurations.number("configuration", best);
+    let mut cells_there = confusion.numbers("configuration")?.iter();
+    let row = cells_there.position(|known| *known == configuration)?;
+    let all: Vec<usize> = (0..configurations.n_rows).collect();
+    let swept = Swept::new(configurations, &all);
     let mut words = vec![swept.condition_words(best), swept.choice_words(best)];
     words.retain(|words| !words.is_empty());
     words.push(format!("accuracy {:.2}", accuracy[best]));
     Some(ChartSpec {
         note: format!(
-            "Rows were touched, columns are what they were taken for, all trials together. Of the most accurate cell ({}).",
+            "Rows were touched, columns are what they were taken for, all trials together. Of the most accurate configuration ({}).",
             words.join(", ")
         ),
-        shown: confusion.shown("cell", row).into_iter().collect(),
+        shown: confusion.shown("configuration", row).into_iter().collect(),
         mark: Mark::Tiles {
             fill: "count".to_owned(),
             sign: None,

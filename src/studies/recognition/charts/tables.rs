@@ -7,7 +7,7 @@ use crate::statistics::bootstrap::coverage_of_95;
 use crate::statistics::grouped::FEW_GROUPS;
 use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::recognition::charts::robustness::{ObjectCounts, ROBUSTNESS, robustness};
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
     CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
     TrialScore, TrialTime, Variance,
@@ -18,14 +18,14 @@ use serde::Serialize;
 use std::path::Path;
 
 /// Combined table of all results of each configuration; it is not written to a file.
-pub const CELLS: &str = "cells.csv";
+pub const CELLS: &str = "configurations.csv";
 
-const ACCURACY: File<(Cell, TrialScore)> = File::new(
+const ACCURACY: File<(Configuration, TrialScore)> = File::new(
     "accuracy.csv",
     "Every trial",
     "Intervals are 95 % Wilson intervals of the test decisions of the trial.",
 );
-const SUMMARY: File<(Cell, CellScore)> = File::new(
+const SUMMARY: File<(Configuration, CellScore)> = File::new(
     "summary.csv",
     "Cells over their trials",
     "Means over trials.",
@@ -41,24 +41,24 @@ const CONFUSION: File<Confusion> =
 const COMPARISON: File<Comparison> = File::new(
     "comparison.csv",
     "Cells against the best of their condition",
-    "A t-test paired over trials, corrected for their overlap; the p-value of Holm is corrected for the number of cells too.",
+    "A t-test paired over trials, corrected for their overlap; the p-value of Holm is corrected for the number of configurations too.",
 )
 .summary();
-const TIMING: File<(Cell, TrialTime)> =
+const TIMING: File<(Configuration, TrialTime)> =
     File::new("timing.csv", "Times of every trial", "").of_times();
-const PARETO: File<(Cell, Pareto)> =
+const PARETO: File<(Configuration, Pareto)> =
     File::new("pareto.csv", "Accuracy and its cost", "").of_times();
 const STAGES: File<StageTime> = File::new("stages.csv", "Times of the stages", "").of_times();
 const CONFUSED: File<Confused> = File::new(
     "confused.csv",
     "Most often confused",
-    "The pairs of objects that the best cell confuses most often, all trials together.",
+    "The pairs of objects that the best configuration confuses most often, all trials together.",
 )
 .summary();
-const PUBLISHED: File<(Cell, Published)> = File::new(
+const PUBLISHED: File<(Configuration, Published)> = File::new(
     "published.csv",
     "Beside what was published",
-    "Ours: the most accurate of the cells that have the settings of the claim, in each condition that these were measured in.",
+    "Ours: the most accurate of the configurations that have the settings of the claim, in each condition that these were measured in.",
 )
 .summary();
 const VARIANCE: File<Variance> =
@@ -87,7 +87,9 @@ pub const TABLE_NAMES: [&str; 12] = [
 /// If a row cannot be written to a file.
 pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
     let first = tables.accuracy.first();
-    let axes = first.map_or_else(Vec::new, |(cell, _)| cell.variant.values.to_vec());
+    let axes = first.map_or_else(Vec::new, |(configuration, _)| {
+        configuration.variant.values.to_vec()
+    });
     let axes = axes.into_iter().map(|axis| axis.column.clone().optional());
     From::Rows(tables).all(axes.collect(), tables.has_folds)
 }
@@ -162,8 +164,8 @@ impl From<'_> {
             };
             tables.extend(robustness);
         }
-        let cells = cells_of(&tables);
-        tables.extend(cells);
+        let configurations = cells_of(&tables);
+        tables.extend(configurations);
         Ok(tables)
     }
 
@@ -174,7 +176,7 @@ impl From<'_> {
         axes: &[Column],
     ) -> Result<Table> {
         let mut columns = R::columns();
-        let behind = Cell::columns().len().min(columns.len());
+        let behind = Configuration::columns().len().min(columns.len());
         columns.splice(behind..behind, axes.iter().cloned());
         match self {
             Self::Rows(tables) => file.of_columns(columns, rows(tables)),
@@ -241,7 +243,7 @@ pub(crate) const CHANCE: &str = "chance";
 fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
     let n_objects = ObjectCounts::new(confusion);
     let chance = (0..summary.n_rows).map(|row| {
-        let own = n_objects.own(summary.number("cell", row));
+        let own = n_objects.own(summary.number("configuration", row));
         own.map(|n| 1.0 / n as f64)
     });
     let chance = Data::Numbers(chance.collect::<Option<_>>()?);
@@ -254,7 +256,7 @@ fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)>
 fn cells_of(tables: &[Table]) -> Option<Table> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     let summary = of(SUMMARY.name())?;
-    let found = |table: &Table, column| summary.look_up(table, "cell", column);
+    let found = |table: &Table, column| summary.look_up(table, "configuration", column);
     let (comparison, pareto) = (of(COMPARISON.name())?, of(PARETO.name())?);
     let product = |name: &'static str, words: &'static str, factors: &[&str]| {
         let numbers = |row| factors.iter().map(move |name| summary.number(name, row));
@@ -278,15 +280,15 @@ fn cells_of(tables: &[Table]) -> Option<Table> {
         product(
             "measurements_per_decision",
             "measurements a decision",
-            &["measurements", "frames", "fused_touches"],
+            &["measurements", "frames", "touches_per_decision"],
         ),
         product("taxels", "taxels", &["nx", "ny"]),
         chance_of_cells(summary, of(CONFUSION.name())?),
     ];
-    let note = "All that is known of each cell, from summary.csv, comparison.csv and pareto.csv. Costs of time are of this machine.";
+    let note = "All that is known of each configuration, from summary.csv, comparison.csv and pareto.csv. Costs of time are of this machine.";
     Some(
         summary
-            .with((CELLS, "All cells"), more.into_iter().flatten())
+            .with((CELLS, "All configurations"), more.into_iter().flatten())
             .noted(note),
     )
 }

@@ -8,7 +8,7 @@
 //! | `test.npy` | i64: test rows of the trial, ascending |
 //! | `groups.npy` | n, i64: the group of every row, if the split does not divide groups |
 //! | `objects.csv` | one row per object: number, name |
-//! | `cell.toml` | the settings of the configuration and the trial |
+//! | `configuration.toml` | the settings of the configuration and the trial |
 //! | `manifest.json` | the files of the folder; only files listed in it may be replaced |
 
 use crate::engine::progress::{Progress, Silent};
@@ -22,7 +22,7 @@ use crate::inputs::npy::{write_integers, write_npy};
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::{Measurements, measure_group};
 use crate::studies::recognition::plan::group::Group;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::spec::study::RecognitionSpec;
 use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
 use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
@@ -42,7 +42,7 @@ pub const FEATURE_FILES: [&str; 7] = [
     "test.npy",
     "groups.npy",
     "objects.csv",
-    "cell.toml",
+    "configuration.toml",
 ];
 
 /// Labelled measurements, with the rows on which one trial trains and tests.
@@ -64,7 +64,7 @@ struct ObjectRow<'a> {
     object: &'a str,
 }
 
-/// Content of `cell.toml`.
+/// Content of `configuration.toml`.
 #[derive(Serialize)]
 struct Settings<'a> {
     question: &'a str,
@@ -72,7 +72,7 @@ struct Settings<'a> {
     trial: usize,
     n_train: usize,
     n_test: usize,
-    cell: &'a Cell,
+    configuration: &'a Configuration,
     recognition: &'a RecognitionSpec,
 }
 
@@ -83,18 +83,18 @@ impl StudyPart {
     /// If the study does not have the configuration or the trial, or a signal step or projection is invalid.
     pub fn features(
         &self,
-        (cell, trial): (usize, usize),
+        (configuration, trial): (usize, usize),
         progress: &dyn Progress,
     ) -> Result<FeatureSet> {
         let (plan, sweep) = (&self.plan, &self.sweep);
-        let (group, cell) = find(sweep, cell)?;
+        let (group, configuration) = find(sweep, configuration)?;
         let inputs = sweep.trial(plan, trial)?;
-        let family = FamilyInputs::new(plan, sweep, std::slice::from_ref(cell));
+        let family = FamilyInputs::new(plan, sweep, std::slice::from_ref(configuration));
         let split = inputs.split(&family)?;
         // As in a run, nested measurements are the first of the largest m.
         let n_projected = match group.ensemble.is_prefix_nested() {
             true => group.projected()[0],
-            false => cell.measurements,
+            false => configuration.measurements,
         };
         let of = (group, n_projected);
         let measured = self.measured(of, trial, ("touch", progress))?;
@@ -169,11 +169,11 @@ impl StudyPart {
     pub fn write_features(
         &self,
         (folder, claimed): (&Path, &DataFolder),
-        (cell, trial): (usize, usize),
+        (configuration, trial): (usize, usize),
         progress: &dyn Progress,
     ) -> Result<FeatureSet> {
         let spec = &self.plan.spec;
-        let set = self.features((cell, trial), progress)?;
+        let set = self.features((configuration, trial), progress)?;
         let Split { train, test } = &set.split;
         claimed.write_manifest()?;
         write_npy(&folder.join("features.npy"), &set.data.records)?;
@@ -194,11 +194,12 @@ impl StudyPart {
             trial,
             n_train: train.len(),
             n_test: test.len(),
-            cell: find(&self.sweep, cell)?.1,
+            configuration: find(&self.sweep, configuration)?.1,
             recognition: &spec.recognition,
         };
-        let text = toml::to_string(&settings).expect("every setting of a cell has a TOML form");
-        write_bytes(&folder.join("cell.toml"), text.as_bytes())?;
+        let text =
+            toml::to_string(&settings).expect("every setting of a configuration has a TOML form");
+        write_bytes(&folder.join("configuration.toml"), text.as_bytes())?;
         Ok(set)
     }
 }
@@ -322,12 +323,20 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
 }
 
 /// Returns a configuration, given by its number, and its group.
-pub(crate) fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Cell)> {
+pub(crate) fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Configuration)> {
     let groups = sweep.groups.iter();
-    let mut cells = groups.flat_map(|group| group.cells.iter().map(move |cell| (group, cell)));
-    let found = cells.find(|(_, cell)| cell.cell == number);
+    let mut configurations = groups.flat_map(|group| {
+        group
+            .configurations
+            .iter()
+            .map(move |configuration| (group, configuration))
+    });
+    let found = configurations.find(|(_, configuration)| configuration.configuration == number);
     found.ok_or_else(|| {
-        let allowed = format!("0 to {}, the cells of the study", sweep.n_cells() - 1);
-        Error::input("cell", number, allowed)
+        let allowed = format!(
+            "0 to {}, the configurations of the study",
+            sweep.n_configurations() - 1
+        );
+        Error::input("configuration", number, allowed)
     })
 }

@@ -101,10 +101,10 @@ impl ReadFrames {
     /// If the study does not have the configuration or the trial, or a signal step is invalid.
     pub fn of_cell(
         part: &StudyPart,
-        (cell, trial): (usize, usize),
+        (configuration, trial): (usize, usize),
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let (group, _) = find(&part.sweep, cell)?;
+        let (group, _) = find(&part.sweep, configuration)?;
         part.sweep.trial(&part.plan, trial)?;
         // Measurements with the identity matrix are the frames themselves.
         let identity = Group {

@@ -28,7 +28,7 @@ pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
     let n_taxels = |array: &&TaxelArray| array.n_taxels();
     // In a tie, the first array.
     let array = plan.arrays.iter().rev().max_by_key(n_taxels);
-    let no_cells = || Error::input("study", "no cells", "at least one value an axis");
+    let no_cells = || Error::input("study", "no configurations", "at least one value an axis");
     let array = array.ok_or_else(no_cells)?;
     let grid = array.grid();
     let skin = touches.spec.skin(array)?;

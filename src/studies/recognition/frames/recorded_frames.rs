@@ -588,12 +588,12 @@ impl TouchSet for RecordedFrames {
     /// Samples are the last frames of the first touch of each class.
     fn samples(&self, plan: &Plan, _groups: &[Group]) -> Result<Samples> {
         let array = &plan.arrays[0];
-        let (cells, stroke) = (array.picture_cells(), array.taxel().stroke);
+        let (configurations, stroke) = (array.picture_cells(), array.taxel().stroke);
         let mut first = 0;
         let frames = self.classes().into_iter().map(|(name, count)| {
             let values = self.values((first, self.n_frames - 1), stroke);
             first += count;
-            let frame = cells.mapv(|taxel| taxel.map_or(0.0, |taxel| values[taxel]));
+            let frame = configurations.mapv(|taxel| taxel.map_or(0.0, |taxel| values[taxel]));
             (name.replace('_', " "), frame)
         });
         let frames: Vec<(String, Array2<f64>)> = frames.collect();

@@ -30,7 +30,7 @@ const N_SAMPLES: usize = 4;
 /// If a signal step is invalid.
 pub fn sample_frames(plan: &Plan, groups: &[Group], touched: &[TouchedObject]) -> Result<Samples> {
     let group = loudest_group(plan, groups)
-        .ok_or_else(|| Error::input("study", "no cells", "at least one value an axis"))?;
+        .ok_or_else(|| Error::input("study", "no configurations", "at least one value an axis"))?;
     let on = &plan.arrays[group.array];
     let names: Vec<&str> = touched.iter().map(|t| t.object.name.as_str()).collect();
     let chosen = spread_samples(plan, &names)?;
@@ -116,8 +116,9 @@ fn read(
         )?,
     };
     let (values, _) = measure(reading, &touches)?;
-    let cells = array.picture_cells();
-    let frame = |row: ArrayView1<f64>| cells.mapv(|taxel| taxel.map_or(0.0, |taxel| row[taxel]));
+    let configurations = array.picture_cells();
+    let frame =
+        |row: ArrayView1<f64>| configurations.mapv(|taxel| taxel.map_or(0.0, |taxel| row[taxel]));
     Ok(values.outer_iter().map(frame).collect())
 }
 

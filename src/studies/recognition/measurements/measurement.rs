@@ -1,7 +1,7 @@
 //! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
 
 use crate::error::Result;
-use crate::inputs::sensor_errors::TestedOn;
+use crate::inputs::sensor_errors::TestSensor;
 use crate::random::Seed;
 use crate::sensing::{Ensemble, Projection, Readings};
 use crate::signal::SignalWorkspace;
@@ -61,7 +61,7 @@ impl Measurements {
     /// Returns the features of these touches (by number), shape (n, F·m): the first m measurements of each frame, combined over time if the inputs require it.
     pub fn features(&self, inputs: &RowInputs, touches: &[usize]) -> Array2<f64> {
         let mut rows = Array2::zeros((touches.len(), inputs.n_features()));
-        let Some(over_time) = inputs.over_time else {
+        let Some(temporal_features) = inputs.temporal_features else {
             self.read_into(inputs, touches, rows.view_mut());
             return rows;
         };
@@ -71,7 +71,7 @@ impl Measurements {
         for (row, touch) in rows.outer_iter_mut().zip(touches) {
             self.read_into(inputs, &[*touch], frames.view_mut());
             let frames = frames.view().into_shape_with_order((self.n_frames, m));
-            over_time.write(frames.expect("F frames of m"), row);
+            temporal_features.write(frames.expect("F frames of m"), row);
         }
         rows
     }
@@ -93,7 +93,7 @@ impl Measurements {
         if let Some(wanted) = inputs.of_images() {
             let mut made = self.of_images.iter();
             let made = made.find(|(known, _)| *known == wanted);
-            let (_, made) = made.expect("features of all cells of the group");
+            let (_, made) = made.expect("features of all configurations of the group");
             for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
                 row.assign(&made.row(*touch));
             }
@@ -288,9 +288,9 @@ fn skins<'a>(
         })
     };
     let first = skin(&Seed::new(inputs.seed), inputs.array);
-    let of_test = match inputs.tested_on {
-        TestedOn::SameSkin => first,
-        TestedOn::AnotherSkin => first.named("another").numbered(trial),
+    let of_test = match inputs.test_sensor {
+        TestSensor::SameSkin => first,
+        TestSensor::AnotherSkin => first.named("another").numbered(trial),
     };
     let mut skins = vec![make(first, None, learned)?];
     if inputs.has_own_test() {

@@ -5,7 +5,7 @@
 //! fields, so a new field becomes part of the key.
 
 use crate::inputs::content_hash::Hashed;
-use crate::inputs::sensor_errors::{Strengths, TestedOn, all_strengths};
+use crate::inputs::sensor_errors::{Strengths, TestSensor, all_strengths};
 use crate::random::Seed;
 use crate::sensing::Ensemble;
 use crate::signal::{Noise, NoiseUnit, SignalStep, Strength};
@@ -13,7 +13,7 @@ use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::signal::Condition;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::sweep::configurations::Sweep;
@@ -33,7 +33,7 @@ pub struct MeasurementInputs<'a> {
     /// Signal chain of the training touches.
     pub signal: SignalInputs,
     /// Skin of the test touches.
-    pub tested_on: TestedOn,
+    pub test_sensor: TestSensor,
     /// Inputs in which test touches differ, if the study has `[test]`.
     pub test: Option<TestInputs<'a>>,
     /// Ensemble of the measurement matrix.
@@ -110,7 +110,7 @@ impl MeasurementInputs<'_> {
 
     /// Returns whether test touches are read differently from training touches.
     pub fn has_own_test(&self) -> bool {
-        self.test.is_some() || self.tested_on != TestedOn::SameSkin
+        self.test.is_some() || self.test_sensor != TestSensor::SameSkin
     }
 
     /// Returns the numbers of measurements from which images are estimated, distinct and ascending.
@@ -189,14 +189,14 @@ impl Group {
     }
 
     /// Returns the group restricted to these configurations.
-    pub fn with_cells(&self, cells: &[Cell]) -> Self {
+    pub fn with_cells(&self, configurations: &[Configuration]) -> Self {
         Self {
             array: self.array,
             frames: self.frames,
             condition: self.condition,
-            tested_on: self.tested_on,
+            test_sensor: self.test_sensor,
             ensemble: self.ensemble,
-            cells: cells.to_vec(),
+            configurations: configurations.to_vec(),
         }
     }
 
@@ -216,7 +216,7 @@ impl Group {
             projections_per_split: plan.spec.projections_per_split,
             speed: plan.speed,
             signal: self.signal(plan),
-            tested_on: self.tested_on,
+            test_sensor: self.test_sensor,
             test,
             ensemble: self.ensemble,
             projected: self.projected(),
@@ -228,7 +228,11 @@ impl Group {
 
     /// Returns whether something is fitted to training touches before measuring.
     pub fn learns(&self) -> bool {
-        self.ensemble.is_learned() || self.cells.iter().any(|cell| cell.of_images().is_some())
+        self.ensemble.is_learned()
+            || self
+                .configurations
+                .iter()
+                .any(|configuration| configuration.of_images().is_some())
     }
 
     /// Returns the numbers of measurements from which images are estimated, distinct and ascending.
@@ -239,11 +243,17 @@ impl Group {
     /// Returns the inputs of the copies: as many as the configuration with the most copies needs.
     fn copies(&self, plan: &Plan) -> Option<CopyInputs> {
         let recognition = &plan.spec.recognition;
-        let copied = self.cells.iter();
-        let copied = copied.filter(|cell| cell.tilted_copies.is_some_and(|n| n > 0));
-        let n_touches = copied.clone().map(|cell| cell.train_touches).max();
+        let copied = self.configurations.iter();
+        let copied =
+            copied.filter(|configuration| configuration.tilt_augmentation.is_some_and(|n| n > 0));
+        let n_touches = copied
+            .clone()
+            .map(|configuration| configuration.train_touches)
+            .max();
         Some(CopyInputs {
-            n_copies: copied.filter_map(|cell| cell.tilted_copies).max()?,
+            n_copies: copied
+                .filter_map(|configuration| configuration.tilt_augmentation)
+                .max()?,
             n_touches: n_touches.filter(|_| recognition.train_touches.is_some()),
             tilt: recognition.copies_tilt(),
         })

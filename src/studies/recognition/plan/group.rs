@@ -1,10 +1,10 @@
 //! Groups of configurations that share their measurements, and the families within them.
 
-use crate::inputs::sensor_errors::TestedOn;
+use crate::inputs::sensor_errors::TestSensor;
 use crate::sensing::Ensemble;
 use crate::studies::recognition::plan::signal::Condition;
 use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 
 /// Configurations that are computed from the same measurements.
@@ -17,32 +17,39 @@ pub struct Group {
     /// Strengths of the signal steps.
     pub condition: Condition,
     /// Skin of the test touches.
-    pub tested_on: TestedOn,
+    pub test_sensor: TestSensor,
     /// Ensemble of the measurement matrix.
     pub ensemble: Ensemble,
     /// Configurations, ordered by family.
-    pub cells: Vec<Cell>,
+    pub configurations: Vec<Configuration>,
 }
 
 impl Group {
     /// Returns the configurations by family. A family shares the rows of the same features; its configurations differ only in C and in the fused touches.
     /// Configurations with equal C are adjacent.
-    pub fn families(&self) -> impl Iterator<Item = &[Cell]> {
-        let family = |cell: &Cell| {
-            let (m, kind) = (cell.measurements, cell.classifier);
+    pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {
+        let family = |configuration: &Configuration| {
+            let (m, kind) = (configuration.measurements, configuration.classifier);
             let rows = (
-                (cell.over_time, cell.features),
-                (cell.foremost_full_scale, cell.tilted_copies),
+                (configuration.temporal_features, configuration.features),
+                (
+                    configuration.depth_window_full_scale,
+                    configuration.tilt_augmentation,
+                ),
             );
-            let spoiled = (cell.mislabelled_fraction, cell.class_imbalance);
-            (m, rows, kind, cell.train_touches, spoiled)
+            let spoiled = (
+                configuration.mislabelled_fraction,
+                configuration.class_imbalance,
+            );
+            (m, rows, kind, configuration.train_touches, spoiled)
         };
-        self.cells.chunk_by(move |a, b| family(a) == family(b))
+        self.configurations
+            .chunk_by(move |a, b| family(a) == family(b))
     }
 
     /// Returns the number of readings of each touch.
     pub fn n_readings(&self, plan: &Plan) -> usize {
-        let asked = plan.spec.recognition.training_readings.unwrap_or(1);
+        let asked = plan.spec.recognition.readings_per_touch.unwrap_or(1);
         if self.condition.is_random_by_reading() {
             asked
         } else {
@@ -52,8 +59,11 @@ impl Group {
 
     /// Returns the distinct image features of the group's configurations.
     pub fn features_of_images(&self) -> Vec<FeaturesOfImages> {
-        let mut all: Vec<FeaturesOfImages> =
-            self.cells.iter().filter_map(Cell::of_images).collect();
+        let mut all: Vec<FeaturesOfImages> = self
+            .configurations
+            .iter()
+            .filter_map(Configuration::of_images)
+            .collect();
         let mut known = Vec::new();
         all.retain(|one| {
             let is_new = !known.contains(one);
@@ -65,7 +75,7 @@ impl Group {
 
     /// Returns the numbers of measurements to compute: only the largest m if smaller sets are prefixes of it, otherwise every m.
     pub fn projected(&self) -> Vec<usize> {
-        let mut counts: Vec<usize> = self.cells.iter().map(|c| c.measurements).collect();
+        let mut counts: Vec<usize> = self.configurations.iter().map(|c| c.measurements).collect();
         counts.sort_unstable();
         counts.dedup();
         if self.ensemble.is_prefix_nested() {

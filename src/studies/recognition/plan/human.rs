@@ -56,9 +56,9 @@ impl Check<'_> {
             let allowed = "it alone: it is what touches, and how";
             return Err(self.error("human_touch", "beside [objects] or [touches]", allowed));
         }
-        if spec.recognition.keep_together.is_some() {
+        if spec.recognition.group_by.is_some() {
             let allowed = "no such key: human touches have no groups";
-            return Err(self.error("recognition.keep_together", "given", allowed));
+            return Err(self.error("recognition.group_by", "given", allowed));
         }
         if spec.skin.damping_n_s_per_m != 0.0 {
             let allowed = "0: the skin of human touches has no damper";

@@ -6,7 +6,7 @@ use crate::inputs::check::Check;
 use crate::inputs::units::MM;
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::parameters::PARAMETERS;
-use crate::learning::data::over_time::OverTime;
+use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::Ensemble;
 use crate::studies::recognition::plan::pose_groups::KeepTogether;
@@ -22,17 +22,17 @@ const DEFAULT_TILT_DEG: f64 = 5.0;
 
 /// Pairs of keys that exclude each other.
 const ONE_OF: [[&str; 2]; 3] = [
-    ["c", "choose_c"],
-    ["gamma", "choose_gamma"],
+    ["c", "c_grid"],
+    ["gamma", "gamma_grid"],
     ["test_fraction", "folds"],
 ];
 
 /// Keys that require one of some other keys.
 const BESIDE: [(&str, &[&str]); 4] = [
-    ("choose_touches", &["choose_c", "choose_gamma"]),
-    ("tilted_copies_deg", &["tilted_copies"]),
-    ("keep_together_mm", &["keep_together"]),
-    ("keep_together_deg", &["keep_together"]),
+    ("cv_touches", &["c_grid", "gamma_grid"]),
+    ("tilt_augmentation_deg", &["tilt_augmentation"]),
+    ("group_by_mm", &["group_by"]),
+    ("group_by_deg", &["group_by"]),
 ];
 
 impl Check<'_> {
@@ -98,17 +98,17 @@ impl Check<'_> {
             }
         }
         // With folds, the rarest objects may have too few rows for the inner folds.
-        let is_open = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
-        if let Some(folds) = recognition.choose_folds
+        let is_open = recognition.c_grid.is_some() || recognition.gamma_grid.is_some();
+        if let Some(folds) = recognition.cv_folds
             && !is_open
             && !recognition.is_informed()
         {
             let given = format!("{folds}, but nothing is chosen by folds");
-            let allowed = "choose_c, choose_gamma or next_touch = \"most_informative\" beside it";
-            return Err(self.error("recognition.choose_folds", given, allowed));
+            let allowed = "c_grid, gamma_grid or next_touch = \"most_informative\" beside it";
+            return Err(self.error("recognition.cv_folds", given, allowed));
         }
         let folded = match (is_open, recognition.is_informed()) {
-            (true, _) => Some(("choose_c or choose_gamma", "a given c and gamma")),
+            (true, _) => Some(("c_grid or gamma_grid", "a given c and gamma")),
             (_, true) => Some(("next_touch = \"most_informative\"", "another next_touch")),
             _ => None,
         };
@@ -154,12 +154,12 @@ impl Check<'_> {
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
         let mut features = recognition.features.values().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
-            let foremost = recognition.foremost_full_scale.is_some();
+            let foremost = recognition.depth_window_full_scale.is_some();
             let of_images = [
-                ("recognition.foremost_full_scale", foremost),
+                ("recognition.depth_window_full_scale", foremost),
                 (
-                    "recognition.tilted_copies",
-                    recognition.tilted_copies.is_some(),
+                    "recognition.tilt_augmentation",
+                    recognition.tilt_augmentation.is_some(),
                 ),
             ];
             return match of_images.into_iter().find(|(_, is_given)| *is_given) {
@@ -190,18 +190,24 @@ impl Check<'_> {
     /// Checks the combination of frames, which must not need more frames than a touch has.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
-        let values = Axis::optional_values(&recognition.over_time);
-        if let ([Some(OverTime::Deepest)], true) = (&values[..], frames.iter().all(|&f| f == 1)) {
+        let values = Axis::optional_values(&recognition.temporal_features);
+        if let ([Some(TemporalFeatures::Deepest)], true) =
+            (&values[..], frames.iter().all(|&f| f == 1))
+        {
             let given = "\"deepest\", but every touch is one frame";
             let allowed = "touches.frames of 2 or more beside it, or no such key";
-            return Err(self.error("recognition.over_time", given, allowed));
+            return Err(self.error("recognition.temporal_features", given, allowed));
         }
-        for value in recognition.over_time.iter().flat_map(Axis::values) {
-            if let OverTime::Stacked(k) = value
+        for value in recognition.temporal_features.iter().flat_map(Axis::values) {
+            if let TemporalFeatures::Stacked(k) = value
                 && k > fewest
             {
                 let allowed = format!("at most {fewest}, the frames of a touch");
-                return Err(self.error("recognition.over_time", String::from(value), allowed));
+                return Err(self.error(
+                    "recognition.temporal_features",
+                    String::from(value),
+                    allowed,
+                ));
             }
         }
         Ok(())
@@ -216,7 +222,7 @@ impl Check<'_> {
         // If the split is an axis, the key describes the random split among its values.
         let is_axis = spec.axes.has("recognition.split");
         let given = [
-            ("keep_together", recognition.keep_together.is_some()),
+            ("group_by", recognition.group_by.is_some()),
             ("folds", recognition.folds.is_some()),
             (
                 "test_fraction",
@@ -252,9 +258,15 @@ impl Check<'_> {
                 given.to_owned(),
                 format!("rest = \"as_modelled\", or \"random\": {allowed}"),
             )
-        } else if recognition.fused_touches.values().iter().all(|&k| k == 1) {
-            let given = " beside recognition.fused_touches = 1";
-            let allowed = "a fused_touches of 2 or more, or \"random\": one touch has no next";
+        } else if recognition
+            .touches_per_decision
+            .values()
+            .iter()
+            .all(|&k| k == 1)
+        {
+            let given = " beside recognition.touches_per_decision = 1";
+            let allowed =
+                "a touches_per_decision of 2 or more, or \"random\": one touch has no next";
             (given.to_owned(), allowed.to_owned())
         } else {
             return Ok(());
@@ -302,16 +314,16 @@ impl RecognitionSpec {
     /// Returns the depth windows of the features; features of measurements have none.
     pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
         match features.of_image() {
-            Some(_) => Axis::optional_values(&self.foremost_full_scale),
-            None => vec![self.foremost_full_scale.as_ref().map(|_| 1.0)],
+            Some(_) => Axis::optional_values(&self.depth_window_full_scale),
+            None => vec![self.depth_window_full_scale.as_ref().map(|_| 1.0)],
         }
     }
 
     /// Returns the numbers of tilted copies; features of measurements have none.
     pub fn copies(&self, features: Features) -> Vec<Option<usize>> {
         match features.of_image() {
-            Some(_) => Axis::optional_values(&self.tilted_copies),
-            None => vec![self.tilted_copies.as_ref().map(|_| 0)],
+            Some(_) => Axis::optional_values(&self.tilt_augmentation),
+            None => vec![self.tilt_augmentation.as_ref().map(|_| 0)],
         }
     }
 
@@ -337,28 +349,28 @@ impl RecognitionSpec {
 
     /// Returns the largest tilt of a copy, radians.
     pub fn copies_tilt(&self) -> f64 {
-        self.tilted_copies_deg
+        self.tilt_augmentation_deg
             .unwrap_or(DEFAULT_TILT_DEG)
             .to_radians()
     }
 
     /// Returns the number of folds of the inner cross-validation.
     pub fn n_choice_folds(&self) -> usize {
-        self.choose_folds.unwrap_or(5)
+        self.cv_folds.unwrap_or(5)
     }
 
     /// Returns the groups that a split does not divide, with the distances below which drawn values are neighbours.
     pub fn kept_together(&self) -> Option<KeepTogether> {
         Some(KeepTogether {
-            kind: self.keep_together.or(self.split.group())?,
-            metres: self.keep_together_mm.map(|mm| MM * mm),
-            radians: self.keep_together_deg.map(f64::to_radians),
+            kind: self.group_by.or(self.split.group())?,
+            metres: self.group_by_mm.map(|mm| MM * mm),
+            radians: self.group_by_deg.map(f64::to_radians),
         })
     }
 
     /// Returns the values of C for classifiers that have one; `None` is a C chosen by cross-validation.
     pub fn penalties(&self) -> Vec<Option<f64>> {
-        match (&self.c, &self.choose_c) {
+        match (&self.c, &self.c_grid) {
             (_, Some(_)) => vec![None],
             (None, None) => vec![Some(1.0)],
             (axis, None) => Axis::optional_values(axis),

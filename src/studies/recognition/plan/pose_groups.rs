@@ -44,9 +44,9 @@ impl KeepTogether {
     fn distance(&self, axis: TouchAxis) -> Result<f64> {
         let (distance, key) = match axis {
             TouchAxis::Yaw | TouchAxis::TiltX | TouchAxis::TiltY => {
-                (self.radians, "recognition.keep_together_deg")
+                (self.radians, "recognition.group_by_deg")
             }
-            _ => (self.metres, "recognition.keep_together_mm"),
+            _ => (self.metres, "recognition.group_by_mm"),
         };
         distance.ok_or_else(|| {
             let given = format!("left out, and {} is spread uniformly", axis.name());

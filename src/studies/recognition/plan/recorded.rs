@@ -51,9 +51,9 @@ impl Check<'_> {
             let allowed = "it alone: it is what the skin has read";
             return Err(self.error("recorded", given, allowed));
         }
-        if spec.recognition.keep_together.is_some() {
+        if spec.recognition.group_by.is_some() {
             let allowed = "no such key: recorded.groups says what stays together";
-            return Err(self.error("recognition.keep_together", "given", allowed));
+            return Err(self.error("recognition.group_by", "given", allowed));
         }
         let (key, allowed) = ("recorded.zero", "a finite number");
         let zero = match recorded.zero {

@@ -97,17 +97,17 @@ impl Check<'_> {
     }
 
     /// Checks the skin of test touches; another skin needs a sensor error that belongs to a skin.
-    pub fn tested_on(&self, signal: &SignalSpec) -> Result<()> {
+    pub fn test_sensor(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
-        if signal.tested_on.is_none() || signal.steps.iter().any(is_of_skin) {
+        if signal.test_sensor.is_none() || signal.steps.iter().any(is_of_skin) {
             return Ok(());
         }
         let all = SENSOR_ERRORS.iter().map(|error| error.about());
         let of_skin: Vec<&str> = all.filter(|e| e.is_of_skin).map(|e| e.step).collect();
         let given = "given for skins without a difference";
         let allowed = format!("{} among signal.steps beside it", of_skin.join(" or "));
-        Err(self.error("signal.tested_on", given, allowed))
+        Err(self.error("signal.test_sensor", given, allowed))
     }
 
     /// Checks the steps: each at most once. A step whose axis is set must be listed, and a listed step without effect needs its axis; it would otherwise be

@@ -46,7 +46,7 @@ pub struct Plan {
     /// Numbers of frames per touch.
     pub frames: Vec<usize>,
     /// Groups of touches that a split does not divide.
-    pub keep_together: Option<KeepTogether>,
+    pub group_by: Option<KeepTogether>,
     /// Plan of the test touches, if the study has `[test]`. Only its touches and their signal are used.
     pub tested: Option<Arc<Plan>>,
 }
@@ -100,7 +100,7 @@ impl Plan {
             None => spec.touches.speed_mm_per_s * MM,
         };
         check.steps(&spec.signal)?;
-        check.tested_on(&spec.signal)?;
+        check.test_sensor(&spec.signal)?;
         check.sensing(&spec.sensing, &arrays)?;
         let frames = match (&spec.human_touch, &spec.recorded) {
             (Some(human), _) => vec![human.n_frames()],
@@ -117,14 +117,14 @@ impl Plan {
         let mut plan = Self {
             speed,
             tested: None,
-            keep_together: spec.recognition.kept_together(),
+            group_by: spec.recognition.kept_together(),
             arrays,
             placement,
             noise_unit,
             frames,
             spec,
         };
-        check.configurations(plan.n_cells())?;
+        check.configurations(plan.n_configurations())?;
         plan.tested = check.tested(&plan)?;
         Ok(plan)
     }
@@ -152,13 +152,13 @@ impl Plan {
             Ok((AxisValues::new(number, (&axes, &columns), &values), plan))
         });
         let plans = plans.collect::<Result<Vec<_>>>()?;
-        check.configurations(plans.iter().map(|(_, plan)| plan.n_cells()).sum())?;
+        check.configurations(plans.iter().map(|(_, plan)| plan.n_configurations()).sum())?;
         Ok(plans)
     }
 
     /// Returns an upper bound of the number of configurations. Equal values of m, or values of C for a classifier without C, do not give further
     /// configurations.
-    pub fn n_cells(&self) -> f64 {
+    pub fn n_configurations(&self) -> f64 {
         let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
         self.spec.signal.n_conditions() * lengths.product::<f64>()
     }

@@ -12,7 +12,7 @@ use ndarray::Array2;
 use std::fmt;
 use std::sync::Arc;
 
-/// Picture cells per pitch; with fewer cells, the offset of staggered rows is not visible.
+/// Picture configurations per pitch; with fewer configurations, the offset of staggered rows is not visible.
 const PICTURE_CELLS: f64 = 3.0;
 
 /// Array of taxels: its layout, the quantity that it reads, and its slide along the object. A layout other than the square grid has the density and the size
@@ -204,8 +204,8 @@ impl TaxelArray {
         }
     }
 
-    /// Returns the taxel shown in each cell of a picture, shape (rows, columns). Images have one cell per taxel. Other layouts are projected along the axis of
-    /// the middle, with three cells per pitch. Each cell shows its nearest taxel, or none if all taxels are far away.
+    /// Returns the taxel shown in each configuration of a picture, shape (rows, columns). Images have one configuration per taxel. Other layouts are projected along the axis of
+    /// the middle, with three configurations per pitch. Each configuration shows its nearest taxel, or none if all taxels are far away.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
         let (ny, nx) = self.shape();
         if self.is_image() {
@@ -214,10 +214,11 @@ impl TaxelArray {
         let centers = self.patch.layout().centers();
         let widest = centers.iter().map(|c| c.x.abs().max(c.y.abs()));
         let half = widest.fold(0.0, f64::max) + 0.5 * self.pitch();
-        let cell = self.pitch() / PICTURE_CELLS;
-        let n = (2.0 * half / cell).ceil() as usize;
+        let configuration = self.pitch() / PICTURE_CELLS;
+        let n = (2.0 * half / configuration).ceil() as usize;
         Array2::from_shape_fn((n, n), |(row, column)| {
-            let [x, y] = [column, row].map(|k| (k as f64 + 0.5) * cell - 0.5 * n as f64 * cell);
+            let [x, y] = [column, row]
+                .map(|k| (k as f64 + 0.5) * configuration - 0.5 * n as f64 * configuration);
             let away = |taxel: usize| {
                 let center = centers[taxel].truncate();
                 (center - DVec2::new(x, y)).length_squared()
@@ -227,7 +228,7 @@ impl TaxelArray {
         })
     }
 
-    /// Returns the distance between the cells of a picture, mm.
+    /// Returns the distance between the configurations of a picture, mm.
     pub fn picture_pitch_mm(&self) -> f64 {
         match self.is_image() {
             true => millimetres(self.pitch()),

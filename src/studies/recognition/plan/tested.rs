@@ -29,7 +29,7 @@ const TABLES_OF_OTHERS: &[&str] = &["signal"];
 const SHARED: [&str; 4] = [
     "touches.per_object",
     "touches.frames",
-    "signal.tested_on",
+    "signal.test_sensor",
     "signal.combine",
 ];
 

@@ -1,28 +1,36 @@
 //! Grouping of configurations by the condition of the world; the best configuration is selected within each condition.
 
 use crate::error::Result;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::table::{Columns, File, Role, Table};
 
 /// Returns a table of the settings of configurations, without scores.
 ///
 /// # Errors
 /// If a configuration cannot be written as a row of a table.
-pub fn settings_of(cells: &[&Cell]) -> Result<Table> {
-    let axes = cells.first().map(|cell| cell.variant.values.iter());
+pub fn settings_of(configurations: &[&Configuration]) -> Result<Table> {
+    let axes = configurations
+        .first()
+        .map(|configuration| configuration.variant.values.iter());
     let axes = axes.into_iter().flatten();
     let axes = axes.map(|axis| axis.column.clone().optional());
-    let columns = Cell::columns().into_iter().chain(axes).collect();
-    File::<Cell>::new("cells.csv", "Cells", "").of_columns(columns, cells)
+    let columns = Configuration::columns().into_iter().chain(axes).collect();
+    File::<Configuration>::new("configurations.csv", "Cells", "")
+        .of_columns(columns, configurations)
 }
 
 /// Returns the indices of the configurations of each condition, in the order of first occurrence.
 ///
 /// # Errors
 /// If [`settings_of`] fails.
-pub fn by_condition<'a>(cells: impl IntoIterator<Item = &'a Cell>) -> Result<Vec<Vec<usize>>> {
-    let cells = settings_of(&cells.into_iter().collect::<Vec<_>>())?;
-    Ok(cells.groups(&cells.of_role(Role::Condition), 0..cells.n_rows))
+pub fn by_condition<'a>(
+    configurations: impl IntoIterator<Item = &'a Configuration>,
+) -> Result<Vec<Vec<usize>>> {
+    let configurations = settings_of(&configurations.into_iter().collect::<Vec<_>>())?;
+    Ok(configurations.groups(
+        &configurations.of_role(Role::Condition),
+        0..configurations.n_rows,
+    ))
 }
 
 /// Returns the index of the largest accuracy, in a tie the first; `None` if there are no accuracies.
@@ -38,20 +46,20 @@ pub fn most_accurate(accuracies: impl IntoIterator<Item = (usize, f64)>) -> Opti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inputs::sensor_errors::TestedOn;
-    use crate::studies::recognition::rows::cell::tests::cell;
+    use crate::inputs::sensor_errors::TestSensor;
+    use crate::studies::recognition::rows::configuration::tests::configuration;
 
     #[test]
     fn cells_that_differ_in_choices_alone_share_a_condition() {
-        let mut cells = vec![cell(); 6];
-        cells[1].measurements = 16;
-        cells[2].noise_std = 0.0;
-        cells[3].smoothing_mm = 4.0;
-        for cell in &mut cells {
-            cell.tested_on = Some(TestedOn::SameSkin);
+        let mut configurations = vec![configuration(); 6];
+        configurations[1].measurements = 16;
+        configurations[2].noise_std = 0.0;
+        configurations[3].smoothing_mm = 4.0;
+        for configuration in &mut configurations {
+            configuration.test_sensor = Some(TestSensor::SameSkin);
         }
-        cells[4].tested_on = Some(TestedOn::AnotherSkin);
-        let alike = by_condition(&cells).unwrap();
+        configurations[4].test_sensor = Some(TestSensor::AnotherSkin);
+        let alike = by_condition(&configurations).unwrap();
         assert_eq!(alike, [vec![0, 1, 3, 5], vec![2], vec![4]]);
     }
 }

@@ -1,6 +1,6 @@
 //! Inputs of the feature rows of a configuration.
 
-use crate::learning::data::over_time::OverTime;
+use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use bubbletouch_sim::features::Features;
 
@@ -14,11 +14,11 @@ pub struct RowInputs {
     /// Number F of frames per touch.
     pub frames: usize,
     /// How the frames are combined; `None` if they are concatenated.
-    pub over_time: Option<OverTime>,
+    pub temporal_features: Option<TemporalFeatures>,
     /// Features of a frame's measurements.
     pub features: Features,
     /// Depth window of image features behind the foremost point, as a fraction of the full scale.
-    pub foremost_full_scale: Option<f64>,
+    pub depth_window_full_scale: Option<f64>,
     /// Number of tilted copies of each training touch.
     pub n_copies: usize,
 }
@@ -28,7 +28,7 @@ impl RowInputs {
     pub fn of_images(&self) -> Option<FeaturesOfImages> {
         Some(FeaturesOfImages {
             join: self.features.of_image()?,
-            foremost: self.foremost_full_scale,
+            foremost: self.depth_window_full_scale,
             measurements: self.measurements,
         })
     }
@@ -41,7 +41,7 @@ impl RowInputs {
     /// Returns the number of features of a touch.
     pub fn n_features(&self) -> usize {
         let (n_frames, m) = (self.frames, self.n_frame_features());
-        self.over_time
+        self.temporal_features
             .map_or(n_frames * m, |kind| kind.n_features(n_frames, m))
     }
 }

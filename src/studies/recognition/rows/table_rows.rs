@@ -1,16 +1,16 @@
 //! Rows of the result tables: one plain struct for each kind of row, one field for each column.
 //!
-//! A row of `accuracy.csv` is a [`Cell`] followed by a [`TrialScore`]; the other tables are built the same way.
+//! A row of `accuracy.csv` is a [`Configuration`] followed by a [`TrialScore`]; the other tables are built the same way.
 
 use crate::row;
 use crate::statistics::comparison::TrialSize;
 use crate::statistics::p_status::PStatus;
 use crate::statistics::repeats::Repeat;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use serde::{Deserialize, Serialize};
 
 row! {
-/// Score of one configuration in one trial. A row of `accuracy.csv` is a [`Cell`] followed by a `TrialScore`.
+/// Score of one configuration in one trial. A row of `accuracy.csv` is a [`Configuration`] followed by a `TrialScore`.
 pub struct TrialScore {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
@@ -26,9 +26,9 @@ pub struct TrialScore {
     distinct_split: Option<usize> => Note "same split as": Linear, optional;
     /// Number of training rows.
     n_train: usize => Note "training rows": Linear;
-    /// Number of test rows. A test row is a group of `fused_touches` test touches.
+    /// Number of test rows. A test row is a group of `touches_per_decision` test touches.
     n_test: usize => Note "test rows": Linear;
-    /// Test touches that do not fill a whole group of `fused_touches`, over all objects.
+    /// Test touches that do not fill a whole group of `touches_per_decision`, over all objects.
     n_left_out: usize => Note "test touches left out": Linear;
     /// Number of correctly recognised test rows.
     n_correct: usize => Note "test rows recognised": Linear;
@@ -70,11 +70,11 @@ impl TrialScore {
 }
 
 row! {
-/// Score of a configuration over its trials. A row of `summary.csv` is a [`Cell`] followed by a `CellScore`.
+/// Score of a configuration over its trials. A row of `summary.csv` is a [`Configuration`] followed by a `CellScore`.
 pub struct CellScore {
     /// Number of trials.
     n_trials: usize => Note "trials": Linear;
-    /// Number of test rows of one trial. A test row is a group of `fused_touches` test touches.
+    /// Number of test rows of one trial. A test row is a group of `touches_per_decision` test touches.
     n_test: usize => Note "test rows": Linear;
     /// Mean accuracy over trials.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
@@ -108,7 +108,7 @@ row! {
 /// Number of test rows of one object that were recognised as another, over all trials of a configuration: a row of `confusion.csv`. Zero counts are omitted.
 pub struct Confusion {
     /// Number of the configuration.
-    cell: usize => Subject: Linear;
+    configuration: usize => Subject: Linear;
     /// Name of the touched object.
     object: String => Subject;
     /// Name of the recognised object.
@@ -124,7 +124,7 @@ row! {
 /// If touches are fused, the best configuration of the fewest touches is taken. The confusion with the most fused touches is listed beside it.
 pub struct Confused {
     /// Number of the best configuration.
-    cell: usize => Subject: Linear;
+    configuration: usize => Subject: Linear;
     /// Name of the touched object.
     object: String => Subject;
     /// Name of the recognised object.
@@ -134,23 +134,23 @@ pub struct Confused {
     /// Number of the object's test rows, over all trials.
     n_test: usize => Note "test rows of the object": Linear;
     /// Fraction of the test rows that were recognised as `predicted`, `count / n_test`.
-    share: f64 => Value(Less) "share of the object's test rows": Share between [share_low, share_high];
-    /// Lower end of the 95 % Wilson interval of `share`.
-    share_low: f64 => Note "95 % interval, lower end": Share, optional;
-    /// Upper end of the 95 % Wilson interval of `share`.
-    share_high: f64 => Note "95 % interval, upper end": Share, optional;
+    fraction: f64 => Value(Less) "share of the object's test rows": Share between [fraction_low, fraction_high];
+    /// Lower end of the 95 % Wilson interval of `fraction`.
+    fraction_low: f64 => Note "95 % interval, lower end": Share, optional;
+    /// Upper end of the 95 % Wilson interval of `fraction`.
+    fraction_high: f64 => Note "95 % interval, upper end": Share, optional;
     /// Largest number of fused touches. Present only if the study fuses touches.
     #[serde(skip_serializing_if = "Option::is_none")]
-    most_fused: Option<usize> => Note "most touches fused": Linear, optional;
-    /// `share` in decisions on `most_fused` touches. Present only if the study fuses touches.
+    max_touches_per_decision: Option<usize> => Note "most touches fused": Linear, optional;
+    /// `fraction` in decisions on `max_touches_per_decision` touches. Present only if the study fuses touches.
     #[serde(skip_serializing_if = "Option::is_none")]
-    share_fused: Option<f64> => Value(Less) "share with most touches fused": Share, optional;
+    fraction_at_max_touches: Option<f64> => Value(Less) "share with most touches fused": Share, optional;
 } }
 
 row! {
-/// Published accuracy beside ours. A row of `published.csv` is a [`Cell`] followed by a `Published`.
+/// Published accuracy beside ours. A row of `published.csv` is a [`Configuration`] followed by a `Published`.
 ///
-/// The [`Cell`] is the most accurate of the configurations to which the claim applies. A claim has one row for each condition of these configurations.
+/// The [`Configuration`] is the most accurate of the configurations to which the claim applies. A claim has one row for each condition of these configurations.
 pub struct Published {
     /// The claim, in words.
     claim: String => Subject;
@@ -174,9 +174,9 @@ row! {
 /// Comparison of a configuration with the best one of its condition, paired over trials: a row of `comparison.csv`.
 pub struct Comparison {
     /// Number of the configuration.
-    cell: usize => Subject: Linear;
+    configuration: usize => Subject: Linear;
     /// Number of the configuration with the highest mean accuracy in the same condition.
-    best_cell: usize => Note "best cell": Linear;
+    best_configuration: usize => Note "best configuration": Linear;
     /// Number of trials that both configurations have; trials of one split count once.
     n_trials: usize => Note "trials of both": Linear;
     /// Mean over trials of the accuracy minus the best configuration's accuracy.
@@ -200,20 +200,20 @@ pub struct Comparison {
 } }
 
 row! {
-/// Times of a trial of a configuration. A row of `timing.csv` is a [`Cell`] followed by a `TrialTime`.
+/// Times of a trial of a configuration. A row of `timing.csv` is a [`Configuration`] followed by a `TrialTime`.
 pub struct TrialTime {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
-    /// Seconds to fit, including scaling and the choice of C and γ. Configurations that differ only in `fused_touches` share one fit.
+    /// Seconds to fit, including scaling and the choice of C and γ. Configurations that differ only in `touches_per_decision` share one fit.
     fit_s: f64 => Cost "time to train" in "s": Log;
-    /// Seconds to score all test touches and to decide all test rows. Configurations that differ only in `fused_touches` share the scores.
+    /// Seconds to score all test touches and to decide all test rows. Configurations that differ only in `touches_per_decision` share the scores.
     predict_s: f64 => Cost "time to predict" in "s": Log;
     /// Microseconds to predict one test touch.
     predict_us_per_touch: f64 => Cost "time to predict a touch" in "µs": Log;
 } }
 
 row! {
-/// Accuracy of a configuration and its cost. A row of `pareto.csv` is a [`Cell`] followed by a `Pareto`.
+/// Accuracy of a configuration and its cost. A row of `pareto.csv` is a [`Configuration`] followed by a `Pareto`.
 ///
 /// A configuration is on a front if no other of the same [condition](crate::table::Role::Condition) dominates it. A configuration dominates if it is at least
 /// as accurate in at most the same time and better in one of the two.
@@ -224,7 +224,7 @@ pub struct Pareto {
     fit_s: f64 => Cost "time to train" in "s": Log;
     /// Mean microseconds of fitting per training touch.
     fit_us_per_touch: f64 => Cost "time to train, of a training touch" in "µs": Log;
-    /// Mean time of one decision on `fused_touches` touches, microseconds.
+    /// Mean time of one decision on `touches_per_decision` touches, microseconds.
     predict_us_per_decision: f64 => Cost "time of a decision" in "µs": Log;
     /// Whether the configuration is on the front of accuracy against `fit_s`.
     on_training_front: bool => Note;
@@ -255,11 +255,11 @@ row! {
 /// Number of times that a limit of the model was reached: a row of `limits.csv`.
 pub struct Limit {
     /// The limit, such as `saturated taxels`.
-    what: String => Subject "limit";
+    limit: String => Subject;
     /// Number of cases in which the limit was reached.
     count: u64 => Note: Log;
     /// Total number of cases.
-    of: u64 => Note: Linear;
+    total: u64 => Note: Linear;
     /// Consequence for the results, in words.
     meaning: String => Note;
 } }
@@ -268,23 +268,23 @@ pub struct Limit {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {
     /// `accuracy.csv`: one row per configuration and trial, ordered by configuration.
-    pub accuracy: Vec<(Cell, TrialScore)>,
+    pub accuracy: Vec<(Configuration, TrialScore)>,
     /// `summary.csv`: one row per configuration.
-    pub summary: Vec<(Cell, CellScore)>,
+    pub summary: Vec<(Configuration, CellScore)>,
     /// `confusion.csv`: non-zero counts, ordered by configuration.
     pub confusion: Vec<Confusion>,
     /// `comparison.csv`: one row per configuration.
     pub comparison: Vec<Comparison>,
     /// `timing.csv`: one row per configuration and trial.
-    pub timing: Vec<(Cell, TrialTime)>,
+    pub timing: Vec<(Configuration, TrialTime)>,
     /// `pareto.csv`: one row per configuration.
-    pub pareto: Vec<(Cell, Pareto)>,
+    pub pareto: Vec<(Configuration, Pareto)>,
     /// `stages.csv`: one row per array, number of frames and stage.
     pub stages: Vec<StageTime>,
     /// `confused.csv`: the pairs of objects that the best configuration confuses most often, in descending order of the count.
     pub confused: Vec<Confused>,
     /// `published.csv`: published accuracies beside ours.
-    pub published: Vec<(Cell, Published)>,
+    pub published: Vec<(Configuration, Published)>,
     /// `variance.csv`: three rows per configuration, for studies with `projections_per_split`.
     pub variance: Vec<Variance>,
     /// `limits.csv`: counts of reached limits of the model.
@@ -309,7 +309,7 @@ row! {
 /// Contribution of a source to the variance of a configuration's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
 pub struct Variance {
     /// Number of the configuration.
-    cell: usize => Subject: Linear;
+    configuration: usize => Subject: Linear;
     /// Source of the variance.
     source: Source => Subject "source of variance";
     /// Number of drawn levels of the source; for [`Source::Rest`], the number of trials.
@@ -327,7 +327,7 @@ pub struct Variance {
     /// Upper end of the 95 % interval of `accuracy_std`.
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
     /// Fraction of the variance of a trial, with negative estimates counted as zero; empty if nothing varies.
-    share: Option<f64> => Value(Less) "share of the variance": Share;
+    fraction: Option<f64> => Value(Less) "share of the variance": Share;
     /// p-value of the F test that the source contributes nothing; empty for [`Source::Rest`].
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }

@@ -3,7 +3,7 @@
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
 use crate::inputs::defaults::is_default;
-use crate::inputs::sensor_errors::{NOISES, TestedOn, all_strengths};
+use crate::inputs::sensor_errors::{NOISES, TestSensor, all_strengths};
 use crate::signal::{SENSOR_ERRORS, SensorError};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -19,7 +19,7 @@ pub struct SignalSpec {
     #[serde(flatten)]
     pub axes: SignalAxes,
     /// Axis: skin of the test touches, `same_skin` (default: the skin of the training touches) or `another_skin`.
-    pub tested_on: Option<Axis<TestedOn>>,
+    pub test_sensor: Option<Axis<TestSensor>>,
     /// How the axes of `[signal]` are combined with each other; all combinations with other axes are run.
     #[serde(skip_serializing_if = "is_default")]
     pub combine: CombineSpec,
@@ -141,7 +141,7 @@ impl<'de> Deserialize<'de> for Key {
         let key = String::deserialize(deserializer)?;
         let all = || {
             let axes = all_axes().map(|(key, _)| key);
-            ["steps", "tested_on", "combine"].into_iter().chain(axes)
+            ["steps", "test_sensor", "combine"].into_iter().chain(axes)
         };
         match all().any(|known| known == key) {
             true => Ok(Self(key)),
@@ -171,7 +171,7 @@ impl<'de> Visitor<'de> for SpecVisitor {
         while let Some(Key(key)) = map.next_key()? {
             match &key[..] {
                 "steps" => spec.steps = map.next_value()?,
-                "tested_on" => spec.tested_on = Some(map.next_value()?),
+                "test_sensor" => spec.test_sensor = Some(map.next_value()?),
                 "combine" => spec.combine = map.next_value()?,
                 axis => spec.axes.set(axis, map.next_value()?),
             }
@@ -185,7 +185,7 @@ impl Default for SignalSpec {
         Self {
             steps: vec![StepSpec::Noise, StepSpec::Smoothing],
             axes: SignalAxes::default(),
-            tested_on: None,
+            test_sensor: None,
             combine: CombineSpec::default(),
         }
     }

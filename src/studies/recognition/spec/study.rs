@@ -10,10 +10,10 @@ use crate::inputs::defaults::{count, is_default, number};
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::toml_value::value_at;
 use crate::learning::classifiers::ClassifierKind;
-use crate::learning::data::over_time::OverTime;
+use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::Ensemble;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::TrialScore;
 pub use crate::studies::recognition::spec::human::*;
 use crate::studies::recognition::spec::pose_split::GroupSpec;
@@ -86,15 +86,15 @@ const AXES_IN_PLACE: &[&str] = &[
     "sensing.ratio",
     "sensing.measurements",
     "recognition.features",
-    "recognition.foremost_full_scale",
-    "recognition.tilted_copies",
-    "recognition.over_time",
+    "recognition.depth_window_full_scale",
+    "recognition.tilt_augmentation",
+    "recognition.temporal_features",
     "recognition.classifier",
     "recognition.c",
     "recognition.train_touches",
     "recognition.mislabelled_fraction",
     "recognition.class_imbalance",
-    "recognition.fused_touches",
+    "recognition.touches_per_decision",
     "recognition.next_touch",
 ];
 
@@ -138,15 +138,15 @@ pub struct RecognitionSpec {
     pub features: Axis<Features>,
     /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. The window makes the features invariant to the
     /// press depth. Default: the whole image.
-    pub foremost_full_scale: Option<Axis<f64>>,
+    pub depth_window_full_scale: Option<Axis<f64>>,
     /// Axis: number of additional copies of each training touch, tilted at random as far as its images allow. The copies make recognition robust to tilts that
     /// were not trained on. Only for image features; default: none.
-    pub tilted_copies: Option<Axis<usize>>,
+    pub tilt_augmentation: Option<Axis<usize>>,
     /// Largest tilt of a copy about the array's x and y axes, degrees; tilts are uniformly distributed. Default: 5.
-    pub tilted_copies_deg: Option<f64>,
+    pub tilt_augmentation_deg: Option<f64>,
     /// Axis: how the frames of a touch are combined. Default: concatenated. `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in time),
     /// `moments` of each measurement, `course` of the touch, or `summarised` (moments and course).
-    pub over_time: Option<Axis<OverTime>>,
+    pub temporal_features: Option<Axis<TemporalFeatures>>,
     /// Axis: classifier.
     pub classifier: Axis<ClassifierKind>,
     /// Scheme that combines two-class SVMs into a multi-class one.
@@ -161,19 +161,19 @@ pub struct RecognitionSpec {
     /// Axis: penalty C of the classifiers that have one. Default: 1.
     pub c: Option<Axis<f64>>,
     /// Candidate values of C, instead of `c`. Each fit chooses one by cross-validation within its training rows.
-    pub choose_c: Option<Vec<f64>>,
+    pub c_grid: Option<Vec<f64>>,
     /// γ of the RBF, Laplacian and polynomial kernels. Default: 'scale', 1 / (F · m · variance); for the Laplacian kernel with the standard deviation.
     pub gamma: Option<f64>,
     /// Candidate values of γ as multiples of 'scale', instead of `gamma`. Each fit chooses one together with C.
-    pub choose_gamma: Option<Vec<f64>>,
+    pub gamma_grid: Option<Vec<f64>>,
     /// Number of folds of the inner cross-validation, which chooses C and γ and estimates decisions on unseen touches for `most_informative`. Default: 5.
     /// Folds do not divide the groups that the split keeps together.
-    pub choose_folds: Option<usize>,
+    pub cv_folds: Option<usize>,
     /// Largest number of training touches per object for the choice of C and γ. Default: all. The default γ is computed from all training touches.
-    pub choose_touches: Option<usize>,
+    pub cv_touches: Option<usize>,
     /// Number of readings of each training touch, each with its own noise. Default: 1. Without noise, drift or pink noise all readings of a touch are equal,
     /// and one is used. C and γ are chosen on first readings.
-    pub training_readings: Option<usize>,
+    pub readings_per_touch: Option<usize>,
     /// Degree d of the polynomial kernel.
     #[serde(default = "default_degree")]
     pub degree: u32,
@@ -199,7 +199,7 @@ pub struct RecognitionSpec {
     /// Axis: number k of test touches of an object that are fused into one decision by the sum of their scores. An object's test touches are grouped at
     /// random; a remainder of fewer than k touches is omitted.
     #[serde(default = "one_value")]
-    pub fused_touches: Axis<usize>,
+    pub touches_per_decision: Axis<usize>,
     /// Axis: policy that chooses the touches after the first. `random`; `farthest`, the pose farthest from the previous ones; `most_informative`, the pose
     /// with the least expected entropy of the belief over objects. Candidates are all test touches of the object, each at most once per decision.
     pub next_touch: Option<Axis<NextTouch>>,
@@ -212,12 +212,12 @@ pub struct RecognitionSpec {
     pub folds: Option<usize>,
     /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If
     /// the values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours are closer than
-    /// `keep_together_mm` and `keep_together_deg` on each drawn axis.
-    pub keep_together: Option<GroupSpec>,
+    /// `group_by_mm` and `group_by_deg` on each drawn axis.
+    pub group_by: Option<GroupSpec>,
     /// Distance below which drawn offsets and depths are neighbours, mm.
-    pub keep_together_mm: Option<f64>,
+    pub group_by_mm: Option<f64>,
     /// Angle below which drawn yaws and tilts are neighbours, degrees.
-    pub keep_together_deg: Option<f64>,
+    pub group_by_deg: Option<f64>,
 }
 
 /// `[report]`: contents of the page and of some tables.
@@ -257,7 +257,7 @@ pub struct PublishedSpec {
     pub accuracy: f64,
     /// Source of the claim.
     pub source: String,
-    /// Other keys, which select the configurations to compare with. Each is the name of a column of [`Cell`] (`noise` is short for `noise_std`) with its
+    /// Other keys, which select the configurations to compare with. Each is the name of a column of [`Configuration`] (`noise` is short for `noise_std`) with its
     /// value.
     #[serde(flatten)]
     pub at: toml::Table,
@@ -288,7 +288,7 @@ impl StudySpec {
         let table = toml::Table::try_from(without_seed);
         let table = table.expect("every other field of a study has a TOML form");
         let keys = AXES_IN_PLACE.iter();
-        keys.chain(&["signal.tested_on"]).map(move |key| {
+        keys.chain(&["signal.test_sensor"]).map(move |key| {
             let values = value_at(&table, key).and_then(toml::Value::as_array);
             (*key, values.map_or(1, Vec::len))
         })
@@ -296,7 +296,7 @@ impl StudySpec {
 
     /// Returns the columns of the study's own axes in result tables.
     pub fn axis_columns(&self) -> Vec<Column> {
-        let of_cells = Cell::columns();
+        let of_cells = Configuration::columns();
         let of_trials = TrialScore::columns();
         // Columns of trials that only some studies have.
         let has = |column: &&Column| match &column.name[..] {

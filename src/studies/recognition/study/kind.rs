@@ -42,7 +42,7 @@ const METHODS: [(&str, &str); 5] = [
     ),
     (
         "comparison.csv: difference_low, difference_high, p_value, p_holm",
-        "corrected resampled t-test against the best cell (Nadeau, Bengio 2003); p_holm: corrected for the number of cells by Holm's method",
+        "corrected resampled t-test against the best configuration (Nadeau, Bengio 2003); p_holm: corrected for the number of configurations by Holm's method",
     ),
     (
         "variance.csv: accuracy_std_low, accuracy_std_high, p_value",
@@ -54,7 +54,7 @@ const METHODS: [(&str, &str); 5] = [
     ),
     (
         "bubbletouch compare: p_holm",
-        "corrected resampled t-tests, corrected for the number of cells by Holm's method",
+        "corrected resampled t-tests, corrected for the number of configurations by Holm's method",
     ),
 ];
 
@@ -101,7 +101,7 @@ impl Study for RecognitionStudy {
     fn work_items(&self) -> Vec<WorkItem> {
         let families = 0..self.families.len();
         let of_family = |family: usize| {
-            let (part, cells) = self.family(family);
+            let (part, configurations) = self.family(family);
             let number = self.families[family].group;
             let placed = &self.groups[number];
             let content = |touches: usize| &self.touch_sets[touches].content[..];
@@ -110,8 +110,8 @@ impl Study for RecognitionStudy {
                 false => format!("{} {}", content(placed.touches), content(placed.tested)),
             };
             let of = (self.group(number).1, &touches[..]);
-            let inputs = FamilyInputs::new(&part.plan, &part.sweep, cells);
-            family_name(&part.plan, of, &inputs, cells)
+            let inputs = FamilyInputs::new(&part.plan, &part.sweep, configurations);
+            family_name(&part.plan, of, &inputs, configurations)
         };
         let families: Vec<String> = families.map(of_family).collect();
         let mut items = Vec::with_capacity(self.n_trials() * families.len());
@@ -149,9 +149,12 @@ impl Study for RecognitionStudy {
         let touches = match number.checked_sub(self.touches_item(0)) {
             Some(touches) => touches,
             None => {
-                let Family { group, cells } = &self.families[number % self.families.len()];
-                for (row, cell) in rows.iter_mut().zip(cells.clone()) {
-                    row.at = (*group, cell);
+                let Family {
+                    group,
+                    configurations,
+                } = &self.families[number % self.families.len()];
+                for (row, configuration) in rows.iter_mut().zip(configurations.clone()) {
+                    row.at = (*group, configuration);
                 }
                 self.groups[*group].touches
             }
@@ -234,7 +237,7 @@ impl RecognitionStudy {
 
 /// Returns a description of the split: how test touches relate to training touches.
 fn split_words(spec: &StudySpec) -> String {
-    let held_out = match spec.recognition.keep_together {
+    let held_out = match spec.recognition.group_by {
         _ if let Some(recorded) = &spec.recorded => {
             if recorded.has_test_set() {
                 return "given test set".to_owned();
@@ -244,7 +247,7 @@ fn split_words(spec: &StudySpec) -> String {
                 None => "random touches, whatever was recorded together".to_owned(),
             };
         }
-        _ if spec.axes.has("recognition.keep_together") || spec.axes.has("recognition.split") => {
+        _ if spec.axes.has("recognition.group_by") || spec.axes.has("recognition.split") => {
             return "as each row says".to_owned();
         }
         _ if spec.recognition.split != PoseSplit::Random => {

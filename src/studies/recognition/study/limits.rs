@@ -1,14 +1,18 @@
 //! Counts of reached limits of the model.
 
 use crate::report::csv_tables::MISSED_TOUCHES;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{Limit, TrialScore};
 use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::study::rows::TouchRow;
 
 impl RecognitionStudy {
     /// Returns the limits reached by touches on all arrays and by fits.
-    pub(crate) fn limits(&self, fits: &[(Cell, TrialScore)], rows: &[TouchRow]) -> Vec<Limit> {
+    pub(crate) fn limits(
+        &self,
+        fits: &[(Configuration, TrialScore)],
+        rows: &[TouchRow],
+    ) -> Vec<Limit> {
         // The deepest frame is the same for any number of frames per touch.
         let is_counted = |row: &&TouchRow| {
             let (_, _, n_frames) = self.on(row.on);
@@ -31,10 +35,10 @@ impl RecognitionStudy {
             (_, Some(_)) => "no taxel reads more than recorded.zero",
             _ => "no part of the object was over the array; their frames hold no contact",
         };
-        let limit = |what: &str, (count, of): (usize, usize), meaning: &str| Limit {
-            what: what.to_owned(),
+        let limit = |what: &str, (count, total): (usize, usize), meaning: &str| Limit {
+            limit: what.to_owned(),
             count: count as u64,
-            of: of as u64,
+            total: total as u64,
             meaning: meaning.to_owned(),
         };
         let mut limits = vec![

@@ -226,12 +226,12 @@ impl Job<'_> {
     }
 
     fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<Vec<CellRow>> {
-        let (part, cells) = self.study.family(family);
+        let (part, configurations) = self.study.family(family);
         let trial = Trial {
             inputs: part.sweep.trial(&part.plan, self.trial)?,
             measurements,
         };
-        let family = FamilyInputs::new(&part.plan, &part.sweep, cells);
+        let family = FamilyInputs::new(&part.plan, &part.sweep, configurations);
         let evaluations = trial.evaluate(&family)?.into_iter();
         let rows = evaluations.map(|evaluation| CellRow {
             at: (0, 0),

@@ -13,7 +13,7 @@ use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{StageTime, Tables};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::study::ConfusionMatrices;
@@ -73,7 +73,7 @@ pub(crate) struct PlacedGroup {
 /// A [family](Group::families) of configurations: its group and the range of its configurations.
 pub(crate) struct Family {
     pub group: usize,
-    pub cells: Range<usize>,
+    pub configurations: Range<usize>,
 }
 
 impl RecognitionStudy {
@@ -108,12 +108,12 @@ impl RecognitionStudy {
             groups: Vec::new(),
             families: Vec::new(),
         };
-        let mut n_cells = 0;
+        let mut n_configurations = 0;
         for (variant, plan, [touched, tested]) in variants {
             check_counterparts(touched.as_ref(), tested.as_ref())?;
             let mut sweep = Sweep::new(&plan, touched.as_ref())?;
-            sweep.place(n_cells, &variant);
-            n_cells += sweep.n_cells();
+            sweep.place(n_configurations, &variant);
+            n_configurations += sweep.n_configurations();
             study.parts.push(StudyPart {
                 plan,
                 touched,
@@ -121,9 +121,9 @@ impl RecognitionStudy {
                 sweep,
             });
         }
-        let cells: Vec<&Cell> = study.all_cells().collect();
+        let configurations: Vec<&Configuration> = study.all_cells().collect();
         let report = &study.first().plan.spec.report;
-        check_published(&report.published, &cells)?;
+        check_published(&report.published, &configurations)?;
         // Confusion matrices show the chance level of each configuration.
         let n_objects = |part: &StudyPart| part.touched.class_names().len();
         let n_first = n_objects(study.first());
@@ -173,11 +173,11 @@ impl RecognitionStudy {
                 });
                 let mut start = 0;
                 self.families.extend(group.families().map(|family| {
-                    let cells = start..start + family.len();
-                    start = cells.end;
+                    let configurations = start..start + family.len();
+                    start = configurations.end;
                     Family {
                         group: number,
-                        cells,
+                        configurations,
                     }
                 }));
             }
@@ -195,8 +195,12 @@ impl RecognitionStudy {
     }
 
     /// Returns the part that contains a configuration, given by its number; the last part if no part contains it.
-    pub fn part_of(&self, cell: usize) -> &StudyPart {
-        let has_it = |part: &&StudyPart| part.sweep.cells().any(|known| known.cell == cell);
+    pub fn part_of(&self, configuration: usize) -> &StudyPart {
+        let has_it = |part: &&StudyPart| {
+            part.sweep
+                .configurations()
+                .any(|known| known.configuration == configuration)
+        };
         self.parts
             .iter()
             .find(has_it)
@@ -204,13 +208,18 @@ impl RecognitionStudy {
     }
 
     /// Returns all configurations, in the order of their numbers.
-    pub fn all_cells(&self) -> impl Iterator<Item = &Cell> {
-        self.parts.iter().flat_map(|part| part.sweep.cells())
+    pub fn all_cells(&self) -> impl Iterator<Item = &Configuration> {
+        self.parts
+            .iter()
+            .flat_map(|part| part.sweep.configurations())
     }
 
     /// Returns the number of configurations.
-    pub fn n_cells(&self) -> usize {
-        self.parts.iter().map(|part| part.sweep.n_cells()).sum()
+    pub fn n_configurations(&self) -> usize {
+        self.parts
+            .iter()
+            .map(|part| part.sweep.n_configurations())
+            .sum()
     }
 
     /// Returns the number of arrays on which touches are simulated.
@@ -259,10 +268,13 @@ impl RecognitionStudy {
     }
 
     /// Returns the configurations of a family and their part.
-    pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Cell]) {
-        let Family { group, cells } = &self.families[family];
+    pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Configuration]) {
+        let Family {
+            group,
+            configurations,
+        } = &self.families[family];
         let (part, group) = self.group(*group);
-        (part, &group.cells[cells.clone()])
+        (part, &group.configurations[configurations.clone()])
     }
 
     /// Returns the number of the work item of a family in a trial.
@@ -366,16 +378,18 @@ impl RecognitionStudy {
     ///
     /// # Errors
     /// If [`Study::tables`](crate::studies::study::Study::tables) fails.
-    pub fn outcome(&self, (cells, touches): RecognitionRows) -> Result<Tables> {
+    pub fn outcome(&self, (configurations, touches): RecognitionRows) -> Result<Tables> {
         let mut tables = Tables::default();
-        let scored = cells.into_iter().map(|row| {
-            let cell = &self.group(row.at.0).1.cells[row.at.1];
-            (cell.clone(), row.evaluation)
+        let scored = configurations.into_iter().map(|row| {
+            let configuration = &self.group(row.at.0).1.configurations[row.at.1];
+            (configuration.clone(), row.evaluation)
         });
         let names: Vec<Vec<&str>> = self.parts.iter().map(|p| p.touched.class_names()).collect();
-        let name = |cell: &Cell, label: usize| names[cell.variant.number][label].to_owned();
-        let n_folds = |cell: &Cell| {
-            let spec = &self.parts[cell.variant.number].plan.spec;
+        let name = |configuration: &Configuration, label: usize| {
+            names[configuration.variant.number][label].to_owned()
+        };
+        let n_folds = |configuration: &Configuration| {
+            let spec = &self.parts[configuration.variant.number].plan.spec;
             spec.recognition.folds.unwrap_or(1)
         };
         let report = &self.first().plan.spec.report;

@@ -5,7 +5,7 @@ use crate::sensing::N_COMPONENTS;
 use crate::studies::recognition::measurements::measurement::UNTOUCHED;
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::sweep::configurations::StudyPart;
 use crate::studies::recognition::sweep::learned_frames::WITH_COPIES;
@@ -45,8 +45,9 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         let n_test = part.sweep.splits.iter().map(|split| split.test.len());
         let (n_test, n_classes) = (n_test.max().unwrap_or(0), part.touched.class_names().len());
         let n_read = n_classes * group.n_readings(&part.plan);
-        let bytes =
-            |family: &[Cell]| family_bytes(&part.plan, &family[0], n_test, (n_classes, n_read));
+        let bytes = |family: &[Configuration]| {
+            family_bytes(&part.plan, &family[0], n_test, (n_classes, n_read))
+        };
         largest(group.families().map(bytes))
     };
     // Separate test touches are in memory together with the training touches.
@@ -61,8 +62,8 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
             1 => format!("{n_touches} on one array"),
             n => format!("{n_touches} on each of {n} arrays"),
         },
-        n_configurations: study.n_cells(),
-        bytes: frames + CELL_BYTES * (study.n_cells() * first.plan.spec.trials) as f64,
+        n_configurations: study.n_configurations(),
+        bytes: frames + CELL_BYTES * (study.n_configurations() * first.plan.spec.trials) as f64,
         // A thread that waits for others starts another group.
         item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
     }
@@ -82,23 +83,23 @@ fn learned_bytes(group: &Group, n: f64) -> f64 {
 /// one touch per class.
 fn family_bytes(
     plan: &Plan,
-    cell: &Cell,
+    configuration: &Configuration,
     n_test: usize,
     (n_classes, n_read): (usize, usize),
 ) -> f64 {
     let learned = &plan.spec.recognition;
-    let fuses = learned.fused_touches.values().iter().any(|&k| k > 1);
-    let n_scores = match (cell.classifier.has_c(), learned.multiclass) {
+    let fuses = learned.touches_per_decision.values().iter().any(|&k| k > 1);
+    let n_scores = match (configuration.classifier.has_c(), learned.multiclass) {
         // Without fusion, test rows are processed in blocks.
         (true, _) if !fuses => 0,
         (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
         _ => n_classes,
     };
-    let n_copied = n_classes * cell.tilted_copies.unwrap_or(0);
-    let n_train = (cell.train_touches * (n_read + n_copied)) as f64;
-    let (m, n_test) = (cell.n_features() as f64, n_test as f64);
+    let n_copied = n_classes * configuration.tilt_augmentation.unwrap_or(0);
+    let n_train = (configuration.train_touches * (n_read + n_copied)) as f64;
+    let (m, n_test) = (configuration.n_features() as f64, n_test as f64);
     let of_all = 8.0 * n_train * n_train;
-    let is_kernel_svm = cell.classifier.about().kernel.is_some();
+    let is_kernel_svm = configuration.classifier.about().kernel.is_some();
     let kernel_values = match (learned.solver, learned.multiclass) {
         _ if !is_kernel_svm => 0.0,
         (Solver::CoordinateDescent, _) => 0.0,

@@ -21,7 +21,7 @@ use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::skin;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
 use crate::studies::recognition::sweep::splits::{draw_split, first_equal, train_touches};
 use crate::studies::recognition::touches::scaled_poses::scaled_poses;
@@ -95,7 +95,7 @@ impl Sweep {
         let labels = touched.labels();
         let poses = touched.poses();
         plan.spec.recognition.split.check(&poses)?;
-        let together = plan.keep_together.as_ref();
+        let together = plan.group_by.as_ref();
         let keys = together.map(|together| touched.group_keys(together));
         let keys = keys.transpose()?.or_else(|| touched.own_groups());
         let split = |trial| {
@@ -118,16 +118,16 @@ impl Sweep {
             array in 0..plan.arrays.len();
             frames in plan.frames.iter().copied();
             condition in plan.conditions();
-            tested_on in Axis::optional_values(&plan.spec.signal.tested_on);
+            test_sensor in Axis::optional_values(&plan.spec.signal.test_sensor);
             ensemble in plan.spec.sensing.ensemble.values();
             {
                 let group = Group {
                     array,
                     frames,
                     condition,
-                    tested_on: tested_on.unwrap_or_default(),
+                    test_sensor: test_sensor.unwrap_or_default(),
                     ensemble,
-                    cells: Vec::new(),
+                    configurations: Vec::new(),
                 };
                 sweep.add_group(plan, group, &train_touches)?;
             }
@@ -137,20 +137,27 @@ impl Sweep {
 
     /// Assigns the configurations to a combination of the values in `[axes]` and numbers them from `first`.
     pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
-        for cell in self.groups.iter_mut().flat_map(|group| &mut group.cells) {
-            cell.cell += first;
-            cell.variant.clone_from(variant);
+        for configuration in self
+            .groups
+            .iter_mut()
+            .flat_map(|group| &mut group.configurations)
+        {
+            configuration.configuration += first;
+            configuration.variant.clone_from(variant);
         }
     }
 
     /// Returns all configurations, in order.
-    pub fn cells(&self) -> impl Iterator<Item = &Cell> {
-        self.groups.iter().flat_map(|group| &group.cells)
+    pub fn configurations(&self) -> impl Iterator<Item = &Configuration> {
+        self.groups.iter().flat_map(|group| &group.configurations)
     }
 
     /// Returns the number of configurations.
-    pub fn n_cells(&self) -> usize {
-        self.groups.iter().map(|group| group.cells.len()).sum()
+    pub fn n_configurations(&self) -> usize {
+        self.groups
+            .iter()
+            .map(|group| group.configurations.len())
+            .sum()
     }
 
     /// Checks that a learned ensemble has more frames of training touches than measurements. The frames minus their mean must span that many directions.
@@ -196,23 +203,26 @@ impl Sweep {
             false => vec![None],
         };
         // Configurations are counted from the last group; counting all of them would take quadratic time.
-        let last = self.groups.last().and_then(|group| group.cells.last());
-        let first = last.map_or(0, |cell| cell.cell + 1);
+        let last = self
+            .groups
+            .last()
+            .and_then(|group| group.configurations.last());
+        let first = last.map_or(0, |configuration| configuration.configuration + 1);
         nested! {
             measurements in plan.measurement_counts(array, group.ensemble);
-            over_time in Axis::optional_values(&learned.over_time);
+            temporal_features in Axis::optional_values(&learned.temporal_features);
             features in learned.features.values();
-            foremost_full_scale in learned.foremost(features);
-            tilted_copies in learned.copies(features);
+            depth_window_full_scale in learned.foremost(features);
+            tilt_augmentation in learned.copies(features);
             classifier in learned.classifier.values();
             train_touches in train_touches.iter().copied();
             class_imbalance in Axis::optional_values(&learned.class_imbalance);
             mislabelled_fraction in Axis::optional_values(&learned.mislabelled_fraction);
             c in penalties(classifier);
-            fused_touches in learned.fused_touches.values();
-            next_touch in learned.next_touches(fused_touches);
-            group.cells.push(Cell {
-                cell: first + group.cells.len(),
+            touches_per_decision in learned.touches_per_decision.values();
+            next_touch in learned.next_touches(touches_per_decision);
+            group.configurations.push(Configuration {
+                configuration: first + group.configurations.len(),
                 pitch_mm: millimetres(array.pitch()),
                 nx,
                 ny,
@@ -222,27 +232,27 @@ impl Sweep {
                 noise_unit: plan.noise_unit,
                 smoothing_mm: millimetres(group.condition.smoothing),
                 strengths: group.condition.strengths,
-                tested_on: plan.spec.signal.tested_on.as_ref().map(|_| group.tested_on),
+                test_sensor: plan.spec.signal.test_sensor.as_ref().map(|_| group.test_sensor),
                 ensemble: group.ensemble,
                 measurements,
                 ratio: array.n_values() as f64 / measurements as f64,
                 frames: group.frames,
-                over_time,
+                temporal_features,
                 features,
-                foremost_full_scale,
-                tilted_copies,
+                depth_window_full_scale,
+                tilt_augmentation,
                 classifier,
                 c,
                 train_touches,
                 mislabelled_fraction,
                 class_imbalance,
-                fused_touches,
+                touches_per_decision,
                 next_touch,
                 variant: AxisValues::default(),
             })
         }
         // With many small groups, unused capacity would take most of the memory.
-        group.cells.shrink_to_fit();
+        group.configurations.shrink_to_fit();
         self.groups.push(group);
         Ok(())
     }

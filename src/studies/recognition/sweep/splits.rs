@@ -97,18 +97,18 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
         at_most("train_touches", count as f64, fewest, what)?;
     }
     let fewest_tested = fewest_per_object(splits.iter().map(|split| &split.test), labels);
-    for k in recognition.fused_touches.values() {
+    for k in recognition.touches_per_decision.values() {
         let what = "the test touches of every object in every trial";
-        at_most("fused_touches", k as f64, fewest_tested, what)?;
+        at_most("touches_per_decision", k as f64, fewest_tested, what)?;
     }
     let least = train_touches.iter().min().copied().unwrap_or(0);
-    let chooses = recognition.choose_c.is_some() || recognition.choose_gamma.is_some();
+    let chooses = recognition.c_grid.is_some() || recognition.gamma_grid.is_some();
     if chooses || recognition.is_informed() {
-        let choose_touches = recognition.choose_touches.filter(|_| chooses);
-        let of_folds = least.min(choose_touches.unwrap_or(least));
+        let cv_touches = recognition.cv_touches.filter(|_| chooses);
+        let of_folds = least.min(cv_touches.unwrap_or(least));
         let n_folds = recognition.n_choice_folds() as f64;
         let what = "the training touches of every object that take part";
-        at_most("choose_folds", n_folds, of_folds, what)?;
+        at_most("cv_folds", n_folds, of_folds, what)?;
     }
     for ratio in recognition.class_imbalance.iter().flat_map(Axis::values) {
         let what = "twice the training touches of every object";

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::number;
-use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::conditions::{by_condition, most_accurate, settings_of};
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{CellScore, Published};
 use crate::studies::recognition::spec::study::PublishedSpec;
 use crate::table::{Table, Value, column_name};
@@ -12,16 +12,21 @@ use std::fmt::Display;
 /// Checks that every claim is a valid accuracy and applies to at least one configuration.
 ///
 /// # Errors
-/// If an accuracy is not between 0 and 1, a key is not a column of [`Cell`], no configuration has a value, or no configuration has all values of a claim.
-pub fn check_published(published: &[PublishedSpec], cells: &[&Cell]) -> Result<()> {
+/// If an accuracy is not between 0 and 1, a key is not a column of [`Configuration`], no configuration has a value, or no configuration has all values of a claim.
+pub fn check_published(
+    published: &[PublishedSpec],
+    configurations: &[&Configuration],
+) -> Result<()> {
     if published.is_empty() {
         return Ok(());
     }
-    let cells = settings_of(cells)?;
-    published.iter().try_for_each(|claim| check(claim, &cells))
+    let configurations = settings_of(configurations)?;
+    published
+        .iter()
+        .try_for_each(|claim| check(claim, &configurations))
 }
 
-fn check(claim: &PublishedSpec, cells: &Table) -> Result<()> {
+fn check(claim: &PublishedSpec, configurations: &Table) -> Result<()> {
     let refuse = |key: &str, given: &dyn Display, allowed: &str| {
         let place = format!("key report.published, claim '{}', {key}", claim.claim);
         Err(Error::input(place, given, allowed))
@@ -31,26 +36,26 @@ fn check(claim: &PublishedSpec, cells: &Table) -> Result<()> {
         return refuse("accuracy", &claim.accuracy, allowed);
     }
     let known = |name: &str| match name {
-        "cell" => String::new(),
-        name => cells.one_of(name, 0..cells.n_rows),
+        "configuration" => String::new(),
+        name => configurations.one_of(name, 0..configurations.n_rows),
     };
     for (key, wanted) in &claim.at {
         let (name, wanted) = (column_name(key), setting(wanted));
         let values = known(name);
         if values.is_empty() {
-            let names = cells.columns.iter().map(|column| &column.name[..]);
+            let names = configurations.columns.iter().map(|column| &column.name[..]);
             let names: Vec<&str> = names.filter(|name| !known(name).is_empty()).collect();
             let allowed = format!("one of {}", names.join(", "));
             return refuse(key, &"is no setting of this study", &allowed);
         }
-        if !(0..cells.n_rows).any(|row| cells.has_setting(name, row, &wanted)) {
+        if !(0..configurations.n_rows).any(|row| configurations.has_setting(name, row, &wanted)) {
             return refuse(key, &wanted, &values);
         }
     }
-    match (0..cells.n_rows).any(|row| is_about(claim, cells, row)) {
+    match (0..configurations.n_rows).any(|row| is_about(claim, configurations, row)) {
         true => Ok(()),
         false => {
-            let allowed = "values that one cell of the study has together";
+            let allowed = "values that one configuration of the study has together";
             refuse("all keys together", &claim.at, allowed)
         }
     }
@@ -65,9 +70,9 @@ fn setting(written: &toml::Value) -> Value {
     }
 }
 
-fn is_about(claim: &PublishedSpec, cells: &Table, row: usize) -> bool {
+fn is_about(claim: &PublishedSpec, configurations: &Table, row: usize) -> bool {
     let mut keys = claim.at.iter();
-    keys.all(|(key, wanted)| cells.has_setting(column_name(key), row, &setting(wanted)))
+    keys.all(|(key, wanted)| configurations.has_setting(column_name(key), row, &setting(wanted)))
 }
 
 /// Returns each claim beside the most accurate configuration to which it applies (in a tie the first), once for each condition of these configurations.
@@ -76,11 +81,11 @@ fn is_about(claim: &PublishedSpec, cells: &Table, row: usize) -> bool {
 /// If a configuration cannot be written as a row of a table.
 pub fn compare_with_published(
     published: &[PublishedSpec],
-    summary: &[(Cell, CellScore)],
-) -> Result<Vec<(Cell, Published)>> {
-    let cells = || summary.iter().map(|(cell, _)| cell);
-    let settings = settings_of(&cells().collect::<Vec<_>>())?;
-    let conditions = by_condition(cells())?;
+    summary: &[(Configuration, CellScore)],
+) -> Result<Vec<(Configuration, Published)>> {
+    let configurations = || summary.iter().map(|(configuration, _)| configuration);
+    let settings = settings_of(&configurations().collect::<Vec<_>>())?;
+    let conditions = by_condition(configurations())?;
     let mut rows = Vec::new();
     for claim in published {
         for alike in &conditions {
@@ -88,7 +93,7 @@ pub fn compare_with_published(
             about.retain(|&place| is_about(claim, &settings, place));
             let accuracy = |&place: &usize| (place, summary[place].1.accuracy);
             if let Some(best) = most_accurate(about.iter().map(accuracy)) {
-                let (cell, score) = &summary[best];
+                let (configuration, score) = &summary[best];
                 let ours = Published {
                     claim: claim.claim.clone(),
                     source: claim.source.clone(),
@@ -99,7 +104,7 @@ pub fn compare_with_published(
                     difference: score.accuracy - claim.accuracy,
                     n_matching: about.len(),
                 };
-                rows.push((cell.clone(), ours));
+                rows.push((configuration.clone(), ours));
             }
         }
     }
@@ -117,19 +122,19 @@ mod tests {
     }
 
     /// Two classifiers × two ratios × noise of 0 or 10 %; accuracies increase with the number of the configuration.
-    fn summary() -> Vec<(Cell, CellScore)> {
+    fn summary() -> Vec<(Configuration, CellScore)> {
         let mut rows = Vec::new();
         for noise_std in [0.0, 0.1] {
             for classifier in [ClassifierKind::LinearSvm, ClassifierKind::KNearest] {
                 for (measurements, ratio) in [(64, 64.0), (41, 4096.0 / 41.0)] {
-                    let cell = Cell {
-                        cell: rows.len(),
+                    let configuration = Configuration {
+                        configuration: rows.len(),
                         noise_std,
                         classifier,
                         measurements,
                         ratio,
                         c: classifier.has_c().then_some(1.0),
-                        ..crate::studies::recognition::rows::cell::tests::cell()
+                        ..crate::studies::recognition::rows::configuration::tests::configuration()
                     };
                     let accuracy = 0.5 + 0.05 * rows.len() as f64;
                     let score = CellScore {
@@ -145,7 +150,7 @@ mod tests {
                         macro_f1: accuracy,
                         n_capped: 0,
                     };
-                    rows.push((cell, score));
+                    rows.push((configuration, score));
                 }
             }
         }
@@ -155,7 +160,7 @@ mod tests {
     #[test]
     fn a_claim_stands_beside_the_most_accurate_of_the_cells_with_its_settings_in_each_condition() {
         let summary = summary();
-        for (keys, cells, n_matching) in [
+        for (keys, configurations, n_matching) in [
             ("", &[3, 7][..], 4),
             ("noise = 0.0", &[3], 4),
             ("noise_std = 0", &[3], 4),
@@ -168,15 +173,24 @@ mod tests {
             ("ratio = 100.0\nc = 1.0", &[1, 5], 1), // a ratio as it was asked for
             ("measurements = 64\nnoise = 0.0", &[2], 2),
         ] {
-            let all: Vec<&Cell> = summary.iter().map(|(cell, _)| cell).collect();
+            let all: Vec<&Configuration> = summary
+                .iter()
+                .map(|(configuration, _)| configuration)
+                .collect();
             let claims = [claim(keys)];
             check_published(&claims, &all).unwrap();
             let found = compare_with_published(&claims, &summary).unwrap();
-            let of_cells: Vec<usize> = found.iter().map(|(cell, _)| cell.cell).collect();
-            assert_eq!(of_cells, cells, "{keys}");
-            for (cell, row) in found {
+            let of_cells: Vec<usize> = found
+                .iter()
+                .map(|(configuration, _)| configuration.configuration)
+                .collect();
+            assert_eq!(of_cells, configurations, "{keys}");
+            for (configuration, row) in found {
                 assert_eq!(row.n_matching, n_matching, "{keys}");
-                assert_eq!(row.accuracy, summary[cell.cell].1.accuracy);
+                assert_eq!(
+                    row.accuracy,
+                    summary[configuration.configuration].1.accuracy
+                );
                 assert_eq!(row.difference, row.accuracy - 0.9);
             }
         }
@@ -185,10 +199,16 @@ mod tests {
     #[test]
     fn a_claim_about_no_cell_is_refused_with_what_the_study_has() {
         let summary = summary();
-        let cells: Vec<&Cell> = summary.iter().map(|(cell, _)| cell).collect();
+        let configurations: Vec<&Configuration> = summary
+            .iter()
+            .map(|(configuration, _)| configuration)
+            .collect();
         for (keys, said) in [
             ("colour = 1", "colour: is no setting of this study; one of "),
-            ("cell = 0", "cell: is no setting of this study; one of "),
+            (
+                "configuration = 0",
+                "configuration: is no setting of this study; one of ",
+            ),
             ("ratio = 16.0", "ratio: 16; one of 64, 99.9"),
             (
                 "classifier = \"rbf_svm\"",
@@ -197,17 +217,17 @@ mod tests {
             ("classifier = 3", "classifier: 3; one of linear_svm"),
             (
                 "classifier = \"k_nearest\"\nc = 1.0",
-                "values that one cell of the study has together",
+                "values that one configuration of the study has together",
             ),
         ] {
-            let error = check_published(&[claim(keys)], &cells).unwrap_err();
+            let error = check_published(&[claim(keys)], &configurations).unwrap_err();
             assert!(error.to_string().contains(said), "{error}");
         }
         let percent = PublishedSpec {
             accuracy: 98.0,
             ..claim("")
         };
-        let error = check_published(&[percent], &cells).unwrap_err();
+        let error = check_published(&[percent], &configurations).unwrap_err();
         assert!(
             error
                 .to_string()

@@ -6,8 +6,8 @@ use crate::statistics::grouped::{GroupCount, GroupedTest, interval_of_groups};
 use crate::statistics::many_tests::holm_of_some;
 use crate::statistics::p_status::CONFIDENCE;
 use crate::statistics::repeats::{Paired, Repeat, scores};
-use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::conditions::{by_condition, most_accurate};
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
     CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
@@ -16,7 +16,7 @@ use bubbletouch_sim::statistics::interval::{Interval, RowTest};
 use std::collections::BTreeMap;
 
 /// Row of the accuracy table.
-type Row = (Cell, TrialScore);
+type Row = (Configuration, TrialScore);
 
 /// Returns one row per configuration from one row per configuration and trial; the trials of a configuration are adjacent. `groups` contains the tested groups
 /// of each row, if there are any. `n_folds` returns the number of folds of a configuration, 1 without folds.
@@ -26,8 +26,8 @@ type Row = (Cell, TrialScore);
 pub fn summarise(
     rows: &[Row],
     mut groups: &[Vec<GroupCount>],
-    n_folds: impl Fn(&Cell) -> usize,
-) -> Result<Vec<(Cell, CellScore)>> {
+    n_folds: impl Fn(&Configuration) -> usize,
+) -> Result<Vec<(Configuration, CellScore)>> {
     let mut bootstrap = Bootstrap::default();
     let is_grouped = rows.iter().any(|(_, score)| score.n_groups.is_some());
     rows.chunk_by(|a, b| a.0 == b.0)
@@ -116,19 +116,22 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
 /// # Errors
 /// If a trial has no training or test rows.
 pub fn compare_with_best(rows: &[Row]) -> Result<Vec<Comparison>> {
-    let cells: Vec<&[Row]> = rows.chunk_by(|a, b| a.0.cell == b.0.cell).collect();
-    let mut best = vec![0; cells.len()];
-    for alike in by_condition(cells.iter().map(|trials| &trials[0].0))? {
+    let configurations: Vec<&[Row]> = rows
+        .chunk_by(|a, b| a.0.configuration == b.0.configuration)
+        .collect();
+    let mut best = vec![0; configurations.len()];
+    for alike in by_condition(configurations.iter().map(|trials| &trials[0].0))? {
         let accuracies = alike
             .iter()
-            .map(|&place| (place, mean(cells[place], |t| t.accuracy)));
-        let best_here = most_accurate(accuracies).expect("a condition has the cell that has it");
+            .map(|&place| (place, mean(configurations[place], |t| t.accuracy)));
+        let best_here =
+            most_accurate(accuracies).expect("a condition has the configuration that has it");
         alike.iter().for_each(|&place| best[place] = best_here);
     }
-    let pairs = cells.iter().zip(best);
-    let rows = pairs.map(|(trials, best)| against(trials, cells[best]));
+    let pairs = configurations.iter().zip(best);
+    let rows = pairs.map(|(trials, best)| against(trials, configurations[best]));
     let mut table = rows.collect::<Result<Vec<Comparison>>>()?;
-    let is_other = |row: &Comparison| row.cell != row.best_cell;
+    let is_other = |row: &Comparison| row.configuration != row.best_configuration;
     let p_values = table
         .iter()
         .map(|row| row.p_value.filter(|_| is_other(row)));
@@ -143,7 +146,8 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     // Some trials of a configuration may have failed.
     let [ours, theirs] = [trials, best].map(|trials| {
         let scores = trials.iter();
-        let scores = scores.map(|(cell, score)| score.repeat(cell.fused_touches));
+        let scores =
+            scores.map(|(configuration, score)| score.repeat(configuration.touches_per_decision));
         scores.collect::<Vec<_>>()
     });
     let paired = Paired::new(&ours, &theirs);
@@ -154,8 +158,8 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     let tested = paired.tested()?;
     let tested = tested.expect("every trial of a table has a size");
     Ok(Comparison {
-        cell: trials[0].0.cell,
-        best_cell: best[0].0.cell,
+        configuration: trials[0].0.configuration,
+        best_configuration: best[0].0.configuration,
         n_trials: paired.n_trials(),
         difference: ours - theirs,
         difference_low: tested.interval.map(|interval| interval.low),
@@ -177,46 +181,52 @@ const MAX_CONFUSED: usize = 15;
 /// None for counts of a table.
 pub fn most_confused(
     confusion: &[Confusion],
-    cell: usize,
+    configuration: usize,
     fused: Option<(usize, usize)>,
 ) -> Result<Vec<Confused>> {
-    let n_test = rows_of_objects(confusion, cell);
-    let of_fused = fused.map(|(cell, _)| rows_of_objects(confusion, cell));
-    let share_fused = |of: &Confusion| {
-        let ((cell, _), n_test) = (fused?, of_fused.as_ref()?);
-        let mut rows = confusion.iter().filter(|row| row.cell == cell);
+    let n_test = rows_of_objects(confusion, configuration);
+    let of_fused = fused.map(|(configuration, _)| rows_of_objects(confusion, configuration));
+    let fraction_at_max_touches = |of: &Confusion| {
+        let ((configuration, _), n_test) = (fused?, of_fused.as_ref()?);
+        let mut rows = confusion
+            .iter()
+            .filter(|row| row.configuration == configuration);
         let same = rows.find(|row| (&row.object, &row.predicted) == (&of.object, &of.predicted));
         let n_test = *n_test.get(of.object.as_str())?;
         Some(same.map_or(0, |row| row.count) as f64 / n_test as f64)
     };
     let pairs = confusion.iter();
-    let pairs = pairs.filter(|row| row.cell == cell && row.object != row.predicted);
+    let pairs =
+        pairs.filter(|row| row.configuration == configuration && row.object != row.predicted);
     let pairs = pairs.map(|row| {
         let n_test = n_test[row.object.as_str()];
         let interval = Interval::wilson(row.count, n_test, CONFIDENCE)?;
         Ok(Confused {
-            cell,
+            configuration,
             object: row.object.clone(),
             predicted: row.predicted.clone(),
             count: row.count,
             n_test,
-            share: row.count as f64 / n_test as f64,
-            share_low: interval.low,
-            share_high: interval.high,
-            most_fused: fused.map(|(_, n_fused)| n_fused),
-            share_fused: share_fused(row),
+            fraction: row.count as f64 / n_test as f64,
+            fraction_low: interval.low,
+            fraction_high: interval.high,
+            max_touches_per_decision: fused.map(|(_, n_fused)| n_fused),
+            fraction_at_max_touches: fraction_at_max_touches(row),
         })
     });
     let mut pairs = pairs.collect::<Result<Vec<Confused>>>()?;
-    pairs.sort_by(|a, b| b.share.total_cmp(&a.share));
+    pairs.sort_by(|a, b| b.fraction.total_cmp(&a.fraction));
     pairs.truncate(MAX_CONFUSED);
     Ok(pairs)
 }
 
 /// Returns the number of test rows of each object in a configuration.
-fn rows_of_objects(confusion: &[Confusion], cell: usize) -> BTreeMap<&str, usize> {
+fn rows_of_objects(confusion: &[Confusion], configuration: usize) -> BTreeMap<&str, usize> {
     let mut n_test = BTreeMap::new();
-    for row in confusion.iter().filter(|row| row.cell == cell) {
+    for row in confusion
+        .iter()
+        .filter(|row| row.configuration == configuration)
+    {
         *n_test.entry(row.object.as_str()).or_default() += row.count;
     }
     n_test
@@ -226,10 +236,15 @@ fn rows_of_objects(confusion: &[Confusion], cell: usize) -> BTreeMap<&str, usize
 ///
 /// # Errors
 /// If a configuration cannot be written as a row of a table.
-pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Result<Vec<(Cell, Pareto)>> {
-    let same_cell = |a: &(Cell, TrialTime), b: &(Cell, TrialTime)| a.0.cell == b.0.cell;
-    let mut table: Vec<(Cell, Pareto)> = rows
-        .chunk_by(|a, b| a.0.cell == b.0.cell)
+pub fn pareto(
+    rows: &[Row],
+    times: &[(Configuration, TrialTime)],
+) -> Result<Vec<(Configuration, Pareto)>> {
+    let same_cell = |a: &(Configuration, TrialTime), b: &(Configuration, TrialTime)| {
+        a.0.configuration == b.0.configuration
+    };
+    let mut table: Vec<(Configuration, Pareto)> = rows
+        .chunk_by(|a, b| a.0.configuration == b.0.configuration)
         .zip(times.chunk_by(same_cell))
         .map(|(trials, times)| {
             let n_trials = times.len() as f64;
@@ -237,17 +252,17 @@ pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Result<Vec<(Cell, Pa
                 times.iter().map(|(_, t)| time(t)).sum::<f64>() / n_trials
             };
             let fit_s = mean_time(|t| t.fit_s);
-            let cell = &trials[0].0;
+            let configuration = &trials[0].0;
             let row = Pareto {
                 accuracy: mean(trials, |t| t.accuracy),
                 fit_s,
                 fit_us_per_touch: 1e6 * fit_s / mean(trials, |t| t.n_train as f64),
-                predict_us_per_decision: cell.fused_touches as f64
+                predict_us_per_decision: configuration.touches_per_decision as f64
                     * mean_time(|t| t.predict_us_per_touch),
                 on_training_front: false,
                 on_prediction_front: false,
             };
-            (cell.clone(), row)
+            (configuration.clone(), row)
         })
         .collect();
     mark_fronts(&mut table)?;
@@ -255,8 +270,8 @@ pub fn pareto(rows: &[Row], times: &[(Cell, TrialTime)]) -> Result<Vec<(Cell, Pa
 }
 
 /// Marks each configuration that no other of the same condition dominates.
-fn mark_fronts(table: &mut [(Cell, Pareto)]) -> Result<()> {
-    for alike in by_condition(table.iter().map(|(cell, _)| cell))? {
+fn mark_fronts(table: &mut [(Configuration, Pareto)]) -> Result<()> {
+    for alike in by_condition(table.iter().map(|(configuration, _)| configuration))? {
         let on_front = |cost: fn(&Pareto) -> f64| {
             let points = alike.iter().map(|&place| &table[place].1);
             let points = points.map(|row| (cost(row), row.accuracy));
@@ -276,11 +291,15 @@ fn mark_fronts(table: &mut [(Cell, Pareto)]) -> Result<()> {
 mod tests {
     use super::*;
 
-    fn cell(number: usize, noise_std: f64, (accuracy, fit_s): (f64, f64)) -> (Cell, Pareto) {
-        let cell = Cell {
-            cell: number,
+    fn configuration(
+        number: usize,
+        noise_std: f64,
+        (accuracy, fit_s): (f64, f64),
+    ) -> (Configuration, Pareto) {
+        let configuration = Configuration {
+            configuration: number,
             noise_std,
-            ..crate::studies::recognition::rows::cell::tests::cell()
+            ..crate::studies::recognition::rows::configuration::tests::configuration()
         };
         let row = Pareto {
             accuracy,
@@ -290,19 +309,19 @@ mod tests {
             on_training_front: false,
             on_prediction_front: false,
         };
-        (cell, row)
+        (configuration, row)
     }
 
     #[test]
     fn pairs_are_listed_by_their_share_of_the_objects_test_touches_and_hits_are_not() {
-        let row = |cell, object: &str, predicted: &str, count| Confusion {
-            cell,
+        let row = |configuration, object: &str, predicted: &str, count| Confusion {
+            configuration,
             object: object.to_owned(),
             predicted: predicted.to_owned(),
             count,
         };
         let mut table = vec![
-            row(0, "mug", "bowl", 9), // another cell
+            row(0, "mug", "bowl", 9), // another configuration
             row(1, "mug", "mug", 6),
             row(1, "mug", "bowl", 4), // 4 of 10
             row(1, "bowl", "bowl", 1),
@@ -311,7 +330,7 @@ mod tests {
         let found = |table: &[Confusion]| -> Vec<(String, usize, usize, f64)> {
             let pairs = most_confused(table, 1, None).unwrap().into_iter();
             pairs
-                .map(|p| (p.object, p.count, p.n_test, p.share))
+                .map(|p| (p.object, p.count, p.n_test, p.fraction))
                 .collect()
         };
         let expected = [
@@ -323,7 +342,9 @@ mod tests {
         table.extend([row(2, "mug", "mug", 9), row(2, "mug", "bowl", 1)]);
         table.push(row(2, "bowl", "bowl", 5));
         let fused = most_confused(&table, 1, Some((2, 2))).unwrap();
-        let fused = fused.into_iter().map(|p| (p.most_fused, p.share_fused));
+        let fused = fused
+            .into_iter()
+            .map(|p| (p.max_touches_per_decision, p.fraction_at_max_touches));
         let expected = [(Some(2), Some(0.0)), (Some(2), Some(0.1))];
         assert_eq!(fused.collect::<Vec<_>>(), expected);
         for other in 0..20 {
@@ -336,13 +357,13 @@ mod tests {
     #[test]
     fn a_cell_is_on_the_front_unless_one_of_the_same_noise_is_no_worse_and_better_in_something() {
         let mut table = [
-            cell(0, 0.0, (0.9, 1.0)),
-            cell(1, 0.0, (0.9, 2.0)), // as accurate, slower than 0
-            cell(2, 0.0, (0.95, 3.0)),
-            cell(3, 0.0, (0.8, 0.5)),
-            cell(4, 0.0, (0.7, 0.5)),  // as fast as 3, less accurate
-            cell(5, 0.0, (0.95, 3.0)), // the same as 2
-            cell(6, 0.1, (0.1, 9.0)),  // alone with its noise
+            configuration(0, 0.0, (0.9, 1.0)),
+            configuration(1, 0.0, (0.9, 2.0)), // as accurate, slower than 0
+            configuration(2, 0.0, (0.95, 3.0)),
+            configuration(3, 0.0, (0.8, 0.5)),
+            configuration(4, 0.0, (0.7, 0.5)), // as fast as 3, less accurate
+            configuration(5, 0.0, (0.95, 3.0)), // the same as 2
+            configuration(6, 0.1, (0.1, 9.0)), // alone with its noise
         ];
         mark_fronts(&mut table).unwrap();
         let on = table.map(|(_, row)| row.on_training_front);

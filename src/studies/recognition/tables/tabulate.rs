@@ -1,8 +1,8 @@
 //! Assembly of the tables from finished configurations, ordered by configuration and trial.
 
 use crate::error::Result;
-use crate::studies::recognition::rows::cell::Cell;
 use crate::studies::recognition::rows::conditions::most_accurate;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{Confusion, Tables, TrialScore};
 use crate::studies::recognition::spec::study::ConfusionMatrices;
 use crate::studies::recognition::tables::summary::{
@@ -19,12 +19,14 @@ use std::collections::BTreeMap;
 /// If the trials of a configuration have no rows.
 pub fn tabulate(
     tables: &mut Tables,
-    mut scored: Vec<(Cell, Evaluation)>,
-    name: impl Fn(&Cell, usize) -> String,
-    n_folds: impl Fn(&Cell) -> usize,
+    mut scored: Vec<(Configuration, Evaluation)>,
+    name: impl Fn(&Configuration, usize) -> String,
+    n_folds: impl Fn(&Configuration) -> usize,
     matrices: ConfusionMatrices,
 ) -> Result<()> {
-    scored.sort_by_key(|(cell, evaluation)| (cell.cell, evaluation.score.trial));
+    scored.sort_by_key(|(configuration, evaluation)| {
+        (configuration.configuration, evaluation.score.trial)
+    });
     share_columns(
         scored
             .iter_mut()
@@ -33,41 +35,58 @@ pub fn tabulate(
     );
     let mut groups = Vec::new();
     let mut confusions = BTreeMap::new();
-    for (cell, evaluation) in scored {
+    for (configuration, evaluation) in scored {
         for &(object, predicted, count) in &evaluation.confusion {
-            let known = confusions.entry((cell.cell, object, predicted));
+            let known = confusions.entry((configuration.configuration, object, predicted));
             let row = known.or_insert_with(|| Confusion {
-                cell: cell.cell,
-                object: name(&cell, object),
-                predicted: name(&cell, predicted),
+                configuration: configuration.configuration,
+                object: name(&configuration, object),
+                predicted: name(&configuration, predicted),
                 count: 0,
             });
             row.count += count;
         }
         groups.push(evaluation.groups);
-        tables.accuracy.push((cell.clone(), evaluation.score));
-        tables.timing.push((cell, evaluation.time));
+        tables
+            .accuracy
+            .push((configuration.clone(), evaluation.score));
+        tables.timing.push((configuration, evaluation.time));
     }
     tables.confusion = confusions.into_values().collect();
     tables.summary = summarise(&tables.accuracy, &groups, n_folds)?;
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
     // Confusions of single touches are more informative than those that remain after fusion.
-    let cells = || tables.summary.iter().map(|(cell, _)| cell);
-    let fewest = cells().map(|cell| cell.fused_touches).min().unwrap_or(1);
+    let configurations = || {
+        tables
+            .summary
+            .iter()
+            .map(|(configuration, _)| configuration)
+    };
+    let fewest = configurations()
+        .map(|configuration| configuration.touches_per_decision)
+        .min()
+        .unwrap_or(1);
     let single = tables.summary.iter();
-    let single = single.filter(|(cell, _)| cell.fused_touches == fewest);
-    let accuracies = single.map(|(cell, score)| (cell.cell, score.accuracy));
+    let single = single.filter(|(configuration, _)| configuration.touches_per_decision == fewest);
+    let accuracies =
+        single.map(|(configuration, score)| (configuration.configuration, score.accuracy));
     if let Some(best) = most_accurate(accuracies) {
-        let fused = most_fused(cells(), best);
+        let fused = max_touches_per_decision(configurations(), best);
         tables.confused = most_confused(&tables.confusion, best, fused)?;
         if matrices == ConfusionMatrices::Best {
             let all = tables.summary.iter();
-            let charted = most_accurate(all.map(|(cell, score)| (cell.cell, score.accuracy)));
-            let kept = [Some(best), fused.map(|(cell, _)| cell), charted];
+            let charted = most_accurate(
+                all.map(|(configuration, score)| (configuration.configuration, score.accuracy)),
+            );
+            let kept = [
+                Some(best),
+                fused.map(|(configuration, _)| configuration),
+                charted,
+            ];
             tables
                 .confusion
-                .retain(|row| kept.contains(&Some(row.cell)));
+                .retain(|row| kept.contains(&Some(row.configuration)));
         }
     }
     tables.pareto = pareto(&tables.accuracy, &tables.timing)?;
@@ -91,20 +110,20 @@ pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
 }
 
 /// Returns the configuration that differs only in the number of fused touches and has the largest, with this number; `None` if no configuration fuses more.
-fn most_fused<'a>(
-    mut cells: impl Iterator<Item = &'a Cell> + Clone,
+fn max_touches_per_decision<'a>(
+    mut configurations: impl Iterator<Item = &'a Configuration> + Clone,
     of: usize,
 ) -> Option<(usize, usize)> {
-    let all = cells.clone();
-    let of = cells.find(|cell| cell.cell == of)?;
-    let same = all.filter(|cell| {
-        let alike = Cell {
-            cell: of.cell,
-            fused_touches: of.fused_touches,
-            ..(*cell).clone()
+    let all = configurations.clone();
+    let of = configurations.find(|configuration| configuration.configuration == of)?;
+    let same = all.filter(|configuration| {
+        let alike = Configuration {
+            configuration: of.configuration,
+            touches_per_decision: of.touches_per_decision,
+            ..(*configuration).clone()
         };
-        alike == *of && cell.fused_touches > of.fused_touches
+        alike == *of && configuration.touches_per_decision > of.touches_per_decision
     });
-    let most = same.max_by_key(|cell| cell.fused_touches)?;
-    Some((most.cell, most.fused_touches))
+    let most = same.max_by_key(|configuration| configuration.touches_per_decision)?;
+    Some((most.configuration, most.touches_per_decision))
 }

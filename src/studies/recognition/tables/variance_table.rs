@@ -4,16 +4,16 @@ use crate::error::Result;
 use crate::statistics::p_status::CONFIDENCE;
 use crate::statistics::repeats::scores;
 use crate::statistics::variance::{Component, components};
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{Source, TrialScore, Variance};
 
 /// Returns three rows for each configuration whose trials combine every split with every projection; no rows for other configurations.
 ///
 /// # Errors
 /// If the scores of a configuration cannot be decomposed.
-pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
+pub fn variances(rows: &[(Configuration, TrialScore)]) -> Result<Vec<Variance>> {
     let mut table = Vec::new();
-    for trials in rows.chunk_by(|a, b| a.0.cell == b.0.cell) {
+    for trials in rows.chunk_by(|a, b| a.0.configuration == b.0.configuration) {
         let trials_of = trials.iter().map(|(_, score)| score.repeat(1));
         let scores = scores(&trials_of.collect::<Vec<_>>());
         let Some(scores) = scores.filter(|scores| scores.ncols() > 1 && scores.nrows() > 1) else {
@@ -26,15 +26,15 @@ pub fn variances(rows: &[(Cell, TrialScore)]) -> Result<Vec<Variance>> {
             (Source::Rest, found.rest),
         ];
         let total: f64 = parts.iter().map(|(_, part)| part.variance()).sum();
-        let cell = trials[0].0.cell;
-        table.extend(parts.map(|(source, part)| row(cell, source, &part, total)));
+        let configuration = trials[0].0.configuration;
+        table.extend(parts.map(|(source, part)| row(configuration, source, &part, total)));
     }
     Ok(table)
 }
 
-fn row(cell: usize, source: Source, part: &Component, total: f64) -> Variance {
+fn row(configuration: usize, source: Source, part: &Component, total: f64) -> Variance {
     Variance {
-        cell,
+        configuration,
         source,
         n_levels: part.n_levels,
         degrees_of_freedom: part.degrees_of_freedom,
@@ -43,7 +43,7 @@ fn row(cell: usize, source: Source, part: &Component, total: f64) -> Variance {
         accuracy_std: part.variance().sqrt(),
         accuracy_std_low: part.interval.low.sqrt(),
         accuracy_std_high: part.interval.high.sqrt(),
-        share: (total > 0.0).then(|| part.variance() / total),
+        fraction: (total > 0.0).then(|| part.variance() / total),
         p_value: part.p_value,
     }
 }

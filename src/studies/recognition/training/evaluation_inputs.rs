@@ -15,7 +15,7 @@ use crate::learning::evaluation::next_touch::{NextTouch, Poses};
 use crate::random::Seed;
 use crate::studies::recognition::plan::group::Group;
 use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::rows::cell::Cell;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::spec::study::RecognitionSpec;
 use crate::studies::recognition::sweep::configurations::Sweep;
@@ -77,7 +77,7 @@ pub struct TrainingInputs {
     /// Candidate values of γ as multiples of 'scale', if γ is chosen.
     pub gamma_grid: Option<Vec<f64>>,
     /// Largest number of training touches per object for a choice; `None`: all.
-    pub choose_touches: Option<usize>,
+    pub cv_touches: Option<usize>,
     /// Number of inner folds, if folds are needed.
     pub n_folds: Option<usize>,
 }
@@ -88,7 +88,7 @@ pub struct Decision {
     /// C; `None` if C is chosen or the classifier has none.
     pub c: Option<f64>,
     /// Number of test touches that are fused into one decision.
-    pub fused_touches: usize,
+    pub touches_per_decision: usize,
     /// Policy that chooses the touches after the first.
     pub next_touch: NextTouch,
 }
@@ -155,24 +155,28 @@ impl TrialInputs<'_> {
 
 impl<'a> FamilyInputs<'a> {
     /// Returns the inputs of a [family](Group::families) of at least one configuration.
-    pub fn new(plan: &Plan, sweep: &'a Sweep, family: &[Cell]) -> Self {
+    pub fn new(plan: &Plan, sweep: &'a Sweep, family: &[Configuration]) -> Self {
         let recognition = &plan.spec.recognition;
-        let decisions = family.iter().map(|cell| Decision {
-            c: cell.c,
-            fused_touches: cell.fused_touches,
-            next_touch: cell.next_touch.unwrap_or_default(),
+        let decisions = family.iter().map(|configuration| Decision {
+            c: configuration.c,
+            touches_per_decision: configuration.touches_per_decision,
+            next_touch: configuration.next_touch.unwrap_or_default(),
         });
         let decisions: Vec<Decision> = decisions.collect();
         let has = |wanted: fn(&Decision) -> bool| decisions.iter().any(wanted);
-        let cell = &family[0];
+        let configuration = &family[0];
         let train_touches = recognition.train_touches.as_ref();
         let poses = sweep.poses.as_ref();
         Self {
-            rows: cell.rows(),
-            train_touches: train_touches.map(|_| cell.train_touches),
-            mislabelled_fraction: cell.mislabelled_fraction,
-            class_imbalance: cell.class_imbalance,
-            training: TrainingInputs::new(recognition, cell.classifier, has(Decision::is_informed)),
+            rows: configuration.rows(),
+            train_touches: train_touches.map(|_| configuration.train_touches),
+            mislabelled_fraction: configuration.mislabelled_fraction,
+            class_imbalance: configuration.class_imbalance,
+            training: TrainingInputs::new(
+                recognition,
+                configuration.classifier,
+                has(Decision::is_informed),
+            ),
             poses: poses.filter(|_| has(|decision| decision.next_touch != NextTouch::Random)),
             decisions,
         }
@@ -225,13 +229,13 @@ impl TrainingInputs {
             },
             ..usual
         };
-        let c_grid = recognition.choose_c.clone();
-        let c_grid = c_grid.filter(|_| is_used("choose_c"));
-        let gamma_grid = recognition.choose_gamma.clone();
-        let gamma_grid = gamma_grid.filter(|_| is_used("choose_gamma"));
+        let c_grid = recognition.c_grid.clone();
+        let c_grid = c_grid.filter(|_| is_used("c_grid"));
+        let gamma_grid = recognition.gamma_grid.clone();
+        let gamma_grid = gamma_grid.filter(|_| is_used("gamma_grid"));
         let is_chosen = c_grid.is_some() || gamma_grid.is_some();
         Self {
-            choose_touches: recognition.choose_touches.filter(|_| is_chosen),
+            cv_touches: recognition.cv_touches.filter(|_| is_chosen),
             n_folds: (is_chosen || is_informed).then(|| recognition.n_choice_folds()),
             classifier,
             c_grid,
@@ -246,7 +250,7 @@ pub fn family_name(
     plan: &Plan,
     (group, touches): (&Group, &str),
     inputs: &FamilyInputs,
-    family: &[Cell],
+    family: &[Configuration],
 ) -> String {
     let alone = group.with_cells(family);
     let measured = alone.inputs(plan);

@@ -170,7 +170,7 @@ impl Training<'_> {
     /// Returns the training rows for a choice: the first rows of each object up to the limit, first readings only. Otherwise a fold could train on another
     /// reading of a held-out touch.
     fn choosing_rows(&self) -> Vec<usize> {
-        let most = self.inputs.choose_touches.unwrap_or(usize::MAX);
+        let most = self.inputs.cv_touches.unwrap_or(usize::MAX);
         let mut n_chosen: HashMap<usize, usize> = HashMap::new();
         let takes_part = |row: &usize| {
             let n_chosen = n_chosen.entry(self.data.targets[*row]).or_default();

@@ -32,12 +32,12 @@ pub(super) fn answer_model<'a>(
 
 /// Returns groups of k touches, as indices into the test touches, ordered by class. The groups are random, or have random first touches and further touches
 /// chosen among all test touches of the object.
-pub(super) fn choose_touches(
-    (family, cell): (&FamilyInputs, &Decision),
+pub(super) fn cv_touches(
+    (family, configuration): (&FamilyInputs, &Decision),
     answered: &AnsweredTouches,
     groups: Vec<Vec<usize>>,
 ) -> Vec<Vec<usize>> {
-    let (next, poses) = match (cell.next_touch, family.poses) {
+    let (next, poses) = match (configuration.next_touch, family.poses) {
         (NextTouch::Random, _) | (_, None) => return groups,
         (next, Some(poses)) => (next, poses),
     };

@@ -14,7 +14,7 @@ use crate::studies::recognition::training::evaluation_inputs::{
 use crate::studies::recognition::training::fit::{Fitted, Training};
 use crate::studies::recognition::training::next_touch::AnsweredTouches;
 use crate::studies::recognition::training::next_touch::Decide;
-use crate::studies::recognition::training::next_touch::{answer_model, choose_touches};
+use crate::studies::recognition::training::next_touch::{answer_model, cv_touches};
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
@@ -46,10 +46,17 @@ pub struct Trial<'a> {
 }
 
 /// Returns the function with which a fit decides on the test touches.
-fn decider<'a>(fitted: &'a Fitted, test: &Dataset, cells: &[Decision]) -> Result<Decide<'a>> {
+fn decider<'a>(
+    fitted: &'a Fitted,
+    test: &Dataset,
+    configurations: &[Decision],
+) -> Result<Decide<'a>> {
     let (classifier, features) = (&fitted.classifier, test.records.view());
     // Without fusion, labels suffice and are faster to compute.
-    if cells.iter().all(|cell| cell.fused_touches == 1) {
+    if configurations
+        .iter()
+        .all(|configuration| configuration.touches_per_decision == 1)
+    {
         let labels = classifier.labels(features)?;
         let label = move |group: &Vec<usize>| labels[group[0]];
         return Ok(Box::new(move |groups| groups.iter().map(&label).collect()));
@@ -75,29 +82,32 @@ impl Trial<'_> {
         )?;
         let groups = self.inputs.test_groups(&split.test);
         let same_fit: Vec<&[Decision]> = family.fits().collect();
-        let penalties: Vec<Option<f64>> = same_fit.iter().map(|cells| cells[0].c).collect();
+        let penalties: Vec<Option<f64>> = same_fit
+            .iter()
+            .map(|configurations| configurations[0].c)
+            .collect();
         let fitted = training.train_all(&penalties)?;
         let mut evaluations = Vec::with_capacity(family.decisions.len());
-        for (fitted, cells) in fitted.iter().zip(same_fit) {
+        for (fitted, configurations) in fitted.iter().zip(same_fit) {
             let start = Instant::now();
             let mut answered = AnsweredTouches {
                 fitted,
                 test: &test,
                 groups: groups.as_deref(),
-                decide: decider(fitted, &test, cells)?,
+                decide: decider(fitted, &test, configurations)?,
                 answer_s: start.elapsed().as_secs_f64(),
                 n_train: split.train.len(),
                 touches: &split.test,
                 model: None,
                 model_s: 0.0,
             };
-            if cells.iter().any(Decision::is_informed) {
+            if configurations.iter().any(Decision::is_informed) {
                 let start = Instant::now();
                 answered.model = answer_model((&self.inputs, family), &training, (fitted, &split))?;
                 answered.model_s = start.elapsed().as_secs_f64();
             }
-            for cell in cells {
-                evaluations.push(self.decide((family, cell), &answered)?);
+            for configuration in configurations {
+                evaluations.push(self.decide((family, configuration), &answered)?);
             }
         }
         Ok(evaluations)
@@ -106,14 +116,14 @@ impl Trial<'_> {
     /// Returns one label for each group of k test touches.
     fn decide(
         &self,
-        (family, cell): (&FamilyInputs, &Decision),
+        (family, configuration): (&FamilyInputs, &Decision),
         answered: &AnsweredTouches,
     ) -> Result<Evaluation> {
         let truth = &answered.test.targets;
-        let seed = self.inputs.stream("fused_touches");
+        let seed = self.inputs.stream("touches_per_decision");
         let start = Instant::now();
-        let mut rows = fuse_rows(truth.view(), cell.fused_touches, &seed);
-        rows.groups = choose_touches((family, cell), answered, rows.groups);
+        let mut rows = fuse_rows(truth.view(), configuration.touches_per_decision, &seed);
+        rows.groups = cv_touches((family, configuration), answered, rows.groups);
         let predicted = (answered.decide)(&rows.groups);
         let predict_s = answered.answer_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
@@ -160,7 +170,7 @@ impl Trial<'_> {
             time: TrialTime {
                 trial: self.inputs.number,
                 fit_s: answered.fitted.fit_s
-                    + if cell.is_informed() {
+                    + if configuration.is_informed() {
                         answered.model_s
                     } else {
                         0.0

@@ -1,9 +1,9 @@
 //! Configuration of a recognition study: one value of every axis. These are the first columns of a row of results.
 
 use crate::engine::axes::AxisValues;
-use crate::inputs::sensor_errors::{Strengths, TestedOn, strength_columns};
+use crate::inputs::sensor_errors::{Strengths, TestSensor, strength_columns};
 use crate::learning::classifiers::ClassifierKind;
-use crate::learning::data::over_time::OverTime;
+use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
@@ -25,26 +25,26 @@ const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
 /// Declares a configuration: each parameter with its type, its column, and the condition under which the column exists. Struct, columns and file format are
 /// generated from this list, in its order.
 macro_rules! configuration {
-    ($(#[$of_cell:meta])* pub struct $cell:ident {
+    ($(#[$of_cell:meta])* pub struct $configuration:ident {
         $($(#[$of_field:meta])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(named $names:expr)?;)*
     }) => {
         $(#[$of_cell])*
         #[derive(Clone, Debug, PartialEq)]
-        pub struct $cell {
+        pub struct $configuration {
             $($(#[$of_field])* pub $field: $type,)*
         }
 
-        impl Serialize for $cell {
+        impl Serialize for $configuration {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 let n_fields = Self::columns().len() + self.variant.values.len();
-                let mut row = serializer.serialize_struct("Cell", n_fields)?;
+                let mut row = serializer.serialize_struct("Configuration", n_fields)?;
                 $($how::write(&self.$field, stringify!($field), &mut row)?;)*
                 row.end()
             }
         }
 
         /// Returns all columns except the columns of the axes in `[axes]`.
-        impl Columns for $cell {
+        impl Columns for $configuration {
             fn columns() -> Vec<Column> {
                 let mut columns = Vec::new();
                 $(
@@ -62,9 +62,9 @@ macro_rules! configuration {
 
 configuration! {
 /// One configuration of a study: one value of every axis.
-pub struct Cell {
+pub struct Configuration {
     /// Number of the configuration, from 0, in sweep order.
-    cell: usize => always (Note, "cell", "", Linear);
+    configuration: usize => always (Note, "configuration", "", Linear);
     /// Pitch of the taxels, mm.
     pitch_mm: f64 => always (Choice, "pitch", "mm", Linear);
     /// Number of taxel columns.
@@ -84,7 +84,7 @@ pub struct Cell {
     /// Strength of each sensor error; one column for each strength that the study has.
     strengths: Strengths => each_strength;
     /// Skin of the test touches. Present only if the study has the key.
-    tested_on: Option<TestedOn> => if_given (Condition, "tested on", "", Words);
+    test_sensor: Option<TestSensor> => if_given (Condition, "test sensor", "", Words);
     /// Ensemble of the measurement matrix.
     ensemble: Ensemble => always (Choice, "ensemble", "", Words) named Ensemble::NAMES;
     /// Number m of measurements per frame.
@@ -94,13 +94,13 @@ pub struct Cell {
     /// Number F of frames per touch; a row of features has F · m values.
     frames: usize => always (Choice, "frames a touch", "", Log);
     /// How the frames of a touch are combined. Present only if the study has the key; otherwise frames are concatenated.
-    over_time: Option<OverTime> => if_given (Choice, "over time", "", Words) named OVER_TIME;
+    temporal_features: Option<TemporalFeatures> => if_given (Choice, "temporal features", "", Words) named OVER_TIME;
     /// Features computed from the measurements.
     features: Features => always (Choice, "features", "", Words) named Features::NAMES;
     /// Depth window of image features behind the foremost point, as a fraction of the full scale; 1 for other features. Present only if the study has the key.
-    foremost_full_scale: Option<f64> => if_given (Choice, "foremost", "%", Share);
+    depth_window_full_scale: Option<f64> => if_given (Choice, "depth window", "%", Share);
     /// Number of randomly tilted copies of each training touch. Present only if the study has the key.
-    tilted_copies: Option<usize> => if_given (Choice, "tilted copies", "", Linear);
+    tilt_augmentation: Option<usize> => if_given (Choice, "tilt augmentation", "", Linear);
     /// Kind of classifier.
     classifier: ClassifierKind => always (Choice, "classifier", "", Words) named ClassifierKind::NAMES;
     /// Penalty C; empty if C is chosen by cross-validation or the classifier has none.
@@ -112,14 +112,14 @@ pub struct Cell {
     /// Ratio of the training touches of the most frequent to the least frequent object. Present only if the study has the key.
     class_imbalance: Option<f64> => if_given (Condition, "class imbalance", ":1", Log);
     /// Number of test touches of an object that are fused into one decision by the sum of their scores.
-    fused_touches: usize => always (Choice, "touches fused", "", Log);
+    touches_per_decision: usize => always (Choice, "touches per decision", "", Log);
     /// Policy that chooses the touches after the first. Present only if the study has the key.
     next_touch: Option<NextTouch> => if_given (Choice, "next touch", "", Words);
     /// Values on the axes in `[axes]`, one column for each axis.
     variant: AxisValues => each_axis;
 } }
 
-impl Cell {
+impl Configuration {
     /// Returns the inputs of the configuration's features.
     pub fn rows(&self) -> RowInputs {
         let is_of_images = self.features.of_image().is_some();
@@ -127,10 +127,10 @@ impl Cell {
             image_shape: self.image_shape,
             measurements: self.measurements,
             frames: self.frames,
-            over_time: self.over_time,
+            temporal_features: self.temporal_features,
             features: self.features,
-            foremost_full_scale: self.foremost_full_scale.filter(|_| is_of_images),
-            n_copies: self.tilted_copies.unwrap_or(0),
+            depth_window_full_scale: self.depth_window_full_scale.filter(|_| is_of_images),
+            n_copies: self.tilt_augmentation.unwrap_or(0),
         }
     }
 
@@ -241,9 +241,9 @@ pub(crate) mod tests {
     use super::*;
 
     /// Example configuration for tests: 32 × 32 taxels at 2 mm, 16:1.
-    pub(crate) fn cell() -> Cell {
-        Cell {
-            cell: 0,
+    pub(crate) fn configuration() -> Configuration {
+        Configuration {
+            configuration: 0,
             pitch_mm: 2.0,
             nx: 32,
             ny: 32,
@@ -253,21 +253,21 @@ pub(crate) mod tests {
             noise_unit: NoiseUnit::FullScale,
             smoothing_mm: 0.0,
             strengths: Strengths::default(),
-            tested_on: None,
+            test_sensor: None,
             ensemble: Ensemble::Gaussian,
             measurements: 64,
             ratio: 16.0,
             frames: 1,
-            over_time: None,
+            temporal_features: None,
             features: Features::Raw,
-            foremost_full_scale: None,
-            tilted_copies: None,
+            depth_window_full_scale: None,
+            tilt_augmentation: None,
             classifier: ClassifierKind::LinearSvm,
             c: Some(1.0),
             train_touches: 75,
             mislabelled_fraction: None,
             class_imbalance: None,
-            fused_touches: 1,
+            touches_per_decision: 1,
             next_touch: None,
             variant: AxisValues::default(),
         }

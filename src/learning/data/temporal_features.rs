@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 /// Temporal features computed from the frames of a touch, before scaling and training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub enum OverTime {
+pub enum TemporalFeatures {
     /// Frame of the highest level (the first, if several are equal): m numbers.
     Deepest,
     /// k frames at even intervals, including the first and the last (for k = 1, the middle frame): k · m numbers.
@@ -48,7 +48,7 @@ const N_COURSE: usize = 10;
 /// missed.
 const CONTACT_LEVEL: f64 = 0.5;
 
-impl OverTime {
+impl TemporalFeatures {
     /// Returns the number of features computed from F frames of m measurements.
     pub fn n_features(self, n_frames: usize, m: usize) -> usize {
         match self {
@@ -160,13 +160,13 @@ fn write_course(frames: ArrayView2<f64>, mut row: ArrayViewMut1<f64>) {
     row[9] = pattern_change(first, last);
 }
 
-impl TryFrom<String> for OverTime {
+impl TryFrom<String> for TemporalFeatures {
     type Error = Error;
 
     fn try_from(word: String) -> Result<Self> {
         let allowed =
             "deepest, stacked_8 (or another number of frames), moments, course or summarised";
-        let wrong = || Error::input("over time", &word, allowed);
+        let wrong = || Error::input("temporal_features", &word, allowed);
         Ok(match &word[..] {
             "deepest" => Self::Deepest,
             "moments" => Self::Moments,
@@ -183,14 +183,14 @@ impl TryFrom<String> for OverTime {
     }
 }
 
-impl From<OverTime> for String {
-    fn from(over_time: OverTime) -> Self {
-        match over_time {
-            OverTime::Deepest => "deepest".to_owned(),
-            OverTime::Stacked(k) => format!("stacked_{k}"),
-            OverTime::Moments => "moments".to_owned(),
-            OverTime::Course => "course".to_owned(),
-            OverTime::Summarised => "summarised".to_owned(),
+impl From<TemporalFeatures> for String {
+    fn from(temporal_features: TemporalFeatures) -> Self {
+        match temporal_features {
+            TemporalFeatures::Deepest => "deepest".to_owned(),
+            TemporalFeatures::Stacked(k) => format!("stacked_{k}"),
+            TemporalFeatures::Moments => "moments".to_owned(),
+            TemporalFeatures::Course => "course".to_owned(),
+            TemporalFeatures::Summarised => "summarised".to_owned(),
         }
     }
 }
@@ -200,10 +200,10 @@ mod tests {
     use super::*;
     use ndarray::{Array1, Array2, array};
 
-    fn combined(over_time: OverTime, frames: &Array2<f64>) -> Vec<f64> {
-        let n = over_time.n_features(frames.nrows(), frames.ncols());
+    fn combined(temporal_features: TemporalFeatures, frames: &Array2<f64>) -> Vec<f64> {
+        let n = temporal_features.n_features(frames.nrows(), frames.ncols());
         let mut row = Array1::zeros(n);
-        over_time.write(frames.view(), row.view_mut());
+        temporal_features.write(frames.view(), row.view_mut());
         row.to_vec()
     }
 
@@ -223,14 +223,14 @@ mod tests {
 
     #[test]
     fn the_deepest_frame_is_that_of_the_highest_level() {
-        assert_eq!(combined(OverTime::Deepest, &touch()), [4.0, 0.0]);
+        assert_eq!(combined(TemporalFeatures::Deepest, &touch()), [4.0, 0.0]);
     }
 
     #[test]
     fn stacked_frames_are_even_in_time_and_all_of_them_are_the_recording() {
         let all: Vec<f64> = touch().iter().copied().collect();
-        assert_eq!(combined(OverTime::Stacked(8), &touch()), all);
-        assert_eq!(combined(OverTime::Stacked(2), &touch()), [0.0; 4]);
+        assert_eq!(combined(TemporalFeatures::Stacked(8), &touch()), all);
+        assert_eq!(combined(TemporalFeatures::Stacked(2), &touch()), [0.0; 4]);
         for k in 2..=8 {
             let frames: Vec<usize> = (0..k).map(|part| evenly(part, k, 8)).collect();
             assert_eq!((frames[0], frames[k - 1]), (0, 7));
@@ -242,7 +242,7 @@ mod tests {
 
     #[test]
     fn the_course_counts_contacts_and_measures_their_times_and_ways() {
-        let row = combined(OverTime::Course, &touch());
+        let row = combined(TemporalFeatures::Course, &touch());
         let root = 2.0_f64.sqrt();
         let expected = [
             4.0,
@@ -264,30 +264,39 @@ mod tests {
     #[test]
     fn a_summary_is_the_moments_and_the_course_and_nothing_stays_nothing() {
         let both = [
-            combined(OverTime::Moments, &touch()),
-            combined(OverTime::Course, &touch()),
+            combined(TemporalFeatures::Moments, &touch()),
+            combined(TemporalFeatures::Course, &touch()),
         ]
         .concat();
-        assert_eq!(combined(OverTime::Summarised, &touch()), both);
+        assert_eq!(combined(TemporalFeatures::Summarised, &touch()), both);
         assert_eq!(both[..2], [9.0 / 8.0, 3.0 / 8.0]);
         assert_eq!(both[4..6], [4.0, 3.0]);
         let nothing = Array2::zeros((5, 3));
-        assert_eq!(combined(OverTime::Summarised, &nothing), vec![0.0; 19]);
+        assert_eq!(
+            combined(TemporalFeatures::Summarised, &nothing),
+            vec![0.0; 19]
+        );
     }
 
     #[test]
     fn names_are_read_as_they_are_written_and_others_refused() {
         for kind in [
-            OverTime::Deepest,
-            OverTime::Stacked(12),
-            OverTime::Moments,
-            OverTime::Course,
-            OverTime::Summarised,
+            TemporalFeatures::Deepest,
+            TemporalFeatures::Stacked(12),
+            TemporalFeatures::Moments,
+            TemporalFeatures::Course,
+            TemporalFeatures::Summarised,
         ] {
-            assert_eq!(OverTime::try_from(String::from(kind)).unwrap(), kind);
+            assert_eq!(
+                TemporalFeatures::try_from(String::from(kind)).unwrap(),
+                kind
+            );
         }
         for wrong in ["stacked", "stacked_0", "stacked_x", "stacked_-1", "max"] {
-            assert!(OverTime::try_from(wrong.to_owned()).is_err(), "{wrong}");
+            assert!(
+                TemporalFeatures::try_from(wrong.to_owned()).is_err(),
+                "{wrong}"
+            );
         }
     }
 }

@@ -42,16 +42,18 @@ const N_REPEATS: usize = 9;
 
 /// Simulates and evaluates a configuration, given its taxels without dampers.
 pub(super) fn measure(
-    cell: &StabilityCell,
+    configuration: &StabilityCell,
     undamped: Taxel,
 ) -> Result<(StabilityScore, StabilityTime)> {
-    let scene = CellScene::new(cell, undamped)?;
-    let tries = match cell.method {
-        ContactMethod::SemiImplicit => contact_stiffnesses(cell, &scene)?.map(Some).to_vec(),
+    let scene = CellScene::new(configuration, undamped)?;
+    let tries = match configuration.method {
+        ContactMethod::SemiImplicit => contact_stiffnesses(configuration, &scene)?
+            .map(Some)
+            .to_vec(),
         _ => vec![None],
     };
     let tried = tries.into_iter().map(|contact_stiffness| {
-        let again = || simulate(cell, &scene, contact_stiffness);
+        let again = || simulate(configuration, &scene, contact_stiffness);
         let start = Instant::now();
         let answer = again()?;
         let once_s = start.elapsed().as_secs_f64();
@@ -61,7 +63,7 @@ pub(super) fn measure(
         };
         let score = StabilityScore {
             contact_stiffness_n_per_m: contact_stiffness,
-            ..judge(cell, &scene, &answer)
+            ..judge(configuration, &scene, &answer)
         };
         let per_simulated_s = score.simulated_s.map(|seconds| wall_s / seconds);
         let time = StabilityTime {
@@ -86,7 +88,7 @@ pub(super) fn measure(
 const SAFETY: f64 = 4.0;
 
 /// Returns the two contact stiffnesses to try: the lowest that meets the tolerance, and the highest that is stable with the time step.
-fn contact_stiffnesses(cell: &StabilityCell, scene: &CellScene) -> Result<[f64; 2]> {
+fn contact_stiffnesses(configuration: &StabilityCell, scene: &CellScene) -> Result<[f64; 2]> {
     let (taxel, truth) = (&scene.taxel, &scene.truth);
     let deepest = truth.deflection.iter().copied().fold(0.0, f64::max);
     let n_at_least = |least: f64| truth.deflection.iter().filter(|d| **d >= least).count();
@@ -96,27 +98,30 @@ fn contact_stiffnesses(cell: &StabilityCell, scene: &CellScene) -> Result<[f64; 
     let needed = taxel.stiffness.max(heaviest / taxel.stroke);
     let exact = SAFETY * needed / TOLERANCE;
     let n_touched = n_at_least(f64::MIN_POSITIVE);
-    let stable = SemiImplicit::stiffest(&scene.system(cell)?, cell.dt_s, n_touched);
+    let stable =
+        SemiImplicit::stiffest(&scene.system(configuration)?, configuration.dt_s, n_touched);
     Ok([exact, stable])
 }
 
 fn simulate(
-    cell: &StabilityCell,
+    configuration: &StabilityCell,
     scene: &CellScene,
     contact_stiffness: Option<f64>,
 ) -> Result<Answer> {
-    if cell.method == ContactMethod::QuasiStatic {
-        return match (cell.scene, &scene.drive) {
-            (_, Drive::Imposed(plan)) => Ok(press_and_release(cell, scene, plan)),
+    if configuration.method == ContactMethod::QuasiStatic {
+        return match (configuration.scene, &scene.drive) {
+            (_, Drive::Imposed(plan)) => Ok(press_and_release(configuration, scene, plan)),
             (StabilityScene::Plunger, _) => press_to_weight(scene),
-            (_, Drive::Free { mass, .. }) => put_to_rest(scene, *mass, cell.scene.n_balls()),
+            (_, Drive::Free { mass, .. }) => {
+                put_to_rest(scene, *mass, configuration.scene.n_balls())
+            }
         };
     }
-    let system = scene.system(cell)?;
-    let mut integrator = integrator(cell, &system, contact_stiffness)?;
-    let frames = scene.frames(cell.dt_s);
+    let system = scene.system(configuration)?;
+    let mut integrator = integrator(configuration, &system, contact_stiffness)?;
+    let frames = scene.frames(configuration.dt_s);
     let steps = Steps {
-        dt: cell.dt_s,
+        dt: configuration.dt_s,
         n: frames[frames.len() - 1],
         frames: &frames,
         energy_limit: scene.energy_limit,
@@ -146,11 +151,11 @@ fn simulate(
 }
 
 fn integrator(
-    cell: &StabilityCell,
+    configuration: &StabilityCell,
     system: &System,
     contact_stiffness: Option<f64>,
 ) -> Result<Box<dyn Integrator>> {
-    match (cell.method, contact_stiffness) {
+    match (configuration.method, contact_stiffness) {
         (ContactMethod::SemiImplicit, Some(stiffness)) => {
             Ok(Box::new(SemiImplicit::new(system, stiffness)))
         }
@@ -158,7 +163,7 @@ fn integrator(
         (method, _) if method.is_engine() => {
             use crate::dynamics::{RapierSettings, RapierWorld};
             // The plan sets the iterations of every engine.
-            let n = cell.solver_iterations.unwrap_or(1);
+            let n = configuration.solver_iterations.unwrap_or(1);
             let settings = match method {
                 ContactMethod::RapierSkinSim => RapierSettings::skin_sim(system, n),
                 ContactMethod::RapierTuned => RapierSettings {
@@ -230,8 +235,12 @@ fn press_to_weight(scene: &CellScene) -> Result<Answer> {
 }
 
 /// Simulates a ball with imposed motion on damped taxels with the quasi-static method.
-fn press_and_release(cell: &StabilityCell, scene: &CellScene, plan: &VelocityPlan) -> Answer {
-    let (dt, patch) = (cell.dt_s, &scene.cradle.patch);
+fn press_and_release(
+    configuration: &StabilityCell,
+    scene: &CellScene,
+    plan: &VelocityPlan,
+) -> Answer {
+    let (dt, patch) = (configuration.dt_s, &scene.cradle.patch);
     let frames = scene.frames(dt);
     let mut state = DamperState::at_rest(patch.n_taxels());
     let mut workspace = Workspace::new();
@@ -253,7 +262,7 @@ fn press_and_release(cell: &StabilityCell, scene: &CellScene, plan: &VelocityPla
     answer
 }
 
-fn judge(cell: &StabilityCell, scene: &CellScene, answer: &Answer) -> StabilityScore {
+fn judge(configuration: &StabilityCell, scene: &CellScene, answer: &Answer) -> StabilityScore {
     let wanted = &scene.truth.deflection;
     let all: f64 = wanted.iter().sum();
     let pairs = || answer.deflection.iter().zip(wanted);
@@ -272,14 +281,15 @@ fn judge(cell: &StabilityCell, scene: &CellScene, answer: &Answer) -> StabilityS
     };
     let is_whole = answer.broken.is_none();
     StabilityScore {
-        mass_ratio: cell.mass_ratio(),
-        explicit_limit_s: 2.0 * (cell.taxel_mass_kg / cell.stiffness_n_per_m).sqrt(),
+        mass_ratio: configuration.mass_ratio(),
+        explicit_limit_s: 2.0
+            * (configuration.taxel_mass_kg / configuration.stiffness_n_per_m).sqrt(),
         damping_n_s_per_m: scene.taxel.damping,
         contact_stiffness_n_per_m: None,
         outcome,
         force_imbalance: is_whole.then_some(answer.force_imbalance),
         deflection_error: is_whole.then_some(error),
         n_steps: answer.n_steps,
-        simulated_s: (answer.n_steps > 0).then_some(answer.n_steps as f64 * cell.dt_s),
+        simulated_s: (answer.n_steps > 0).then_some(answer.n_steps as f64 * configuration.dt_s),
     }
 }
