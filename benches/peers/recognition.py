@@ -211,8 +211,8 @@ def compare_grid(folder, ours, threads, repeats):
     penalties = [10.0**k for k in range(-1, 5)]
     # As multiples of 'scale', 1 / (m · variance).
     gammas = [4.0**k for k in range(-4, 2)]
-    options = ["--classifier", "rbf_svm", *OVO, "--choose-folds", "5"]
-    for name, values in [("--choose-c", penalties), ("--choose-gamma", gammas)]:
+    options = ["--classifier", "rbf_svm", *OVO, "--cv-folds", "5"]
+    for name, values in [("--c-grid", penalties), ("--gamma-grid", gammas)]:
         options += [name, ",".join(f"{value:g}" for value in values)]
     scale = 1.0 / (folder.train.shape[1] * folder.train.var())
     grid = {"C": penalties, "gamma": [gamma * scale for gamma in gammas]}

@@ -35,7 +35,7 @@ pub struct Args {
     #[arg(long, value_name = "NAME", value_parser = word::<ClassifierKind>)]
     classifier: ClassifierKind,
     /// A file of integers or texts, the group of every row of features (poses, grasps, days …): refuses a group that both trains and
-    /// tests, keeps groups whole in the folds of --choose-c, and takes the interval of the accuracy from groups, not rows
+    /// tests, keeps groups whole in the folds of --c-grid, and takes the interval of the accuracy from groups, not rows
     #[arg(long, value_name = "FILE")]
     groups: Option<PathBuf>,
     /// Soft-margin penalty C [default: 1]
@@ -277,9 +277,9 @@ impl Args {
     fn check_parameters(&self) -> Result<()> {
         let chooses = !self.c_grid.is_empty();
         let chooses_gamma = !self.gamma_grid.is_empty();
-        check_used("--choose-gamma", chooses_gamma, chooses, "--choose-c")?;
+        check_used("--gamma-grid", chooses_gamma, chooses, "--c-grid")?;
         let folds = self.cv_folds.is_some();
-        check_used("--choose-folds", folds, chooses, "--choose-c")?;
+        check_used("--cv-folds", folds, chooses, "--c-grid")?;
         let given = [
             ("c", self.c.is_some()),
             ("c_grid", chooses),

@@ -528,11 +528,11 @@ fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
     refuses("cv_folds = 3", &["cv_folds", "c_grid"]);
     refuses("cv_touches = 3", &["cv_touches", "c_grid"]);
     refuses(
-        "c_grid = [1.0, 2.0]\nchoose_folds = 1",
+        "c_grid = [1.0, 2.0]\ncv_folds = 1",
         &["cv_folds", "at least 2"],
     );
     refuses(
-        "c_grid = [1.0, 2.0]\nchoose_folds = 7",
+        "c_grid = [1.0, 2.0]\ncv_folds = 7",
         &["cv_folds", "at most 6", "training touches"],
     );
     let rbf = |line: &str, words: &[&str]| {
@@ -540,7 +540,7 @@ fn keys_of_a_choice_are_checked_and_none_is_silently_ignored() {
         Case::new().refuses(old, &format!("classifier = \"rbf_svm\"\n{line}"), words);
     };
     rbf(
-        "gamma = 1.0\nchoose_gamma = [1.0]",
+        "gamma = 1.0\ngamma_grid = [1.0]",
         &["both gamma and gamma_grid"],
     );
     rbf("gamma_grid = [1.0, -1.0]", &["gamma_grid", "-1", "above 0"]);

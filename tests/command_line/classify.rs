@@ -379,7 +379,7 @@ fn groups_change_the_interval_and_the_folds_and_nothing_else() {
     let wider = |low: &str| by_groups[low].as_f64() < by_rows[low].as_f64();
     assert!(wider("accuracy_low"));
     // Folds of whole groups choose on other rows.
-    let chosen = ["--choose-c", "0.01,0.1,1", "--choose-folds", "3"];
+    let chosen = ["--c-grid", "0.01,0.1,1", "--cv-folds", "3"];
     let validated = |of: &[&str]| json(&case, &[of, &chosen].concat())["chosen"]["tried"].clone();
     assert_ne!(validated(&GROUPED), validated(&LINEAR));
 }
@@ -420,7 +420,7 @@ fn groups_that_do_not_fit_the_rows_or_the_split_are_refused() {
     with(below, &[], &["groups.npy, position 4: -1", "zero or more"]);
     with(
         groups(),
-        &["--choose-c", "1,10"],
+        &["--c-grid", "1,10"],
         &["folds: 5", "number of groups, 3"],
     );
     write_npy(

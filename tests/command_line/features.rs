@@ -152,7 +152,7 @@ fn the_library_reads_what_the_command_writes_at_any_number_of_threads() {
 #[test]
 fn groups_that_a_study_keeps_together_are_written_for_classify() {
     let case = Case::new();
-    let keys = "group_by = \"yaw\"\nkeep_together_deg = 3.0\ntrain_touches = [4";
+    let keys = "group_by = \"yaw\"\ngroup_by_deg = 3.0\ntrain_touches = [4";
     case.file("study.toml", STUDY.replace("train_touches = [4", keys));
     let folder = written(&case, 0, 0);
     let groups: Array1<i64> = read_npy(folder.join("groups.npy")).unwrap();

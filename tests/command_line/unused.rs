@@ -18,16 +18,16 @@ fn an_option_that_cannot_act_is_refused_and_names_what_would_use_it() {
     let linear = "classify . --classifier linear_svm";
     for (arguments, words) in [
         (format!("{knn} --c 2"), ["--c:", "linear_svm"]),
-        (format!("{knn} --choose-c 1,10"), ["--choose-c", "linear_svm"]),
-        (format!("{knn} --choose-c 1 --choose-gamma 1"), ["--choose-", "svm"]),
+        (format!("{knn} --c-grid 1,10"), ["--c-grid", "linear_svm"]),
+        (format!("{knn} --c-grid 1 --gamma-grid 1"), ["--choose-", "svm"]),
         (format!("{knn} --solver smo"), ["--solver", "rbf_svm"]),
         (format!("{knn} --multiclass one_vs_rest"), ["--multiclass", "rbf_svm"]),
         (format!("{knn} --tolerance 0.1"), ["--tolerance", "logistic_regression"]),
         (format!("{linear} --gamma 0.1"), ["--gamma", "rbf_svm"]),
         (format!("{linear} --degree 2"), ["--degree", "polynomial_svm"]),
         (format!("{linear} --coef0 2"), ["--coef0", "polynomial_svm"]),
-        (format!("{linear} --choose-folds 3"), ["--choose-folds", "--choose-c"]),
-        ("classify . --classifier rbf_svm --c 1 --choose-gamma 1".to_owned(), ["--choose-gamma", "--choose-c"]),
+        (format!("{linear} --cv-folds 3"), ["--cv-folds", "--c-grid"]),
+        ("classify . --classifier rbf_svm --c 1 --gamma-grid 1".to_owned(), ["--gamma-grid", "--c-grid"]),
         ("press --mesh solid.obj --objects objects.toml".to_owned(), ["--objects", "--mesh"]),
         ("press --spheres spheres.csv --objects objects.toml".to_owned(), ["--objects", "--spheres"]),
         ("press --mesh solid.obj --model vertex_spheres --surface-error-mm 1".to_owned(), ["--surface-error-mm", "packed"]),
@@ -128,7 +128,7 @@ fn a_key_that_cannot_act_is_refused_with_its_line_by_plan_and_by_run() {
         (
             recognition(
                 "\"linear_svm\"",
-                "touches_per_decision = 2\nnext_touch = \"farthest\"\nchoose_folds = 3",
+                "touches_per_decision = 2\nnext_touch = \"farthest\"\ncv_folds = 3",
             ),
             ["key recognition.cv_folds: 3", "most_informative"],
         ),
@@ -239,7 +239,7 @@ fn a_number_out_of_range_is_refused_when_the_file_is_read() {
             ["key objects.surface_error_mm", "at least 1e-6 mm"],
         ),
     ];
-    let grouped = svm("folds = 4\nkeep_together = \"yaw\"");
+    let grouped = svm("folds = 4\ngroup_by = \"yaw\"");
     let grouped = grouped.replace("per_object = 8", "yaw_deg = [0, 90, 180]\nper_object = 9");
     studies.push((
         grouped.replace("question", "trials = 4\nquestion"),

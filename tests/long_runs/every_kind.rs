@@ -43,14 +43,14 @@ macro_rules! every_kind {
 }
 
 every_kind! {
-    a_study_of_recognition_obeys_all_laws: RECOGNITION, Some(("cells.csv", "accuracy", "measurements"));
-    a_study_with_axes_of_its_own_obeys_all_laws: AXES, Some(("cells.csv", "accuracy", "decision_time"));
+    a_study_of_recognition_obeys_all_laws: RECOGNITION, Some(("configurations.csv", "accuracy", "measurements"));
+    a_study_with_axes_of_its_own_obeys_all_laws: AXES, Some(("configurations.csv", "accuracy", "decision_time"));
     a_study_of_reconstruction_obeys_all_laws: RECONSTRUCTION, Some(("pareto.csv", "error", "us_per_frame"));
     a_study_of_object_detail_obeys_all_laws: OBJECT_DETAIL,
         Some(("object_detail_cost.csv", "error_median_mm", "us_per_touch_median"));
     a_study_of_a_whole_body_obeys_all_laws: WHOLE_BODY, Some(("recognition.csv", "accuracy", "bytes_per_taxel"));
     a_study_of_stability_obeys_all_laws: STABILITY, None;
-    a_study_with_test_touches_of_their_own_obeys_all_laws: TEST_TOUCHES, Some(("cells.csv", "accuracy", "decision_time"));
+    a_study_with_test_touches_of_their_own_obeys_all_laws: TEST_TOUCHES, Some(("configurations.csv", "accuracy", "decision_time"));
 }
 
 #[test]

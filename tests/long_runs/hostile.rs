@@ -37,11 +37,11 @@ fn reader<T: serde::de::DeserializeOwned>(text: &str) -> Result<(), toml::de::Er
 
 /// Keys that many studies leave out, each in a study where it can act.
 const SVM: &str = "classifier = [\"rbf_svm\", \"polynomial_svm\", \"k_nearest\", \"random_forest\"]\nc = 1.0\ngamma = 0.1\ndegree = 2\ncoef0 = 1.0\n\
-     n_neighbours = 3\nn_trees = 5\nmax_depth = 3\ntest_fraction = 0.25\nfused_touches = 1\nmulticlass = \"one_vs_one\"";
-const CHOSEN: &str = "classifier = \"rbf_svm\"\nchoose_c = [1.0, 10.0]\nchoose_gamma = [1.0]\nchoose_folds = 2\nchoose_touches = 4\n\
-     features = \"fourier_magnitude\"\nforemost_full_scale = 0.5\ntilted_copies = 1\ntilted_copies_deg = 4.0";
+     n_neighbours = 3\nn_trees = 5\nmax_depth = 3\ntest_fraction = 0.25\ntouches_per_decision = 1\nmulticlass = \"one_vs_one\"";
+const CHOSEN: &str = "classifier = \"rbf_svm\"\nc_grid = [1.0, 10.0]\ngamma_grid = [1.0]\ncv_folds = 2\ncv_touches = 4\n\
+     features = \"fourier_magnitude\"\ndepth_window_full_scale = 0.5\ntilt_augmentation = 1\ntilt_augmentation_deg = 4.0";
 const ERRORS: &str = "steps = [\"noise\", \"smoothing\", \"gain\", \"drift\", \"faults\"]\nnoise_std_full_scale = 0.05\nsmoothing_mm = 2.0\n\
-     gain_std = 0.1\ndrift_std_full_scale = 0.01\ndead_fraction = 0.01\ntested_on = \"another_skin\"";
+     gain_std = 0.1\ndrift_std_full_scale = 0.01\ndead_fraction = 0.01\ntest_sensor = \"another_skin\"";
 
 fn recognition(skin: &str, touches: &str, signal: &str, recognition: &str) -> String {
     format!(
@@ -52,7 +52,7 @@ fn recognition(skin: &str, touches: &str, signal: &str, recognition: &str) -> St
 }
 
 const HUMAN: &str = "question = \"q\"\ntrials = 1\n[human_touch]\nper_kind = 4\narm_radius_mm = 43.0\nframes_hz = 15.0\nduration_s = 3.2\n\
-     [skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\nover_time = \"stacked_4\"\n";
+     [skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\ntemporal_features = \"stacked_4\"\n";
 
 const RECORDED: &str = "question = \"q\"\ntrials = 1\n[recorded]\nframes = \"frames.npy\"\nlabels = \"labels.npy\"\ngroups = \"groups.npy\"\nzero = 0.0\n\
      full_scale = 2.0\n[skin]\npitch_mm = 4.0\nstroke_mm = 2.0\n[sensing]\nratio = 4.0\n[recognition]\nclassifier = \"linear_svm\"\n";
@@ -77,7 +77,7 @@ fn files() -> Vec<File> {
     let frames = "frames = 2\nspeed_mm_per_s = 10.0\noffset_x_mm = { uniform = [-5.0, 5.0] }\nyaw_deg = [0.0, 30.0]\ntilt_x_deg = { grid = [0.0, 4.0, 3] }";
     let slides = "slide_mm = 1.0\nslide_deg = 10.0\noffset_x_mm = { uniform = [-5.0, 5.0] }";
     let shear = "taxels = 8\nsensed = \"shear\"\nfriction = 0.5\nshear_stiffness_n_per_m = 50.0\ntaxel_radius_mm = 4.0";
-    let svm = "classifier = \"linear_svm\"\nkeep_together = \"offset\"\nkeep_together_mm = 0.5";
+    let svm = "classifier = \"linear_svm\"\ngroup_by = \"offset\"\ngroup_by_mm = 0.5";
     vec![
         study(
             "recognition",

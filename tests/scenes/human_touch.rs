@@ -529,7 +529,7 @@ fn a_study_that_cannot_be_is_refused_by_its_key() {
         ),
         (
             "c = 10.0",
-            "c = 10.0\nkeep_together = \"yaw\"",
+            "c = 10.0\ngroup_by = \"yaw\"",
             "study.toml, key recognition.group_by: given; ",
         ),
         (

@@ -232,7 +232,7 @@ fn a_cell_does_not_depend_on_the_other_values_of_these_axes() {
     let alone = Study::new(&with("", "")).run();
     let wide = with(
         "frames = [2, 1]",
-        "features = [\"unit_norm\", \"raw\"]\nfused_touches = [3, 1]\nc = [0.1, 1.0]",
+        "features = [\"unit_norm\", \"raw\"]\ntouches_per_decision = [3, 1]\nc = [0.1, 1.0]",
     );
     let among = Study::new(&wide).run();
     let configuration = &alone.accuracy[0].0;
@@ -277,14 +277,14 @@ fn the_only_candidate_is_what_is_given_and_a_useless_one_is_not_chosen() {
         Study::new(&text).run().accuracy
     };
     let given = with("c = 10.0");
-    let only = with("c_grid = [10.0]\nchoose_gamma = [1.0]");
+    let only = with("c_grid = [10.0]\ngamma_grid = [1.0]");
     for ((_, given), (configuration, only)) in given.iter().zip(&only) {
         assert_eq!(given, only);
         assert_eq!(configuration.c, None);
         let gamma = given.gamma_used.unwrap();
         // Standardised features: γ 'scale' is 1 / m.
         assert!((gamma - 1.0 / 16.0).abs() < 1e-12);
-        let multiple = with("c_grid = [10.0]\nchoose_gamma = [1.0, 1e6]\nchoose_folds = 3");
+        let multiple = with("c_grid = [10.0]\ngamma_grid = [1.0, 1e6]\ncv_folds = 3");
         for (_, chosen) in multiple {
             assert_eq!(chosen.c_used, Some(10.0));
             assert!((chosen.gamma_used.unwrap() - gamma).abs() < 1e-12);
@@ -297,7 +297,7 @@ fn the_only_candidate_is_what_is_given_and_a_useless_one_is_not_chosen() {
 
 #[test]
 fn a_choice_by_some_of_the_touches_does_not_see_the_others() {
-    let keys = "c_grid = [0.01, 1.0]\nchoose_touches = 5\nchoose_folds = 5";
+    let keys = "c_grid = [0.01, 1.0]\ncv_touches = 5\ncv_folds = 5";
     let few = Study::new(&with("", &format!("{keys}\ntrain_touches = 5"))).run();
     let many = Study::new(&with("", &format!("{keys}\ntrain_touches = [5, 20]"))).run();
     let chosen = |outcome: &Tables, touches: usize| -> Vec<Option<f64>> {

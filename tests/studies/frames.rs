@@ -221,7 +221,7 @@ fn with_drawn_poses(keys: &str) -> String {
 fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together() {
     let (near_mm, near_deg) = (6.0, 40.0);
     for (kind, keys) in [
-        ("pose", "group_by_mm = 6.0\nkeep_together_deg = 40.0"),
+        ("pose", "group_by_mm = 6.0\ngroup_by_deg = 40.0"),
         ("offset", "group_by_mm = 1.5"),
         ("yaw", "group_by_deg = 1.0\nfolds = 3"),
     ] {
@@ -298,12 +298,12 @@ fn a_drawn_pose_without_a_distance_and_a_distance_without_a_group_are_refused() 
             "key recognition.group_by_mm: left out, and offset_x is spread uniformly",
         ),
         (
-            "group_by = \"yaw\"\nkeep_together_mm = 2.0\n",
+            "group_by = \"yaw\"\ngroup_by_mm = 2.0\n",
             "key recognition.group_by_deg: left out, and yaw is spread uniformly",
         ),
         ("group_by_mm = 2.0\n", "without recognition.group_by"),
         (
-            "group_by = \"offset\"\nkeep_together_mm = 0.0\n",
+            "group_by = \"offset\"\ngroup_by_mm = 0.0\n",
             "key recognition.group_by_mm: 0; a positive number",
         ),
     ] {
@@ -328,7 +328,7 @@ fn without_keeping_together_offsets_are_on_both_sides() {
 
 #[test]
 fn over_the_folds_each_touch_is_tested_exactly_once() {
-    for keys in ["folds = 3", "folds = 3\nkeep_together = \"pose\""] {
+    for keys in ["folds = 3", "folds = 3\ngroup_by = \"pose\""] {
         let study = with_recognition(keys);
         let n_rows = study.sweep.labels.len();
         let divisions: Vec<_> = study.sweep.splits.chunks(3).collect();

@@ -129,7 +129,7 @@ fn a_skin_without_strength_scores_as_one_without_the_keys_and_only_used_keys_are
 #[test]
 fn another_skin_reads_test_touches_and_nothing_else() {
     let signal =
-        "steps = [\"gain\"]\ngain_std = 0.5\ntested_on = [\"same_skin\", \"another_skin\"]";
+        "steps = [\"gain\"]\ngain_std = 0.5\ntest_sensor = [\"same_skin\", \"another_skin\"]";
     let study = Study::new(&with_signal(signal));
     let items = study.of_items();
     let read = |configuration, trial| {
@@ -312,7 +312,7 @@ fn keys_that_make_no_sense_are_refused_with_what_does() {
             "signal.stuck_fraction: up to 0.5, with up to 0.6 of dead taxels; at most 1",
         ),
         (
-            "steps = [\"crosstalk\"]\ncrosstalk = 0.1\ntested_on = \"another_skin\"",
+            "steps = [\"crosstalk\"]\ncrosstalk = 0.1\ntest_sensor = \"another_skin\"",
             "signal.test_sensor: given for skins without a difference; gain or drift or faults",
         ),
         (

@@ -205,7 +205,7 @@ fn with_copies(keys: &str) -> String {
 #[test]
 fn copies_follow_all_touches_are_as_deep_as_those_that_they_are_of_and_change_no_other() {
     let [none, copied] = [0, 1].map(|configuration| {
-        let keys = "split = \"unseen_tilt\"\ntilted_copies = [0, 2]\ntrain_touches = 20";
+        let keys = "split = \"unseen_tilt\"\ntilt_augmentation = [0, 2]\ntrain_touches = 20";
         features(&with_copies(keys), configuration, 0)
     });
     let (n_touches, n_train) = (none.data.records.nrows(), none.split.train.len());
@@ -241,7 +241,7 @@ fn copies_follow_all_touches_are_as_deep_as_those_that_they_are_of_and_change_no
 
 #[test]
 fn copies_that_are_tilted_recognise_a_tilt_that_was_never_learned() {
-    let keys = "split = \"unseen_tilt\"\ntilted_copies = [0, 2]";
+    let keys = "split = \"unseen_tilt\"\ntilt_augmentation = [0, 2]";
     let text = with_copies(keys).replace("trials = 1", "trials = 4");
     let tables = Study::new(&text).run();
     let accuracies = tables.summary.iter().map(|(_, score)| score.accuracy);
@@ -253,7 +253,7 @@ fn copies_that_are_tilted_recognise_a_tilt_that_was_never_learned() {
 fn copies_are_of_images_and_their_tilt_belongs_to_them() {
     for (keys, said) in [
         (
-            "features = \"raw\"\ntilted_copies = 2",
+            "features = \"raw\"\ntilt_augmentation = 2",
             "no features of the study are of images",
         ),
         (
@@ -261,7 +261,7 @@ fn copies_are_of_images_and_their_tilt_belongs_to_them() {
             "no such key without recognition.tilt_augmentation",
         ),
         (
-            "tilt_augmentation = 2\ntilted_copies_deg = 60.0",
+            "tilt_augmentation = 2\ntilt_augmentation_deg = 60.0",
             "above 0, at most 45",
         ),
     ] {

@@ -71,7 +71,7 @@ fn every_configuration_alone_scores_what_it_scores_in_its_sweep() {
     let all = |values: [&str; 2]| format!("[{}]", values.join(", "));
     let text = |skin: &str, ensemble: &str, features: &str| {
         let signal = format!(
-            "steps = [\"gain\", \"noise\"]\ngain_std = 0.6\nnoise_std_full_scale = 0.02\ntested_on = {skin}"
+            "steps = [\"gain\", \"noise\"]\ngain_std = 0.6\nnoise_std_full_scale = 0.02\ntest_sensor = {skin}"
         );
         let sensing = format!("ensemble = {ensemble}\nratio = 4");
         study(&signal, &sensing, &format!("features = {features}"))
@@ -125,7 +125,7 @@ fn exported_rows_classified_elsewhere_give_the_answers_of_the_run() {
         ),
         (
             "ratio = 4",
-            "features = \"descriptors\"\ntilted_copies = 2\ntrain_touches = [3, 18]",
+            "features = \"descriptors\"\ntilt_augmentation = 2\ntrain_touches = [3, 18]",
         ),
         (
             "ratio = 4",
@@ -228,9 +228,9 @@ fn a_choice_among_one_value_is_that_value() {
         let scaled = |keys: &str| fits(&format!("scaling = \"{scaling}\"\n{keys}"));
         let given = scaled("c = 10.0");
         for keys in [
-            "c_grid = [10.0]\nchoose_touches = 5",
-            "c_grid = [10.0]\nchoose_touches = 5\nchoose_folds = 2",
-            "c_grid = [10.0]\nchoose_gamma = [1.0]\nchoose_touches = 5",
+            "c_grid = [10.0]\ncv_touches = 5",
+            "c_grid = [10.0]\ncv_touches = 5\ncv_folds = 2",
+            "c_grid = [10.0]\ngamma_grid = [1.0]\ncv_touches = 5",
             "c_grid = [10.0]",
         ] {
             assert_eq!(scaled(keys), given, "{scaling}: {keys}");
@@ -241,7 +241,7 @@ fn a_choice_among_one_value_is_that_value() {
     let gammas = |scores: &[TrialScore]| -> Vec<f64> {
         scores.iter().filter_map(|score| score.gamma_used).collect()
     };
-    let chosen = rows("c_grid = [1.0, 10.0]\nchoose_gamma = [1.0, 2.0]\nchoose_touches = 5");
+    let chosen = rows("c_grid = [1.0, 10.0]\ngamma_grid = [1.0, 2.0]\ncv_touches = 5");
     let scale = gammas(&rows("c = 10.0"));
     for (chosen, scale) in gammas(&chosen).iter().zip(&scale) {
         assert!([*scale, 2.0 * scale].contains(chosen), "{chosen} {scale}");

@@ -149,7 +149,7 @@ fn n_correct_by_hand(
 
 #[test]
 fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
-    let text = with(&format!("{ALL}\nfused_touches = [1, 2, 4]"));
+    let text = with(&format!("{ALL}\ntouches_per_decision = [1, 2, 4]"));
     let study = Study::new(&text);
     let tables = study.run();
     let sets: Vec<FeatureSet> = (0..2)
@@ -184,9 +184,12 @@ fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
 #[test]
 fn random_is_what_a_study_without_the_key_does_and_neither_changes_beside_others() {
     let without = Study::new(&with("touches_per_decision = [1, 3]")).run();
-    let random = Study::new(&with("next_touch = \"random\"\nfused_touches = [1, 3]")).run();
+    let random = Study::new(&with(
+        "next_touch = \"random\"\ntouches_per_decision = [1, 3]",
+    ))
+    .run();
     let among = Study::new(&with(&format!(
-        "{ALL}\nfused_touches = [1, 3]\nc = [0.1, 1.0]"
+        "{ALL}\ntouches_per_decision = [1, 3]\nc = [0.1, 1.0]"
     )))
     .run();
     for (configuration, score) in &without.accuracy {
@@ -205,7 +208,7 @@ fn random_is_what_a_study_without_the_key_does_and_neither_changes_beside_others
 
 #[test]
 fn a_choice_that_cannot_be_made_is_refused_by_its_key() {
-    let fused = format!("{ALL}\nfused_touches = 2\n");
+    let fused = format!("{ALL}\ntouches_per_decision = 2\n");
     let recorded = fused.replace("\"random\", ", "");
     for (text, said) in [
         (

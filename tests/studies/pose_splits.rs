@@ -270,7 +270,7 @@ fn the_interval_of_poses_held_out_comes_from_them_and_not_from_touches() {
 
 #[test]
 fn groups_kept_together_count_once_however_many_touches_are_decided_on_together() {
-    let keys = "group_by = \"yaw\"\ntest_fraction = 0.4\nfused_touches = [1, 3]\n";
+    let keys = "group_by = \"yaw\"\ntest_fraction = 0.4\ntouches_per_decision = [1, 3]\n";
     let tables = run(&format!("{STUDY}{keys}"));
     for (configuration, score) in &tables.accuracy {
         assert_eq!(score.n_groups, Some(2), "{configuration:?}");

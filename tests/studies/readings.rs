@@ -119,10 +119,10 @@ fn without_noise_a_touch_is_learned_once() {
 /// Another reading of a touch that a fold holds out would make any C look good.
 #[test]
 fn tilted_copies_come_after_all_readings_and_are_of_the_first() {
-    let tilted = "features = \"descriptors\"\ntilted_copies = 2";
+    let tilted = "features = \"descriptors\"\ntilt_augmentation = 2";
     let (once, twice) = (
         features(&with(tilted)),
-        features(&with(&format!("{tilted}\ntraining_readings = 2"))),
+        features(&with(&format!("{tilted}\nreadings_per_touch = 2"))),
     );
     let (n, n_train) = (120, 90);
     assert_eq!(once.data.targets.len(), n + 2 * n_train);
@@ -137,8 +137,8 @@ fn tilted_copies_come_after_all_readings_and_are_of_the_first() {
 
 #[test]
 fn readings_and_copies_are_of_the_group_of_their_touch() {
-    let keys = "features = \"descriptors\"\ntilted_copies = 2\ntraining_readings = 2\n\
-                group_by = \"yaw\"\nkeep_together_deg = 12.0";
+    let keys = "features = \"descriptors\"\ntilt_augmentation = 2\nreadings_per_touch = 2\n\
+                group_by = \"yaw\"\ngroup_by_deg = 12.0";
     let study = laid_out(&with(keys)).unwrap();
     let keys = study.first().sweep.group_keys.as_ref().unwrap();
     let set = study.first().features((0, 0), &Silent).unwrap();

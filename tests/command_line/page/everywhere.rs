@@ -117,7 +117,7 @@ fn without_script_pictures_and_tables_stand_in() {
     browser.open(&page);
     assert_eq!(
         browser.count(
-            "return document.querySelectorAll('[data-table=\"cells.csv\"] tbody tr').length"
+            "return document.querySelectorAll('[data-table=\"configurations.csv\"] tbody tr').length"
         ),
         16
     );
@@ -148,7 +148,7 @@ fn ten_thousand_cells_are_a_light_page() {
     let ms = opened.fold(f64::INFINITY, f64::min);
     assert_eq!(
         browser.count(
-            "return document.querySelectorAll('[data-table=\"cells.csv\"] tbody tr').length"
+            "return document.querySelectorAll('[data-table=\"configurations.csv\"] tbody tr').length"
         ),
         100
     );

@@ -15,7 +15,7 @@ pub fn settings_of(configurations: &[&Configuration]) -> Result<Table> {
     let axes = axes.into_iter().flatten();
     let axes = axes.map(|axis| axis.column.clone().optional());
     let columns = Configuration::columns().into_iter().chain(axes).collect();
-    File::<Configuration>::new("configurations.csv", "Cells", "")
+    File::<Configuration>::new("configurations.csv", "Configurations", "")
         .of_columns(columns, configurations)
 }
 
