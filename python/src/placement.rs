@@ -3,7 +3,6 @@
 use crate::arrays::view;
 use crate::errors::{bad_input, guarded};
 use crate::model::model_of;
-use crate::poses::seven;
 use bubbletouch::world::{RestPoses, Touch};
 use ndarray::{Array1, Array2};
 use numpy::{IntoPyArray, PyArrayMethods};
@@ -107,7 +106,7 @@ pub fn touch_poses<'py>(
                 depth: 0.0,
                 indices: [None; 7],
             };
-            seven(&touch.patch_from_object(&rest))
+            touch.patch_from_object(&rest).to_array()
         };
         Ok(match n {
             None => Array1::from_iter(pose(0)).into_pyarray(py).into_any(),

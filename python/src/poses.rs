@@ -83,9 +83,3 @@ fn from_matrix(values: &[f64]) -> Result<Pose, &'static str> {
     }
     Ok(Pose::new(DQuat::from_mat3(&rotation).normalize(), at))
 }
-
-/// Returns x, y, z, qw, qx, qy, qz.
-pub fn seven(pose: &Pose) -> [f64; 7] {
-    let (at, turn) = (pose.translation, pose.rotation);
-    [at.x, at.y, at.z, turn.w, turn.x, turn.y, turn.z]
-}

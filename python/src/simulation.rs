@@ -4,7 +4,7 @@ use crate::arrays::{to_column, to_rows, view, whole_number};
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
 use crate::patch::Patch;
-use crate::poses::{Poses, seven};
+use crate::poses::Poses;
 use bubbletouch::geometry::Pose;
 use bubbletouch::scene::{self, Frame, PatchReading, PoseControl, ScenePlan, SceneSpec, Stepping};
 use numpy::{IntoPyArray, PyArrayMethods};
@@ -268,7 +268,7 @@ fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: Frame) -> PyResult<Bo
             PoseControl::NotConverged => "unsettled",
             PoseControl::Escaped { .. } => "escaped",
         };
-        of_object.set_item("pose", to_column(py, seven(&reading.pose)))?;
+        of_object.set_item("pose", to_column(py, reading.pose.to_array()))?;
         of_object.set_item("held", held)?;
         objects.set_item(&object.name, of_object)?;
     }
@@ -289,7 +289,7 @@ fn patch_of<'py>(
         reading.wrench.force.to_array(),
         reading.wrench.torque.to_array(),
     ];
-    said.set_item("pose", to_column(py, seven(&reading.pose)))?;
+    said.set_item("pose", to_column(py, reading.pose.to_array()))?;
     said.set_item("deflection", shaped(reading.deflection)?)?;
     said.set_item("force", shaped(reading.force)?)?;
     said.set_item("force3", to_rows(py, reading.force3.into_iter()))?;

@@ -240,7 +240,7 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
         let files = Files::read(&case.path(folder));
         let mut workspace = Workspace::new();
         for (touch, pose) in files.poses.outer_iter().enumerate() {
-            let rotation = DQuat::from_xyzw(pose[3], pose[4], pose[5], pose[6]);
+            let rotation = DQuat::from_xyzw(pose[4], pose[5], pose[6], pose[3]);
             assert!((rotation.length() - 1.0).abs() < 1e-12);
             let pose = Pose::new(rotation, DVec3::new(pose[0], pose[1], pose[2]));
             let spheres = &study.touched[files.labels[touch] as usize].object.model;

@@ -19,7 +19,7 @@ fn an_option_that_cannot_act_is_refused_and_names_what_would_use_it() {
     for (arguments, words) in [
         (format!("{knn} --c 2"), ["--c:", "linear_svm"]),
         (format!("{knn} --c-grid 1,10"), ["--c-grid", "linear_svm"]),
-        (format!("{knn} --c-grid 1 --gamma-grid 1"), ["--choose-", "svm"]),
+        (format!("{knn} --c-grid 1 --gamma-grid 1"), ["--c-grid", "svm"]),
         (format!("{knn} --solver smo"), ["--solver", "rbf_svm"]),
         (format!("{knn} --multiclass one_vs_rest"), ["--multiclass", "rbf_svm"]),
         (format!("{knn} --tolerance 0.1"), ["--tolerance", "logistic_regression"]),

@@ -37,6 +37,12 @@ impl Pose {
         Self::new(rotation, DVec3::ZERO)
     }
 
+    /// Returns x, y, z, qw, qx, qy, qz: the translation, metres, and the unit quaternion with its scalar part first, as in MuJoCo.
+    pub fn to_array(&self) -> [f64; 7] {
+        let (t, q) = (self.translation, self.rotation);
+        [t.x, t.y, t.z, q.w, q.x, q.y, q.z]
+    }
+
     /// Returns the composition: `a_from_b.compose(&b_from_c)` is `a_from_c`. The inner motion acts first.
     pub fn compose(&self, inner: &Self) -> Self {
         Self::new(

@@ -13,7 +13,7 @@
 //! | `PATCH/deflection` | n_frames × n_taxels | f32, metres |
 //! | `PATCH/force` | n_frames × n_taxels (normal) or n_frames × n_taxels × 3 (vectors, patch frame) | f32, newtons |
 //! | `PATCH/signal` | n_frames × n_taxels, of a patch with a signal | f32, metres or newtons (`meta` says which) |
-//! | `PATCH/pose` | n_frames × 7 | f64, world from patch: x, y, z in metres, unit quaternion x, y, z, w |
+//! | `PATCH/pose` | n_frames × 7 | f64, world from patch: x, y, z in metres, unit quaternion w, x, y, z |
 //! | `OBJECT/pose` | n_frames × 7 | f64, world from object, the same |
 //!
 //! `meta` is an object with `format` ("bubbletouch recording"), `version` (1), `patches`, `objects` (names) and `about` (any metadata of the writer). Each

@@ -3,7 +3,6 @@
 use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
 use crate::files::WholeFile;
-use crate::geometry::Pose;
 use crate::inputs::content_hash::bytes_of_numbers;
 use crate::inputs::npy::npy_header;
 use crate::scene::Frame;
@@ -185,14 +184,13 @@ fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
             None => patch.force.clone(),
         });
         numbers.extend(patch.signal.clone());
-        numbers.push(seven(&patch.pose));
+        numbers.push(patch.pose.to_array().to_vec());
     }
-    numbers.extend(frame.objects.iter().map(|object| seven(&object.pose)));
+    numbers.extend(
+        frame
+            .objects
+            .iter()
+            .map(|object| object.pose.to_array().to_vec()),
+    );
     numbers
-}
-
-/// Returns position and quaternion in storage order.
-fn seven(pose: &Pose) -> Vec<f64> {
-    let (t, q) = (pose.translation, pose.rotation);
-    vec![t.x, t.y, t.z, q.x, q.y, q.z, q.w]
 }

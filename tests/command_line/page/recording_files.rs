@@ -234,7 +234,7 @@ fn another_reader_of_npz_reads_the_same_arrays() {
         assert_eq!(palm[(k, 5)], frame.palm[5] as f32);
         assert_eq!(force[(k, 4, 1)], frame.tip_force[4].y as f32);
         let (t, q) = (frame.poses[2].translation, frame.poses[2].rotation);
-        assert_eq!(poses.row(k).to_vec(), [t.x, t.y, t.z, q.x, q.y, q.z, q.w]);
+        assert_eq!(poses.row(k).to_vec(), [t.x, t.y, t.z, q.w, q.x, q.y, q.z]);
     }
 }
 

@@ -5,7 +5,7 @@
 //! | `frames.npy` | n × ny × nx (1 × n_taxels of layouts without rows), f32, metres of deflection, without noise; or as a configuration reads them; n × F × ny × nx for touches of F frames |
 //! | `shear.npy` | with `skin.sensed = "shear"` n × 2 × ny × nx (n × F × 2 × ny × nx), f32: the forces across the axis of each taxel, along x and y of its frame, newtons |
 //! | `labels.npy` | n, i64: the object's number |
-//! | `poses.npy` | n × 7, f64: the pose of the object in the patch frame at the time of reading: x, y, z in metres, quaternion x, y, z, w |
+//! | `poses.npy` | n × 7, f64: the pose of the object in the patch frame at the time of reading: x, y, z in metres, unit quaternion w, x, y, z |
 //! | `depths.npy` | n, f64: metres past first contact |
 //! | `taxels.npy` | n_taxels × 6, f64, for layouts other than the grid: rest centres (metres) and axes in the patch frame |
 //! | `touches.csv` | one row per touch: object, resting pose, offset, yaw, tilts, depth, taxels touched and saturated |
@@ -439,7 +439,6 @@ fn pressed<'a>(
         frames.extend(press.values(workspace).map(|value| value as f32));
     }
     let pose = press.end(pose, contact);
-    let (t, q) = (pose.translation, pose.rotation);
     Reading {
         row: TouchRow {
             touch: number,
@@ -456,7 +455,7 @@ fn pressed<'a>(
             n_saturated: contact.map_or(0, |c| c.n_saturated),
         },
         frames,
-        pose: [t.x, t.y, t.z, q.x, q.y, q.z, q.w],
+        pose: pose.to_array(),
         depth: touch.depth,
     }
 }
