@@ -5,12 +5,12 @@ use crate::dual::DualSolution;
 /// A binary problem of a multi-class SVM and its solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinaryProblem {
-    /// The class whose rows are positive.
+    /// Positive class: its rows have y = +1.
     pub positive: usize,
-    /// The class whose rows are negative; `None` if all other classes are negative.
+    /// Negative class: its rows have y = −1. `None` if all other classes are negative.
     pub negative: Option<usize>,
-    /// The problem's rows, as indices of training rows.
+    /// Rows of the problem, as indices of training rows.
     pub rows: Vec<usize>,
-    /// The solution; its coefficients are in the order of `rows`.
+    /// Solution of the dual problem; its coefficients are in the order of `rows`.
     pub solution: DualSolution,
 }

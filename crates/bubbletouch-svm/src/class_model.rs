@@ -1,4 +1,4 @@
-//! Common interface of the trained classifiers except the kernel SVM: one score per class.
+//! Common interface of all trained classifiers that compute one score per class (all except the kernel SVM).
 
 use std::fmt::Debug;
 
@@ -7,12 +7,12 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 use crate::Result;
 use crate::predict::voting::first_maximum;
 
-/// A trained classifier that scores every class.
+/// Trained classifier that computes one score per class.
 ///
 /// Scores are additive: the sum of the scores of k touches of one object is the score of all touches. A probabilistic model therefore returns
 /// `ln p(x | class)` up to a constant per row. The prior `ln p(class)` is separate ([`log_prior`](Self::log_prior)) and is added once for all summed touches.
 pub trait ClassModel: Debug + Send + Sync {
-    /// Returns the classes of the training rows, ascending. Predictions are among them.
+    /// Returns the class labels of the training rows, ascending. Every predicted label is one of them.
     fn classes(&self) -> &[usize];
 
     /// Returns the scores (n_rows × n_classes, in the order of [`classes`](Self::classes)). Larger scores favour the class.
@@ -31,7 +31,7 @@ pub trait ClassModel: Debug + Send + Sync {
         0
     }
 
-    /// Returns the label of each row of scores: the class with the largest sum of score and prior; the lowest label, if several are equal.
+    /// Returns the label with the largest sum of score and log-prior for each row of scores; the lowest label, if several sums are equal.
     fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         let prior = self
             .log_prior()
@@ -45,7 +45,7 @@ pub trait ClassModel: Debug + Send + Sync {
             .collect()
     }
 
-    /// Returns the predicted label of each row.
+    /// Returns the predicted label of each row of features (n_rows × m).
     ///
     /// # Errors
     /// Returns the errors of [`scores`](Self::scores).
@@ -54,10 +54,9 @@ pub trait ClassModel: Debug + Send + Sync {
     }
 }
 
-/// Returns `ln((votes + 1) / (all votes + n_classes))` of each row: Laplace's rule of succession.
+/// Returns `ln((votes + 1) / (total votes + n_classes))` for each class and row (Laplace's rule of succession).
 ///
-/// A class without votes keeps a finite score; −∞ would exclude the class in all further touches. Few votes weigh less than many. The order and ties of the
-/// votes are preserved.
+/// A class without votes has a finite score; a score of −∞ would exclude the class in all further touches. The order and ties of the votes are preserved.
 pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     for mut row in votes.axis_iter_mut(Axis(0)) {
         let all = row.sum() + row.len() as f64;
@@ -66,7 +65,7 @@ pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     votes
 }
 
-/// Returns `ln(n_class / n_rows)` of each class.
+/// Returns the log-prior `ln(n_k / n_rows)` of each class k, where n_k is its number of training rows.
 pub fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1<f64> {
     let share = |class: &usize| {
         let n_class = labels.iter().filter(|&label| label == class).count();

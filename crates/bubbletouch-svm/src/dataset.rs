@@ -1,11 +1,11 @@
-//! Labelled measurements as linfa's data set, with checks of their validity.
+//! Labelled measurements as a linfa data set, with validity checks.
 
 use linfa::DatasetBase;
 use ndarray::{Array1, Array2, ArrayBase, ArrayView1, ArrayView2, Axis, Data, Ix2};
 
 use crate::{Error, Result};
 
-/// Labelled measurements: linfa's data set of `features` (n_rows × m) and one label per row, `0..n_classes`.
+/// Labelled measurements: a linfa data set of `features` (n_rows × m) and one label in `0..n_classes` per row.
 pub type Dataset = DatasetBase<Array2<f64>, Array1<usize>>;
 
 /// Creates a checked data set from features (n_rows × m) and labels (n_rows).
@@ -71,7 +71,7 @@ pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
 /// Returns whether all values are finite. The loop has no early exit, so that it runs in vector instructions.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub fn all_finite(values: &[f64]) -> bool {
-    /// Exponent bits; all of them are set only in NaN and infinities.
+    /// Exponent bits of an f64; all of them are set only in NaN and infinities.
     const EXPONENT: u64 = 0x7ff << 52;
     let mut is_bad = 0;
     for value in values {
@@ -95,7 +95,7 @@ pub fn check_labels(n_rows: usize, labels: ArrayView1<usize>) -> Result<()> {
     ))
 }
 
-/// Checks that the features have the width of the training data and are finite.
+/// Checks that the features have as many columns as the training data and are finite.
 ///
 /// # Errors
 /// If the number of columns differs from `width`, or a feature is NaN or infinite.
@@ -121,7 +121,7 @@ pub fn distinct(labels: ArrayView1<usize>) -> Vec<usize> {
     classes
 }
 
-/// Returns the distinct labels, after checking that a classifier can be trained on the data.
+/// Returns the distinct labels, ascending, and checks that a classifier can be trained on the data.
 ///
 /// # Errors
 /// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or there is a single class.

@@ -3,22 +3,22 @@
 /// Result type of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Invalid input: the place, the given value, and the allowed values.
+/// Error for invalid input: the place, the given value, and the allowed values.
 ///
 /// The message has the form `<place>: <given>; <allowed>`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {given}; {allowed}")]
 pub struct Error {
-    /// The parameter, or the row and column of the data.
+    /// Name of the parameter, or row and column of the data.
     pub place: String,
-    /// The given value.
+    /// Given value.
     pub given: String,
-    /// The allowed values.
+    /// Allowed values.
     pub allowed: String,
 }
 
 impl Error {
-    /// Creates an error from printable values.
+    /// Creates an error from a place, a given value and the allowed values.
     pub fn input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> Self {
         Self {
             place: place.to_string(),
@@ -28,7 +28,7 @@ impl Error {
     }
 }
 
-/// linfa's traits require this conversion.
+/// Converts a linfa error into an input error, as linfa's traits require.
 impl From<linfa::Error> for Error {
     fn from(error: linfa::Error) -> Self {
         Self::input(

@@ -1,7 +1,7 @@
 //! Kernels of the support vector machines. A new kernel is added as a case of each `match` in this file.
 //!
-//! A kernel value is a function of one pairwise number and of the squared norms of both rows. The pairwise number (for most kernels the product x·z) is
-//! common to all γ.
+//! A kernel value is computed from a pairwise product or distance and from the squared norms of both rows. The pairwise product is x·z for most kernels and
+//! the L1 distance for the Laplacian kernel; it does not depend on γ.
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut2};
 use serde::{Deserialize, Serialize};
@@ -12,8 +12,8 @@ use crate::linalg::scalar::Scalar;
 use crate::row_statistics::RowStatistics;
 use crate::{Error, Result};
 
-/// Maximum exponent of an RBF kernel (γ times the squared distance of two rows) for f32. The rounding error of the exponent is the relative error of the
-/// kernel value.
+/// Maximum exponent of an RBF kernel (γ times the squared distance of two rows) for computation in f32. The rounding error of the exponent is the relative
+/// error of the kernel value.
 const SINGLE_EXPONENT: f64 = 1e4;
 
 /// Width parameter γ of a kernel, in inverse squared feature units; for a Laplacian kernel, in inverse feature units.
@@ -23,7 +23,7 @@ pub enum Gamma {
     /// scikit-learn's default `1 / (m · var(X))`, where the variance is taken over all training features; 1 if the variance is 0. For a Laplacian kernel
     /// `1 / (m · √var(X))`.
     Scale,
-    /// A given number above 0.
+    /// Given value of γ, above 0.
     Value(f64),
 }
 
@@ -37,8 +37,8 @@ pub enum Kernel {
         /// Width parameter γ.
         gamma: Gamma,
     },
-    /// Laplacian kernel `exp(−γ|x − z|₁)` of the sum of absolute differences. Outlying features have less influence than with [`Rbf`](Self::Rbf). The kernel
-    /// is slower, because these distances are not computed by matrix products.
+    /// Laplacian kernel `exp(−γ|x − z|₁)`, where |x − z|₁ is the sum of absolute differences. Outlying features have less influence than with
+    /// [`Rbf`](Self::Rbf). The kernel is slower, because L1 distances are not computed by matrix products.
     Laplacian {
         /// Width parameter γ.
         gamma: Gamma,
@@ -69,7 +69,7 @@ impl Kernel {
         }
     }
 
-    /// Returns γ as given, or `None` for a linear kernel.
+    /// Returns the kernel's γ setting, or `None` for a linear kernel.
     pub fn gamma(&self) -> Option<Gamma> {
         match *self {
             Self::Linear => None,
@@ -79,7 +79,7 @@ impl Kernel {
         }
     }
 
-    /// Returns the value of [`Gamma::Scale`] for the training features (n_rows × m).
+    /// Returns the numeric value of [`Gamma::Scale`] for the training features (n_rows × m).
     pub fn gamma_scale(&self, features: ArrayView2<f64>) -> f64 {
         let variance = variance(features);
         let spread = match self {
@@ -90,7 +90,7 @@ impl Kernel {
         if scale > 0.0 { 1.0 / scale } else { 1.0 }
     }
 
-    /// Returns the kernel with γ as a number, from the training features (n_rows × m) and their statistics.
+    /// Returns the kernel with a numeric γ, computed from the training features (n_rows × m) and their statistics.
     pub(crate) fn resolve(
         &self,
         features: ArrayView2<f64>,
@@ -136,7 +136,7 @@ impl Kernel {
     }
 }
 
-/// Returns the variance over all features.
+/// Returns the variance over all entries of the feature matrix.
 fn variance(features: ArrayView2<f64>) -> f64 {
     // Two simple passes; ndarray's variance performs a division for every value.
     let n = features.len() as f64;
@@ -162,7 +162,7 @@ fn squares_about(mean: f64, values: &[f64]) -> f64 {
     squares.iter().sum::<f64>() + last.sum::<f64>()
 }
 
-/// A kernel with all parameters as numbers.
+/// Kernel with numeric values of all parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum KernelFunction {
     Linear,
@@ -172,8 +172,9 @@ pub(crate) enum KernelFunction {
 }
 
 impl KernelFunction {
-    /// Returns an error if the largest squared norm makes some kernel value infinite. No kernel value exceeds `K(x, x)` of the row with the largest norm, and
-    /// no squared distance exceeds four times the largest squared norm.
+    /// Returns an error if kernel values can overflow, given the largest squared norm of a row. No kernel value exceeds `K(x, x)` of the row with the largest
+    /// norm,
+    /// and no squared distance exceeds four times the largest squared norm.
     fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,
@@ -203,8 +204,8 @@ impl KernelFunction {
         }
     }
 
-    /// Returns the centre that is subtracted from rows. If a constant added to all features changes only ρ of a decision function, the centre is the mean of
-    /// the rows. Otherwise it is the origin. About the mean, products are small and lose fewer digits.
+    /// Returns the centre that is subtracted from all rows: the mean of the rows if a constant added to all features changes only ρ, otherwise the origin.
+    /// Products of rows about the mean are small and lose fewer digits.
     pub fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
         match self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => statistics.mean.clone(),
@@ -212,12 +213,11 @@ impl KernelFunction {
         }
     }
 
-    /// Returns the largest `K(x, x)` of rows, given the squared distance `farthest` of the farthest row from the centre; `None` if f32 is not accurate enough
-    /// for such rows.
+    /// Returns the largest `K(x, x)`, given the largest squared distance of a row from the centre; `None` if f32 is not accurate enough.
     pub fn largest_in_single(&self, farthest: f64) -> Option<f64> {
         match *self {
             Self::Linear => Some(farthest),
-            // For large exponents, K is nearly the identity and coefficients are near 1 for any C.
+            // If exponents are large, K is nearly the identity and coefficients are near 1 for any C.
             Self::Rbf { gamma } if 4.0 * gamma * farthest > SINGLE_EXPONENT => None,
             Self::Rbf { .. } => Some(1.0),
             Self::Laplacian { .. } => None,
@@ -229,7 +229,7 @@ impl KernelFunction {
         }
     }
 
-    /// Writes the pairwise numbers of rows (n_left × m) and other rows (n × m), from which kernel values are computed: shape n_left × n.
+    /// Writes the pairwise products (or L1 distances) between rows (n_left × m) and other rows (n × m): shape n_left × n. Kernel values are computed from them.
     pub fn pairwise<T: Scalar>(
         &self,
         left: ArrayView2<T>,
@@ -242,7 +242,7 @@ impl KernelFunction {
         }
     }
 
-    /// Writes the pairwise numbers of one row (m) and other rows, each a contiguous slice.
+    /// Writes the pairwise products (or L1 distances) between one row (m) and other rows, each a contiguous slice of m values.
     pub fn pairwise_of_row<T: Scalar>(&self, row: &[T], others: &[&[T]], to: &mut [T]) {
         match self {
             Self::Laplacian { .. } => {
@@ -254,7 +254,7 @@ impl KernelFunction {
         }
     }
 
-    /// Returns the pairwise numbers of all rows (n × m) with each other: n × n.
+    /// Returns the pairwise products (or L1 distances) between all rows (n × m): shape n × n.
     pub fn own_pairwise<T: Scalar>(&self, rows: ArrayView2<T>) -> Array2<T> {
         with_each_other(rows, |left, right, to| self.pairwise(left, right, to))
     }
@@ -276,7 +276,7 @@ impl KernelFunction {
         }
     }
 
-    /// Replaces a row's pairwise numbers by kernel values, given the squared norms of the row and of the other rows.
+    /// Replaces pairwise products (or L1 distances) of one row by kernel values, given the squared norms of this row and of the other rows.
     pub fn of_pairwise<T: Scalar>(&self, pairwise: &mut [T], norm: T, norms: &[T]) {
         match *self {
             Self::Linear => {}
@@ -294,7 +294,7 @@ impl KernelFunction {
     }
 }
 
-/// Replaces each product p by `(γ p + c₀)^d`.
+/// Replaces each product p by the polynomial kernel value `(γ p + c₀)^d`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn polynomials<T: Scalar>(products: &mut [T], base: (T, T), degree: u32) {
     let (lanes, last) = products.as_chunks_mut::<16>();
@@ -306,7 +306,7 @@ fn polynomials<T: Scalar>(products: &mut [T], base: (T, T), degree: u32) {
     }
 }
 
-/// Computes `(γ p + c₀)^d` of N values in parallel, by repeated squaring.
+/// Computes `(γ p + c₀)^d` for N products p in parallel, by repeated squaring.
 #[inline(always)]
 fn powers<T: Scalar, const N: usize>(
     mut values: [T; N],
@@ -328,7 +328,7 @@ fn powers<T: Scalar, const N: usize>(
     powers
 }
 
-/// Replaces each product by `|x|² + |z|² − 2 x·z`, at least 0.
+/// Replaces each product x·z by the squared distance `|x|² + |z|² − 2 x·z`, at least 0.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
     let two = T::one() + T::one();
@@ -342,7 +342,7 @@ fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
     }
 }
 
-/// Writes `|x − z|₁` of rows x and rows z. The result is bitwise equal for both orders of the arguments and for all instruction sets.
+/// Writes the L1 distance `|x − z|₁` between each row x and each row z. The result is bitwise equal for both orders of the arguments and on all processors.
 fn absolute_differences<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,
@@ -357,7 +357,7 @@ fn absolute_differences<T: Scalar>(
     }
 }
 
-/// Writes `|x − z|₁` of one row x and consecutive rows z.
+/// Writes the L1 distance `|x − z|₁` between one row x and each of several consecutive rows z.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn absolute_differences_of<T: Scalar>(left: &[T], rows: &[T], to: &mut [T]) {
     let (left_lanes, left_last) = left.as_chunks::<16>();

@@ -34,8 +34,7 @@
 //!
 //! 1. **Rows** are checked, sorted by class and centred, in single or double precision (`gram::sorted`, `row_statistics`).
 //! 2. **Kernel values** `K(x_i, x_j)` between two classes are computed once for all problems, by matrix products of the rows (`gram`, `linalg`).
-//! 3. **Each problem** is solved by sequential minimal optimisation (`smo`). With `β_i = y_i a_i`, a solution is optimal if no variable that can be raised
-//!    has a larger `y_i − (Kβ)_i` than one that can be lowered. If convergence is slow, the linear equations of the free variables are solved
+//! 3. **Each problem** is solved by sequential minimal optimisation (`smo`). If convergence is slow, the linear equations of the free variables are solved
 //!    (`smo::active_set`). Well separated classes are solved on the rows near the margin (`screening`).
 //! 4. **Along C and over folds**, each solution starts from the previous solution ([`cross_validation`]).
 //! 5. **Prediction** computes one matrix product for all problems and counts the votes of their signs ([`predict`]).
@@ -60,7 +59,7 @@
 //! | [`SvmParams`], any kernel, otherwise | SMO on kernel values in `f64` | as for `f32` | n² · 8 bytes, or the latest rows within `memory_bytes` |
 //! | [`linear_svm::LinearSvmParams`] | dual coordinate descent, one-vs-rest, regularised bias (LIBLINEAR's problem) | spread of projected gradients ≤ `tolerance`, or `max_passes` | n · m |
 //!
-//! The module [`classifiers`] contains classifiers of other kinds with exactly reproducible results, and their differences from linfa's classifiers.
+//! The module [`classifiers`] contains other kinds of classifiers with exactly reproducible results, and states how they differ from linfa's classifiers.
 //!
 //! # Sources
 //!

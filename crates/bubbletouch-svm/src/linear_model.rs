@@ -1,4 +1,4 @@
-//! Linear model of several classes: one weight vector and one bias per class; all scores are computed by one matrix product.
+//! Linear model for several classes: one weight vector and one bias per class. One matrix product computes all scores.
 
 use ndarray::{Array1, Array2, ArrayView2};
 
@@ -8,14 +8,14 @@ use crate::dataset::check_width;
 /// Linear model with the scores `score_k(x) = w_k·x + b_k`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearModel {
-    /// Weights w, n_classes × m, in inverse feature units.
+    /// Weights w, shape n_classes × m, in inverse feature units.
     pub weights: Array2<f64>,
-    /// Biases b, n_classes.
+    /// Biases b, shape (n_classes,), dimensionless.
     pub bias: Array1<f64>,
 }
 
 impl LinearModel {
-    /// Returns the scores (n_rows × n_classes).
+    /// Returns the scores `w_k·x + b_k`, shape n_rows × n_classes.
     ///
     /// # Errors
     /// If the number of columns differs from the weights, or a feature is NaN or infinite.

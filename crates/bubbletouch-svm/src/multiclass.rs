@@ -1,22 +1,23 @@
-//! Combination of binary classifiers to a classifier of many classes.
+//! Strategies that combine binary classifiers into a multi-class classifier.
 
 use serde::{Deserialize, Serialize};
 
-/// Combination of binary classifiers to a classifier of many classes.
+/// Strategy that combines binary classifiers into a multi-class classifier.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
 #[serde(rename_all = "snake_case")]
 pub enum Multiclass {
-    /// One classifier per pair of classes; each votes, and the class with the most votes wins. On a tie, the lowest class index wins (LIBSVM's rule).
+    /// One binary classifier per pair of classes; the class with the most votes is predicted. On a tie, the lowest class index is predicted (LIBSVM's rule).
     #[default]
     OneVsOne,
-    /// One classifier per class against all others; the largest decision value wins. On a tie, the lowest class index wins.
+    /// One binary classifier per class against all others; the class with the largest decision value is predicted. On a tie, the lowest class index is
+    /// predicted.
     OneVsRest,
 }
 
 impl Multiclass {
-    /// Returns the binary problems of n classes as pairs of a positive and a negative class (`None`: all others).
+    /// Returns the binary problems of n classes as pairs (positive class, negative class); a negative class of `None` means all other classes.
     pub(crate) fn problems(self, n: usize) -> Vec<(usize, Option<usize>)> {
         match self {
             Self::OneVsOne => (0..n)

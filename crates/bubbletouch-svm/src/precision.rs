@@ -1,4 +1,4 @@
-//! Features in single or double precision.
+//! Features in single or double precision (`f32`, `f64`).
 
 use std::borrow::Cow;
 
@@ -7,12 +7,12 @@ use ndarray::{Array1, Array2, ArrayBase, CowArray, Data, Ix2};
 
 use crate::dataset::Dataset;
 
-/// Precision of features: `f32` or `f64`. Models are trained and evaluated in `f64`.
+/// Floating-point type of features: `f32` or `f64`. Models are trained and evaluated in `f64`.
 pub trait Precision: linfa::Float {
-    /// Returns the data set in double precision; only single precision is copied.
+    /// Returns the data set in `f64`; `f32` features are converted, `f64` features are borrowed.
     fn double(data: &DatasetBase<Array2<Self>, Array1<usize>>) -> Cow<'_, Dataset>;
 
-    /// Returns the features (n_rows × m) in double precision; only single precision is copied.
+    /// Returns the features (n_rows × m) in `f64`; `f32` features are converted, `f64` features are borrowed.
     fn double_features<D: Data<Elem = Self>>(
         features: &ArrayBase<D, Ix2>,
     ) -> CowArray<'_, f64, Ix2>;

@@ -5,7 +5,7 @@ use ndarray::{Array1, ArrayView2};
 use crate::Result;
 use crate::dataset::check_features;
 
-/// Number of parallel partial sums, so that no addition waits for the previous one.
+/// Number of parallel partial sums, so that no addition has to wait for the previous one.
 const LANES: usize = 8;
 
 /// Statistics of training rows (n × m).
@@ -18,7 +18,7 @@ pub(crate) struct RowStatistics {
 }
 
 impl RowStatistics {
-    /// Computes the statistics in one pass, and checks that all features are finite.
+    /// Computes the mean and the largest norm in one pass, and checks that all features are finite.
     ///
     /// # Errors
     /// If there are no rows or columns, or a feature is NaN or infinite; the error names its row and column.
@@ -34,7 +34,7 @@ impl RowStatistics {
             largest_norm = largest_norm.max(norm);
         }
         if !all_finite {
-            // The features may also be finite but too large to square.
+            // The statistics are also not finite if the features are finite but too large to square.
             check_features(features)?;
             largest_norm = f64::INFINITY;
         }
@@ -45,7 +45,7 @@ impl RowStatistics {
     }
 }
 
-/// Adds a row to the sums; returns its squared norm.
+/// Adds a row to the column sums; returns its squared norm.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_row(sums: &mut [f64], row: &[f64]) -> f64 {
     let (sums, last_sums) = sums.as_chunks_mut::<LANES>();

@@ -14,14 +14,14 @@ use crate::dataset::{check_features, check_width};
 pub enum Scaling {
     /// No scaling.
     None,
-    /// Scales each feature to mean 0 and standard deviation 1.
+    /// Standardises each feature to mean 0 and standard deviation 1.
     #[default]
     Standard,
-    /// Scales all features to mean 0 and, with one common factor, to mean square 1; preserves angles and ratios of distances.
+    /// Scales all features to mean 0 and mean square 1 with one common factor; preserves angles and ratios of distances.
     Overall,
 }
 
-/// A scaling fitted to training rows: `x ↦ (x − offset) / scale`, per feature.
+/// Scaling fitted to training rows: `x ↦ (x − offset) / scale`, per feature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedScaling {
     /// Offset subtracted from each feature (m), in feature units.

@@ -23,9 +23,9 @@ pub struct Split {
 }
 
 impl Split {
-    /// Returns the split with only the first `per_class` training rows of each class; the test rows are unchanged.
+    /// Returns a copy of the split with only the first `per_class` training rows of each class; the test rows are unchanged.
     ///
-    /// The training rows are a prefix of this split's, so the sets of a learning curve are nested. `labels` contains the label of every row of the data set.
+    /// The training rows of all sizes are nested, as a learning curve requires. `labels` contains the label of every row of the data set.
     ///
     /// # Errors
     /// If `per_class` is 0 or exceeds the number of training rows of some class.
@@ -49,7 +49,7 @@ impl Split {
         })
     }
 
-    /// Converts a split of this split's training rows (such as a validation split) from positions within `train` to rows of the whole data set.
+    /// Converts an inner split of the training rows (such as a validation split) from positions within `train` to rows of the whole data set.
     ///
     /// # Panics
     /// If `inner` contains a position beyond the training rows.
@@ -96,7 +96,7 @@ pub fn stratified_hold_out(
     split(labels, &drawn, &sides)
 }
 
-/// Hold-out with given sides, one per row. Only the order of the training rows is random.
+/// Hold-out split with a given side for each row; only the order of the training rows is random.
 ///
 /// # Errors
 /// If the numbers of sides and labels differ, or a class has no training or no test row.
@@ -136,10 +136,10 @@ pub fn stratified_k_fold(
     folds(labels, &drawn, &fold_of, k)
 }
 
-/// Group hold-out: test rows are whole groups (a pose, an offset, all copies of one touch), so no row of a test group is a training row.
+/// Group hold-out: test rows are whole groups (for example all touches of one pose), so no row of a test group is a training row.
 ///
-/// Groups with equal sets of classes form a stratum. Of its n groups, `test_fraction · n` (rounded, 1 to n − 1) are test groups. Strata of a single group are
-/// pooled. `groups` contains one group number per row.
+/// Groups with equal sets of classes form a stratum. In a stratum of n groups, `test_fraction · n` (rounded, 1 to n − 1) are test groups. Strata of a single
+/// group are pooled. `groups` contains one group number per row.
 ///
 /// # Errors
 /// If the fraction is outside 0 < f < 1, the numbers of groups and labels differ, or a class has no training or no test row.
@@ -214,7 +214,7 @@ pub fn group_k_fold(
     )
 }
 
-/// Returns an error if a class has rows in fewer than k groups: some fold would have no test row of the class.
+/// Returns an error if a class has rows in fewer than k groups, because some fold would have no test row of the class.
 fn check_groups_of_classes(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,
@@ -236,7 +236,7 @@ fn check_groups_of_classes(
     }
 }
 
-/// Returns the rows of each class, shuffled by the stream of the class.
+/// Returns the rows of each class, shuffled by the random stream of the class.
 fn draw_rows(labels: ArrayView1<usize>, seed: &dyn Streams) -> BTreeMap<usize, Vec<usize>> {
     let mut drawn = BTreeMap::<usize, Vec<usize>>::new();
     for (row, &class) in labels.iter().enumerate() {
@@ -248,7 +248,7 @@ fn draw_rows(labels: ArrayView1<usize>, seed: &dyn Streams) -> BTreeMap<usize, V
     drawn
 }
 
-/// Returns the groups by their sets of classes; strata of one group are pooled into the last stratum.
+/// Returns the groups of each stratum (groups with equal sets of classes); strata of a single group are pooled into the last stratum.
 fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize>> {
     let mut classes_of = BTreeMap::<usize, Vec<usize>>::new();
     for (&class, &group) in labels.iter().zip(groups) {
@@ -270,7 +270,7 @@ fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize
     strata
 }
 
-/// Returns the number of test elements of `n`: `n · fraction` rounded, at least 1 and at most n − 1.
+/// Returns the number of test elements among `n`: `n · fraction` rounded, at least 1 and at most n − 1.
 fn share(n: usize, fraction: f64) -> usize {
     ((n as f64 * fraction).round() as usize).clamp(1.min(n - 1), n - 1)
 }
@@ -296,7 +296,7 @@ fn side(is_test: bool) -> Side {
     }
 }
 
-/// Creates the split in its documented order; returns an error if a class has no training or no test row.
+/// Creates a split with interleaved training rows and sorted test rows; returns an error if a class has no training or no test row.
 fn split(
     labels: ArrayView1<usize>,
     drawn: &BTreeMap<usize, Vec<usize>>,
@@ -316,7 +316,7 @@ fn split(
         }
         ranked.extend(train.into_iter().enumerate());
     }
-    // The sort is stable: within a rank the classes stay ascending.
+    // The sort is stable: within a rank, the classes stay ascending.
     ranked.sort_by_key(|&(rank, _)| rank);
     if ranked.is_empty() {
         return Err(Error::input(

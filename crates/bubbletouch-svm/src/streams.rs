@@ -1,22 +1,22 @@
-//! Named random streams: one stream per name, so that the draws of a class or a tree do not depend on other models.
+//! Named random streams: each class or tree has a stream of its own, so that its draws do not depend on other models.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// Name of a random stream, extended by words and numbers, such as `tree 3 rows`. Functions take it behind a pointer, so that training is compiled once, in
-/// this crate, for every type of name.
+/// Name of a random stream, extended by words and numbers, such as `tree 3 rows`. Functions take `&dyn Streams`, so that training is compiled once for every
+/// type of name.
 pub trait Streams {
-    /// Returns the name with this word appended.
+    /// Returns the stream name with this word appended.
     fn named(&self, word: &str) -> Box<dyn Streams>;
 
-    /// Returns the name with this number appended.
+    /// Returns the stream name with this number appended.
     fn numbered(&self, number: u64) -> Box<dyn Streams>;
 
-    /// Returns the generator of this name's stream, at its start.
+    /// Returns a new random generator for this stream.
     fn rng(&self) -> ChaCha8Rng;
 }
 
-/// The streams of a seed: words and numbers are hashed into it (FNV-1a).
+/// Streams of a seed: words and numbers are hashed into the seed (FNV-1a).
 impl Streams for u64 {
     fn named(&self, word: &str) -> Box<dyn Streams> {
         Box::new(hash(*self, word.as_bytes()))

@@ -32,36 +32,38 @@ pub enum Solver {
     CoordinateDescent,
 }
 
-/// Number of rows below which kernel values are always f64, because the additional time is negligible.
+/// Number of rows below which kernel values are always f64, because f64 then costs little time.
 const SINGLE_FROM_ROWS: usize = 1000;
-/// Minimum tolerance for f32 kernel values; smaller tolerances are near their rounding error.
+/// Minimum tolerance for f32 kernel values; smaller tolerances are near the rounding error of f32.
 const SINGLE_TOLERANCE: f64 = 1e-4;
-/// Maximum of C · K(x, x), and of K(x, x), for f32: coefficients of at most C multiply the rounding error of K, which is 6e-8 of K.
+/// Maximum of C · K(x, x), and of K(x, x), for f32 kernel values. Coefficients of up to C multiply the rounding error of K, which is 6e-8 of K.
 const SINGLE_MOST: f64 = 1e5;
-/// Default maximum size of the kernel values held at once, bytes: one-vs-rest on 16,384 rows in f32.
+/// Default memory limit of the kernel values, bytes: one-vs-rest on 16,384 rows in f32.
 pub const DEFAULT_MEMORY_BYTES: usize = 2 << 30;
 
-/// Parameters of a soft-margin SVM. Implements linfa's [`Fit`].
+/// Parameters of a soft-margin SVM.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SvmParams {
-    /// The kernel.
+    /// Kernel function.
     pub kernel: Kernel,
-    /// Combination of binary classifiers.
+    /// Strategy that combines binary classifiers into a multi-class classifier.
     pub multiclass: Multiclass,
-    /// Penalty C > 0 per unit of margin violation. If larger, the training rows are fitted more closely, and training takes longer. A binary problem
-    /// takes up to 10 million iterations, or 100 per row.
+    /// Penalty C > 0 per unit of margin violation. With a larger C, the training rows are fitted more closely, and training takes longer. The solver of a
+    /// binary
+    /// problem stops after 10 million iterations, or 100 per row if that is more.
     pub c: f64,
     /// Stopping tolerance, above 0: the largest violation of the optimality (KKT) conditions, in units of the decision value. LIBSVM's default is 1e-3.
     pub tolerance: f64,
     /// Solver of the binary problems.
     pub solver: Solver,
-    /// Maximum size of the kernel values held at once, bytes. If the kernel values do not fit, rows are computed on demand and the latest are cached; training
-    /// is slower, with equal solutions.
+    /// Maximum size of the kernel values in memory at one time, bytes. If the kernel values do not fit, rows are computed on demand and the most recent rows
+    /// are
+    /// cached. Training is then slower, with equal solutions.
     pub memory_bytes: usize,
 }
 
 impl Default for SvmParams {
-    /// Linear kernel, one-vs-one, C = 1, tolerance 1e-3, SMO within 2 GiB.
+    /// Returns the defaults: linear kernel, one-vs-one, C = 1, tolerance 1e-3, SMO within 2 GiB.
     fn default() -> Self {
         Self {
             kernel: Kernel::Linear,
@@ -74,7 +76,7 @@ impl Default for SvmParams {
     }
 }
 
-/// Rows, their classes, the kernel, and the centre of the rows.
+/// Training rows, their classes, the kernel, and the centre of the rows.
 type Sorting<'a> = (
     &'a Dataset,
     &'a [usize],
@@ -95,8 +97,9 @@ impl SvmParams {
         Ok(models.swap_remove(0))
     }
 
-    /// Trains one model for each C in `path` (instead of `self.c`) with shared kernel values; returns the models in the order of `path`. Each solution starts
-    /// from the solution of the next smaller C.
+    /// Trains one model for each C in `path` (instead of `self.c`) with shared kernel values. Returns the models in the order of `path`. The solver starts from
+    /// the
+    /// solution of the next smaller C.
     ///
     /// # Errors
     /// Returns the errors of [`train`](Self::train).
@@ -143,8 +146,9 @@ impl SvmParams {
         self.solve_sorted(sorted, goal)
     }
 
-    /// Returns whether kernel values need f64: for few rows, where f64 costs little time; for a tolerance near the rounding error of f32; or if large
-    /// coefficients multiply this error. `farthest` is the square of the largest distance of a row from the centre.
+    /// Returns whether kernel values need f64: if there are few rows, the tolerance is near the rounding error of f32, or large coefficients multiply this
+    /// error.
+    /// `farthest` is the largest squared distance of a row from the centre.
     pub(crate) fn needs_double(
         &self,
         n_rows: usize,

@@ -1,9 +1,9 @@
-//! Training of many binary problems on one set of rows; shared quantities are computed once.
+//! Training of many binary problems on one set of rows; common quantities are computed once.
 //!
-//! One-vs-one needs each block of kernel values between two classes exactly once, and each block within a class for all its pairs. The rows are sorted by
-//! class, and the blocks within classes are stored. Of the block of a pair, the solver reads only the rows that it needs. n rows of k classes take about n²/k
-//! values in memory, not n². One-vs-rest shares the whole matrix. All C of a path are solved while a problem's Gram matrix is in memory; each C starts from
-//! the previous solution.
+//! The rows are sorted by class. One-vs-one needs each block of kernel values between two classes once, and each block within a class for all its pairs. The
+//! blocks within classes are stored; of other blocks, only the requested rows are read. n rows of k classes need about n²/k values in memory, not n².
+//! One-vs-rest
+//! uses the whole matrix. For each problem, all values of C are solved while its Gram matrix is in memory; each solution starts from the previous C.
 
 use std::ops::Range;
 
@@ -24,31 +24,31 @@ use crate::screening::near_margin::NearMargin;
 use crate::smo::Smo;
 use crate::smo::SolverScalar;
 
-/// Minimum number of features for screening: one-vs-one linear SVMs are then solved on the rows near their margins.
+/// Minimum number of features for screening (one-vs-one linear SVMs solved on the rows near their margins).
 const SCREENING_FROM_FEATURES: usize = 128;
-/// Minimum mean number of rows per class for screening; with fewer rows, little can be omitted.
+/// Minimum mean number of rows per class for screening; with fewer rows, screening omits little.
 const SCREENING_FROM_ROWS: usize = 64;
 
 /// Solved problems of all classes for one C.
 pub(crate) struct Trained<T> {
     pub problems: Vec<BinaryProblem>,
-    /// Normals of the hyperplanes about the centre (n_problems × m), if the solver computed them.
+    /// Normals of the hyperplanes about the centre (n_problems × m); `None` if the solver did not compute them.
     pub normals: Option<Array2<T>>,
 }
 
-/// Goal of training: penalties, tolerance and memory limit.
+/// Goal of training: penalties C, tolerance and memory limit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal<'a> {
-    /// Penalties C, in the order of solution; each starts from the previous solution.
+    /// Penalties C, in the order of solution; each solution starts from the previous one.
     pub path: &'a [f64],
-    /// The largest violation of the optimality conditions.
+    /// Largest allowed violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
-    /// Maximum size of the kernel values held at once, bytes.
+    /// Maximum size of the kernel values in memory at one time, bytes.
     pub memory: usize,
 }
 
 impl<T: SolverScalar> Sorted<T> {
-    /// Solves every pair of classes: for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
+    /// Solves every pair of classes. Returns, for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
     pub fn one_vs_one(&self, goal: Goal) -> Vec<Trained<T>> {
         if self.is_worth_screening(goal.memory) {
             return self.pairs_near_margin(goal);
@@ -62,13 +62,13 @@ impl<T: SolverScalar> Sorted<T> {
         without_normals(problems)
     }
 
-    /// Returns whether the blocks within groups of classes, the blocks between two groups and the largest pair fit in memory.
+    /// Returns whether the kernel values of one-vs-one training fit in memory: the blocks within groups of classes, between two groups, and the largest pair.
     fn fits(&self, memory: usize) -> bool {
         let largest = self.ranges().iter().map(Range::len).max().unwrap_or(0);
         Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory
     }
 
-    /// Returns whether screening is worthwhile: computing all products of rows would take longer.
+    /// Returns whether screening is faster than computing the products of all rows.
     fn is_worth_screening(&self, memory: usize) -> bool {
         let most = || NearMargin::most_bytes(self);
         self.kernel() == KernelFunction::Linear
@@ -167,7 +167,7 @@ impl<T: SolverScalar> Sorted<T> {
         );
     }
 
-    /// Solves each class against all others: for each C of the path, one problem per class.
+    /// Solves each class against all others. Returns, for each C of the path, one problem per class.
     pub fn one_vs_rest(&self, goal: Goal) -> Vec<Trained<T>> {
         let mut problems = vec![Vec::new(); goal.path.len()];
         // Two copies are in memory: the matrix product, and the padded matrix of the solver.
@@ -206,7 +206,7 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// Solves one problem on the given sorted rows, along the path.
+    /// Solves one problem on the given sorted rows, for each C of the path.
     fn solve<G: Gram<T>>(
         &self,
         gram: &mut G,
@@ -222,7 +222,7 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// Creates a problem on the given sorted rows from its solution about the centre.
+    /// Creates a problem on the given sorted rows from its solution about the centre of the rows.
     fn problem(
         &self,
         rows: &[usize],
@@ -247,7 +247,7 @@ fn without_normals<T>(problems: Vec<Vec<BinaryProblem>>) -> Vec<Trained<T>> {
     problems.into_iter().map(trained).collect()
 }
 
-/// Sorts the problems of each C by their classes.
+/// Sorts the problems of each C in the order of their classes.
 fn in_order(problems: &mut [Vec<BinaryProblem>]) {
     for problems in problems {
         problems.sort_by_key(|problem| (problem.positive, problem.negative));
