@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::class_model::ClassModel;
 use crate::classifiers::ClassifierKind;
 use crate::classifiers::trained_classifier::Model;
-use crate::cross_validation::choice::{Candidates, Chosen, c_grid, choose};
+use crate::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
 use crate::dataset::{Dataset, rows};
 use crate::kernel::Gamma;
 use crate::linear_svm::LinearSvmParams;
@@ -156,7 +156,7 @@ impl Classifier {
             let predict = move |rows: &Dataset| model.labels(rows.records.view());
             Ok((predict, n_capped))
         };
-        c_grid(train, &scaled, folds, &candidates.c)
+        choose_c(train, &scaled, folds, &candidates.c)
     }
 
     /// Returns a copy of the classifier with the chosen C and γ.

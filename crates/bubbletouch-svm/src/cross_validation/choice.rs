@@ -89,7 +89,7 @@ pub fn choose(
 ///
 /// # Errors
 /// Returns the errors of [`choose`] and of `train`.
-pub fn c_grid<P, E>(
+pub fn choose_c<P, E>(
     train: impl Fn(&Dataset, f64) -> Result<(P, usize), E>,
     training: &Dataset,
     folds: &[Split],

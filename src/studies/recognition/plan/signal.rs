@@ -97,7 +97,7 @@ impl Check<'_> {
     }
 
     /// Checks the skin of test touches; another skin needs a sensor error that belongs to a skin.
-    pub fn test_sensor(&self, signal: &SignalSpec) -> Result<()> {
+    pub fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
         if signal.test_sensor.is_none() || signal.steps.iter().any(is_of_skin) {

@@ -100,7 +100,7 @@ impl Plan {
             None => spec.touches.speed_mm_per_s * MM,
         };
         check.steps(&spec.signal)?;
-        check.test_sensor(&spec.signal)?;
+        check.check_test_sensor(&spec.signal)?;
         check.sensing(&spec.sensing, &arrays)?;
         let frames = match (&spec.human_touch, &spec.recorded) {
             (Some(human), _) => vec![human.n_frames()],

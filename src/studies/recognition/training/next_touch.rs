@@ -32,7 +32,7 @@ pub(super) fn answer_model<'a>(
 
 /// Returns groups of k touches, as indices into the test touches, ordered by class. The groups are random, or have random first touches and further touches
 /// chosen among all test touches of the object.
-pub(super) fn cv_touches(
+pub(super) fn choose_touches(
     (family, configuration): (&FamilyInputs, &Decision),
     answered: &AnsweredTouches,
     groups: Vec<Vec<usize>>,

@@ -14,7 +14,7 @@ use crate::studies::recognition::training::evaluation_inputs::{
 use crate::studies::recognition::training::fit::{Fitted, Training};
 use crate::studies::recognition::training::next_touch::AnsweredTouches;
 use crate::studies::recognition::training::next_touch::Decide;
-use crate::studies::recognition::training::next_touch::{answer_model, cv_touches};
+use crate::studies::recognition::training::next_touch::{answer_model, choose_touches};
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
@@ -120,10 +120,10 @@ impl Trial<'_> {
         answered: &AnsweredTouches,
     ) -> Result<Evaluation> {
         let truth = &answered.test.targets;
-        let seed = self.inputs.stream("touches_per_decision");
+        let seed = self.inputs.stream("fused_touches"); // The name is part of every published number.
         let start = Instant::now();
         let mut rows = fuse_rows(truth.view(), configuration.touches_per_decision, &seed);
-        rows.groups = cv_touches((family, configuration), answered, rows.groups);
+        rows.groups = choose_touches((family, configuration), answered, rows.groups);
         let predicted = (answered.decide)(&rows.groups);
         let predict_s = answered.answer_s + start.elapsed().as_secs_f64();
         let truth = rows.groups.iter().map(|group| truth[group[0]]).collect();
