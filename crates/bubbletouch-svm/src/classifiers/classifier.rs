@@ -1,4 +1,4 @@
-//! Classifiers of a study's configurations, with one interface for training and prediction of all kinds.
+//! Classifiers of a study's configurations. All kinds share one interface for training and prediction.
 //!
 //! [`Classifier`] and [`TrainedClassifier`] implement linfa's `Fit` and `PredictInplace`, so they can replace any linfa classifier. [`predict_split`]
 //! evaluates any classifier that implements these traits.
@@ -26,56 +26,55 @@ use crate::{Error, Result};
 
 pub use crate::classifiers::trained_classifier::TrainedClassifier;
 
-/// The penalty C of a soft-margin SVM or a logistic regression: a fixed value, or chosen by cross-validation on the training rows.
+/// Penalty C of a soft-margin SVM or a logistic regression: a fixed value, or chosen by cross-validation on the training rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cost {
     /// Fixed value of C.
     Fixed(f64),
-    /// C (and γ) with the highest accuracy on validation rows; of equal candidates the smaller γ, then the smaller C. The final model is trained on all
-    /// training rows.
+    /// C (and γ) with the highest accuracy on validation rows. If candidates are equally accurate, the smaller γ is chosen, then the smaller C. The final model
+    /// is trained on all training rows.
     Chosen(Candidates),
 }
 
-/// Number of cross-validation folds for the choice of C and γ, if no folds are given: scikit-learn's default.
+/// Number of cross-validation folds for the choice of C and γ, if no folds are given; equals scikit-learn's default.
 const FOLDS: usize = 5;
 
-/// A classifier and its options. Options that its kind does not use are ignored: γ of a linear SVM, and C of all kinds except SVMs and logistic regression
-/// ([`ClassifierKind::has_c`]; [`TrainedClassifier::c`] is then `None`).
+/// Kind of classifier and its parameters. Parameters that the kind does not use are ignored, for example γ of a linear SVM. Only SVMs and logistic regression
+/// use C ([`ClassifierKind::has_c`]); for other kinds, [`TrainedClassifier::c`] is `None`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classifier {
     /// Kind of classifier.
     pub kind: ClassifierKind,
     /// Scaling of the features, fitted on the training rows.
     pub scaling: Scaling,
-    /// Combination of binary SVMs to a classifier of many classes.
+    /// Strategy that combines binary SVMs into a multi-class classifier.
     pub multiclass: Multiclass,
     /// Solver that trains an SVM.
     pub solver: Solver,
-    /// Penalty C, or the candidates to choose from.
+    /// Penalty C: a fixed value, or candidates to choose from.
     pub c: Cost,
-    /// γ of the RBF and polynomial kernels, in inverse squared units of the scaled features.
+    /// Kernel parameter γ: inverse squared units of the scaled features (inverse units for a Laplacian kernel).
     pub gamma: Gamma,
-    /// Constant c₀ ≥ 0 of the polynomial kernel.
+    /// Constant c₀ ≥ 0 of the polynomial kernel, dimensionless.
     pub coef0: f64,
     /// Degree of the polynomial kernel, 1 to 20.
     pub degree: u32,
-    /// Stopping tolerance of the solver, above 0; see [`SvmParams::tolerance`] and [`LinearSvmParams::tolerance`]. Logistic regression uses a tenth of this
-    /// value.
+    /// Stopping tolerance of the solver, above 0; see [`SvmParams::tolerance`] and [`LinearSvmParams::tolerance`]. Logistic regression uses one tenth of it.
     pub tolerance: f64,
     /// Number k of nearest neighbours, 1 to the number of training rows.
     pub n_neighbours: usize,
     /// Number of trees of a random forest, at least 1.
     pub n_trees: usize,
-    /// Maximum depth of the trees of a forest, at least 1; `None` grows trees until the leaves are pure.
+    /// Maximum depth of the trees of a random forest, at least 1; with `None`, trees grow until their leaves are pure.
     pub max_depth: Option<usize>,
-    /// Maximum size of the kernel values that an SVM's solver holds at once, bytes; see [`SvmParams::memory_bytes`].
+    /// Maximum size of the kernel values that an SVM's solver keeps in memory, bytes; see [`SvmParams::memory_bytes`].
     pub memory_bytes: usize,
 }
 
 impl Classifier {
-    /// Creates a classifier with scikit-learn's defaults on standardised features: C = 1, γ 'scale', degree 3, 5 neighbours, 100 trees of any depth. SVMs are
-    /// one-vs-one. Differs from scikit-learn: c₀ = 1, because c₀ = 0 omits all lower powers.
+    /// Creates a classifier with scikit-learn's defaults on standardised features: C = 1, γ 'scale', degree 3, 5 neighbours, 100 trees of unlimited depth. SVMs
+    /// are one-vs-one. Differs from scikit-learn: c₀ = 1, because c₀ = 0 omits all lower powers.
     pub fn new(kind: ClassifierKind) -> Self {
         Self {
             kind,
@@ -94,8 +93,8 @@ impl Classifier {
         }
     }
 
-    /// Trains on the training rows. All random draws come from `seed`: the five stratified folds that choose C, the trees of a forest, and the order of
-    /// coordinate descent.
+    /// Trains the classifier on the training rows. All random draws use `seed`: the five stratified folds that choose C, the trees of a forest, and the order
+    /// of coordinate descent.
     ///
     /// # Errors
     /// If a parameter is out of range, or the training of the kind or [`stratified_k_fold`] rejects the data.
@@ -110,8 +109,8 @@ impl Classifier {
         self.train_validated(training, &folds, seed)
     }
 
-    /// Trains on the training rows. If C is to be chosen, it is chosen on `folds`, which contain positions within `training` (for instance folds that keep
-    /// groups apart). The scaling is fitted to all training rows, without their labels, before the folds are made. Other random draws come from `seed`.
+    /// Trains the classifier on the training rows, with given cross-validation folds for the choice of C. The folds contain positions within `training` and
+    /// may, for example, keep groups apart. The scaling is fitted to all training rows, without their labels. Other random draws use `seed`.
     ///
     /// # Errors
     /// If a parameter is out of range, or the training of the kind or [`choose`](Self::choose) rejects the data.
@@ -168,7 +167,7 @@ impl Classifier {
         }
     }
 
-    /// Trains with the fixed C, if the kind has one.
+    /// Trains the classifier with its fixed C, if the kind has a C.
     fn train_without_choice(
         &self,
         training: &Dataset,
@@ -213,7 +212,7 @@ impl Classifier {
             .collect())
     }
 
-    /// Returns the fitted scaling and the scaled training rows, without a copy if the scaling is the identity.
+    /// Returns the fitted scaling and the scaled training rows; the rows are borrowed if the scaling is the identity.
     fn scaled<'a>(&self, training: &'a Dataset) -> Result<(FittedScaling, Cow<'a, Dataset>)> {
         let scaling = self.scaling.fit(training.records.view())?;
         if scaling.changes_nothing() {
@@ -236,7 +235,7 @@ impl Classifier {
         Ok(TrainedClassifier::new(scaling, model, c, chosen))
     }
 
-    /// Trains the model on scaled rows.
+    /// Trains the model on scaled rows, with penalty C if the kind has one.
     fn train_model(&self, scaled: &Dataset, c: Option<f64>, seed: &dyn Streams) -> Result<Model> {
         let c = c.unwrap_or(1.0);
         Ok(match self.kernel_svm(c) {
@@ -245,7 +244,7 @@ impl Classifier {
         })
     }
 
-    /// Trains an SVM without a kernel matrix.
+    /// Trains a linear SVM by coordinate descent, without a kernel matrix.
     pub(crate) fn train_kernel_free(
         &self,
         scaled: &Dataset,
@@ -256,7 +255,7 @@ impl Classifier {
         Ok(Arc::new(self.linear_svm(c)?.train(scaled, &*seed)?))
     }
 
-    /// Returns the parameters of the kernel SVM; `None` if the options require another model.
+    /// Returns the parameters of the kernel SVM; `None` if the classifier is not a kernel SVM or uses coordinate descent.
     fn kernel_svm(&self, c: f64) -> Option<SvmParams> {
         let kernel = self.kind.about().kernel?(self);
         (self.solver != Solver::CoordinateDescent).then_some(SvmParams {
@@ -269,10 +268,10 @@ impl Classifier {
         })
     }
 
-    /// Checks that the solver can train this classifier, if it is an SVM.
+    /// Checks that the solver supports this classifier, if the classifier is an SVM.
     ///
     /// # Errors
-    /// If the solver is coordinate descent and the kernel is not linear or the scheme is not one-vs-rest.
+    /// If the solver is coordinate descent, and the kernel is not linear or the strategy is not one-vs-rest.
     pub fn check_solver(&self) -> Result<()> {
         let is_linear = self.kind == ClassifierKind::LinearSvm;
         let is_possible = is_linear && self.multiclass == Multiclass::OneVsRest;
@@ -286,7 +285,7 @@ impl Classifier {
         Err(Error::input("solver", given, allowed))
     }
 
-    /// Returns the parameters of a linear SVM that is trained without a kernel matrix.
+    /// Returns the parameters of a linear SVM that is trained by coordinate descent.
     fn linear_svm(&self, c: f64) -> Result<LinearSvmParams> {
         self.check_solver()?;
         Ok(LinearSvmParams {
@@ -300,7 +299,7 @@ impl Classifier {
 impl Fit<Array2<f64>, Array1<usize>, Error> for Classifier {
     type Object = TrainedClassifier;
 
-    /// Calls [`Classifier::train`] with the seed 0_u64.
+    /// Trains the classifier with the seed 0; see [`Classifier::train`].
     fn fit(&self, training: &Dataset) -> Result<TrainedClassifier> {
         self.train(training, &0_u64)
     }
@@ -326,7 +325,7 @@ where
     Ok(labels)
 }
 
-/// Returns an error of this crate unchanged; wraps an error of another crate as invalid input to its classifier.
+/// Returns an error of this crate unchanged; converts an error of another crate into an input error of its classifier.
 fn own_or_wrapped(error: impl std::error::Error + 'static) -> Error {
     let error: Box<dyn std::error::Error> = Box::new(error);
     match error.downcast::<Error>() {

@@ -1,4 +1,4 @@
-//! Descriptors of the kinds of classifiers.
+//! Descriptors of the kinds of classifiers: names, parameters, and training functions.
 
 use crate::class_model::ClassModel;
 use crate::classifiers::ClassifierKind;
@@ -12,31 +12,31 @@ use std::sync::Arc;
 
 /// Descriptor of a kind of classifier.
 pub struct ClassifierAbout {
-    /// Common name in words.
+    /// Common name of the classifier in words.
     pub words: &'static str,
-    /// Whether it has a soft-margin penalty C.
+    /// Whether the classifier has a soft-margin penalty C.
     pub has_c: bool,
-    /// Whether it has a kernel with a γ.
+    /// Whether the classifier has a kernel with a parameter γ.
     pub has_gamma: bool,
-    /// Whether its kernel has a degree and a constant.
+    /// Whether the classifier has a kernel with a degree and a constant.
     pub has_degree: bool,
-    /// Whether the number of neighbours is a parameter.
+    /// Whether the classifier has a number of neighbours as a parameter.
     pub has_neighbours: bool,
-    /// Whether the number of trees is a parameter.
+    /// Whether the classifier has a number of trees as a parameter.
     pub has_trees: bool,
-    /// Whether the maximum depth of the trees is a parameter.
+    /// Whether the classifier has a maximum tree depth as a parameter.
     pub has_depth: bool,
-    /// Kernel of a kernel SVM. Kernel SVMs solve several C together and hold kernel values in memory.
+    /// Kernel of a kernel SVM; `None` for other kinds. Kernel SVMs solve several values of C together and keep kernel values in memory.
     pub kernel: Option<fn(&Classifier) -> Kernel>,
-    /// Trains on scaled rows, with C if the kind has one; random draws come from the seed.
+    /// Function that trains the classifier on scaled rows, with C if the kind has one; random draws use the given seed.
     pub train: Train,
 }
 
-/// Function that trains a classifier without a kernel matrix.
+/// Type of the functions that train a classifier without a kernel matrix.
 pub type Train = fn(&Classifier, &Dataset, f64, &dyn Streams) -> Result<Arc<dyn ClassModel>>;
 
 impl ClassifierAbout {
-    /// Describes a classifier without parameters.
+    /// Creates the descriptor of a classifier without parameters.
     pub(crate) const fn new(words: &'static str, train: Train) -> Self {
         Self {
             words,
@@ -51,7 +51,7 @@ impl ClassifierAbout {
         }
     }
 
-    /// Describes an SVM with the given kernel.
+    /// Creates the descriptor of an SVM with the given kernel.
     pub(crate) const fn svm(words: &'static str, kernel: fn(&Classifier) -> Kernel) -> Self {
         Self {
             has_c: true,
@@ -71,31 +71,31 @@ impl fmt::Debug for ClassifierAbout {
 }
 
 impl ClassifierKind {
-    /// Returns whether the kind has a C: soft-margin SVMs and logistic regression. The training of other kinds ignores C.
+    /// Returns whether the kind has a penalty C (soft-margin SVMs and logistic regression). Other kinds ignore C.
     pub fn has_c(self) -> bool {
         self.about().has_c
     }
 
-    /// Returns whether the kind has a kernel with a γ.
+    /// Returns whether the kind has a kernel with a parameter γ.
     pub fn has_gamma(self) -> bool {
         self.about().has_gamma
     }
 }
 
-/// Declares the kinds of classifiers. Each line contains the variant, the file that describes it, and its documentation; the file's name is the name in a
-/// study.
+/// Declares the kinds of classifiers. Each line contains a variant, the file that describes it, and its documentation. The name of the file is the name of the
+/// classifier in a study.
 macro_rules! classifiers {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(pub mod $file;)*
 
-        /// A classifier that a study can sweep.
+        /// Kind of classifier that a study can sweep.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
         #[serde(rename_all = "snake_case")]
         pub enum ClassifierKind {
             $(#[doc = $doc] $name,)*
         }
 
-        /// Deserialises a name of [`NAMES`](ClassifierKind::NAMES).
+        /// Deserialises a classifier from one of its [`NAMES`](ClassifierKind::NAMES).
         impl<'de> Deserialize<'de> for ClassifierKind {
             fn deserialize<D: serde::Deserializer<'de>>(names: D) -> Result<Self, D::Error> {
                 use serde::de::Error;
@@ -113,7 +113,7 @@ macro_rules! classifiers {
             /// All kinds of classifiers.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// For each kind, its name in a study and its common name in words.
+            /// Name in a study and common name in words of each kind of classifier.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
             /// Returns the descriptor of the kind.

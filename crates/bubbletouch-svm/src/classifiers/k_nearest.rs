@@ -1,11 +1,12 @@
-//! k nearest neighbours: the k training rows closest to a row (Euclidean) vote for their classes.
+//! k-nearest-neighbours classifier: the k training rows with the smallest Euclidean distances vote for their classes.
 //!
-//! **Ties.** Of training rows at equal distance, the row with the lower index is nearer. Of classes with equal votes, the lower label wins. Both rules are
+//! **Ties.** If training rows have equal distances, the row with the lower index is the nearer one. If classes have equal votes, the lower label is predicted.
+//! Both rules equal scikit-learn's.
 //! scikit-learn's.
 //!
 //! Distances are computed by one matrix product per block, `|a|² + |b|² − 2 a·b`, which is inaccurate for close rows. The product therefore only selects
-//! candidates: all rows that could be among the k nearest within the rounding error. The distances of the candidates are recomputed by `Σ (a − b)²`, so the
-//! result equals that of an exact pairwise search. Far from the origin, there are many candidates; scale the features.
+//! candidates: all rows that can be among the k nearest within the rounding error. The distances of the candidates are recomputed by `Σ (a − b)²`, so the
+//! result equals an exact pairwise search. Far from the origin there are many candidates; scale the features.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
@@ -15,8 +16,8 @@ use crate::class_model::{ClassModel, log_vote_shares};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::{Error, Result};
 
-/// Number of rows whose distances to all training rows are computed together. If larger, the distances exceed the processor's cache; if smaller, the products
-/// are inefficient.
+/// Number of rows whose distances to all training rows are computed together. If larger, the distances exceed the processor's cache; if smaller, the matrix
+/// products are inefficient.
 const BLOCK_ROWS: usize = 128;
 
 /// Trained k-nearest-neighbours classifier: the training rows and their labels. Scores are the logarithms of smoothed vote fractions.
@@ -26,13 +27,13 @@ pub struct KNearest {
     classes: Vec<usize>,
     /// Training rows, n_rows × m.
     rows: Array2<f64>,
-    /// Position in `classes` of each row's label.
+    /// Index in `classes` of each training row's label.
     label: Vec<usize>,
     squared_norms: Array1<f64>,
 }
 
 impl KNearest {
-    /// Stores the labelled rows, of which `n_neighbours` vote.
+    /// Stores the labelled training rows; `n_neighbours` of them vote on each prediction.
     ///
     /// # Errors
     /// If `n_neighbours` is not in 1 to the number of rows, the data are empty, a feature is NaN, infinite or too large to square, the number of labels
@@ -93,11 +94,11 @@ impl KNearest {
         Ok(neighbours)
     }
 
-    /// Returns the nearest training rows of one row, given its products with all training rows.
+    /// Returns the nearest training rows of one row, given the products of this row with all training rows.
     fn nearest(&self, row: ArrayView1<f64>, products: ArrayView1<f64>) -> Vec<usize> {
         let norm = row.dot(&row);
         let rough = |other: usize| norm + self.squared_norms[other] - 2.0 * products[other];
-        // The k smallest approximate distances, ascending; the last entry is the threshold.
+        // The k smallest approximate distances, ascending; the last one is the threshold.
         let k = self.n_neighbours;
         let mut smallest = vec![f64::INFINITY; k];
         for other in 0..products.len() {

@@ -4,19 +4,19 @@ use std::collections::VecDeque;
 
 use ndarray::Array1;
 
-/// Number of pairs of steps and gradient changes in memory: 10, as in SciPy. If larger, more memory is used; if smaller, more iterations are needed.
+/// Number of stored pairs of steps and gradient changes: 10, as in SciPy. If larger, more memory is used; if smaller, more iterations are needed.
 const MEMORY: usize = 10;
 
-/// Fraction of the predicted decrease that a step must reach (Armijo's condition).
+/// Minimum decrease of a step as a fraction of the predicted decrease (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-/// Relative changes of the function value below this fraction are rounding errors.
+/// Relative changes of the function value below this limit are rounding errors.
 const ROUNDING: f64 = 1e-14;
 
-/// Maximum number of halvings of a step; beyond it, the decrease is below rounding.
+/// Maximum number of step halvings in a line search; after more halvings, the decrease is below the rounding error.
 const MAX_HALVINGS: usize = 40;
 
-/// Result of a minimisation.
+/// Result of an L-BFGS minimisation.
 #[derive(Clone, Debug)]
 pub(crate) struct Minimum {
     pub at: Array1<f64>,
@@ -25,7 +25,7 @@ pub(crate) struct Minimum {
     pub is_capped: bool,
 }
 
-/// Minimises a convex function from `at`, until no component of the gradient exceeds `tolerance`.
+/// Minimises a convex function by L-BFGS from the start `at`, until no component of the gradient exceeds `tolerance`.
 ///
 /// `function` returns the value and the gradient.
 pub fn minimise(
@@ -87,7 +87,7 @@ pub fn minimise(
     unreachable!("the last iteration returns")
 }
 
-/// Returns `−H g`, where H is the inverse Hessian estimated from the pairs (s, y), by the two-loop recursion.
+/// Returns the search direction `−H g`, where H is the inverse Hessian estimated from the pairs (s, y), by the two-loop recursion.
 fn direction(pairs: &VecDeque<(Array1<f64>, Array1<f64>)>, gradient: &Array1<f64>) -> Array1<f64> {
     let mut direction = -gradient;
     let mut factors = Vec::with_capacity(pairs.len());

@@ -17,7 +17,7 @@ use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::{Error, Result};
 
-/// Maximum number of iterations: ten times scikit-learn's.
+/// Default maximum number of L-BFGS iterations: ten times scikit-learn's default.
 pub const MAX_ITERATIONS: usize = 1000;
 
 /// Parameters of a logistic regression.
@@ -33,7 +33,7 @@ pub struct LogisticParams {
 }
 
 impl Default for LogisticParams {
-    /// C = 1, tolerance 1e-4, [`MAX_ITERATIONS`].
+    /// Returns the defaults: C = 1, tolerance 1e-4, [`MAX_ITERATIONS`].
     fn default() -> Self {
         Self {
             c: 1.0,
@@ -43,7 +43,7 @@ impl Default for LogisticParams {
     }
 }
 
-/// A trained logistic regression. Scores are `ln p(k | x) − ln p(k)`, where p(k) is the fraction of training rows of class k.
+/// Trained logistic regression. Scores are `ln p(k | x) − ln p(k)`, where p(k) is the fraction of training rows of class k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Logistic {
     classes: Vec<usize>,
@@ -54,12 +54,11 @@ pub struct Logistic {
 }
 
 impl LogisticParams {
-    /// Trains on labelled rows. The result is deterministic.
+    /// Trains the logistic regression on labelled rows. The result is deterministic.
     ///
     /// # Errors
-    /// If C or the tolerance is out of range, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or
-    /// there is a
-    /// single class.
+    /// If C or the tolerance is out of range, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or there
+    /// is a single class.
     pub fn train(&self, data: &Dataset) -> Result<Logistic> {
         for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
             if !(value > 0.0 && value.is_finite()) {
@@ -94,17 +93,17 @@ impl LogisticParams {
 }
 
 impl Logistic {
-    /// Returns the weights and biases.
+    /// Returns the weights and biases of the trained model.
     pub fn model(&self) -> &LinearModel {
         &self.model
     }
 
-    /// Returns the number of iterations of the solver.
+    /// Returns the number of iterations that the solver took.
     pub fn n_iterations(&self) -> usize {
         self.n_iterations
     }
 
-    /// Returns `ln p(k | x)` (n_rows × n_classes).
+    /// Returns the log-probabilities `ln p(k | x)` of all classes (n_rows × n_classes).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.
@@ -133,7 +132,7 @@ impl ClassModel for Logistic {
     }
 }
 
-/// Returns the weights (n_classes × m) and biases (n_classes) contained in the solver's vector.
+/// Splits the solver's parameter vector into weights (n_classes × m) and biases (n_classes).
 fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayView1<f64>) {
     let (weights, bias) = vector.split_at(Axis(0), vector.len() - n_classes);
     let m = weights.len() / n_classes;
@@ -141,7 +140,7 @@ fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayVi
     (weights.expect("a slice of n_classes × m"), bias)
 }
 
-/// Returns `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²` and its gradient.
+/// Returns the mean regularised loss `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²` and its gradient.
 fn mean_loss(
     features: ArrayView2<f64>,
     label: &[usize],
@@ -175,7 +174,7 @@ fn mean_loss(
     (loss, gradient)
 }
 
-/// Subtracts `ln Σ_k exp` from each row; the maximum of the row is subtracted first.
+/// Normalises rows of log-scores to log-probabilities: subtracts `ln Σ_k exp` from each row, after subtracting the row's maximum.
 fn normalise(values: &mut Array2<f64>) {
     for mut row in values.rows_mut() {
         let max = row.fold(f64::NEG_INFINITY, |max, &value| max.max(value));

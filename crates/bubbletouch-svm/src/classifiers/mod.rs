@@ -1,6 +1,6 @@
 //! Registry of classifiers with one interface for training and prediction: SVMs with all kernels, and classifiers without a kernel.
 //!
-//! Equal rows and equal seeds give equal models on every machine. [`Classifier`](classifier::Classifier) contains the options of all kinds.
+//! Equal rows and equal seeds give equal models on every machine. [`Classifier`](classifier::Classifier) contains the parameters of all kinds.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ pub(crate) mod tree;
 pub use crate::class_model;
 pub use classifier_about::{ClassifierAbout, Train};
 
-// Each line declares a classifier; the file that it names contains the descriptor.
+// Each line declares a classifier and names the file that contains its descriptor.
 classifiers! {
     LinearSvm linear_svm "Soft-margin SVM, linear kernel.";
     RbfSvm rbf_svm "Soft-margin SVM, Gaussian kernel `exp(−γ|x − z|²)`.";

@@ -1,7 +1,7 @@
-//! Gaussian naive Bayes, fitted by linfa-bayes: the features of a class are normal and independent.
+//! Gaussian naive Bayes classifier, fitted by linfa-bayes. The features of a class are assumed to be normal and independent.
 //!
-//! linfa's prediction is not used. Ties are resolved in the order of a `HashMap`, and probabilities are normalised without subtracting the maximum first:
-//! with 64 features all underflow to 0. linfa's joint log-likelihoods are correct and are used.
+//! linfa's own prediction is not used: it resolves ties in the order of a `HashMap`, and it normalises probabilities without subtracting the maximum first.
+//! With 64 features all its probabilities underflow to 0. linfa's joint log-likelihoods are correct and are used.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use linfa::traits::Fit;
@@ -13,10 +13,10 @@ use crate::class_model::{ClassModel, log_priors};
 use crate::dataset::{Dataset, check_width, checked_classes};
 use crate::{Error, Result};
 
-/// Fraction of the largest feature variance that is added to every variance: scikit-learn's default.
+/// Fraction of the largest feature variance that is added to every variance; equals scikit-learn's default.
 pub const VARIANCE_SMOOTHING: f64 = 1e-9;
 
-/// A trained Gaussian naive Bayes classifier. Scores are `ln p(x | k)`.
+/// Trained Gaussian naive Bayes classifier. Scores are `ln p(x | k)`.
 #[derive(Clone, Debug)]
 pub struct NaiveBayes {
     classes: Vec<usize>,
@@ -26,7 +26,7 @@ pub struct NaiveBayes {
 }
 
 impl NaiveBayes {
-    /// Fits the means and variances of labelled rows.
+    /// Estimates the means and variances of all features per class from labelled rows.
     ///
     /// # Errors
     /// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, there is a single class, or all features
@@ -55,7 +55,7 @@ impl NaiveBayes {
         })
     }
 
-    /// Returns `ln p(x, k)` (n_rows × n_classes).
+    /// Returns the joint log-likelihoods `ln p(x, k)` of all classes (n_rows × n_classes).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.

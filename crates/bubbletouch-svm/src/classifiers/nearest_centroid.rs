@@ -1,8 +1,8 @@
-//! Nearest centroid: each class is represented by the mean of its training rows; a row is assigned to the class with the nearest mean (Euclidean).
+//! Nearest-centroid classifier: predicts the class whose mean of the training rows has the smallest Euclidean distance.
 //!
 //! The classifier equals scikit-learn's `NearestCentroid`. It stores n_classes × m numbers and has no parameters; a decision costs one distance per class.
-//! Scores are −½|x − μₖ|², which is `ln p(x | k)` of normal classes of variance 1, up to a constant per row. The sum over several touches is therefore the
-//! joint score. Of equal distances, the lower label wins, as in scikit-learn.
+//! Scores are −½|x − μₖ|², which equals `ln p(x | k)` for normal classes of variance 1, up to a constant per row. The sum over several touches is therefore the
+//! joint score. If distances are equal, the lower label is predicted, as in scikit-learn.
 
 use crate::Result;
 use crate::class_model::ClassModel;
@@ -11,16 +11,16 @@ use crate::dataset::{Dataset, check_width, checked_classes};
 use ndarray::{Array2, ArrayView2, Axis};
 use std::sync::Arc;
 
-/// A trained nearest-centroid classifier.
+/// Trained nearest-centroid classifier.
 #[derive(Clone, Debug)]
 pub struct NearestCentroid {
     classes: Vec<usize>,
-    /// Mean of each class, n_classes × m.
+    /// Mean of the training rows of each class, n_classes × m.
     centroids: Array2<f64>,
 }
 
 impl NearestCentroid {
-    /// Averages the labelled rows of each class.
+    /// Computes the mean of the training rows of each class.
     ///
     /// # Errors
     /// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or there is a single class.
@@ -41,7 +41,7 @@ impl NearestCentroid {
         Ok(Self { classes, centroids })
     }
 
-    /// Returns the mean of each class, ascending by label: n_classes × m.
+    /// Returns the means of the training rows of all classes, ascending by label: n_classes × m.
     pub fn centroids(&self) -> ArrayView2<'_, f64> {
         self.centroids.view()
     }

@@ -1,16 +1,16 @@
-//! Hyper-parameters that only some classifiers use. Setting one for another classifier is an error.
+//! Hyper-parameters that only some kinds of classifiers use. Setting one for another kind is an error.
 
 use crate::classifiers::ClassifierKind;
 
-/// A hyper-parameter that only some classifiers use.
+/// Hyper-parameter that only some kinds of classifiers use.
 pub struct Parameter {
-    /// Keys of `[recognition]` that set the parameter. Options of `bubbletouch classify` have equal names.
+    /// Keys of `[recognition]` that set the hyper-parameter. The options of `bubbletouch classify` have the same names.
     pub keys: &'static [&'static str],
-    /// Returns whether a classifier uses the parameter.
+    /// Function that returns whether a kind of classifier uses the hyper-parameter.
     pub is_used: fn(ClassifierKind) -> bool,
 }
 
-/// All hyper-parameters that only some classifiers use.
+/// All hyper-parameters that only some kinds of classifiers use.
 pub const PARAMETERS: [Parameter; 8] = [
     Parameter {
         keys: &["tolerance"],
@@ -47,7 +47,7 @@ pub const PARAMETERS: [Parameter; 8] = [
 ];
 
 impl Parameter {
-    /// Returns the study names of the classifiers that use the parameter: `k_nearest`, `linear_svm or rbf_svm`.
+    /// Returns the study names of the classifiers that use the hyper-parameter, such as `linear_svm or rbf_svm`.
     pub fn users(&self) -> String {
         let all = ClassifierKind::ALL.iter().zip(ClassifierKind::NAMES);
         let users = all.filter(|(kind, _)| (self.is_used)(**kind));

@@ -1,8 +1,8 @@
-//! Random forests [Breiman 2001]. Each tree is grown on a bootstrap sample of the rows, with √m random features per node. The trees vote with the class
-//! fractions of their leaves, as in scikit-learn.
+//! Random forests [Breiman 2001]. Each tree is grown on a bootstrap sample of the training rows, and each node considers √m random features. The trees vote
+//! with the class fractions of their leaves, as in scikit-learn.
 //!
-//! Differs from linfa-ensemble 0.8.1 for three reasons. Its trees (linfa-trees 0.8.1) sum impurities in f32 in the order of a `HashMap`, so two trainings on
-//! equal rows differ. It breaks ties of votes in the order of a `HashMap`. It draws features once per tree instead of once per node.
+//! Differs from linfa-ensemble 0.8.1 for three reasons. Its trees (linfa-trees 0.8.1) sum impurities in f32 in the order of a `HashMap`, so two models trained
+//! on equal rows differ. It breaks ties of votes in the order of a `HashMap`. It draws features once per tree instead of once per node.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array2, ArrayView2};
@@ -16,7 +16,7 @@ use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::streams::Streams;
 use crate::{Error, Result};
 
-/// A trained forest. Scores are the logarithms of smoothed vote fractions.
+/// Trained random forest. Scores are the logarithms of smoothed vote fractions.
 #[derive(Clone, Debug)]
 pub struct RandomForest {
     classes: Vec<usize>,
@@ -25,8 +25,8 @@ pub struct RandomForest {
 }
 
 impl RandomForest {
-    /// Grows `n_trees` trees until the leaves are pure, or to the depth `max_depth`. Tree t draws from `seed.named("tree").numbered(t)`, so a larger forest
-    /// contains the trees of a smaller forest.
+    /// Grows `n_trees` trees until their leaves are pure, or to the depth `max_depth`. Tree t uses the random stream `seed.named("tree").numbered(t)`, so a
+    /// larger forest contains the trees of a smaller forest.
     ///
     /// # Errors
     /// If there are no trees, the depth is 0, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or
@@ -80,7 +80,7 @@ impl ClassModel for RandomForest {
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         check_width(&features, self.n_features)?;
         let mut votes = Array2::zeros((features.nrows(), self.classes.len()));
-        // The loop runs tree by tree, because one tree fits into the processor's cache for all rows.
+        // The outer loop runs over trees, because one tree fits into the processor's cache for all rows.
         for tree in &self.trees {
             for (row, mut votes) in features.rows().into_iter().zip(votes.rows_mut()) {
                 let counts = tree.leaf(row);

@@ -1,18 +1,18 @@
-//! Ranks of feature values: sufficient for growing trees, and fast to sort.
+//! Ranks of feature values: tree growing needs only ranks, and integers are fast to sort.
 
 use ndarray::{Array2, ArrayView2, Axis};
 
-/// The distinct values of every feature, ascending, and the rank of each row's value.
+/// Distinct values of every feature, ascending, and the rank of each row's value.
 #[derive(Clone, Debug)]
 pub(crate) struct Ranked {
-    /// Ranks, m × n_rows: the ranks of a feature are contiguous.
+    /// Ranks of the feature values, m × n_rows; the ranks of one feature are contiguous.
     ranks: Array2<u32>,
-    /// Distinct values of each feature, ascending.
+    /// Distinct values of each feature, in ascending order.
     values: Vec<Vec<f64>>,
 }
 
 impl Ranked {
-    /// Ranks features (n_rows × m, finite).
+    /// Computes the ranks of finite features (n_rows × m).
     pub(crate) fn new(features: ArrayView2<f64>) -> Self {
         let mut ranks = Array2::zeros((features.ncols(), features.nrows()));
         let mut values = Vec::with_capacity(features.ncols());
@@ -44,7 +44,7 @@ impl Ranked {
         self.ranks[[feature, row as usize]]
     }
 
-    /// Returns the midpoint between the values of two ranks; the lower value if the midpoint is rounded to the upper value.
+    /// Returns the midpoint between the values of two adjacent ranks; the lower value if the midpoint rounds to the upper value.
     pub(crate) fn threshold(&self, feature: usize, lower: u32, upper: u32) -> f64 {
         let (low, high) = (
             self.values[feature][lower as usize],

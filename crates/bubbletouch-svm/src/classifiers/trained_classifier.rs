@@ -1,4 +1,4 @@
-//! Trained classifiers: scaling and model behind one interface for prediction.
+//! Trained classifiers: a scaling and a model with one interface for prediction.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::cross_validation::choice::Chosen;
 use crate::predict::svm_model::SvmModel;
 use crate::scaling::FittedScaling;
 
-/// A trained classifier: scaling and model.
+/// Trained classifier: a fitted scaling and a model.
 #[derive(Clone, Debug)]
 pub struct TrainedClassifier {
     scaling: FittedScaling,
@@ -23,9 +23,9 @@ pub struct TrainedClassifier {
 /// Model trained on scaled features.
 #[derive(Clone, Debug)]
 pub(crate) enum Model {
-    /// A kernel SVM: its scores are the decision values of binary problems.
+    /// Kernel SVM; its scores are the decision values of the binary problems.
     Svm(Box<SvmModel>),
-    /// A model with one score per class.
+    /// Model that computes one score per class.
     Classes(Arc<dyn ClassModel>),
 }
 
@@ -90,7 +90,7 @@ impl TrainedClassifier {
         }
     }
 
-    /// Returns the label that each row of scores favours.
+    /// Returns the label with the best score for each row of scores, including log-priors or votes.
     pub fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         match &self.model {
             Model::Svm(model) => model.labels_of_values(scores),
@@ -98,12 +98,12 @@ impl TrainedClassifier {
         }
     }
 
-    /// Returns the C used in training; `None` for a kind without C.
+    /// Returns the penalty C used in training; `None` for a kind without C.
     pub fn c(&self) -> Option<f64> {
         self.c
     }
 
-    /// Returns the result of the choice of C; `None` if C was fixed.
+    /// Returns the result of the cross-validation that chose C; `None` if C was fixed.
     pub fn chosen(&self) -> Option<&Chosen> {
         self.chosen.as_ref()
     }
@@ -113,7 +113,7 @@ impl TrainedClassifier {
         self.model.n_capped()
     }
 
-    /// Returns the trained kernel SVM; `None` for another model. The SVM expects scaled features, see [`scaling`](Self::scaling).
+    /// Returns the trained kernel SVM; `None` for other kinds. The SVM expects scaled features, see [`scaling`](Self::scaling).
     pub fn svm(&self) -> Option<&SvmModel> {
         match &self.model {
             Model::Svm(model) => Some(model),

@@ -1,10 +1,10 @@
-//! The classification trees of a random forest [Breiman et al. 1984]: Gini impurity, binary splits `x_f ≤ threshold`, no pruning.
+//! Classification trees of a random forest [Breiman et al. 1984]: Gini impurity, binary splits `x_f ≤ threshold`, no pruning.
 //!
-//! A node is divided by the split that lowers the impurity most, i.e. with the largest `Σ_k l_k² / l + Σ_k r_k² / r` (l_k, r_k: rows of class k left and
-//! right). Of equal splits, the feature visited first and its lowest threshold are taken. Thresholds are midpoints between values that occur in the node.
+//! A node is divided by the split with the lowest impurity, i.e. the largest `Σ_k l_k² / l + Σ_k r_k² / r` (l_k, r_k: rows of class k on the left and right).
+//! If splits are equal, the first visited feature and its lowest threshold are chosen. Thresholds are midpoints between values that occur in the node.
 //!
-//! Differs from linfa-trees 0.8.1, because it sums impurities in f32 in the order of a `HashMap`. Two trainings on equal rows differ (2,000 rows, 20 classes:
-//! 3 of 500 predictions). linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and feature at every node.
+//! Differs from linfa-trees 0.8.1, which sums impurities in f32 in the order of a `HashMap`. Two trees grown on equal rows can differ there (2,000 rows, 20
+//! classes: 3 of 500 predictions). linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and feature at every node.
 
 use crate::classifiers::ranked::Ranked;
 use crate::streams::Streams;
@@ -21,7 +21,7 @@ pub(crate) fn check_depth(max_depth: Option<usize>) -> Result<()> {
     Ok(())
 }
 
-/// A binary tree as a list of nodes, the root first.
+/// Binary decision tree, stored as a list of nodes with the root first.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
     nodes: Vec<Node>,
@@ -32,17 +32,17 @@ enum Node {
     Split {
         feature: usize,
         threshold: f64,
-        /// Child for values up to the threshold, and child for larger values.
+        /// Node indices of the child for values up to the threshold and the child for larger values.
         children: [usize; 2],
     },
     Leaf {
-        /// Pairs (class, number of training rows), classes ascending, without empty classes.
+        /// Pairs (class, number of training rows) of a leaf, classes ascending, without empty classes.
         counts: Vec<(u32, u32)>,
     },
 }
 
 impl Tree {
-    /// Returns the pairs (class, number of training rows) of the leaf of a row.
+    /// Returns the pairs (class, number of training rows) of the leaf that a row reaches.
     pub(crate) fn leaf(&self, row: ArrayView1<f64>) -> &[(u32, u32)] {
         let mut at = 0;
         loop {
@@ -58,15 +58,15 @@ impl Tree {
     }
 }
 
-/// Parameters of the growth of a tree.
+/// Parameters that limit the growth of a tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Growth {
-    /// Number of varying features considered in a node. They are drawn anew for each node, unless all are considered.
+    /// Number of non-constant features considered in a node; they are drawn again for each node, unless all are considered.
     pub n_candidates: usize,
     pub max_depth: Option<usize>,
 }
 
-/// A split by rank: rows with ranks up to `rank` go left.
+/// Binary split by rank: rows whose rank is at most `rank` go to the left child.
 struct Split {
     feature: usize,
     rank: u32,
@@ -74,19 +74,19 @@ struct Split {
     score: f64,
 }
 
-/// Data and buffers for splitting nodes.
+/// Training data and buffers for splitting nodes.
 struct Grower<'a> {
     ranked: &'a Ranked,
     label: &'a [usize],
     n_classes: usize,
-    /// Sort keys of the node's rows: rank << 32 | class.
+    /// Sort keys of the node's rows, `rank << 32 | class`.
     keys: Vec<u64>,
     left: Vec<f64>,
     right: Vec<f64>,
 }
 
 impl Growth {
-    /// Grows a tree on the given rows, which may repeat. `label` contains class positions below `n_classes`.
+    /// Grows a tree on the given rows, which may contain repetitions. `label` contains class indices below `n_classes`.
     pub(crate) fn grow(
         &self,
         ranked: &Ranked,
@@ -135,7 +135,7 @@ impl Growth {
         Tree { nodes }
     }
 
-    /// Returns the best split of a node's rows among the candidate features; `None` if no feature varies.
+    /// Returns the best split of a node's rows over the candidate features; `None` if no feature varies.
     fn best_split(
         &self,
         grower: &mut Grower,
@@ -220,7 +220,7 @@ impl Grower<'_> {
     }
 }
 
-/// Moves the rows of the left child to the front; returns their number.
+/// Moves the rows of the left child to the front of the slice; returns their number.
 fn partition(rows: &mut [u32], ranked: &Ranked, split: &Split) -> usize {
     let mut n_left = 0;
     for i in 0..rows.len() {

@@ -1,20 +1,20 @@
-//! Alpha seeding: the solution of one fold gives the start for the next fold.
+//! Alpha seeding: the solution of one fold is the starting point of the next fold.
 //!
-//! Two of k folds share all but 2/k of their rows. The multipliers of removed rows are moved to the most similar added rows [DeCoste, Wagstaff 2000; Wen et
+//! Two of k folds differ in only 2/k of their rows. The multipliers of removed rows are moved to the most similar added rows [DeCoste, Wagstaff 2000; Wen et
 //! al. 2017]. The constraint `Σβ = 0` and the bounds remain satisfied.
 
 use std::ops::Range;
 
 use crate::linalg::scalar::Scalar;
 
-/// Rows of a problem that are training rows of one fold but not of the next.
+/// Alpha seeding between two folds: the rows that differ between their training sets.
 pub(crate) struct AlphaSeeding {
-    /// Removed and added rows of each class, ascending.
+    /// Removed and added rows of each of the two classes, ascending.
     sides: [(Vec<usize>, Vec<usize>); 2],
 }
 
 impl AlphaSeeding {
-    /// Creates the seeding from one fold to the next, given the labels of all rows in both folds. Held-out rows have the label 0.
+    /// Creates the alpha seeding from one fold to the next, given the labels of all rows in both folds. Held-out rows have the label 0.
     pub fn new((before, labels): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
         let mut sides = [(); 2].map(|()| (Vec::new(), Vec::new()));
         for (at, (before, label)) in before.iter().zip(labels).enumerate() {
@@ -29,8 +29,7 @@ impl AlphaSeeding {
     }
 
     /// Transfers β to the next fold. Returns `None` if a removed row's multiplier cannot be redistributed, because all added rows of its class already have
-    /// one.
-    /// `similar` returns the kernel values of a row.
+    /// one. `similar` returns the kernel values of a row.
     pub fn transfer<'k, T: Scalar>(
         &self,
         beta: &[f64],

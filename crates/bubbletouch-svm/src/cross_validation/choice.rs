@@ -19,19 +19,19 @@ use crate::{Error, Result};
 pub struct Candidates {
     /// Candidate values of C; at least one.
     pub c: Vec<f64>,
-    /// Candidate values of γ as multiples of the kernel's own γ; empty to use the kernel's own γ. The kernel's own γ is its number, or [`Gamma::Scale`] of
-    /// the training rows. A linear kernel has no γ.
+    /// Candidate values of γ, as multiples of the kernel's γ; if empty, the kernel's γ is used. With [`Gamma::Scale`], the kernel's γ is computed from the
+    /// training rows. A linear kernel has no γ.
     pub gamma_scales: Vec<f64>,
 }
 
-/// A candidate and its validation accuracy.
+/// Candidate of C and γ, with its validation accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tried {
-    /// Penalty C.
+    /// Penalty C of the candidate.
     pub c: f64,
-    /// Value of γ; `None` for a linear kernel.
+    /// γ of the candidate; `None` for a linear kernel.
     pub gamma: Option<f64>,
-    /// Fraction of validation rows recognised over all folds, 0..=1.
+    /// Fraction of validation rows classified correctly over all folds, 0 to 1.
     pub accuracy: f64,
 }
 
@@ -42,15 +42,15 @@ pub struct Chosen {
     pub best: Tried,
     /// All candidates in ascending order of γ, then of C.
     pub tried: Vec<Tried>,
-    /// Number of solves, over all folds and candidates, that stopped at the iteration cap.
+    /// Number of solver runs, over all folds and candidates, that stopped at the iteration cap.
     pub n_capped: usize,
 }
 
-/// Evaluates every C with every γ on every fold, and returns the most accurate candidate. Of equal candidates, the smaller γ is taken, then the smaller C
-/// (smoother, more regularised, and faster).
+/// Evaluates every C with every γ on every fold, and returns the most accurate candidate. If candidates are equally accurate, the smaller γ is chosen, then the
+/// smaller C (smoother, more regularised, and faster).
 ///
-/// `training` contains only scaled training rows; the scaling may be fitted to all of them, without labels. `folds` split these rows. The whole grid is
-/// evaluated on one matrix of products. Duplicated candidates count once.
+/// `training` contains only scaled training rows; the scaling may be fitted to all of them, without labels. `folds` split these rows. All candidates share one
+/// matrix of products. Duplicated candidates count once.
 ///
 /// # Errors
 /// If there are no candidates or folds, a candidate is out of range, or a fold contains a row beyond the training rows or a single class. If
@@ -84,8 +84,8 @@ pub fn choose(
     Ok(Chosen::new(tried.collect(), n_capped))
 }
 
-/// Chooses C as [`choose`] does, for any classifier. `train` fits a classifier to rows with a given C; it returns a prediction function and the number of
-/// capped solves.
+/// Chooses C like [`choose`], for any classifier. `train` fits a classifier to rows with a given C; it returns a prediction function and the number of capped
+/// solver runs.
 ///
 /// # Errors
 /// Returns the errors of [`choose`] and of `train`.
@@ -125,7 +125,7 @@ where
 }
 
 impl Chosen {
-    /// Returns the first of the most accurate candidates.
+    /// Selects the first of the most accurate candidates.
     fn new(tried: Vec<Tried>, n_capped: usize) -> Self {
         let better = |best: Tried, &tried: &Tried| {
             if tried.accuracy > best.accuracy {
@@ -153,7 +153,7 @@ fn ascending(values: &[f64]) -> Vec<f64> {
     values
 }
 
-/// Returns the kernel with each candidate γ, ascending.
+/// Returns the kernel with each candidate γ, in ascending order.
 fn kernels(
     params: &SvmParams,
     (training, statistics): (&Dataset, &RowStatistics),
@@ -214,7 +214,7 @@ fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
     }
 }
 
-/// Returns the numbers of recognised validation rows (kernels.len() × path.len()), and the number of capped solves.
+/// Returns the numbers of correctly classified validation rows (kernels.len() × path.len()), and the number of capped solver runs.
 fn on_one_matrix(
     params: &SvmParams,
     (training, statistics): (&Dataset, &RowStatistics),
@@ -239,7 +239,7 @@ fn on_one_matrix(
     grid(params, &sorted, folds, kernels, goal)
 }
 
-/// Sorts the rows by class, and within a class by fold; the training rows of a fold then form few contiguous runs.
+/// Sorts the rows by class, and within a class by fold, so that the training rows of a fold form few contiguous runs.
 fn by_fold<T: SolverScalar>(
     (training, centre): (&Dataset, ArrayView1<f64>),
     folds: &[Split],

@@ -1,7 +1,7 @@
-//! A binary problem on the rows of all folds, solved fold by fold along C.
+//! Solutions of a binary problem for all folds and all values of C.
 //!
-//! Held-out rows keep their position; their label and multiplier are 0. Their f is the negative decision sum, so validation rows are scored by the solver's
-//! own values. A fold starts from the previous fold's multipliers, or from the previous C's rescaled multipliers, whichever has the higher objective.
+//! Held-out rows keep their position; their label and multiplier are 0. Their f is the negative decision sum, so the solver's own values score validation rows.
+//! The solver starts a fold from the previous fold's multipliers or from the previous C's rescaled multipliers, whichever have the higher objective.
 
 use std::ops::Range;
 
@@ -11,30 +11,30 @@ use crate::smo::Smo;
 use crate::smo::SolverScalar;
 use crate::training::Goal;
 
-/// Solutions of a fold's problem for all C.
+/// Solutions of one fold's binary problem for all values of C.
 pub(crate) struct FoldPath {
-    /// Labels: 1 for positive rows, −1 for negative rows, 0 for held-out rows.
+    /// Labels of the rows: 1 for positive rows, −1 for negative rows, 0 for held-out rows.
     labels: Vec<f64>,
     /// Solutions in ascending order of C, up to the last C that changes the solution.
     pub solutions: Vec<FoldSolution>,
 }
 
-/// Solution of a fold's problem for one C, or for several C with equal solutions.
+/// Solution of one fold's binary problem for one C, or for several consecutive C with equal solutions.
 pub(crate) struct FoldSolution {
-    /// Indices of these C in the path.
+    /// Indices in the path of the values of C that have this solution.
     pub numbers: Range<usize>,
-    /// β of all rows of the problem.
+    /// Coefficients β of all rows of the problem.
     pub beta: Vec<f64>,
-    /// `y − Kβ` of all rows, with y = 0 for held-out rows.
+    /// Gradient `f = y − Kβ` of all rows, with y = 0 for held-out rows.
     pub f: Vec<f64>,
     /// Offset ρ of the decision function.
     pub rho: f64,
-    /// Whether the solver stopped at its cap.
+    /// Whether the solver stopped at its iteration cap.
     pub is_capped: bool,
 }
 
 impl FoldPath {
-    /// Solves a pair of classes fold by fold; calls `told` with each solved fold. `folds` contains the labels of each fold, one per row of the Gram matrix;
+    /// Solves a pair of classes for all folds and passes each solved fold to `told`. `folds` contains the labels of each fold, one per row of the Gram matrix;
     /// the rows of `positive` are positive.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
@@ -63,8 +63,8 @@ impl FoldPath {
         }
     }
 
-    /// Solves one class against all others, fold by fold; calls `told` with each solved fold. If a class is not separable from the rest, several decision
-    /// values can be equal within the tolerance. The start then determines the winner, so each fold starts from zero, as in training.
+    /// Solves one class against all others for all folds and passes each solved fold to `told`. If a class is not separable from the rest, several decision
+    /// values can be equal within the tolerance. The starting point then determines the predicted class, so each fold starts from zero, as in training.
     pub fn of_class<T: SolverScalar>(
         gram: &mut Dense<T>,
         folds: Vec<Vec<f64>>,
@@ -78,7 +78,7 @@ impl FoldPath {
         }
     }
 
-    /// Returns β and f for one C, with the multipliers of removed rows transferred to added rows.
+    /// Returns the start of a fold for one C: β with the multipliers of removed rows transferred to added rows, and its f.
     fn moved<T: SolverScalar>(
         &self,
         number: usize,
@@ -97,7 +97,7 @@ impl FoldPath {
     }
 }
 
-/// Solves for each C in ascending order, until the solution holds for all larger C.
+/// Solves one fold for each C in ascending order, until the solution is valid for all larger C.
 fn along<T: SolverScalar>(
     mut smo: Smo<Dense<T>>,
     goal: Goal,

@@ -1,8 +1,8 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
 //! All folds and candidates share the products of rows. The kernel values of a pair of classes are computed once for all folds, which [hold out
-//! rows](crate::cross_validation::fold_path). Along C, each solution starts from the previous one. For the first C, a pair starts with all multipliers at
-//! their bounds. From the second fold on, it starts from [the previous fold](super::alpha_seeding) if that start is closer. Validation rows are
+//! rows](crate::cross_validation::fold_path). For each C, the solver starts from the solution of the previous C. For the first C, a pair starts with all
+//! multipliers at their bounds, or from [the previous fold](super::alpha_seeding) if that start is closer. Validation rows are
 //! [scored](super::validation_scorer) by the problems of their own class first.
 
 use ndarray::{Array1, Array2};
@@ -18,23 +18,23 @@ use crate::smo::SolverScalar;
 use crate::split::Split;
 use crate::training::Goal;
 
-/// Maximum number of folds whose solutions are held at once. If larger, more memory is used; if smaller, usual numbers of folds need several passes.
+/// Maximum number of folds whose solutions are in memory together. If larger, more memory is used; if smaller, usual numbers of folds need several passes.
 const FOLDS_AT_ONCE: usize = 8;
 
-/// Classes per block: the pairs of two blocks are solved together and share kernel values (5 MB for 140 rows per class).
+/// Number of classes per block. Pairs of classes from two blocks are solved together and share kernel values (5 MB for 140 rows per class).
 const CLASSES_AT_ONCE: usize = 8;
 
 /// Training rows and their division into folds.
 pub(crate) struct Grid<'a, T> {
-    /// The rows, sorted by class.
+    /// Training rows, sorted by class.
     pub sorted: &'a Sorted<T>,
-    /// Division into folds, by original row numbers; a row counts once in a fold.
+    /// Folds, by original row numbers; a repeated row counts once in a fold.
     pub folds: &'a [Split],
-    /// One-vs-one or one-vs-rest.
+    /// Multi-class strategy: one-vs-one or one-vs-rest.
     pub multiclass: Multiclass,
 }
 
-/// A fold, expressed in sorted rows.
+/// Fold of the cross-validation, in terms of the sorted rows.
 struct Fold {
     /// Whether each row is a training row.
     is_training: Vec<bool>,
@@ -44,8 +44,8 @@ struct Fold {
 }
 
 impl<T: SolverScalar> Grid<'_, T> {
-    /// Returns the number of recognised validation rows over all folds, per kernel and C (kernels.len() × path.len()), and the number of solves stopped at
-    /// the iteration cap.
+    /// Returns the number of correctly classified validation rows over all folds, per kernel and C (kernels.len() × path.len()), and the number of solver runs
+    /// that stopped at the iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
         // The kernels differ only in γ, so they share the pairwise numbers.
@@ -84,7 +84,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         }
     }
 
-    /// Solves all problems of some folds and scores their validation rows.
+    /// Solves all binary problems of some folds and scores the validation rows of these folds.
     fn score(
         &self,
         folds: &[Fold],
@@ -133,7 +133,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         ValidationScorer::new((known, &fold.is_class), ranges, self.multiclass, n_path)
     }
 
-    /// Returns all problems with their numbers. Pairs of neighbouring classes are adjacent, so that their kernel values stay in the cache.
+    /// Returns all binary problems with their numbers. Pairs of neighbouring classes are adjacent, so that their kernel values stay in the cache.
     fn problems(&self) -> Vec<(usize, (usize, Option<usize>))> {
         let problems = self.multiclass.problems(self.sorted.ranges().len());
         let mut problems: Vec<_> = problems.into_iter().enumerate().collect();
@@ -142,7 +142,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         problems
     }
 
-    /// Returns the labels of a problem's rows in each fold; held-out rows have the label 0.
+    /// Returns the labels of a binary problem's rows in each fold; held-out rows have the label 0.
     fn labels(
         &self,
         (positive, negative): (usize, Option<usize>),

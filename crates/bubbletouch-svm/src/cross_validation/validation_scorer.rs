@@ -1,7 +1,7 @@
-//! Scores of a fold: which of its validation rows are classified correctly.
+//! Scoring of a fold: determines which validation rows are classified correctly.
 //!
-//! The results of a row's own class are known as soon as its problems are solved. If the class wins all its pairs, the row is recognised, because every other
-//! class has lost a pair. The remaining rows are classified by the votes of all problems, with the matrix products of [prediction](crate::predict).
+//! A row's own class is scored as soon as the problems of this class are solved. If the class wins all its pairs, the row is classified correctly, because
+//! every other class has lost a pair. The remaining rows are classified by the votes of all problems, with the matrix products of [prediction](crate::predict).
 
 use std::ops::Range;
 
@@ -14,32 +14,32 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Number of rows classified by votes at once; bounds the memory of their kernel values.
+/// Number of rows classified by votes at one time; limits the memory of their kernel values.
 const ROWS_AT_ONCE: usize = 512;
 
-/// Scorer of the validation rows of a fold; it receives the problems as they are solved.
+/// Scorer of a fold's validation rows; receives the binary problems as they are solved.
 pub(crate) struct ValidationScorer<T> {
     multiclass: Multiclass,
-    /// All problems, given by the positions of their classes, in the order of [`Multiclass::problems`].
+    /// All binary problems as pairs of class positions, in the order of [`Multiclass::problems`].
     problems: Vec<(usize, Option<usize>)>,
     /// Whether each class has training rows.
     is_class: Vec<bool>,
-    /// Validation rows whose class has training rows, ascending, with the position of the class.
+    /// Validation rows whose class has training rows, ascending, each with the position of its class.
     rows: Vec<(usize, usize)>,
-    /// Whether each row's own class loses a problem, for each C.
+    /// Whether a row's own class loses at least one pair, for each C and row.
     is_beaten: Array2<bool>,
     /// Coefficients β for each C and class.
     weights: Vec<Vec<ClassWeights<T>>>,
-    /// Offsets ρ: C × problems.
+    /// Offsets ρ of the decision functions, shape n_C × n_problems.
     rho: Array2<f64>,
-    /// For each C, whether any problem's solution differs from the solution for the previous C.
+    /// Whether the solution of some problem for a C differs from the solution for the previous C.
     is_new: Vec<bool>,
     n_capped: usize,
 }
 
 impl<T: Scalar> ValidationScorer<T> {
-    /// Creates a scorer for `rows` (row, position of its class) and `n_path` values of C. `is_class` contains whether each class has training rows; `ranges`
-    /// contains the rows of all classes.
+    /// Creates a scorer for validation `rows` (row, position of its class) and `n_path` values of C. `is_class` contains whether each class has training rows;
+    /// `ranges` contains the row range of each class.
     pub fn new(
         (rows, is_class): (Vec<(usize, usize)>, &[bool]),
         ranges: &[Range<usize>],
@@ -64,12 +64,12 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Returns the number of solves stopped at the iteration cap.
+    /// Returns the number of solver runs that stopped at the iteration cap.
     pub fn n_capped(&self) -> usize {
         self.n_capped
     }
 
-    /// Adds a problem's solution for one or several C.
+    /// Adds the solution of a binary problem for one or several values of C.
     pub fn take(&mut self, problem: usize, solution: &FoldSolution) {
         let numbers = solution.numbers.clone();
         self.is_new[numbers.start] = true;
@@ -96,7 +96,7 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Records which validation rows of a class lose a pair. Their decision value before subtracting ρ is `−f`.
+    /// Records which validation rows of a class lose a pair. A row's decision value before subtracting ρ is `−f`.
     fn look(
         &mut self,
         number: usize,
@@ -112,7 +112,7 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Returns the number of recognised rows for each C.
+    /// Returns the number of correctly classified validation rows for each C.
     pub fn n_correct(&self, kernel: &ProductKernel<T>) -> Vec<usize> {
         let is_settled =
             |at: &usize| self.is_pairs() && !self.is_beaten.row(*at).iter().any(|x| *x);
@@ -132,7 +132,7 @@ impl<T: Scalar> ValidationScorer<T> {
         n_correct
     }
 
-    /// Counts the rows whose own class wins all its pairs or wins the vote, given their kernel values.
+    /// Returns the number of correctly classified rows: their own class wins all its pairs or wins the vote. Needs the kernel values of the rows.
     fn n_elected(&self, number: usize, some: &[usize], values: ArrayView2<T>) -> usize {
         let is_open = |place: &usize| !self.is_pairs() || self.is_beaten[[some[*place], number]];
         let open: Vec<usize> = (0..some.len()).filter(is_open).collect();

@@ -7,7 +7,7 @@ use ndarray::ArrayViewMut2;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 
-/// Minimum number of rows of a group of classes, while classes remain. If smaller, matrix products are inefficient.
+/// Minimum number of rows of a group of classes, except the last group. If smaller, matrix products are inefficient.
 const GROUP_ROWS: usize = 512;
 
 /// Divides the classes, given by their row ranges, into groups of about [`GROUP_ROWS`] rows.
@@ -24,16 +24,16 @@ pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
     groups
 }
 
-/// A group of classes: its rows, and their kernel values.
+/// Group of classes with its rows and their kernel values.
 pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,
     rows: Range<usize>,
-    /// Kernel values of the group's rows with each other, row by row.
+    /// Kernel values between the group's rows, row by row.
     own: Vec<T>,
 }
 
 impl<'a, T: Scalar> Group<'a, T> {
-    /// Computes the kernel values of the given classes.
+    /// Creates the group of the given classes and computes the kernel values between its rows.
     pub fn new(sorted: &'a Sorted<T>, classes: &Range<usize>) -> Self {
         let rows = sorted.rows_of(classes);
         let points = sorted.points().range(rows.clone());
@@ -45,7 +45,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         }
     }
 
-    /// Returns the bytes of all groups' kernel values, including those between two groups.
+    /// Returns the size in bytes of all groups' kernel values, including those between two groups.
     pub fn bytes(sorted: &Sorted<T>, groups: &[Range<usize>]) -> usize {
         let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
         let squares: usize = sizes().map(|n| n * n).sum();
@@ -53,7 +53,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         (squares + largest * largest) * size_of::<T>()
     }
 
-    /// Computes the kernel values of another group's rows with this group's rows, row by row; `values` is overwritten.
+    /// Computes the kernel values between another group's rows and this group's rows, row by row; `values` is overwritten.
     pub fn with(&self, other: &Self, values: &mut Vec<T>) {
         let size = (other.rows.len(), self.rows.len());
         values.resize(size.0 * size.1, T::zero());
@@ -64,7 +64,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         others.write_kernel(own, &self.sorted.kernel(), values);
     }
 
-    /// Selects kernel values of some rows with some of this group's rows, row by row. `values` contains the rows from `first` on.
+    /// Selects kernel values between some rows and some of this group's rows, row by row. `values` starts with row `first`.
     fn part<'v>(
         &self,
         (values, first): (&'v [T], usize),
@@ -78,7 +78,7 @@ impl<'a, T: Scalar> Group<'a, T> {
             .collect()
     }
 
-    /// Returns the kernel values of some of this group's rows with others of its rows, row by row.
+    /// Returns the kernel values between two ranges of this group's rows, row by row.
     pub fn own_part(&self, rows: &Range<usize>, columns: &Range<usize>) -> Vec<&[T]> {
         self.part((&self.own, self.rows.start), rows, columns)
     }

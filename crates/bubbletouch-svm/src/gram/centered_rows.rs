@@ -1,4 +1,4 @@
-//! Feature rows in the precision of the kernel values, and their kernel values by matrix products.
+//! Feature rows minus a centre, in the precision of the kernel values, and the kernel values between them.
 
 use std::ops::Range;
 
@@ -10,25 +10,25 @@ use crate::linalg::products::multiply;
 use crate::linalg::row_products::Rows;
 use crate::linalg::scalar::Scalar;
 
-/// Rows (n × m) minus a centre, with their squared norms.
+/// Feature rows (n × m) minus a centre, with their squared norms.
 ///
 /// For some kernels, the centre is arbitrary. A constant added to all features does not change RBF distances. In a linear decision function it changes only
 /// ρ, because the coefficients sum to zero. About the mean, products are small and lose fewer digits.
 #[derive(Clone, Debug)]
 pub(crate) struct CenteredRows<T> {
-    /// n × m.
+    /// Centred feature values, n × m.
     values: Array2<T>,
     /// Squared norm `|x|²` of each row.
     norms: Array1<T>,
 }
 
 impl<T: Scalar> CenteredRows<T> {
-    /// Subtracts the centre (m) from the features (n × m).
+    /// Creates centred rows from features (n × m) and a centre (m).
     pub fn new(features: ArrayView2<f64>, centre: ArrayView1<f64>) -> Self {
         Self::of_rows(features.rows().into_iter(), centre)
     }
 
-    /// Subtracts the centre (m) from rows of m values.
+    /// Creates centred rows from slices of m values and a centre (m).
     pub fn of_rows<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
@@ -36,7 +36,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self::of_rows_and(rows, centre, |_| ())
     }
 
-    /// Subtracts the centre from rows, and calls `told` with the [`CenteredRow`] of each row.
+    /// Creates centred rows from slices, and calls `told` with the [`CenteredRow`] of each row.
     pub fn of_rows_and<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
@@ -47,7 +47,7 @@ impl<T: Scalar> CenteredRows<T> {
         let mut values = Vec::with_capacity(n_rows * centre.len());
         let mut norms = Vec::with_capacity(n_rows);
         for row in rows {
-            // The rows are written one by one: filling the whole memory first would pass over it twice.
+            // The rows are written one by one, because filling the whole memory first would need a second pass.
             let start = values.len();
             values.resize(start + centre.len(), T::zero());
             let own = &mut values[start..];
@@ -66,7 +66,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self { values, norms }
     }
 
-    /// Returns the coordinates of the rows along the given directions (k × m): n × k.
+    /// Returns the coordinates of the rows along k directions (k × m): shape n × k.
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         let mut values = Array2::zeros((self.len(), directions.nrows()));
         multiply(self.values.view(), directions, values.view_mut());
@@ -74,7 +74,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self { values, norms }
     }
 
-    /// Returns a view of the rows in memory.
+    /// Returns a view of the rows as contiguous slices.
     pub fn in_place(&self) -> Rows<'_, T> {
         Rows {
             values: self.values.as_slice().expect("rows are stored one by one"),
@@ -105,7 +105,7 @@ impl<T: Scalar> CenteredRows<T> {
         }
     }
 
-    /// Keeps the rows with the given ascending numbers, in the existing memory.
+    /// Keeps only the rows with the given ascending numbers, without new memory.
     pub fn keep(self, rows: &[usize]) -> Self {
         let n_features = self.values.ncols();
         let norms = self.norms.select(Axis(0), rows);
@@ -124,7 +124,7 @@ impl<T: Scalar> CenteredRows<T> {
         }
     }
 
-    /// Returns a row and its squared norm.
+    /// Returns the values and the squared norm of one row.
     #[inline]
     pub fn row(&self, row: usize) -> (&[T], T) {
         (self.in_place().row(row), self.norms[row])
@@ -144,16 +144,16 @@ impl<T: Scalar> CenteredRows<T> {
     }
 }
 
-/// View of some [`CenteredRows`].
+/// View of a range of [`CenteredRows`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PointsView<'a, T> {
-    /// n × m.
+    /// Centred feature values, n × m.
     pub values: ArrayView2<'a, T>,
     norms: ArrayView1<'a, T>,
 }
 
 impl<T: Scalar> PointsView<'_, T> {
-    /// Returns `K(x, x)` per row.
+    /// Returns the diagonal of the Gram matrix: `K(x, x)` for each row x.
     pub fn diagonal(&self, kernel: &KernelFunction) -> Vec<T> {
         self.norms
             .iter()
@@ -161,14 +161,14 @@ impl<T: Scalar> PointsView<'_, T> {
             .collect()
     }
 
-    /// Returns `K(x_i, z_j)` with n other rows: shape n_rows × n.
+    /// Returns the kernel values `K(x_i, z_j)` between these rows and n other rows: shape n_rows × n.
     pub fn kernel(&self, others: PointsView<T>, kernel: &KernelFunction) -> Array2<T> {
         let mut values = Array2::zeros((self.values.nrows(), others.values.nrows()));
         self.write_kernel(others, kernel, values.view_mut());
         values
     }
 
-    /// Writes `K(x_i, z_j)` with n other rows into `to`, shape n_rows × n.
+    /// Writes the kernel values `K(x_i, z_j)` between these rows and n other rows into `to`, shape n_rows × n.
     pub fn write_kernel(
         &self,
         others: PointsView<T>,
@@ -179,14 +179,14 @@ impl<T: Scalar> PointsView<'_, T> {
         self.apply(to, others, kernel);
     }
 
-    /// Returns `K(x_i, x_j)`: n × n.
+    /// Returns the Gram matrix `K(x_i, x_j)` of these rows: n × n.
     pub fn own_kernel(&self, kernel: &KernelFunction) -> Array2<T> {
         let mut values = kernel.own_pairwise(self.values);
         self.apply(values.view_mut(), *self, kernel);
         values
     }
 
-    /// Converts [pairwise numbers](KernelFunction::pairwise) with other rows to kernel values, in place.
+    /// Converts [pairwise products](KernelFunction::pairwise) with other rows to kernel values, in place.
     pub fn apply(
         &self,
         mut pairwise: ArrayViewMut2<T>,

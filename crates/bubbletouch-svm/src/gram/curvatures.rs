@@ -1,26 +1,26 @@
-//! Inverse curvatures of the dual objective along pairs of variables, row by row of the Gram matrix.
+//! Inverse curvatures of the dual objective along pairs of variables, one row per variable.
 //!
-//! Rows are reused at every C and in every fold of a cross-validation.
+//! The rows are reused for every C and for every fold of a cross-validation.
 
 use crate::linalg::scalar::Scalar;
 
-/// Minimum curvature along a pair's line, relative to the Gram matrix's largest entry. Equal rows with different labels have zero curvature.
+/// Minimum curvature along a pair of variables, relative to the Gram matrix's largest entry. Equal rows with different labels have zero curvature.
 const SMALLEST_CURVATURE: f64 = 1e-12;
 
 /// Maximum number of rows for which all inverse curvatures are stored: 4 MB of f32.
 const MAX_KEPT: usize = 1000;
 
-/// Returns the minimum curvature, given the diagonal.
+/// Returns the minimum curvature, given the diagonal of the Gram matrix.
 fn smallest<T: Scalar>(diagonal: &[T]) -> T {
     let largest = diagonal.iter().fold(T::zero(), |a, &b| a.max(b));
     (T::from_f64(SMALLEST_CURVATURE) * largest).max(T::min_positive_value())
 }
 
-/// Rows of inverse curvatures. If the matrix has few rows, they are stored at first use.
+/// Inverse curvatures along all pairs of variables, row by row. If the matrix has few rows, each row is stored at first use.
 #[derive(Clone, Debug)]
 pub(crate) struct InverseCurvatures<T> {
     values: Vec<T>,
-    /// Whether each row is stored. Empty if no rows are stored; `values` then contains the last requested row.
+    /// Whether each row is stored. If empty, no rows are stored and `values` contains only the last requested row.
     is_here: Vec<bool>,
     smallest: T,
 }
@@ -34,7 +34,7 @@ impl<T: Scalar> InverseCurvatures<T> {
         }
     }
 
-    /// Resets the storage for another matrix of n rows with the given padded diagonal; reuses the memory.
+    /// Resets the storage for a Gram matrix of n rows with the given padded diagonal; the memory is reused.
     pub fn renew(&mut self, n: usize, diagonal: &[T]) {
         let n_kept = if n <= MAX_KEPT { n } else { 0 };
         self.is_here.clear();
@@ -46,12 +46,12 @@ impl<T: Scalar> InverseCurvatures<T> {
         self.smallest = smallest(diagonal);
     }
 
-    /// Returns the minimum curvature.
+    /// Returns the minimum curvature of a pair of variables.
     pub fn smallest(&self) -> T {
         self.smallest
     }
 
-    /// Returns the inverse curvatures along the lines of variable i and each other variable, given row i and the diagonal.
+    /// Returns the inverse curvatures along the pairs of variable i with every variable, given row i of the Gram matrix and its diagonal.
     #[inline(always)]
     pub fn of_row(&mut self, i: usize, row: &[T], diagonal: &[T]) -> &[T] {
         let (place, is_here) = match self.is_here.get_mut(i) {
@@ -66,7 +66,7 @@ impl<T: Scalar> InverseCurvatures<T> {
     }
 }
 
-/// Writes `1 / (K_ii + K_jj − 2 K_ij)`; the curvature is at least `smallest`.
+/// Writes the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)`; the curvature is at least `smallest`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn write<T: Scalar>(to: &mut [T], (row, diagonal): (&[T], &[T]), (own, smallest): (T, T)) {
     let n = to.len();

@@ -1,4 +1,4 @@
-//! Gram matrices as needed by the solver: two rows at a time, the diagonal, weighted sums of rows, and submatrices.
+//! Interface of the solver to a Gram matrix: two rows at a time, the diagonal, weighted sums of rows, and submatrices.
 
 use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2, s};
 
@@ -10,31 +10,32 @@ use crate::linalg::transposed::write_columns;
 
 /// Gram matrix K of a binary problem, n × n, symmetric and positive semidefinite. Rows are padded with zeros to whole lanes.
 pub(crate) trait Gram<T> {
-    /// Returns n.
+    /// Returns the number of rows n.
     fn len(&self) -> usize;
-    /// Returns rows i and j.
+    /// Returns rows i and j of the Gram matrix.
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
-    /// Returns row i and the diagonal, padded like a row.
+    /// Returns row i and the diagonal, both padded to whole lanes.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
-    /// Returns `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row. The curvature is at least [`smallest_curvature`](Self::smallest_curvature).
+    /// Returns the inverse curvature `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row. The curvature is at least
+    /// [`smallest_curvature`](Self::smallest_curvature).
     fn inverse_curvatures(&mut self, i: usize) -> &[T];
-    /// Returns the minimum curvature.
+    /// Returns the minimum curvature of a pair of variables.
     fn smallest_curvature(&self) -> T;
-    /// Returns `K β`, summed in f64 (n values).
+    /// Returns the product `K β`, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
-    /// Subtracts `K β` from f.
+    /// Subtracts the product `K β` from f.
     fn take_times(&mut self, beta: &[f64], f: &mut [f64]) {
         for (f, product) in f.iter_mut().zip(self.times(beta)) {
             *f -= product;
         }
     }
-    /// Returns whether a submatrix of n rows would fit in memory.
+    /// Returns whether a submatrix of n rows fits into the memory limit.
     fn fits(&self, n: usize) -> bool;
-    /// Returns the submatrix of the rows and columns at the given indices.
+    /// Returns the submatrix of the rows and columns with the given indices.
     fn part(&mut self, indices: &[usize]) -> Dense<T>;
 }
 
-/// A Gram matrix stored as a whole.
+/// Gram matrix with all values stored in memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Dense<T> {
     n: usize,
@@ -59,12 +60,12 @@ impl<T: Scalar> Default for Dense<T> {
 }
 
 impl<T: Scalar> Dense<T> {
-    /// Returns the bytes of a matrix of n rows.
+    /// Returns the size in bytes of a matrix of n rows.
     pub fn bytes(n: usize) -> usize {
         n * padded(n) * size_of::<T>()
     }
 
-    /// Replaces the matrix by one of n rows, in the existing memory. `fill` writes the n values of each row; values not filled must be written later.
+    /// Resizes the matrix to n rows in the existing memory. `fill` writes the n values of each row; values that it skips must be written later.
     pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
         self.n = n;
         self.stride = padded(n);
@@ -80,12 +81,12 @@ impl<T: Scalar> Dense<T> {
         self.inverses.renew(n, &self.diagonal);
     }
 
-    /// Copies a whole matrix.
+    /// Copies a complete matrix of kernel values.
     pub fn of_whole(&mut self, whole: ArrayView2<T>) {
         self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
     }
 
-    /// Builds the symmetric matrix of two groups of rows from the blocks within each group. `write` writes the block of the second group with the first.
+    /// Builds the symmetric matrix of two groups of rows from the blocks within each group. `write` writes the block between the second and the first group.
     pub fn of_blocks(
         &mut self,
         [own, others]: [ArrayView2<T>; 2],
@@ -112,14 +113,14 @@ impl<T: Scalar> Dense<T> {
         }
     }
 
-    /// Returns a row.
+    /// Returns a row of the matrix.
     #[inline(always)]
     pub fn row(&self, i: usize) -> &[T] {
         &self.values[i * self.stride..(i + 1) * self.stride]
     }
 }
 
-/// Copies a row.
+/// Copies the values of a matrix row.
 fn copy<T: Copy>(to: &mut [T], from: ArrayView1<T>) {
     match from.as_slice() {
         Some(from) => to.copy_from_slice(from),
@@ -170,7 +171,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     }
 }
 
-/// Copies the given columns of a row.
+/// Copies the values at the given columns of a row.
 pub(crate) fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
     for (to, &column) in to.iter_mut().zip(columns) {
         *to = from[column];

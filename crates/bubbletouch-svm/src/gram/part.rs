@@ -1,4 +1,4 @@
-//! A Gram matrix whose values are stored elsewhere; a row is assembled when the solver first requests it.
+//! Gram matrix with values stored elsewhere: a row is assembled when the solver first requests it.
 
 use super::curvatures::InverseCurvatures;
 use super::matrix::{Dense, Gram, gather};
@@ -6,7 +6,7 @@ use super::row_sums::weighted_sum;
 use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 
-/// Memory for the rows of a part, reused by successive parts.
+/// Memory for the rows of a submatrix, reused by successive submatrices.
 #[derive(Debug)]
 pub(crate) struct Workspace<T> {
     values: Vec<T>,
@@ -26,7 +26,7 @@ impl<T: Scalar> Workspace<T> {
     }
 }
 
-/// Gram matrix of n rows, given a function that writes the n values of a row.
+/// Gram matrix of n rows that are assembled on demand by a given function.
 pub(crate) struct Part<'a, T, F> {
     n: usize,
     stride: usize,
@@ -34,7 +34,7 @@ pub(crate) struct Part<'a, T, F> {
     workspace: &'a mut Workspace<T>,
 }
 
-/// Returns the Gram matrix of two classes, given the blocks within each class and both blocks across: first with second, and second with first.
+/// Returns the Gram matrix of two classes, given the blocks within each class and both blocks between them (first × second and second × first).
 pub(crate) fn part_of_blocks<'a, T: Scalar>(
     within: &'a [Vec<&[T]>; 2],
     across: &'a [Vec<&[T]>; 2],
@@ -64,7 +64,7 @@ pub(crate) fn part_of_blocks<'a, T: Scalar>(
 }
 
 impl<'a, T: Scalar, F: FnMut(usize, &mut [T])> Part<'a, T, F> {
-    /// Creates a Gram matrix with as many rows as the diagonal has values.
+    /// Creates a Gram matrix from its diagonal; the number of rows equals the length of the diagonal.
     pub fn new(
         diagonal: impl Iterator<Item = T>,
         write: F,

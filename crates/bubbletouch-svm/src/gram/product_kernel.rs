@@ -1,5 +1,5 @@
-//! Kernel values computed from pairwise numbers of all rows (products, for most kernels). Values within classes are computed once, values between two classes
-//! when their pair is solved, and values of a validation row when it is scored.
+//! Kernel values computed from pairwise products (or L1 distances) of all rows. Values within classes are computed once. Values between two classes are
+//! computed when their pair is solved, and values of a validation row when it is scored.
 
 use std::ops::Range;
 
@@ -10,20 +10,20 @@ use crate::gram::matrix::Dense;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 
-/// Kernel on rows with known pairwise numbers.
+/// Kernel on rows whose pairwise products (or L1 distances) are known.
 pub(crate) struct ProductKernel<'a, T> {
     points: &'a CenteredRows<T>,
     /// Row range of each class.
     ranges: &'a [Range<usize>],
-    /// Pairwise numbers, n × n.
+    /// Pairwise products or L1 distances of all rows, n × n.
     pairwise: ArrayView2<'a, T>,
     kernel: KernelFunction,
-    /// Kernel values within each class.
+    /// Kernel values between the rows of each class.
     within: Vec<Array2<T>>,
 }
 
 impl<'a, T: Scalar> ProductKernel<'a, T> {
-    /// Creates the kernel for rows sorted by class, given their pairwise numbers.
+    /// Creates the kernel for rows sorted by class, given their pairwise products or L1 distances.
     pub fn new(
         (points, ranges): (&'a CenteredRows<T>, &'a [Range<usize>]),
         pairwise: ArrayView2<'a, T>,
@@ -44,7 +44,7 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
         own
     }
 
-    /// Writes the kernel values of a class's rows with the rows of another class.
+    /// Writes the kernel values between the rows of one class and the rows of another class.
     fn write(&self, (class, other): (usize, usize), mut to: ArrayViewMut2<T>) {
         let (rows, others) = (self.ranges[class].clone(), self.ranges[other].clone());
         let pairwise = self.pairwise.slice(s![rows.clone(), others.clone()]);
@@ -53,7 +53,7 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
         rows.apply(to, others, &self.kernel);
     }
 
-    /// Writes the kernel values of all rows with each other.
+    /// Writes the Gram matrix of all rows.
     pub fn write_all(&self, to: &mut Dense<T>) {
         let (mut values, all) = (self.pairwise.to_owned(), self.points.all());
         all.apply(values.view_mut(), all, &self.kernel);
@@ -66,7 +66,7 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
         to.of_blocks(within, |below| self.write((second, first), below));
     }
 
-    /// Returns the kernel values of some rows with all rows.
+    /// Returns the kernel values between some rows and all rows.
     pub fn rows(&self, rows: &[usize]) -> Array2<T> {
         let mut values = self.pairwise.select(Axis(0), rows);
         let own = self.points.select(rows);

@@ -10,7 +10,7 @@ use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 
-/// Returns each pair of classes `(a, b)` with a < b, where a is in one range of classes and b in another; the ranges may be equal.
+/// Returns all pairs of classes `(a, b)` with a < b, where a is in one range of classes and b in another; the ranges may be equal.
 pub(crate) fn pairs(
     own: Range<usize>,
     other: Range<usize>,
@@ -22,7 +22,7 @@ pub(crate) fn pairs(
 #[derive(Clone)]
 pub(crate) struct Sorted<T> {
     points: CenteredRows<T>,
-    /// Original number of each sorted row.
+    /// Original row number of each sorted row.
     order: Vec<usize>,
     /// Sorted position of each original row.
     place: Vec<usize>,
@@ -33,12 +33,12 @@ pub(crate) struct Sorted<T> {
     centre: Array1<f64>,
     /// Square of the largest distance of a row from the centre.
     farthest: f64,
-    /// `(x − c)·c` per sorted row, which gives ρ about the origin for a linear kernel; empty for other kernels.
+    /// Projection `(x − c)·c` of each sorted row x onto the centre c, which gives ρ about the origin for a linear kernel; empty for other kernels.
     centre_products: Vec<f64>,
 }
 
 impl<T: Scalar> Sorted<T> {
-    /// Sorts rows by class; the order within a class is preserved.
+    /// Sorts rows by class and centres them; the order within a class is preserved.
     pub fn new(
         data: &Dataset,
         classes: &[usize],
@@ -48,7 +48,7 @@ impl<T: Scalar> Sorted<T> {
         Self::within_classes(data, classes, kernel, centre, |_| 0)
     }
 
-    /// Sorts rows by class, and within a class by a key.
+    /// Sorts rows by class, and within a class by the given key; centres them.
     pub fn within_classes(
         data: &Dataset,
         classes: &[usize],
@@ -89,7 +89,7 @@ impl<T: Scalar> Sorted<T> {
         }
     }
 
-    /// Returns the sorted rows in their coordinates along the given directions (k × m).
+    /// Returns the sorted rows in their coordinates along k directions (k × m).
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         Self {
             points: self.points.along(directions),
@@ -104,12 +104,12 @@ impl<T: Scalar> Sorted<T> {
         }
     }
 
-    /// Returns the rows, sorted by class.
+    /// Returns the centred rows, sorted by class.
     pub fn points(&self) -> &CenteredRows<T> {
         &self.points
     }
 
-    /// Returns the rows without the sorting.
+    /// Returns the centred rows and drops the class information.
     pub fn into_points(self) -> CenteredRows<T> {
         self.points
     }
@@ -124,12 +124,12 @@ impl<T: Scalar> Sorted<T> {
         &self.place
     }
 
-    /// Returns the kernel of all problems.
+    /// Returns the kernel function of all binary problems.
     pub fn kernel(&self) -> KernelFunction {
         self.kernel
     }
 
-    /// Returns the centre that was subtracted from every row.
+    /// Returns the centre that was subtracted from every row (m values).
     pub fn centre(&self) -> ArrayView1<'_, f64> {
         self.centre.view()
     }
@@ -139,7 +139,7 @@ impl<T: Scalar> Sorted<T> {
         self.farthest
     }
 
-    /// Returns ρ of a problem's decision function about the centre.
+    /// Returns the offset ρ of a binary problem's decision function about the centre of the rows.
     pub fn rho_about_centre(&self, problem: &BinaryProblem) -> f64 {
         problem.solution.rho
             - self.moved(
@@ -148,7 +148,7 @@ impl<T: Scalar> Sorted<T> {
             )
     }
 
-    /// Returns how much centring the rows changes the offset ρ of a decision function with these coefficients. It is 0 unless the kernel is linear.
+    /// Returns the change of the offset ρ that is caused by centring the rows, for the given coefficients. It is 0 unless the kernel is linear.
     pub fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
         if self.centre_products.is_empty() {
             return 0.0;
@@ -158,7 +158,7 @@ impl<T: Scalar> Sorted<T> {
             .sum()
     }
 
-    /// Returns the classes, ascending.
+    /// Returns the class labels, ascending.
     pub fn classes(&self) -> &[usize] {
         &self.classes
     }
@@ -176,7 +176,7 @@ impl<T: Scalar> Sorted<T> {
         &self.ranges
     }
 
-    /// Returns the rows of neighbouring classes.
+    /// Returns the row range of neighbouring classes.
     pub fn rows_of(&self, classes: &Range<usize>) -> Range<usize> {
         self.ranges[classes.start].start..self.ranges[classes.end - 1].end
     }

@@ -1,19 +1,20 @@
 //! Factors `L D Lᵀ` of a symmetric matrix, stored as rows of `D Lᵀ`: factorisation, solution of linear systems, and rank-one updates.
 //!
-//! Rows are stored in pieces; entries up to and including the diagonal are 0. The inverse of D is stored separately, with 0 for unused rows.
+//! Each row is stored in blocks of [`LANES`] values; entries up to and including the diagonal are 0. The inverse of D is stored separately, with 0 for unused
+//! rows.
 
-/// Number of values processed in parallel: four registers, so that no addition waits for the previous one.
+/// Number of values processed in parallel: four registers, so that no addition has to wait for the previous one.
 pub(crate) const LANES: usize = 32;
-/// Number of values of a right-hand side computed one after another.
+/// Number of values of a right-hand side that are computed one after another.
 const BLOCK: usize = 8;
-/// Threshold of linear independence, as a multiple of the ridge. After elimination, the diagonal of a dependent row is about the ridge; of a nearly dependent
-/// row, slightly more.
+/// Threshold of linear independence, as a multiple of the ridge. After elimination, the diagonal of a linearly dependent row is about the ridge; the diagonal
+/// of a nearly dependent row is slightly larger.
 const INDEPENDENT_FROM: f64 = 10.0;
 
-/// A piece of a row.
+/// Block of [`LANES`] consecutive values of a row.
 pub(crate) type Lanes = [f64; LANES];
 
-/// Factorises a symmetric matrix plus a ridge, given by its upper triangle, into `D Lᵀ` and 1/D, row by row.
+/// Factorises a symmetric matrix plus a ridge into `D Lᵀ` and 1/D, row by row, given the upper triangle of the matrix.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn eliminate(rows: &mut [Lanes], width: usize, inverse: &mut [f64], ridge: f64) {
     let n = inverse.len();
@@ -45,7 +46,7 @@ pub(crate) fn eliminate(rows: &mut [Lanes], width: usize, inverse: &mut [f64], r
     }
 }
 
-/// Solves `L v = side` in place for each right-hand side, piece by piece; the contributions of previous pieces are subtracted first.
+/// Solves `L v = side` in place for each right-hand side, block by block; the contributions of previous blocks are subtracted first.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute<const N: usize>(
     rows: &[Lanes],
@@ -71,7 +72,7 @@ pub(crate) fn substitute<const N: usize>(
     }
 }
 
-/// Subtracts the product of a piece of a row and a factor from each right-hand side.
+/// Subtracts the product of a block of a row and a factor from each right-hand side.
 #[inline(always)]
 fn take_product<const N: usize>(own: &mut [Lanes; N], factors: &[f64; N], row: &Lanes) {
     for side in 0..N {
@@ -113,7 +114,7 @@ pub(crate) fn substitute_back(rows: &[Lanes], width: usize, inverse: &[f64], sid
     }
 }
 
-/// Adds `weight · own ownᵀ` to the factorised matrix; the first of the given rows has the position `first`. `own` is overwritten.
+/// Adds the rank-one matrix `weight · own ownᵀ` to the factorised matrix; the first of the given rows has the position `first`. `own` is overwritten.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn add_product(
     rows: &mut [Lanes],

@@ -1,4 +1,4 @@
-//! Products of rows and factors of symmetric matrices.
+//! Linear algebra: products of rows and factors of symmetric matrices.
 
 pub(crate) mod centered_row;
 pub(crate) mod factors;

@@ -1,18 +1,18 @@
-//! Products of rows with other rows, by matrix products.
+//! Inner products between rows, computed by matrix products.
 
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::linalg::scalar::Scalar;
 
-/// Number of rows whose products with each other and with all previous rows form one matrix product. Of n rows, half of n / 256 are computed twice.
+/// Number of rows per matrix product when all rows are multiplied with each other and with all previous rows. A few products of each block are computed twice.
 const ROWS_AT_ONCE: usize = 128;
-/// Maximum number of rows multiplied without copying; for more rows, the packing of a matrix product is faster.
+/// Maximum number of rows multiplied without copying; for more rows, a packed matrix product is faster.
 pub(crate) const FEW_ROWS: usize = 4;
-/// Number of rows and columns mirrored at once: a cache line of f32.
+/// Number of rows and columns mirrored together: a cache line of f32.
 const TILE: usize = 16;
 
-/// Writes `x_i · z_j` of rows x (n_left × m) and rows z (n × m): shape n_left × n.
+/// Writes the inner products `x_i · z_j` of rows x (n_left × m) and rows z (n × m): shape n_left × n.
 pub(crate) fn multiply<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,
@@ -26,7 +26,7 @@ pub(crate) fn multiply<T: Scalar>(
     general_mat_mul(one, &right, &left.t(), zero, &mut to.reversed_axes());
 }
 
-/// Writes the products of a few rows with many rows without the copy of a matrix product. Returns `false`, and writes nothing, if this is not possible.
+/// Writes the inner products of a few rows with many rows, without packing. Returns `false`, and writes nothing, if this is not possible.
 fn in_place<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,
@@ -44,18 +44,18 @@ fn in_place<T: Scalar>(
     is_done
 }
 
-/// Returns the rows as slices, if each is contiguous.
+/// Returns the rows as slices; `None` if a row is not contiguous.
 fn slices<T>(rows: ArrayView2<'_, T>) -> Option<Vec<&[T]>> {
     let row = |row: usize| rows.index_axis_move(Axis(0), row).to_slice();
     (0..rows.nrows()).map(row).collect()
 }
 
-/// Returns `z_i · z_j` of all rows (n × m): n × n, symmetric.
+/// Returns the inner products `z_i · z_j` of all rows (n × m): a symmetric n × n matrix.
 pub(crate) fn own_products<T: Scalar>(rows: ArrayView2<T>) -> Array2<T> {
     with_each_other(rows, multiply)
 }
 
-/// Applies a symmetric `pairwise` function, such as [`multiply`], to all pairs of rows (n × m); half of the n × n result is copied.
+/// Applies a symmetric `pairwise` function, such as [`multiply`], to all pairs of rows (n × m). Half of the n × n result is copied from the other half.
 pub(crate) fn with_each_other<T: Scalar>(
     rows: ArrayView2<T>,
     pairwise: impl Fn(ArrayView2<T>, ArrayView2<T>, ArrayViewMut2<T>),
@@ -71,7 +71,7 @@ pub(crate) fn with_each_other<T: Scalar>(
     products
 }
 
-/// Copies the lower triangle to the upper triangle, in tiles that fit into the cache.
+/// Copies the lower triangle of a square matrix to the upper triangle, in tiles that fit into the cache.
 pub(crate) fn mirror<T: Copy>(square: &mut ArrayViewMut2<T>) {
     let n = square.nrows();
     for top in (0..n).step_by(TILE) {

@@ -1,4 +1,4 @@
-//! Products and weighted sums of a few rows among many.
+//! Inner products and weighted sums of a few selected rows of a large matrix.
 //!
 //! A matrix product first copies its rows into panels. For a few dozen rows with many features, the copy takes as long as the multiplications. If the
 //! processor supports it, rows are therefore multiplied [without copying](crate::linalg::row_tiles).
@@ -7,17 +7,17 @@ use ndarray::Array2;
 
 use crate::linalg::scalar::Scalar;
 
-/// Contiguous rows of a matrix.
+/// Rows of a matrix in contiguous memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a, T> {
-    /// All values, row by row.
+    /// All matrix values, row by row.
     pub values: &'a [T],
     /// Number of values per row.
     pub n_features: usize,
 }
 
 impl<'a, T: Scalar> Rows<'a, T> {
-    /// Adds weighted rows, given by number. Sums are in f64, because large weights may nearly cancel.
+    /// Adds weighted rows to `sums`; rows are given by number and weight. Sums are in f64, because large weights may nearly cancel.
     pub fn add_weighted(self, sums: &mut [f64], rows: impl Iterator<Item = (usize, f64)>) {
         let rows = rows.filter(|(_, weight)| *weight != 0.0);
         let mut weighing: Vec<(&[T], f64)> =
@@ -34,14 +34,14 @@ impl<'a, T: Scalar> Rows<'a, T> {
         }
     }
 
-    /// Returns a row.
+    /// Returns the row with the given number.
     #[inline(always)]
     pub fn row(self, row: usize) -> &'a [T] {
         &self.values[row * self.n_features..][..self.n_features]
     }
 }
 
-/// Writes the products of rows with other rows of equal length: rows.len() × others.len(), row by row.
+/// Writes the inner products of rows with other rows of equal length, row by row: rows.len() × others.len() values.
 pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) {
     if to.is_empty() || T::products_in_place(rows, others, to) {
         return;
@@ -57,7 +57,7 @@ pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) 
         .for_each(|(to, &from)| *to = from);
 }
 
-/// Adds four rows in one pass, so that the sums are read and written a quarter as often.
+/// Adds four weighted rows to the sums in one pass, so that the sums are read and written a quarter as often.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     let n = sums.len();

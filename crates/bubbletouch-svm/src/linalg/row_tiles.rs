@@ -1,10 +1,10 @@
-//! Products of a few f32 rows with a few others without copying; each row is read once for all products of a tile.
+//! Inner products of a few f32 rows with a few others without packing; each row is read once for all products of a tile.
 //!
-//! The code uses the processor's vector instructions. The compiler can generate them from plain loops, but not in every build. A build without them is ten
-//! times slower.
+//! The code uses the processor's vector instructions explicitly. The compiler can generate them from plain loops, but not in every build; a build without them
+//! is ten times slower.
 
-/// Writes the products of rows with other rows of equal length into `products`, row by row. Returns `false`, and writes nothing, if the processor lacks the
-/// instructions.
+/// Writes the inner products of rows with other rows of equal length into `products`, row by row. Returns `false`, and writes nothing, if the processor lacks
+/// the instructions.
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn products_in_place(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) -> bool {
@@ -29,12 +29,12 @@ pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bo
     false
 }
 
-/// Number of features processed at once; the rows of a tile stay in the first-level cache while the other rows are read.
+/// Number of features processed together; the rows of a tile then stay in the first-level cache while the other rows are read.
 #[cfg(target_arch = "x86_64")]
 const DEPTH: usize = 1024;
 
-/// Computes all tiles of N rows with M others by `tile`. An incomplete tile is filled with its last row. The code uses loops instead of iterators, because
-/// closures passed to the standard library are not always inlined.
+/// Computes the products of all rows in tiles of N rows with M others by the function `tile`. An incomplete tile is filled with its last row. The code uses
+/// loops instead of iterators, because closures passed to the standard library are not always inlined.
 #[cfg(target_arch = "x86_64")]
 fn by_tiles<'r, const N: usize, const M: usize>(
     (rows, others): (&[&'r [f32]], &[&'r [f32]]),
@@ -71,7 +71,7 @@ fn by_tiles<'r, const N: usize, const M: usize>(
     }
 }
 
-/// Writes a tile's products for the first features, and adds them for later features.
+/// Writes the products of a tile for the first block of features; adds them for later blocks.
 #[cfg(target_arch = "x86_64")]
 fn put(to: &mut [f32], products: &[f32], is_first: bool) {
     for (to, product) in to.iter_mut().zip(products) {
@@ -92,7 +92,7 @@ mod avx512 {
 
     /// Number of values in a vector register.
     const LANES: usize = 16;
-    /// Number of rows multiplied with N others at once; their sums are combined in one register.
+    /// Number of rows multiplied with N others in one tile; their sums are combined in one register.
     const N: usize = 4;
 
     #[target_feature(enable = "avx512f")]
@@ -103,7 +103,7 @@ mod avx512 {
         }
     }
 
-    /// Returns the products of one row with a few others, bitwise equal to those of a [`tile`].
+    /// Returns the inner products of one row with a few others, bitwise equal to those of a [`tile`].
     #[target_feature(enable = "avx512f")]
     fn row([left]: [&[f32]; 1], right: [&[f32]; N]) -> [f32; N] {
         let n = left.len();
@@ -132,7 +132,7 @@ mod avx512 {
         products
     }
 
-    /// Returns all products of a few rows with a few others. Each lane has its own sum; the lanes are added at the end.
+    /// Returns all inner products of a few rows with a few others. Each lane has its own sum; the lanes are added at the end.
     ///
     /// The sums of each row have separate variables, because the compiler stores an array of arrays in memory.
     #[target_feature(enable = "avx512f")]
@@ -201,7 +201,7 @@ mod avx512 {
         _mm512_add_ps(low, high)
     }
 
-    /// Adds neighbouring quarters: a₀ + a₁, a₂ + a₃, b₀ + b₁, b₂ + b₃.
+    /// Adds neighbouring quarters of two registers: a₀ + a₁, a₂ + a₃, b₀ + b₁, b₂ + b₃.
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn add_parts(a: __m512, b: __m512) -> __m512 {
@@ -221,7 +221,7 @@ mod avx2 {
 
     /// Number of values in a vector register.
     const LANES: usize = 8;
-    /// Number of rows multiplied with [`M`] others at once; the sums and the values read fill 16 vector registers.
+    /// Number of rows multiplied with [`M`] others in one tile; the sums and the loaded values fill 16 vector registers.
     const N: usize = 4;
     /// Number of other rows per tile; see [`N`].
     const M: usize = 3;
@@ -238,7 +238,7 @@ mod avx2 {
         }
     }
 
-    /// Returns all products of a few rows with a few others. Each lane has its own sum; the lanes are added at the end.
+    /// Returns all inner products of a few rows with a few others. Each lane has its own sum; the lanes are added at the end.
     ///
     /// The code uses loops instead of closures, because closures called by the standard library are compiled without vector instructions.
     #[target_feature(enable = "avx2,fma")]
@@ -285,7 +285,7 @@ mod avx2 {
         _mm256_setr_ps(a, b, c, d, e, f, g, h)
     }
 
-    /// Returns the sum of all lanes by repeated halving.
+    /// Returns the sum of all lanes of a register by repeated halving.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     fn sum(lanes: __m256) -> f32 {

@@ -6,13 +6,13 @@ use crate::linalg::row_tiles;
 
 /// Floating-point type of the values of a Gram matrix: f32 or f64.
 pub(crate) trait Scalar: NdFloat + Default {
-    /// Converts to the nearest value.
+    /// Converts an f64 to the nearest value of this type.
     fn from_f64(value: f64) -> Self;
-    /// Converts to f64 without rounding.
+    /// Converts a value to f64 without rounding.
     fn wide(self) -> f64;
     /// Replaces each squared distance by `exp(−γ · distance)`.
     fn exponentials(distances: &mut [Self], gamma: f64);
-    /// Writes the products of rows with other rows of equal length into `products`, row by row, without copying. Returns `false`, and writes nothing, if
+    /// Writes the inner products of rows with other rows of equal length into `products`, row by row, without packing. Returns `false`, and writes nothing, if
     /// there is no fast implementation.
     fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [Self]) -> bool {
         false
@@ -57,9 +57,9 @@ impl Scalar for f32 {
 /// the smallest normal number are 0. The code has no branches, so that it is vectorised.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn exponentials_f32(distances: &mut [f32], gamma: f32) {
-    /// 1.5 · 2²³: adding it rounds to an integer, which is then contained in the low bits.
+    /// Rounding constant 1.5 · 2²³: adding it rounds a number to an integer, which is then contained in the low bits.
     const ROUND: f32 = 12_582_912.0;
-    /// Smallest exponent; below it, the result is less than the smallest normal number.
+    /// Smallest exponent of a normal result; below it, `exp` is less than the smallest normal number.
     const LOWEST: f32 = -87.336_54;
     for value in distances {
         let x = (-gamma * *value).max(LOWEST);

@@ -1,9 +1,9 @@
 //! Transposition of several rows at once.
 
-/// Number of rows transposed at once: a cache line of f32.
+/// Number of rows transposed together: a cache line of f32.
 const TILE: usize = 16;
 
-/// Writes rows of equal length as columns: value `j` of row `i` is written to `j · stride + i`.
+/// Writes rows of equal length as matrix columns: value `j` of row `i` is written to `j · stride + i`.
 pub(crate) fn write_columns<T: Copy>(rows: &[&[T]], to: &mut [T], stride: usize) {
     let (tiles, last) = rows.as_chunks::<TILE>();
     for (number, tile) in tiles.iter().enumerate() {

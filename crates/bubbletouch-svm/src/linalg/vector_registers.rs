@@ -1,10 +1,10 @@
-//! Conversion between arrays and vector registers of 16 values, without pointers.
+//! Conversion between arrays and vector registers of 16 f32 values, without pointers.
 
 use std::arch::x86_64::{
     __m128, __m512, _mm_cvtss_f32, _mm_shuffle_ps, _mm512_extractf32x4_ps, _mm512_setr_ps,
 };
 
-/// Loads a register; the compiler generates one instruction.
+/// Loads an array into a register; the compiler generates one instruction.
 #[inline]
 #[target_feature(enable = "avx512f")]
 pub(crate) fn load(values: &[f32; 16]) -> __m512 {

@@ -1,8 +1,10 @@
 //! Dual coordinate descent for the binary linear SVM with hinge loss [Hsieh et al. 2008, algorithm 3; LIBLINEAR].
 //!
-//! Minimises `½|w|² − Σ_i a_i` over `0 ≤ a_i ≤ C`, with `w = Σ_i y_i a_i x_i`. The coordinates are updated one at a time, in random order: a_i is set to its
-//! optimum `clamp(a_i − G/|x_i|², 0, C)` with `G = y_i w·x_i − 1`, and w is updated. Shrinking: a row is skipped if its multiplier is at a bound and its
-//! gradient pushes it there by more than any violation of the last pass. When the remaining rows have converged, all rows are visited again.
+//! Minimises `½|w|² − Σ_i a_i` over `0 ≤ a_i ≤ C`, with `w = Σ_i y_i a_i x_i`. The coordinates are updated one by one, in random order: a_i is set to its
+//! optimum `clamp(a_i − G/|x_i|², 0, C)` with `G = y_i w·x_i − 1`, and w is updated.
+//!
+//! Shrinking: a row is skipped if its multiplier is at a bound and its gradient pushes it against the bound by more than any violation of the last pass. When
+//! the remaining rows have converged, all rows are visited again.
 
 use ndarray::{Array2, ArrayView2, s};
 use rand::Rng;
@@ -14,19 +16,19 @@ use crate::{Error, Result};
 /// benefit.
 const LANES: usize = 8;
 
-/// Changes of multipliers, and gradients, below this value are rounding errors.
+/// Changes of multipliers, and gradients, below this limit are rounding errors.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
-/// Multipliers of a solved problem, and the state of the solver at the end.
+/// Multipliers of a solved problem, and the final state of the solver.
 #[derive(Clone, Debug)]
 pub(crate) struct Solved {
-    /// Signed multipliers: `w = Σ a_i x_i`.
+    /// Signed multipliers `y_i a_i`; the weights are their sum over the rows, `w = Σ y_i a_i x_i`.
     pub multipliers: Vec<f64>,
     pub n_passes: usize,
     pub is_capped: bool,
 }
 
-/// Training rows with an appended bias feature, padded with zeros: contiguous, in f64.
+/// Training rows with an appended bias feature, padded with zeros to whole lanes: contiguous, in f64.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
     values: Array2<f64>,
@@ -34,7 +36,7 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// Copies the features (n × m, finite).
+    /// Copies finite features (n × m) and appends the bias feature.
     pub(crate) fn new(features: ArrayView2<f64>) -> Result<Self> {
         let (n_rows, m) = features.dim();
         let mut values = Array2::zeros((n_rows, (m + 1).next_multiple_of(LANES)));
@@ -58,7 +60,7 @@ impl Rows {
         self.squared_norms.len()
     }
 
-    /// Returns m + 1, padded to whole lanes.
+    /// Returns the padded row length: m + 1, rounded up to whole lanes.
     pub(crate) fn width(&self) -> usize {
         self.values.ncols()
     }
@@ -69,13 +71,13 @@ impl Rows {
         &self.values.as_slice().unwrap_or_default()[row * width..][..width]
     }
 
-    /// Returns `|x|²`, at least 1 because of the bias feature.
+    /// Returns the squared norm `|x|²` of a row, at least 1 because of the bias feature.
     pub(crate) fn squared_norm(&self, row: usize) -> f64 {
         self.squared_norms[row]
     }
 }
 
-/// Solves one binary problem with y = `sign` (±1 per row); returns the signed multipliers `y_i a_i`.
+/// Solves one binary problem with labels `sign` (±1 per row); returns the signed multipliers `y_i a_i`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn solve(
     rows: &Rows,
@@ -143,7 +145,7 @@ fn solved(alpha: Vec<f64>, sign: &[f64], n_passes: usize, is_capped: bool) -> So
     }
 }
 
-/// Returns `a·b` of padded rows.
+/// Returns the inner product `a·b` of two padded rows.
 #[inline(always)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (a.as_chunks::<LANES>().0, b.as_chunks::<LANES>().0);
@@ -156,7 +158,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
-/// Computes `w += factor · x` for padded rows.
+/// Adds a multiple of a padded row to the weights: `w += factor · x`.
 #[inline(always)]
 pub(crate) fn add_scaled(w: &mut [f64], factor: f64, x: &[f64]) {
     let n = w.len().min(x.len());

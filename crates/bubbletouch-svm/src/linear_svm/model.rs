@@ -23,7 +23,7 @@ pub struct Convergence {
     pub is_capped: bool,
 }
 
-/// A trained linear SVM; its scores are decision values.
+/// Trained linear SVM; its scores are decision values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearSvm {
     classes: Vec<usize>,
@@ -32,10 +32,10 @@ pub struct LinearSvm {
 }
 
 impl LinearSvmParams {
-    /// Trains on labelled rows. The order of visits to the rows is drawn from `seed`.
+    /// Trains the linear SVM on labelled rows. The rows are visited in an order drawn from `seed`.
     ///
     /// # Errors
-    /// If C, the tolerance or the cap is out of range, the data are empty, or a feature is NaN, infinite or too large to square. If the number of labels
+    /// If C, the tolerance or the cap is out of range; if the data are empty, or a feature is NaN, infinite or too large to square; if the number of labels
     /// differs from the number of rows, or there is a single class.
     pub fn train(&self, data: &Dataset, seed: &dyn Streams) -> Result<LinearSvm> {
         self.check()?;
@@ -99,12 +99,12 @@ impl LinearSvmParams {
 }
 
 impl LinearSvm {
-    /// Returns the weights and biases.
+    /// Returns the weights and biases of the trained model.
     pub fn model(&self) -> &LinearModel {
         &self.model
     }
 
-    /// Returns the convergence of each class's problem.
+    /// Returns the convergence of the solver for each class's binary problem.
     pub fn convergence(&self) -> &[Convergence] {
         &self.convergence
     }
@@ -127,7 +127,7 @@ impl ClassModel for LinearSvm {
     }
 }
 
-/// Computes `w_k = Σ_i a_ki x_i` and `b_k = Σ_i a_ki` from the multipliers, without the accumulated rounding of the updates.
+/// Computes the weights `w_k = Σ_i a_ki x_i` and biases `b_k = Σ_i a_ki` from the multipliers, without the accumulated rounding of the updates.
 fn weights(multipliers: &Array2<f64>, features: ArrayView2<f64>) -> LinearModel {
     LinearModel {
         weights: multipliers.dot(&features),
@@ -135,7 +135,7 @@ fn weights(multipliers: &Array2<f64>, features: ArrayView2<f64>) -> LinearModel 
     }
 }
 
-/// Returns `|w_k|² + b_k²` per class.
+/// Returns the squared norm `|w_k|² + b_k²` for each class.
 fn squared_norms(model: &LinearModel) -> Array1<f64> {
     let weights = model.weights.slice(s![.., ..]);
     weights.map_axis(Axis(1), |w| w.dot(&w)) + model.bias.mapv(|b| b * b)

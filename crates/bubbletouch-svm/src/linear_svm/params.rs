@@ -1,24 +1,23 @@
-//! Parameters of linear SVMs.
+//! Parameters of linear SVMs that are trained by coordinate descent.
 
 use crate::{Error, Result};
 
 /// Default maximum number of passes over the rows: scikit-learn's default for LinearSVC.
 pub const MAX_PASSES: usize = 1000;
 
-/// Parameters of a linear SVM.
+/// Parameters of a linear SVM that is trained by coordinate descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearSvmParams {
     /// Penalty C > 0 per unit of margin violation.
     pub c: f64,
-    /// Stopping tolerance, above 0: the largest violation of the optimality conditions (spread of projected gradients), in units of the margin.
-    /// scikit-learn's default for LinearSVC is 1e-4.
+    /// Stopping tolerance, above 0: the spread of the projected gradients, in units of the margin. scikit-learn's default for LinearSVC is 1e-4.
     pub tolerance: f64,
-    /// Maximum number of passes over the rows, at least 1; beyond it, the solver stops and marks the problem as capped.
+    /// Maximum number of passes over the rows, at least 1. At this limit, the solver stops and marks the problem as capped.
     pub max_passes: usize,
 }
 
 impl Default for LinearSvmParams {
-    /// C = 1, tolerance 1e-3, [`MAX_PASSES`].
+    /// Returns the defaults: C = 1, tolerance 1e-3, [`MAX_PASSES`].
     fn default() -> Self {
         Self {
             c: 1.0,

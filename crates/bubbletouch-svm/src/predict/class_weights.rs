@@ -1,4 +1,4 @@
-//! Coefficients of the support vectors of one class in its binary problems.
+//! Coefficients of one class's support vectors in all binary problems of the class.
 
 use std::ops::Range;
 
@@ -8,19 +8,19 @@ use crate::binary_problem::BinaryProblem;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 
-/// Coefficients of one class's support vectors in the problems of the class.
+/// Coefficients of one class's support vectors in all binary problems of the class.
 #[derive(Clone, Debug)]
 pub(crate) struct ClassWeights<T> {
     /// Range of the class's support vectors.
     pub vectors: Range<usize>,
-    /// Numbers of the class's problems, ascending; for one-vs-one, the problems with the other classes in order.
+    /// Numbers of the binary problems of the class, ascending; for one-vs-one, in the order of the other classes.
     pub problems: Vec<usize>,
-    /// Coefficients, problems.len() × vectors.len().
+    /// Coefficients `y_i a_i`, problems.len() × vectors.len().
     pub coefficients: Array2<T>,
 }
 
 impl<V: Scalar> ClassWeights<V> {
-    /// Creates zero coefficients of a class in the given problems (positive and negative class).
+    /// Creates zero coefficients for a class in the given binary problems (pairs of positive and negative class).
     pub fn zeros(
         class: usize,
         vectors: Range<usize>,
@@ -38,7 +38,7 @@ impl<V: Scalar> ClassWeights<V> {
         }
     }
 
-    /// Creates the coefficients of all rows of a class.
+    /// Creates the coefficients of a class for all its rows.
     pub fn new<T: Scalar>(
         sorted: &Sorted<T>,
         class: usize,
@@ -60,7 +60,7 @@ impl<V: Scalar> ClassWeights<V> {
         weights
     }
 
-    /// Sets the coefficients of a problem; ignored if the class does not take part in the problem.
+    /// Sets the coefficients of a binary problem; does nothing if the class is not part of the problem.
     pub fn set(&mut self, problem: usize, coefficients: &[f64]) {
         if let Ok(place) = self.problems.binary_search(&problem) {
             let own = self.coefficients.row_mut(place);
@@ -70,7 +70,7 @@ impl<V: Scalar> ClassWeights<V> {
         }
     }
 
-    /// Keeps only rows with a non-zero coefficient in some problem, and appends their numbers to `support`.
+    /// Removes the rows whose coefficients are zero in all problems, and appends the numbers of the remaining rows to `support`.
     pub fn of_support(self, support: &mut Vec<usize>) -> Self {
         let is_support = |at: &usize| {
             self.coefficients
@@ -91,7 +91,7 @@ impl<V: Scalar> ClassWeights<V> {
     }
 }
 
-/// Returns `Σ y a K(x_i, x)`, n_problems × rows, given the kernel values (rows × vectors) and the coefficients of each class.
+/// Returns the sums `Σ_i y_i a_i K(x_i, x)`, n_problems × rows, given the kernel values (rows × vectors) and the coefficients of each class.
 pub(crate) fn weighted_sums<T: Scalar>(
     weights: &[ClassWeights<T>],
     kernel_values: ArrayView2<T>,
@@ -110,7 +110,7 @@ pub(crate) fn weighted_sums<T: Scalar>(
 }
 
 impl ClassWeights<f64> {
-    /// Adds `Σ y_i a_i x_i` of the class's rows to the normals of its problems (n_problems × m).
+    /// Adds the class's part `Σ y_i a_i x_i` to the hyperplane normals of its problems (n_problems × m).
     pub fn add_to<T: Scalar>(&self, normals: &mut Array2<f64>, sorted: &Sorted<T>) {
         let points = sorted.points().in_place();
         for (weights, &problem) in self.coefficients.rows().into_iter().zip(&self.problems) {

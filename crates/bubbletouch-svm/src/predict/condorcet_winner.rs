@@ -1,10 +1,10 @@
-//! Condorcet winner: the class that wins all its pairs, found without evaluating all pairs of the other classes.
+//! Condorcet winner: the class that wins all its pairs, found without evaluating every pair of classes.
 //!
-//! One-vs-one elects the class with the most votes. If one of n classes wins all its n − 1 pairs, it is elected, because every other class has lost a pair. A
-//! knock-out finds the only candidate with n − 1 pairs. The candidate must then win the pairs not yet evaluated, so at most 2 (n − 1) of n (n − 1) / 2 pairs
-//! are evaluated. On touches of 43 objects, 99 rows of 100 have a Condorcet winner.
+//! One-vs-one predicts the class with the most votes. If one of n classes wins all its n − 1 pairs, it has the most votes, because every other class has lost a
+//! pair. A knock-out finds the only possible winner of n − 1 pairs. This candidate must then win its pairs that are not yet evaluated, so at most 2 (n − 1) of
+//! n (n − 1) / 2 pairs are evaluated. On touches of 43 objects, 99 rows of 100 have a Condorcet winner.
 //!
-//! A pair counts only if the distance of its value from ρ exceeds the rounding error. Its sign then does not depend on the order of summation.
+//! A pair is decided only if its value differs from ρ by more than the rounding error. The result then does not depend on the order of summation.
 //!
 //! For few rows, kernel values are computed on demand. Support vectors of pairs that are not evaluated are not read.
 
@@ -16,18 +16,18 @@ use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 use crate::predict::class_weights::ClassWeights;
 
-/// Number of parallel partial sums, so that no addition waits for the previous one. `WIDE` is the number for contiguous products: one vector register.
+/// Number of parallel partial sums, so that no addition has to wait for the previous one. `WIDE` is the number for contiguous products: one vector register.
 const LANES: usize = 4;
 const WIDE: usize = 16;
 
-/// Decision functions of all pairs of classes, each with its own support vectors only. Of the support vectors of two classes, most have zero coefficients in
-/// their pair.
+/// Decision functions of all pairs of classes, each with only its own support vectors. Most support vectors of two classes have zero coefficients in their
+/// pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Pairs<T> {
     n_classes: usize,
-    /// Support vectors and coefficients, pair by pair.
+    /// Pairs (support vector, coefficient) of all decision functions, pair of classes by pair of classes.
     terms: Vec<(u32, T)>,
-    /// End of the terms of each pair, and its ρ; the pairs are in the order (0, 1), (0, 2), …, (1, 2), ….
+    /// End index in `terms` and offset ρ of each pair, in the order (0, 1), (0, 2), …, (1, 2), ….
     ends: Vec<(usize, f64)>,
 }
 
@@ -55,8 +55,8 @@ impl<T: Scalar> Pairs<T> {
         }
     }
 
-    /// Returns the Condorcet winner of each row of kernel values (n × n_vectors). Returns `None` if no class wins all its pairs, or if rounding could change
-    /// the result of a pair.
+    /// Returns the Condorcet winner of each row of kernel values (n × n_vectors). An entry is `None` if no class wins all its pairs, or if rounding could
+    /// change the result of a pair.
     pub fn condorcet_winners(&self, kernel_values: ArrayView2<T>) -> Vec<Option<usize>> {
         let rows = kernel_values.rows().into_iter();
         let rows = rows.map(|row| row.to_slice().expect("they lie row by row"));
@@ -69,7 +69,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// Returns the Condorcet winner of each of a few rows (n × m); only the required kernel values are computed.
+    /// Returns the Condorcet winner of each of a few feature rows (n × m); only the required kernel values are computed.
     pub fn condorcet_winners_by_few(
         &self,
         rows: &CenteredRows<T>,
@@ -86,7 +86,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// Returns the terms of a pair, and its ρ.
+    /// Returns the terms (support vector, coefficient) of a pair, and its offset ρ.
     #[inline(always)]
     fn pair(&self, pair: usize) -> (&[(u32, T)], f64) {
         let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };
@@ -94,7 +94,7 @@ impl<T: Scalar> Pairs<T> {
         (&self.terms[start..end], rho)
     }
 }
-/// Returns the Condorcet winner of each row (n × m), given the hyperplanes' normals (n_pairs × m) and ρ of all pairs of the classes.
+/// Returns the Condorcet winner of each feature row (n × m), given the hyperplane normals (n_pairs × m) and offsets ρ of all pairs of classes.
 pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     n_classes: usize,
     (normals, rho): (ArrayView2<'a, T>, ArrayView1<'a, f64>),
@@ -112,21 +112,21 @@ pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     (0..rows.len()).map(of_row).collect()
 }
 
-/// Decision function of each pair of classes for one row.
+/// Interface to the decision functions of all pairs of classes for one row.
 trait Decides<T> {
     fn n_classes(&self) -> usize;
 
-    /// Returns `Σ w k` of a pair, `Σ |w k|`, the number of terms, and ρ.
+    /// Returns the sum `Σ w k` of a pair, its absolute sum `Σ |w k|`, the number of terms, and the offset ρ.
     fn value(&mut self, pair: usize) -> (T, T, usize, f64);
 }
 
-/// Kernel values of one row with all support vectors.
+/// Interface to the kernel values of one row with all support vectors.
 trait KernelValues<T> {
-    /// Returns a slice of all kernel values; only the values of `terms` must be valid.
+    /// Returns a slice of all kernel values; only the values of the support vectors in `terms` must be valid.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T];
 }
 
-/// All kernel values are known.
+/// Kernel values that are all known in advance.
 impl<T> KernelValues<T> for &[T] {
     #[inline(always)]
     fn with(&mut self, _: &[(u32, T)]) -> &[T] {
@@ -134,7 +134,7 @@ impl<T> KernelValues<T> for &[T] {
     }
 }
 
-/// Decision functions evaluated with kernel values.
+/// Decision functions that are evaluated from kernel values.
 struct ByKernel<'a, T, K> {
     pairs: &'a Pairs<T>,
     kernel_values: K,
@@ -154,16 +154,16 @@ impl<T: Scalar, K: KernelValues<T>> Decides<T> for ByKernel<'_, T, K> {
     }
 }
 
-/// Kernel values computed when a pair first requires them.
+/// Kernel values that are computed when a pair first requires them.
 struct RowKernelValues<'a, T> {
     kernel: &'a KernelFunction,
     vectors: &'a CenteredRows<T>,
-    /// The row and its squared norm.
+    /// Feature row and its squared norm.
     row: (&'a [T], T),
-    /// Kernel value of each support vector.
+    /// Kernel value of the row with each support vector.
     kernel_values: Vec<T>,
     is_known: Vec<bool>,
-    /// Support vectors computed together: numbers, rows, squared norms and kernel values.
+    /// Buffers for support vectors that are computed together: numbers, rows, squared norms and kernel values.
     asked: Vec<u32>,
     others: Vec<&'a [T]>,
     norms: Vec<T>,
@@ -187,7 +187,7 @@ impl<'a, T: Scalar> RowKernelValues<'a, T> {
 }
 
 impl<T: Scalar> KernelValues<T> for RowKernelValues<'_, T> {
-    /// Computes the unknown kernel values of the terms.
+    /// Computes the missing kernel values of the given terms, and returns all kernel values.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T] {
         self.asked.clear();
         self.others.clear();
@@ -214,7 +214,7 @@ impl<T: Scalar> KernelValues<T> for RowKernelValues<'_, T> {
     }
 }
 
-/// Decision functions evaluated with the hyperplanes' normals.
+/// Decision functions that are evaluated from the hyperplane normals.
 struct Hyperplanes<'a, T> {
     n_classes: usize,
     normals: &'a [T],
@@ -253,7 +253,7 @@ fn condorcet_winner<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
     Some(champion)
 }
 
-/// Returns whether class `first` wins against class `second`, with first < second; `None` if rounding could change the result.
+/// Returns whether class `first` wins against class `second` (first < second); `None` if rounding could change the result.
 #[inline(always)]
 fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize)) -> Option<bool> {
     let pair = first * (2 * pairs.n_classes() - first - 1) / 2 + second - first - 1;
@@ -271,7 +271,7 @@ fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize))
     }
 }
 
-/// Returns `Σ w x` and `Σ |w x|` of a normal w and a row x.
+/// Returns `Σ w x` and `Σ |w x|` for a normal w and a row x.
 #[inline(always)]
 fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     let (mut sums, mut sizes) = ([T::zero(); WIDE], [T::zero(); WIDE]);
@@ -297,7 +297,7 @@ fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     (sum, size)
 }
 
-/// Returns `Σ w k` and `Σ |w k|` of coefficients w and their kernel values k.
+/// Returns `Σ w k` and `Σ |w k|` for coefficients w and kernel values k.
 #[inline(always)]
 fn sum_and_size<T: Scalar>(terms: &[(u32, T)], kernel_values: &[T]) -> (T, T) {
     let (mut sum, mut size) = ([T::zero(); LANES], [T::zero(); LANES]);

@@ -15,26 +15,26 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Number of rows per block of decision values. If smaller, the packing of the support vectors dominates; if larger, the kernel values (10 MB with 5,000
+/// Number of rows per block of decision values. If smaller, packing the support vectors dominates the time; if larger, the kernel values (10 MB with 5,000
 /// support vectors) take much memory.
 const BLOCK_ROWS: usize = 512;
 
-/// Decision functions `Σ y a K(x_i, x) − ρ` of all problems.
+/// Decision functions `Σ y_i a_i K(x_i, x) − ρ` of all binary problems.
 #[derive(Clone, Debug)]
 pub(crate) struct DecisionFunctions<T> {
-    /// Centre subtracted from support vectors and from rows to predict.
+    /// Centre that is subtracted from support vectors and from rows to predict (m values).
     centre: Array1<f64>,
-    /// Offset ρ per problem; for a linear kernel, about the centre.
+    /// Offset ρ of each problem; for a linear kernel, about the centre.
     rho: Array1<f64>,
     sums: Sums<T>,
 }
 
-/// The sums `Σ y a K(x_i, x)` of all problems.
+/// Representation of the sums `Σ y_i a_i K(x_i, x)` of all problems.
 #[derive(Clone, Debug)]
 enum Sums<T> {
-    /// Normals of the hyperplanes, n_problems × m.
+    /// Normals of the hyperplanes of linear problems, n_problems × m.
     Hyperplanes(Array2<T>),
-    /// Weighted sums of kernel values.
+    /// Support vectors and their coefficients.
     Support(Support<T>),
 }
 
@@ -44,13 +44,13 @@ struct Support<T> {
     kernel: KernelFunction,
     vectors: CenteredRows<T>,
     weights: Vec<ClassWeights<T>>,
-    /// Decision functions of single pairs, for one-vs-one.
+    /// Decision functions of single pairs of classes, for one-vs-one.
     pairs: Option<Pairs<T>>,
 }
 
 impl<T: Scalar> DecisionFunctions<T> {
-    /// Creates the decision functions of problems trained on the given rows. Owned rows are reduced to the support vectors in place. The normals of linear
-    /// problems are computed unless given.
+    /// Creates the decision functions of binary problems trained on the given rows. Owned rows are reduced to the support vectors in place. The normals of
+    /// linear problems are computed unless given.
     pub fn new(
         rows: Cow<Sorted<T>>,
         problems: &[BinaryProblem],
@@ -98,7 +98,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         Self { centre, rho, sums }
     }
 
-    /// Returns the decision values of rows (n × m): n × n_problems.
+    /// Returns the decision values of all problems for each row of features (n × m): n × n_problems.
     pub fn values(&self, features: ArrayView2<f64>) -> Array2<f64> {
         let mut values = Array2::zeros((features.nrows(), self.rho.len()));
         let mut room = self.allocate_kernel_values(features.nrows());
@@ -111,7 +111,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         values
     }
 
-    /// Returns the position of the class with the most votes for each row.
+    /// Returns the class position with the most votes for each row.
     pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
         let elect = |sums: Array2<T>| VoteCounter::elect(&sums, self.rho.view(), between, |_| true);
         let mut room = self.allocate_kernel_values(features.nrows());
@@ -168,7 +168,7 @@ impl<T: Scalar> DecisionFunctions<T> {
             .map(|rows| CenteredRows::new(rows, self.centre.view()))
     }
 
-    /// Allocates memory for the kernel values of a block; it is reused by all blocks.
+    /// Allocates memory for the kernel values of one block of rows; all blocks reuse it.
     fn allocate_kernel_values(&self, n_rows: usize) -> Array2<T> {
         let n_vectors = match &self.sums {
             Sums::Hyperplanes(_) => 0,
@@ -177,7 +177,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors))
     }
 
-    /// Returns `Σ y a K(x_i, x)` of some rows, n_problems × rows, so that the values of a problem are contiguous.
+    /// Returns the sums `Σ y_i a_i K(x_i, x)` of some rows, n_problems × rows, so that the values of a problem are contiguous.
     fn sums_of(&self, points: &CenteredRows<T>, room: &mut Array2<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => {
@@ -197,7 +197,7 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 }
 
-/// Returns the winners of all rows; the winners of undecided rows are elected by `elect`, given their numbers.
+/// Returns the predicted classes of all rows; `elect` classifies the undecided rows, given their numbers.
 fn elect_open(
     mut winners: Vec<Option<usize>>,
     elect: impl FnOnce(&[usize]) -> Vec<usize>,
@@ -213,7 +213,7 @@ fn elect_open(
 }
 
 impl<T: Scalar> Support<T> {
-    /// Returns `K(x, x_i)`: rows × vectors.
+    /// Returns the kernel values `K(x, x_i)` between rows and support vectors: rows × vectors.
     fn kernel_values<'a>(
         &self,
         points: &CenteredRows<T>,

@@ -1,4 +1,4 @@
-//! Decision values and labels, by matrix products.
+//! Prediction: decision values and labels, computed by matrix products.
 
 pub(crate) mod class_weights;
 pub(crate) mod condorcet_winner;

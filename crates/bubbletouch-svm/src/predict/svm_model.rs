@@ -1,4 +1,4 @@
-//! A trained SVM: decision values and labels, by matrix products.
+//! Trained SVM that predicts decision values and labels by matrix products.
 //!
 //! For a block of rows, one matrix product computes the kernel values with all support vectors of a class. A second product applies their coefficients in all
 //! binary problems. A linear SVM needs one product with its hyperplanes. The products have the precision of training. Labels of one-vs-one SVMs with a kernel
@@ -20,7 +20,7 @@ use crate::predict::decision::DecisionFunctions;
 use crate::predict::voting::Voting;
 use crate::training::Trained;
 
-/// A trained SVM. Implements linfa's [`PredictInplace`] and so its `Predict`.
+/// Trained SVM.
 #[derive(Clone, Debug)]
 pub struct SvmModel {
     voting: Voting,
@@ -66,7 +66,7 @@ impl SvmModel {
         }
     }
 
-    /// Returns the classes of the training rows, ascending. Predictions are among them.
+    /// Returns the class labels of the training rows, ascending. Every predicted label is one of them.
     pub fn classes(&self) -> &[usize] {
         self.voting.classes()
     }
@@ -94,7 +94,7 @@ impl SvmModel {
         })
     }
 
-    /// Returns the predicted label of each row.
+    /// Returns the predicted label of each row of features (n_rows × m).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.
@@ -111,7 +111,7 @@ impl SvmModel {
             .collect())
     }
 
-    /// Returns the label of each row of decision values (n_rows × n_problems). A row may be the sum over several touches of one object.
+    /// Returns the predicted label for each row of decision values (n_rows × n_problems). A row may be the sum over several touches of one object.
     pub fn labels_of_values(&self, values: ArrayView2<f64>) -> Array1<usize> {
         self.voting.labels(values)
     }

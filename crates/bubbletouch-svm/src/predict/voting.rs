@@ -1,12 +1,12 @@
-//! Combination of the decision values of binary problems to one class.
+//! Combination of the decision values of all binary problems into one predicted class.
 
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 
 use crate::linalg::scalar::Scalar;
 use crate::multiclass::Multiclass;
 
-/// Rule that converts decision values to a class. One-vs-one has one value per pair of class positions (0, 1), (0, 2), …, (1, 2), …, where the first class is
-/// positive. One-vs-rest has one value per class.
+/// Rule that converts decision values into a class. One-vs-one has one value per pair of class positions (0, 1), (0, 2), …, (1, 2), …; the first class of a
+/// pair is positive. One-vs-rest has one value per class.
 #[derive(Clone, Debug)]
 pub(crate) struct Voting {
     classes: Vec<usize>,
@@ -14,7 +14,7 @@ pub(crate) struct Voting {
 }
 
 impl Voting {
-    /// Creates the rule for the given classes, ascending.
+    /// Creates the voting rule for the given class labels, ascending.
     pub fn new(classes: &[usize], multiclass: Multiclass) -> Self {
         Self {
             classes: classes.to_vec(),
@@ -22,17 +22,17 @@ impl Voting {
         }
     }
 
-    /// Returns the classes, ascending.
+    /// Returns the class labels, ascending.
     pub fn classes(&self) -> &[usize] {
         &self.classes
     }
 
-    /// Returns the combination of binary problems.
+    /// Returns the multi-class strategy.
     pub fn multiclass(&self) -> Multiclass {
         self.multiclass
     }
 
-    /// Returns the label of each row of decision values (n_rows × n_problems).
+    /// Returns the predicted label for each row of decision values (n_rows × n_problems).
     pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
         let values = values.as_standard_layout();
         let mut votes = Vec::new();
@@ -43,7 +43,7 @@ impl Voting {
             .collect()
     }
 
-    /// Returns the label of a row of decision values; `votes` is scratch memory.
+    /// Returns the predicted label for one row of decision values; `votes` is scratch memory.
     fn label(&self, values: &[f64], votes: &mut Vec<u32>) -> usize {
         let winner = match self.multiclass {
             Multiclass::OneVsRest => first_maximum(values),
@@ -58,12 +58,12 @@ impl Voting {
     }
 }
 
-/// Counter of the votes of many rows, problem by problem.
+/// Counter of the votes of binary problems for many rows; problems are added one by one.
 #[derive(Clone, Debug)]
 pub(crate) enum VoteCounter {
-    /// One-vs-one: votes, n_classes × n_rows.
+    /// One-vs-one: number of votes, n_classes × n_rows.
     Counts(Array2<u16>),
-    /// One-vs-rest: the largest value of the problems so far and its class, one per row.
+    /// One-vs-rest: largest decision value so far and its class, for each row.
     Best(Vec<f64>, Vec<usize>),
 }
 
@@ -76,8 +76,8 @@ impl VoteCounter {
         }
     }
 
-    /// Adds the values of one problem, minus ρ; positive values are votes for the positive class. The problem is given by the positions of its positive and
-    /// negative class. Problems must be added in the order of [`Multiclass::problems`].
+    /// Adds the values of one binary problem, minus ρ; a positive value is a vote for the positive class. The problem is given by the positions of its positive
+    /// and negative class. Problems must be added in the order of [`Multiclass::problems`].
     pub fn take<T: Scalar>(
         &mut self,
         (positive, negative): (usize, Option<usize>),
@@ -108,8 +108,8 @@ impl VoteCounter {
         }
     }
 
-    /// Returns the position of the elected class of each row, given the sums of the problems (n_problems × n_rows) and their ρ. Problems with a class that
-    /// does not take part have no vote.
+    /// Returns the predicted class position of each row, given the sums of the problems (n_problems × n_rows) and their ρ. A problem is ignored if one of its
+    /// classes is excluded.
     pub fn elect<T: Scalar>(
         sums: &Array2<T>,
         rho: ArrayView1<f64>,
@@ -127,7 +127,7 @@ impl VoteCounter {
         counter.winners()
     }
 
-    /// Returns the position of the elected class of each row; the first, if several are equal.
+    /// Returns the class position with the most votes for each row; the first, if several are equal.
     pub fn winners(&self) -> Vec<usize> {
         match self {
             Self::Best(_, winners) => winners.clone(),
@@ -140,8 +140,8 @@ impl VoteCounter {
     }
 }
 
-/// Counts the votes per class as LIBSVM does: a positive value is a vote for the positive class, any other value for the negative class. The problems are all
-/// pairs of classes in order, so the problems of a class with all later classes are contiguous.
+/// Counts the votes per class as LIBSVM does: a positive value is a vote for the positive class, any other value for the negative class. The values are in the
+/// order of all pairs of classes, so the pairs of a class with all later classes are contiguous.
 fn count(values: &[f64], votes: &mut [u32]) {
     let mut rest = values;
     for class in 0..votes.len() {
@@ -156,7 +156,7 @@ fn count(values: &[f64], votes: &mut [u32]) {
     }
 }
 
-/// Returns the position of the largest value; the first, if several are equal.
+/// Returns the index of the largest value; the first index, if several values are equal.
 pub fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
     let mut best = 0;
     for (i, value) in values.iter().enumerate() {

@@ -1,9 +1,10 @@
-//! Selection of the rows on which pairs of classes are solved first, [near their margins](crate::screening::near_margin).
+//! Selection of the first rows on which pairs of classes are solved, for [screening](crate::screening::near_margin).
 //!
 //! The rows are selected in a low-dimensional subspace spanned by some of the rows. The pairs are solved there by a few rounds of screening with a rough
-//! tolerance. These rounds start with the rows that are nearest to the other class along the line between the class means. Example: 6,000 touches of 43
-//! objects with 1,024 features. The 32 nearest rows of each class along this line contain 66 % of a pair's support vectors. The 24 rows nearest to the margin
-//! in 64 dimensions contain 84 %.
+//! tolerance. These rounds start with the rows that are nearest to the other class along the line between the class means.
+//!
+//! Example: 6,000 touches of 43 objects with 1,024 features. The 32 nearest rows of each class along this line contain 66 % of a pair's support vectors. The 24
+//! rows nearest to the margin in 64 dimensions contain 84 %.
 
 use std::ops::Range;
 
@@ -17,10 +18,10 @@ use crate::screening::margin_rows::{Ranked, Sides, nearest};
 use crate::screening::near_margin::{Classes, NearMargin};
 use crate::smo::SolverScalar;
 
-/// Number of rows of each class in the first round of the subspace.
+/// Number of rows per class in the first round of the subspace.
 const ROWS_ALONG_MEANS: usize = 16;
 
-/// Screening of all pairs of classes, block by block.
+/// Screening of all pairs of classes, one block of pairs after another.
 pub(crate) struct PairsNearMargin<'a, T> {
     few: Classes<'a, T>,
     all: Classes<'a, T>,
@@ -28,7 +29,7 @@ pub(crate) struct PairsNearMargin<'a, T> {
 }
 
 impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
-    /// Creates the screening of the given rows; `few` contains their projections from [`few_dimensions`].
+    /// Creates the screening of the given rows; `few` contains their projections computed by [`few_dimensions`].
     pub fn new(sorted: &'a Sorted<T>, few: &'a Sorted<T>) -> Self {
         Self {
             along_means: along_means(few),
@@ -37,7 +38,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         }
     }
 
-    /// Iterates over all pairs in blocks of some classes with a few others; the data of a block fit into the cache.
+    /// Iterates over all pairs of classes in blocks whose data fit into the cache.
     pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         let n = self.all.sorted.ranges().len();
         let some = move |start, at_once| start..n.min(start + at_once);
@@ -50,7 +51,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         })
     }
 
-    /// Returns unsolved pairs with their rows near the margin for this C.
+    /// Returns unsolved pairs of classes with their rows near the margin for this C.
     pub fn near(&self, pairs: &[(usize, usize)], c: f64) -> NearMargin<'_, 'a, T> {
         let mut ranked = Ranked::new();
         let rows = pairs.iter().map(|&pair| self.near_means(pair, &mut ranked));
@@ -59,7 +60,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         NearMargin::new(&self.all, pairs, &rows)
     }
 
-    /// Returns the rows of a pair that are nearest to the other class along the line between the means.
+    /// Returns the rows of each class of a pair that are nearest to the other class along the line between the class means.
     fn near_means(&self, (a, b): (usize, usize), ranked: &mut Ranked) -> Sides {
         let along: [Vec<T>; 2] = [a, b].map(|own| {
             let rows = self.few.sorted.ranges()[own].clone();
@@ -71,8 +72,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
     }
 }
 
-/// Returns the pairs of some classes with later classes. The order of the other classes alternates, so that the rows of the last class are still in the
-/// cache.
+/// Returns the pairs of some classes with later classes. The order of the other classes alternates, so that the rows of the last class are still in the cache.
 fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
     let mut all = Vec::new();
     for a in own {
@@ -91,7 +91,7 @@ pub(crate) fn few_dimensions<T: SolverScalar>(sorted: &Sorted<T>) -> Sorted<T> {
     sorted.along(directions.view())
 }
 
-/// Returns the products of all rows with the class means: n_rows × n_classes.
+/// Returns the inner products of all rows with the class means: n_rows × n_classes.
 fn along_means<T: SolverScalar>(sorted: &Sorted<T>) -> Array2<T> {
     let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
     for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {

@@ -1,4 +1,4 @@
-//! A pair of classes solved on its active rows (the rows that take part in the problem).
+//! Pair of classes that is solved on its active rows only.
 
 use ndarray::Array2;
 
@@ -13,19 +13,19 @@ use crate::smo::SolverScalar;
 use crate::smo::reached::Reached;
 use crate::smo::variables::extremes;
 
-/// Minimum number of rows added per round while rows violate the optimality conditions.
+/// Minimum number of rows that become active per round while rows violate the optimality conditions.
 const MIN_JOINING: usize = 24;
-/// Fraction of active rows of a pair above which all rows become active.
+/// Fraction of active rows of a pair above which all its rows become active.
 const MAX_SHARE: f64 = 0.6;
 
-/// Products of a class's rows with each other.
+/// Inner products between the rows of one class.
 pub(crate) struct Within<T> {
     products: Array2<T>,
     diagonal: Vec<T>,
 }
 
 impl<T: SolverScalar> Within<T> {
-    /// Creates the products from n × n values, stored row by row.
+    /// Creates the inner products from n × n values, stored row by row.
     pub fn new(products: Array2<T>) -> Self {
         Self {
             diagonal: products.diag().to_vec(),
@@ -33,7 +33,7 @@ impl<T: SolverScalar> Within<T> {
         }
     }
 
-    /// Returns the products of one row.
+    /// Returns the inner products of one row with all rows of its class.
     fn row(&self, row: usize) -> &[T] {
         let n = self.diagonal.len();
         &self
@@ -43,15 +43,15 @@ impl<T: SolverScalar> Within<T> {
     }
 }
 
-/// SignalWorkspace memory reused by successive pairs.
+/// Scratch memory that is reused by successive pairs of classes.
 pub(crate) struct PairWorkspace<'r, T> {
-    /// Active rows of both classes.
+    /// Active rows of both classes of the pair.
     rows: [Vec<&'r [T]>; 2],
-    /// New products between the classes.
+    /// New inner products between the two classes.
     across: Vec<T>,
-    /// Rows ranked by a distance.
+    /// Rows ranked by a distance from the margin.
     pub ranked: Ranked,
-    /// Rows of one class below a bound.
+    /// Numbers of the rows of one class that are below a bound.
     below: Vec<usize>,
 }
 
@@ -66,28 +66,28 @@ impl<T> Default for PairWorkspace<'_, T> {
     }
 }
 
-/// A pair of classes; the first class is positive.
+/// Pair of classes with its active rows and their solution; the first class is positive.
 pub(crate) struct MarginPair<T> {
     classes: [usize; 2],
     /// Active rows of each class, in the order of activation.
     rows: Sides,
     /// Whether each row of each class is active.
     takes_part: [Vec<bool>; 2],
-    /// Products of the first class's rows with the second's, and of the second's with the first's, row by row.
+    /// Inner products of the first class's rows with the second's, and of the second's with the first's, row by row.
     across: [Vec<T>; 2],
-    /// Coefficients of the first class's rows, then of the second's.
+    /// Coefficients β of the first class's rows, then of the second's.
     beta: Vec<f64>,
-    /// Approximate y − w·x of the active rows.
+    /// Approximate gradient y − w·x of the active rows.
     f: Vec<f64>,
-    /// C of the coefficients; 0 before the first solution.
+    /// Penalty C of the last solution; 0 before the first solution.
     c: f64,
     n_iterations: u64,
-    /// Whether the last solve reached its tolerance.
+    /// Whether the solver reached its tolerance in the last round.
     is_solved: bool,
 }
 
 impl<T: SolverScalar> MarginPair<T> {
-    /// Creates a pair of classes with the given numbers of rows; no row is active.
+    /// Creates a pair of classes with the given numbers of rows and without active rows.
     pub fn new(classes: [usize; 2], sizes: [usize; 2]) -> Self {
         Self {
             classes,
@@ -102,14 +102,13 @@ impl<T: SolverScalar> MarginPair<T> {
         }
     }
 
-    /// Returns the positions of the two classes.
+    /// Returns the positions of the pair's two classes.
     pub fn classes(&self) -> [usize; 2] {
         self.classes
     }
 
     /// Activates rows of both classes, with coefficients of 0. `products` contains `w·x` of all rows of both classes; it is empty before the first solution.
-    /// `starts` contains
-    /// the positions of the classes' first rows.
+    /// `starts` contains the positions of the classes' first rows.
     pub fn join<'r>(
         &mut self,
         joining: &Sides,
@@ -206,17 +205,17 @@ impl<T: SolverScalar> MarginPair<T> {
         labels
     }
 
-    /// Iterates over rows with non-zero coefficients: the side of the class, the row number within the class, and the coefficient.
+    /// Iterates over rows with non-zero coefficients: the class (0 or 1), the row number within the class, and the coefficient.
     pub fn weighing(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let of_side = |side: usize| self.rows[side].iter().map(move |&row| (side, row));
         let rows = of_side(0).chain(of_side(1)).zip(&self.beta);
         rows.map(|((side, row), &beta)| (side, row, beta))
     }
 
-    /// Returns the rows to activate, given `w·x` of all rows of both classes: the worst of the rows that violate the optimality conditions. If most rows are
-    /// active, all others are returned. Returns `None` if no row violates the conditions.
+    /// Returns the rows to activate, given `w·x` of all rows of both classes: the rows with the largest violations of the optimality conditions. If most rows
+    /// are active already, all other rows are returned. Returns `None` if no row violates the conditions.
     ///
-    /// An inactive row violates the conditions if it lies more than half the tolerance beyond the middle of the interval left by the active rows.
+    /// An inactive row violates the conditions if it lies more than half the tolerance beyond the middle of the interval allowed by the active rows.
     pub fn joining(
         &self,
         products: [&[T]; 2],
@@ -225,7 +224,7 @@ impl<T: SolverScalar> MarginPair<T> {
     ) -> Option<Sides> {
         let (highest, lowest) = extremes(&self.beta, &self.labels(), &self.f, goal.c);
         let middle = (highest + lowest) / 2.0;
-        // Violation of each row, ascending.
+        // Rows that violate the conditions, ascending by violation.
         let violating = &mut scratch.ranked;
         violating.clear();
         for (number, products) in products.into_iter().enumerate() {
@@ -257,13 +256,13 @@ impl<T: SolverScalar> MarginPair<T> {
         Some(joining)
     }
 
-    /// Iterates over the inactive rows of a class.
+    /// Iterates over the inactive rows of one class.
     fn outside(&self, side: usize) -> impl Iterator<Item = usize> + '_ {
         let takes_part = &self.takes_part[side];
         (0..takes_part.len()).filter(|&row| !takes_part[row])
     }
 
-    /// Returns the last solution with coefficients of all rows of both classes.
+    /// Returns the last solution with the coefficients of all rows of both classes.
     pub fn solution(&mut self) -> DualSolution {
         let n_first = self.takes_part[0].len();
         let mut coefficients = vec![0.0; n_first + self.takes_part[1].len()];

@@ -2,26 +2,26 @@
 
 use crate::linalg::scalar::Scalar;
 
-/// Number of products processed in parallel.
+/// Number of inner products processed in parallel.
 const LANES: usize = 32;
 
-/// Label y of a pair's first and second class.
+/// Labels y of a pair's first and second class.
 pub(crate) const SIGNS: [f64; 2] = [1.0, -1.0];
 
-/// Rows of a pair's first and second class, by number within the class.
+/// Row numbers within the first and the second class of a pair.
 pub(crate) type Sides = [Vec<usize>; 2];
 
-/// A row: its side (first or second class) and its number within the class.
+/// Row of a pair of classes: its class (0 or 1) and its number within the class.
 pub(crate) type RowOfPair = (usize, usize);
 
-/// A row of a pair ranked by a distance, then by its position. Both are packed into one number, because rows are compared more often than read.
+/// Row of a pair of classes, ranked by a distance and then by its position. Both are packed into one number, because rows are compared more often than read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct RankedRow(u128);
 
 impl RankedRow {
-    /// Creates a row with the given distance.
+    /// Creates a ranked row with the given distance.
     pub fn new(beyond: f64, (side, row): RowOfPair) -> Self {
-        // The bits are ordered like the number: bits of negative numbers are inverted, and positive numbers follow.
+        // The bits are ordered like the numbers: the bits of negative numbers are inverted, and positive numbers follow.
         let bits = beyond.to_bits();
         let turned = match bits >> 63 {
             0 => bits | 1 << 63,
@@ -30,17 +30,17 @@ impl RankedRow {
         Self(u128::from(turned) << 64 | (side as u128) << 63 | row as u128)
     }
 
-    /// Returns the side and the number within the class.
+    /// Returns the class (0 or 1) of the row and its number within the class.
     pub fn place(self) -> RowOfPair {
         let place = self.0 as u64;
         ((place >> 63) as usize, (place & (u64::MAX >> 1)) as usize)
     }
 }
 
-/// Buffer of ranked rows, reused by all pairs.
+/// Buffer of ranked rows, reused by all pairs of classes.
 pub(crate) type Ranked = Vec<RankedRow>;
 
-/// Returns the n rows of each class nearest to the other class, given `w·x` of all rows of both classes.
+/// Returns the n rows of each class that are nearest to the other class, given `w·x` of all rows of both classes.
 pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, ranked: &mut Ranked) -> Sides {
     [0, 1].map(|side| {
         let products = products[side].iter().enumerate();
@@ -54,7 +54,7 @@ pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, ranked: &mut Ran
     })
 }
 
-/// Returns the n rows with the smallest distances, unordered.
+/// Returns the n ranked rows with the smallest distances, in any order.
 pub(crate) fn smallest(rows: &mut [RankedRow], n: usize) -> &[RankedRow] {
     if n < rows.len() {
         rows.select_nth_unstable(n);
@@ -63,8 +63,8 @@ pub(crate) fn smallest(rows: &mut [RankedRow], n: usize) -> &[RankedRow] {
     rows
 }
 
-/// Writes the positions of the products that, times `sign`, are below `bound`, into `places`. Whole chunks are tested first, because most contain no such
-/// product.
+/// Writes the positions of all products that are below `bound` after multiplication by `sign` into `places`. Whole chunks are tested first, because most chunks
+/// contain no such product.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn find_below<T: Scalar>(products: &[T], sign: T, bound: T, places: &mut Vec<usize>) {
     places.clear();

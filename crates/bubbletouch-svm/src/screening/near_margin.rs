@@ -1,9 +1,9 @@
 //! One-vs-one linear SVMs solved on the rows near their margins.
 //!
-//! If classes are well separated, a hyperplane depends on few rows. With many features, however, the products of all rows with each other dominate the
-//! training time. Each pair of classes is therefore solved on a few rows of each class. The optimality conditions of all rows are then checked; rows that
-//! violate them are added, and the pair is solved again from the last solution. At the end, every row satisfies the conditions, so the solution is the
-//! solution of the whole problem. The pairs of a block share rounds: one matrix product multiplies all hyperplanes of a round with the rows of a class.
+//! If classes are well separated, a hyperplane depends on few rows. With many features, the products of all rows with each other dominate the training time.
+//! Each pair of classes is therefore solved on a few rows of each class. The optimality conditions of all rows are then checked. Rows that violate them are
+//! added, and the pair is solved again from the last solution. At the end, every row satisfies the conditions, so the solution solves the whole problem. The
+//! pairs of a block share rounds: one matrix product multiplies all hyperplanes of a round with the rows of a class.
 //!
 //! The [first rows](crate::screening::first_rows) are selected in a low-dimensional subspace.
 
@@ -21,16 +21,16 @@ use crate::screening::margin_pair::{MarginPair, PairWorkspace, Within};
 use crate::screening::margin_rows::{Sides, nearest};
 use crate::smo::SolverScalar;
 
-/// Number of rounds in the subspace.
+/// Number of screening rounds in the subspace.
 const FEW_ROUNDS: usize = 2;
-/// Tolerance in the subspace. With 0.5, the selected rows are no longer the rows of the solution.
+/// Tolerance of the solver in the subspace. With 0.5, the selected rows differ too much from the support vectors of the solution.
 const ROUGH_TOLERANCE: f64 = 0.1;
-/// Maximum number of iterations of a solve in the subspace, where separable classes may overlap.
+/// Maximum number of solver iterations in the subspace, where separable classes may overlap.
 const ROUGH_ITERATIONS: u64 = 1000;
-/// Number of rows of each class in the first round with all features.
+/// Number of rows per class in the first round with all features.
 const ROWS_NEAR_MARGIN: usize = 24;
 
-/// Rows of all classes, with their products.
+/// Rows of all classes, with the inner products within each class.
 pub(crate) struct Classes<'a, T> {
     pub sorted: &'a Sorted<T>,
     /// Inner products between the rows of each class.
@@ -38,7 +38,7 @@ pub(crate) struct Classes<'a, T> {
 }
 
 impl<'a, T: SolverScalar> Classes<'a, T> {
-    /// Computes the products within each class.
+    /// Computes the inner products within each class.
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
             let own = sorted.points().range(range.clone());
@@ -61,7 +61,7 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
     }
 }
 
-/// Some pairs of classes, each with its active rows.
+/// Pairs of classes, each with its active rows.
 pub(crate) struct NearMargin<'c, 'a, T> {
     classes: &'c Classes<'a, T>,
     pairs: Vec<MarginPair<T>>,
@@ -70,22 +70,22 @@ pub(crate) struct NearMargin<'c, 'a, T> {
     round: Round<T>,
 }
 
-/// Result of a round for one pair: the normal of its hyperplane, and `w·x` of all rows of both classes.
+/// Result of a round for one pair of classes: the hyperplane's normal, and `w·x` of all rows of both classes.
 type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
 
-/// Results of a round for all pairs, pair by pair.
+/// Results of a round for all pairs of classes, pair by pair.
 #[derive(Default)]
 struct Round<T> {
-    /// Normals of the hyperplanes.
+    /// Normals of all hyperplanes of the round.
     normals: Vec<T>,
     /// Products `w·x` of all rows of both classes, class by class.
     products: Vec<T>,
-    /// Ranges of the products of both classes of each pair.
+    /// Ranges in `products` of both classes of each pair.
     places: Vec<[Range<usize>; 2]>,
 }
 
 impl<T> Round<T> {
-    /// Returns `w·x` of all rows of both classes of the pair with this number in the round.
+    /// Returns `w·x` of all rows of both classes, for the pair with this number in the round.
     fn products(&self, number: usize) -> [&[T]; 2] {
         let places = self.places[number].each_ref();
         places.map(|place| &self.products[place.clone()])
@@ -93,7 +93,7 @@ impl<T> Round<T> {
 }
 
 impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
-    /// Creates unsolved pairs of classes with the given rows.
+    /// Creates unsolved pairs of classes that start with the given active rows.
     pub fn new(classes: &'c Classes<'a, T>, pairs: &[(usize, usize)], rows: &[Sides]) -> Self {
         let pair = |&(a, b): &(usize, usize)| MarginPair::new([a, b], classes.sizes([a, b]));
         let mut all = Self {
@@ -109,8 +109,8 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         all
     }
 
-    /// Returns the maximum memory, bytes: the products if all rows of all pairs are active, the hyperplanes of a round, the rows of a pair, the directions of
-    /// the subspace, and all projected rows.
+    /// Returns the maximum memory of the screening, bytes. It includes the products if all rows of all pairs are active, the hyperplanes of a round, the rows
+    /// of a pair, the directions of the subspace, and all projected rows.
     pub fn most_bytes(sorted: &Sorted<T>) -> usize {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
@@ -123,8 +123,8 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         (2 * within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
     }
 
-    /// Solves all pairs for this C, starting from the last solutions. The violation of the optimality conditions is at most `tolerance`. Returns the solution
-    /// and the normal of each pair's hyperplane. The coefficients are those of all rows of the first class, then of the second.
+    /// Solves all pairs for this C, starting from the last solutions; the violation of the optimality conditions is at most `tolerance`. Returns the solution
+    /// and the hyperplane normal of each pair. The coefficients belong to all rows of the first class, then of the second.
     pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<(DualSolution, Vec<T>)> {
         let goal = PairGoal {
             c,
@@ -186,7 +186,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         results.into_iter().flatten().collect()
     }
 
-    /// Solves some pairs on their active rows, and multiplies all their rows with the hyperplanes.
+    /// Solves some pairs on their active rows, and multiplies all rows of their classes with the hyperplanes.
     fn solve_round(&mut self, pairs: &[usize], goal: PairGoal) {
         let n_features = self.classes.sorted.centre().len();
         let mut round = std::mem::take(&mut self.round);
@@ -228,7 +228,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         self.round = round;
     }
 
-    /// Adds a pair's normal `w = Σ β_i x_i` to `sums`.
+    /// Adds the hyperplane normal `w = Σ β_i x_i` of a pair to `sums`.
     fn add_normal(&self, pair: usize, sums: &mut [f64]) {
         let starts = self.classes.starts(self.pairs[pair].classes());
         let rows = self.pairs[pair].weighing();

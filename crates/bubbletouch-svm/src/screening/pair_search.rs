@@ -1,4 +1,4 @@
-//! Solver of a pair of classes near its margin: pairwise steps, followed by active-set steps.
+//! Solver of one pair of classes on its rows near the margin: pairwise steps, followed by active-set steps.
 
 use crate::gram::matrix::Gram;
 use crate::smo::Smo;
@@ -9,22 +9,22 @@ use crate::smo::{ActiveSetGoal, solve_by_active_set};
 /// Violation of the optimality conditions below which the solver uses active-set steps.
 const EQUATIONS_FROM: f64 = 0.03;
 
-/// Goal of the solution of a pair.
+/// Stopping criteria of the solver for one pair of classes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairGoal {
     /// Penalty C.
     pub c: f64,
     /// Maximum violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
-    /// Maximum number of iterations of a solve; `None` for the solver's default cap.
+    /// Maximum number of solver iterations; `None` for the solver's default limit.
     pub most_iterations: Option<u64>,
 }
 
-/// Coefficients β and gradient f.
+/// State of the solver: coefficients β and gradient f.
 pub(crate) type State = (Vec<f64>, Vec<f64>);
 
-/// Solves a problem from a given state, with its labels and the C of the state: pairwise steps to a rough tolerance, then active-set steps. If these do not
-/// reach the tolerance, pairwise steps continue.
+/// Solves a binary problem from a given state: pairwise steps to a rough tolerance, then active-set steps. If these do not reach the tolerance, pairwise steps
+/// continue. The problem is given with its labels and the C of the state.
 pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
     gram: &mut G,
     (labels, state, c): (&[f64], State, f64),

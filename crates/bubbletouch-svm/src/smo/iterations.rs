@@ -1,4 +1,4 @@
-//! Pairwise steps until the optimality conditions hold, or few variables can still move.
+//! Loop of pairwise steps until the optimality conditions hold or few variables can still move.
 
 use super::passes::{Down, select_down, select_up, step_along};
 use super::variables::Variables;
@@ -7,12 +7,12 @@ use crate::linalg::scalar::Scalar;
 
 /// Number of iterations between shrinking checks.
 pub(super) const SHRINK_PERIOD: u64 = 1000;
-/// Minimum number of rows for shrinking; with fewer rows, copying takes longer than the iterations saved.
+/// Minimum number of rows for shrinking; with fewer rows, copying the submatrix takes longer than the iterations saved.
 const SHRINK_ROWS: usize = 400;
-/// Maximum fraction of remaining variables for which the copy is worthwhile.
+/// Maximum fraction of remaining variables for which copying the submatrix is worthwhile.
 const SHRINK_SHARE: f64 = 0.7;
 
-/// Limits and progress of a search.
+/// Limits and progress of the solver's search.
 pub(crate) struct Search {
     pub tolerance: f64,
     pub max_iterations: u64,
@@ -29,15 +29,15 @@ impl Search {
     }
 }
 
-/// Reason why the iterations stopped.
+/// Reason why the pairwise steps stopped.
 pub(crate) enum Stop {
     /// The tolerance or the iteration cap was reached.
     Done,
-    /// Only the given variables can still move.
+    /// Only the given variables can still move, so the problem should be shrunk to them.
     Shrink(Vec<usize>),
 }
 
-/// Runs pairwise steps until the optimality conditions hold, the iteration cap is reached, or few variables can still move. The passes run on any processor.
+/// Runs pairwise steps until the optimality conditions hold, the iteration cap is reached, or few variables can still move. The code runs on any processor.
 pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     variables: &mut Variables<T>,
@@ -48,9 +48,8 @@ pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
     run_with((gram, passes), variables, search, first_look)
 }
 
-/// Runs pairwise steps with the given passes. `select_down` finds the variable to lower from f, marks, inverse curvatures, the highest f and scratch memory.
-/// `step_along` takes a
-/// step from f, two rows, the step length and marks, and returns the next variable to raise.
+/// Runs pairwise steps with the given passes over the variables. `select_down` finds the variable to lower from f, marks, inverse curvatures, the highest f and
+/// scratch memory. `step_along` takes a step from f, two rows, the step length and marks, and returns the next variable to raise.
 #[inline(always)]
 pub(super) fn run_with<T: Scalar, G: Gram<T>>(
     (gram, (select_down, step_along)): (

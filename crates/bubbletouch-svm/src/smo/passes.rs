@@ -1,13 +1,13 @@
-//! The solver's two passes over all variables, written for automatic vectorisation. For f32, there are [explicit vector instructions](super::passes_512) if
+//! Two passes of the solver over all variables, written for automatic vectorisation. For f32, there are [explicit vector instructions](super::passes_512) if
 //! the processor supports them.
 //!
-//! The length of every slice is a multiple of [`LANES`] ([`padded`]). Each lane has its own extreme. The position of the overall extreme is searched
-//! afterwards; of equal values, the lowest index is taken, so results do not depend on the processor.
+//! The length of every slice is a multiple of [`LANES`] ([`padded`]). Each lane has its own extreme value. The position of the overall extreme is searched
+//! afterwards; if values are equal, the lowest index is chosen, so results do not depend on the processor.
 
 use crate::linalg::lanes::LANES;
 use crate::linalg::scalar::Scalar;
 
-/// Returns the largest `a + b`. Each lane has its own maximum; the lanes are combined at the end.
+/// Returns the largest sum `a_i + b_i` over all i. Each lane has its own maximum; the lanes are combined at the end.
 #[inline(always)]
 fn largest_sum<T: Scalar>(a: &[T], b: &[T]) -> T {
     let mut lanes = [T::neg_infinity(); LANES];
@@ -31,7 +31,7 @@ fn largest_sum<T: Scalar>(a: &[T], b: &[T]) -> T {
         .fold(T::neg_infinity(), |a, &b| if b > a { b } else { a })
 }
 
-/// Returns the largest `a`, at least 0.
+/// Returns the largest value of `a`, at least 0.
 #[inline(always)]
 fn largest<T: Scalar>(a: &[T]) -> T {
     let mut lanes = [T::zero(); LANES];
@@ -49,7 +49,7 @@ fn largest<T: Scalar>(a: &[T]) -> T {
         .fold(T::zero(), |a, &b| if b > a { b } else { a })
 }
 
-/// Returns the first index for which `is` returns true. All lanes of a chunk are tested at once.
+/// Returns the first index in `0..n` for which `is` returns true. All lanes of a chunk are tested together.
 #[inline(always)]
 fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
     for start in (0..n).step_by(LANES) {
@@ -66,7 +66,7 @@ fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
     0
 }
 
-/// Returns the position of the largest `f + up`, the first of equal values: the next variable to raise. Returns `None` if no variable can be raised.
+/// Returns the next variable to raise: the first index with the largest `f + up`. Returns `None` if no variable can be raised.
 #[inline(always)]
 pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     let up = &up[..f.len()];
@@ -78,7 +78,7 @@ pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     }
 }
 
-/// Updates `f − step (row_i − row_j)` in place, and returns the next variable to raise.
+/// Updates f to `f − step (row_i − row_j)` in place, and returns the next variable to raise.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn step_along<T: Scalar>(
     f: &mut [T],
@@ -94,17 +94,17 @@ pub(crate) fn step_along<T: Scalar>(
     select_up(f, up)
 }
 
-/// Result of the second pass.
+/// Result of the second pass: the variable to lower, and the violation of the optimality conditions.
 pub(crate) struct Down<T> {
-    /// The variable to lower together with `i`: the one with the largest second-order gain of the dual objective [Fan, Chen, Lin 2005]. `None` if no pair
-    /// violates the optimality conditions.
+    /// Variable to lower together with `i`: the one with the largest second-order gain of the dual objective [Fan, Chen, Lin 2005]. `None` if no pair violates
+    /// the optimality conditions.
     pub j: Option<usize>,
     /// Violation of the optimality conditions: the largest f of variables that can be raised minus the smallest f of variables that can be lowered.
     pub violation: T,
 }
 
 /// Returns the variable to lower when variable i, with f = `highest`, is raised. `low` is 0 for variables that can be lowered and −∞ for others. `inverses`
-/// contains the inverse curvatures along the lines of i; `gains` is scratch memory.
+/// contains the inverse curvatures for i; `gains` is scratch memory.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),
@@ -135,7 +135,7 @@ pub(crate) fn select_down<T: Scalar>(
     }
 }
 
-/// Returns the largest `highest − f + low`, at least 0.
+/// Returns the violation of the optimality conditions: the largest `highest − f + low`, at least 0.
 #[inline(always)]
 fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
     let mut lanes = [T::zero(); LANES];

@@ -1,4 +1,4 @@
-//! The solver's passes over f32 variables, sixteen values at a time. The results equal those of [the generic passes](super::passes), bit by bit.
+//! Passes of the solver over f32 variables, sixteen values at a time. The results equal those of [the generic passes](super::passes), bit by bit.
 
 use std::arch::x86_64::{
     __m512, __m512i, _CMP_EQ_OQ, _CMP_GT_OQ, _mm512_add_epi32, _mm512_add_ps, _mm512_cmp_ps_mask,
@@ -14,8 +14,8 @@ use crate::gram::matrix::Gram;
 use crate::linalg::lanes::LANES;
 use crate::linalg::vector_registers::{load, store};
 
-/// Runs pairwise steps like [`run_plain`](super::iterations::run_plain). The passes are closures, because calls of functions would take as long as a few of
-/// their steps.
+/// Runs pairwise steps like [`run_plain`](super::iterations::run_plain), with explicit vector instructions. The passes are closures, because function calls
+/// would take as long as a few of their steps.
 #[target_feature(enable = "avx512f")]
 pub(crate) fn run<G: Gram<f32>>(
     gram: &mut G,
@@ -75,7 +75,7 @@ pub(crate) fn run<G: Gram<f32>>(
 struct Largest {
     values: __m512,
     places: __m512i,
-    /// Positions of the next values.
+    /// Positions of the values that are compared next.
     next: __m512i,
 }
 
@@ -102,7 +102,7 @@ impl Largest {
         }
     }
 
-    /// Returns the largest value of all lanes, and its first position.
+    /// Returns the largest value over all lanes, and its first position.
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn of_all(self) -> (f32, usize) {

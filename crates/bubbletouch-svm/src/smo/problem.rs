@@ -1,32 +1,32 @@
-//! A binary problem, and its solution for the last C.
+//! State of a binary problem: its Gram matrix, and its solution for the last C.
 
 use super::reached::violation;
 use super::solver_scalar::SolverScalar;
 use super::variables::{linear_and_quadratic, rho};
 use crate::gram::matrix::Gram;
 
-/// Maximum number of iterations, as in LIBSVM; 100 per row if that is more. If larger, hard problems take hours; if smaller, problems that LIBSVM solves are
-/// reported as not solved.
+/// Default maximum number of iterations, as in LIBSVM; 100 per row if that is more. If larger, hard problems take hours; if smaller, problems that LIBSVM
+/// solves are reported as not solved.
 const MAX_ITERATIONS: u64 = 10_000_000;
 
 /// Binary problem on a Gram matrix, with its solution for the last C.
 pub(crate) struct Smo<'a, G> {
     pub(super) gram: &'a mut G,
-    /// Labels: 1, −1, or 0 for a row that does not take part.
+    /// Labels of the rows: 1, −1, or 0 for a row that is excluded from the problem.
     pub(super) y: &'a [f64],
     pub(super) beta: Vec<f64>,
-    /// Gradient f = y − Kβ.
+    /// Gradient f = y − Kβ of the dual objective.
     pub(super) f: Vec<f64>,
-    /// C of β; 0 before the first solution.
+    /// Penalty C of the current β; 0 before the first solution.
     pub(super) c: f64,
     /// Whether f was computed from β in f64.
     pub(super) is_summed: bool,
-    /// Maximum number of iterations.
+    /// Maximum number of iterations of the solver.
     pub(super) max_iterations: u64,
 }
 
 impl<'a, G> Smo<'a, G> {
-    /// Creates an unsolved problem.
+    /// Creates an unsolved binary problem.
     pub fn new(gram: &'a mut G, y: &'a [f64]) -> Self {
         Self {
             is_summed: true,
@@ -34,7 +34,7 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Limits the iterations to `max_iterations`; the problem is then reported as not solved.
+    /// Limits the solver to `max_iterations`; at the limit, the problem is reported as not solved.
     pub fn with_max_iterations(self, max_iterations: u64) -> Self {
         Self {
             max_iterations,
@@ -42,7 +42,7 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Creates a problem with a start β, its approximate f, and the penalty `c` of β; 0 if β belongs to no penalty.
+    /// Creates a problem that starts from β and its approximate gradient f. `c` is the penalty of β, or 0 if β belongs to no penalty.
     pub fn from_start(
         gram: &'a mut G,
         y: &'a [f64],
@@ -60,22 +60,22 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Returns β and f.
+    /// Returns the coefficients β and the gradient f.
     pub fn variables(&self) -> (&[f64], &[f64]) {
         (&self.beta, &self.f)
     }
 
-    /// Returns ρ of the solution for a C.
+    /// Returns the offset ρ of the solution for a given C.
     pub fn rho(&self, c: f64) -> f64 {
         rho(&self.beta, self.y, &self.f, c)
     }
 
-    /// Returns β and f.
+    /// Returns the coefficients β and the gradient f, and drops the problem.
     pub fn into_variables(self) -> (Vec<f64>, Vec<f64>) {
         (self.beta, self.f)
     }
 
-    /// Recomputes f in f64.
+    /// Recomputes the gradient f in f64.
     pub(super) fn refresh<T: SolverScalar>(&mut self)
     where
         G: Gram<T>,
@@ -87,7 +87,7 @@ impl<'a, G> Smo<'a, G> {
         self.is_summed = true;
     }
 
-    /// Updates f from another β to the current β.
+    /// Updates the gradient f from a previous β to the current β.
     pub(super) fn follow<T: SolverScalar>(&mut self, before: Vec<f64>)
     where
         G: Gram<T>,

@@ -1,12 +1,12 @@
-//! Result of a search.
+//! Result of a solver run.
 
 use super::variables::{extremes, linear_and_quadratic, rho};
 use crate::dataset::all_finite;
 use crate::dual::DualSolution;
 
-/// Result of a search: whether it converged, and its number of iterations.
+/// Result of a solver run: whether it converged, and its number of iterations.
 pub(crate) struct Reached {
-    /// Whether the tolerance was reached.
+    /// Whether the solver reached its tolerance.
     pub is_solved: bool,
     pub n_iterations: u64,
 }
@@ -27,7 +27,7 @@ impl Reached {
     }
 }
 
-/// Returns the violation of the optimality conditions for a C. The value is negative if the conditions hold strictly, and infinite if f is not finite.
+/// Returns the violation of the optimality conditions for a given C. The value is negative if the conditions hold strictly, and infinite if f is not finite.
 pub(crate) fn violation(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
     if !all_finite(f) {
         return f64::INFINITY;

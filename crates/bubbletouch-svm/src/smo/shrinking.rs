@@ -1,11 +1,11 @@
-//! Shrinking: variables that stay at a bound are omitted, and the iterations run on the remaining part of the Gram matrix.
+//! Shrinking: variables that stay at a bound are omitted, and the iterations use a submatrix of the Gram matrix.
 
 use super::iterations::{SHRINK_PERIOD, Search, Stop};
 use super::solver_scalar::SolverScalar;
 use super::variables::Variables;
 use crate::gram::matrix::{Dense, Gram};
 
-/// Solves a part of the Gram matrix, and recursively parts of this part. Returns β of the variables, each with its index.
+/// Solves the problem of a submatrix of the Gram matrix, which may be shrunk further. Returns pairs of a variable's index and its β.
 pub(super) fn solve_part<T: SolverScalar>(
     mut part: Dense<T>,
     mut variables: Variables<T>,

@@ -1,4 +1,4 @@
-//! Solution of a binary problem: pairwise steps, checked in f64, and active-set steps if they converge slowly.
+//! Solver of a binary problem: pairwise steps, checked in f64, and active-set steps if convergence is slow.
 
 use super::active_set::{ActiveSetGoal, solve_by_active_set};
 use super::iterations::{SHRINK_PERIOD, Search, Stop};
@@ -10,14 +10,12 @@ use super::variables::Variables;
 use crate::dual::DualSolution;
 use crate::gram::matrix::Gram;
 
-/// Minimum number of pairwise steps before active-set steps. If larger, slowly converging problems take longer; if smaller, equations are solved
-/// unnecessarily.
+/// Minimum number of pairwise steps before active-set steps. If larger, slowly converging problems take longer; if smaller, equations are solved without need.
 const MIN_PAIR_STEPS: u64 = 10_000;
 /// Minimum number of pairwise steps per row before active-set steps.
 const PAIR_STEPS_PER_ROW: u64 = 20;
-/// Maximum number of restarts after f64 finds a violation that the precision of the matrix hides. If larger, rounding errors are optimised in vain; if
-/// smaller, solutions may miss
-/// their tolerance.
+/// Maximum number of restarts after a check in f64 finds a violation that the precision of the matrix hides. If larger, time is spent on rounding errors; if
+/// smaller, solutions may miss their tolerance.
 const MAX_REFRESHES: usize = 30;
 
 impl<G> Smo<'_, G> {
@@ -29,7 +27,7 @@ impl<G> Smo<'_, G> {
         self.solve_or_from(c, tolerance, |_| None)
     }
 
-    /// Solves the problem like [`solve`](Self::solve), or from another feasible start (β and its f) if the objective is higher there.
+    /// Solves the problem like [`solve`](Self::solve), or from another feasible start (β and its f) if that start has a higher objective.
     pub fn solve_or_from<T: SolverScalar>(
         &mut self,
         c: f64,
@@ -77,7 +75,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Searches until the tolerance is reached or the iterations are exhausted; returns whether the tolerance was reached.
+    /// Runs the solver until the tolerance is reached or the iterations are exhausted; returns whether the tolerance was reached.
     fn search<T: SolverScalar>(&mut self, c: f64, search: &mut Search) -> bool
     where
         G: Gram<T>,
@@ -117,8 +115,8 @@ impl<G> Smo<'_, G> {
         false
     }
 
-    /// Searches among all variables. If most variables are soon omitted, the tolerance is rough at first, because omitted variables must be checked again
-    /// before further work.
+    /// Runs the solver once on all variables. If most variables are soon omitted, the tolerance is rough at first, because omitted variables must be checked
+    /// again before further work.
     fn search_once<T: SolverScalar>(&mut self, c: f64, search: &mut Search, is_first: bool)
     where
         G: Gram<T>,

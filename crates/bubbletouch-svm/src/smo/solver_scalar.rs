@@ -1,4 +1,4 @@
-//! Pairwise steps for each precision, with the instructions of the processor.
+//! Pairwise steps for each precision, with the vector instructions that the processor supports.
 
 use super::iterations::{Search, Stop, run_plain};
 #[cfg(target_arch = "x86_64")]
@@ -7,9 +7,9 @@ use super::variables::Variables;
 use crate::gram::matrix::Gram;
 use crate::linalg::scalar::Scalar;
 
-/// Precision of a Gram matrix supported by the solver.
+/// Floating-point type of a Gram matrix that the solver supports.
 pub(crate) trait SolverScalar: Scalar {
-    /// Runs [pairwise steps](run_plain).
+    /// Runs [pairwise steps](run_plain) in this precision.
     fn run<G: Gram<Self>>(
         gram: &mut G,
         variables: &mut Variables<Self>,

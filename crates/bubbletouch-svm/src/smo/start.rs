@@ -1,4 +1,4 @@
-//! Starting points of the search for a solution.
+//! Starting points of the solver.
 
 use super::problem::Smo;
 use super::solver_scalar::SolverScalar;
@@ -7,8 +7,8 @@ use crate::gram::matrix::Gram;
 use crate::gram::row_sums::add_row;
 
 impl<G> Smo<'_, G> {
-    /// Returns the unsolved problem with a start for small C: all multipliers at C, except the surplus of the larger class. The surplus rows are those
-    /// farthest on their own side. If the objective of equal multipliers has its maximum below C, the start is 0. `sums` contains `K y`.
+    /// Returns the unsolved problem with a start for small C: all multipliers at C, except for the surplus rows of the larger class. The surplus rows are those
+    /// farthest from the other class. If the objective with equal multipliers has its maximum below C, the start is 0. `sums` contains `K y`.
     pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
     where
         G: Gram<T>,
@@ -35,7 +35,7 @@ impl<G> Smo<'_, G> {
         self
     }
 
-    /// Scales β to another C by the factor with the best objective, within the new bounds.
+    /// Rescales β to another C by the factor with the best objective, within the new bounds.
     pub(super) fn stretch(&mut self, c: f64) {
         let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
         if self.c > 0.0 && self.c != c && quadratic > 0.0 {
@@ -55,7 +55,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Replaces β and f by the given start if the objective is higher there.
+    /// Replaces β and f by the given start if the start has a higher objective.
     pub(super) fn prefer(&mut self, other: (Vec<f64>, Vec<f64>)) {
         let objective = self.objective();
         let own = (
@@ -76,7 +76,7 @@ mod tests {
     use crate::gram::matrix::Dense;
     use ndarray::Array2;
 
-    /// Kernel values exp(−γ d²) of points on a line with overlapping classes; one class has five more rows.
+    /// Returns the kernel matrix `exp(−γ d²)` of points on a line, with overlapping classes; one class has five more rows.
     fn problem(gamma: f64) -> (Dense<f64>, Vec<f64>) {
         let n = 45;
         let at = |i: usize| (i as f64 * 1.7).sin() + if i % 9 < 4 { 0.4 } else { 0.0 };

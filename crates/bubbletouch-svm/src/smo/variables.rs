@@ -1,15 +1,15 @@
-//! Variables of the dual problem, and one step of two variables.
+//! Variables of the dual problem, and the update of one pair of variables.
 
 use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 
 /// Number of variables processed in parallel.
 const LANES: usize = 8;
-/// Number of variables whose extremes are searched in parallel. With 64, the compiler generates a vectorised loop; with 8, it unrolls the loop and inserts
-/// many shuffles.
+/// Number of variables whose extremes are searched in parallel. With 64, the compiler generates a vectorised loop; with 8, it unrolls the loop and inserts many
+/// shuffles.
 const EXTREMES_LANES: usize = 64;
 
-/// Returns 0 if β can move, otherwise −∞.
+/// Returns the mark of a variable: 0 if β can move, otherwise −∞.
 #[inline(always)]
 fn mark<T: Scalar>(can_move: bool) -> T {
     if can_move {
@@ -19,7 +19,7 @@ fn mark<T: Scalar>(can_move: bool) -> T {
     }
 }
 
-/// Marks the directions in which each β can move.
+/// Marks for every variable whether β can be raised and whether it can be lowered.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
     let n = beta.len();
@@ -31,7 +31,7 @@ fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut 
     }
 }
 
-/// Returns the bounds of a variable: 0 to C for a positive row, −C to 0 for a negative row, and 0 for a row that does not take part.
+/// Returns the bounds of β: 0 to C for a positive row, −C to 0 for a negative row, and 0 for a row that is excluded from the problem.
 #[inline(always)]
 pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
     (c * y.min(0.0), c * y.max(0.0))
@@ -46,11 +46,11 @@ pub(crate) struct Variables<T> {
     c: f64,
     /// Gradient `f_i = y_i − (Kβ)_i` of the dual objective along β_i.
     pub f: Vec<T>,
-    /// Marks: 0 if β_i can be raised, otherwise −∞.
+    /// Marks of the variables that can be raised: 0 if β_i can be raised, otherwise −∞.
     pub up: Vec<T>,
-    /// Marks: 0 if β_i can be lowered, otherwise −∞.
+    /// Marks of the variables that can be lowered: 0 if β_i can be lowered, otherwise −∞.
     pub low: Vec<T>,
-    /// SignalWorkspace memory of the second pass.
+    /// Scratch memory of the second pass.
     pub gains: Vec<T>,
 }
 
@@ -73,7 +73,7 @@ impl<T: Scalar> Variables<T> {
         variables
     }
 
-    /// Returns only the variables at the given indices.
+    /// Returns a copy with only the variables at the given indices.
     pub fn select(&self, indices: &[usize]) -> Self {
         let beta: Vec<f64> = indices.iter().map(|&i| self.beta[i]).collect();
         let y: Vec<f64> = indices.iter().map(|&i| self.y[i]).collect();
@@ -81,7 +81,7 @@ impl<T: Scalar> Variables<T> {
         Self::new(&beta, &y, &f, self.c)
     }
 
-    /// Marks the directions in which β_i can move; writes only changed marks, because vector loads after scalar stores are slow.
+    /// Updates the marks of variable i; writes only changed marks, because vector loads after scalar stores are slow.
     #[inline(always)]
     fn mark(&mut self, i: usize) {
         let (lowest, highest) = bounds(self.y[i], self.c);
@@ -94,7 +94,7 @@ impl<T: Scalar> Variables<T> {
         }
     }
 
-    /// Raises β_i and lowers β_j by an equal amount, to the optimum along the line or to the first bound. Returns the amount.
+    /// Raises β_i and lowers β_j by an equal amount, to the optimum along this line or to the first bound. Returns the amount.
     #[inline(always)]
     pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
         let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
@@ -135,7 +135,7 @@ impl<T: Scalar> Variables<T> {
     }
 }
 
-/// Returns `(max of f that can be raised, min of f that can be lowered)`, in f64, for any β within its bounds.
+/// Returns the largest f of variables that can be raised and the smallest f of variables that can be lowered, in f64, for any feasible β.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     // Each lane has its own extreme; the lanes are combined by halving.
@@ -169,19 +169,19 @@ pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64)
     (highest[0], lowest[0])
 }
 
-/// Returns a if it is larger than b, otherwise b; b is not NaN.
+/// Returns the larger of `a` and `b`; `b` must not be NaN.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Returns a if it is smaller than b, otherwise b; b is not NaN.
+/// Returns the smaller of `a` and `b`; `b` must not be NaN.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Returns `Σ y β` and `β K β`, given β and its f. The dual objective is the first minus half of the second.
+/// Returns the terms `Σ y β` and `β K β` of the dual objective, given β and its f. The objective is the first term minus half of the second.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();
@@ -236,7 +236,7 @@ fn weight_if_free(beta: f64, y: f64, c: f64) -> f64 {
     f64::from(u8::from((beta > low) & (beta < high)))
 }
 
-/// Returns ρ: the mean of −f over the variables between their bounds, or the middle of the interval allowed by the others (LIBSVM's rule).
+/// Returns the offset ρ: the mean of −f over the variables between their bounds, or the middle of the interval allowed by the others (LIBSVM's rule).
 pub(super) fn rho(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
     let (sum, n_free) = sum_of_free(beta, y, f, c);
     if n_free > 0.0 {

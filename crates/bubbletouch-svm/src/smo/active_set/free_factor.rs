@@ -1,8 +1,8 @@
-//! Linear equations of the variables between their bounds, with factors that are updated when variables become free or bound.
+//! Linear equations of the free variables (those between their bounds), with factors that are updated when variables become free or bound.
 //!
 //! The equations `(K + δ) Δ + μ = f` on the free variables, with `Σ Δ = 0`, are solved by the factors `L D Lᵀ` of `K + δ`. Adding a variable adds a row by
-//! substitution. Removing one is a rank-one change [Gill, Golub, Murray, Saunders 1974]. The ridge δ separates rows that are linearly dependent within the
-//! rounding of the kernel values. The error due to δ is corrected by repeated steps, because f contains the remaining residual.
+//! substitution. Removing a variable is a rank-one change [Gill, Golub, Murray, Saunders 1974]. The ridge δ separates rows that are linearly dependent within
+//! the rounding of the kernel values. Repeated steps correct the error due to δ, because f contains the remaining residual.
 
 use crate::gram::matrix::Gram;
 use crate::linalg::factors::{LANES, Lanes, add_product, eliminate, substitute, substitute_back};
@@ -10,19 +10,19 @@ use crate::linalg::scalar::Scalar;
 
 /// Ridge δ as a fraction of the largest diagonal kernel value; above the rounding error of kernel values in f32.
 const RIDGE: f64 = 1e-5;
-/// Number of variables that can be added before a new factorisation.
+/// Number of variables that can be added before the matrix is factorised again.
 const JOINING: usize = 64;
 
-/// Factors of the kernel values of the free variables.
+/// Factors of the kernel matrix of the free variables.
 #[derive(Default)]
 pub(crate) struct FreeFactor {
-    /// Variable at each position; `None` if the variable was removed.
+    /// Variable at each position of the factors; `None` if the variable was removed.
     places: Vec<Option<usize>>,
-    /// Number of pieces per row: the capacity in positions.
+    /// Number of blocks per row: the capacity of the factors in positions.
     width: usize,
     /// Rows of `D Lᵀ`, one per position. Entries are 0 up to the diagonal, beyond the last position, and for removed variables.
     rows: Vec<Lanes>,
-    /// Inverse of D; 0 for removed variables.
+    /// Inverse of D, one value per position; 0 for removed variables.
     inverse: Vec<f64>,
     ridge: f64,
 }
@@ -58,7 +58,7 @@ impl FreeFactor {
         factor
     }
 
-    /// Returns the ridge δ.
+    /// Returns the ridge δ that is added to the diagonal.
     pub fn ridge(&self) -> f64 {
         self.ridge
     }
@@ -69,18 +69,19 @@ impl FreeFactor {
         places.filter_map(|(place, variable)| Some((place, (*variable)?)))
     }
 
-    /// Returns the variable at a position.
+    /// Returns the variable at a position of the factors.
     pub fn variable(&self, place: usize) -> usize {
         self.places[place].expect("a place that is asked for is taken")
     }
 
-    /// Returns the values of the free variables, by position; 0 for removed variables.
+    /// Returns the given values of the free variables, by position; 0 for removed variables.
     pub fn values(&self, all: &[f64]) -> Vec<f64> {
         let places = self.places.iter();
         places.map(|at| at.map_or(0.0, |at| all[at])).collect()
     }
 
-    /// Returns the change of each free variable, by position, and the resulting common f, given the current f. Returns `None` if there are no free variables.
+    /// Solves the equations for the current f. Returns the change of each free variable, by position, and the resulting common f; `None` without free
+    /// variables.
     pub fn solve(&self, f: &[f64]) -> Option<(Vec<f64>, f64)> {
         let n_free = self.variables().count();
         // f is centred at its mean, so that products with 1 are small.
@@ -91,7 +92,7 @@ impl FreeFactor {
             (of_f[place % LANES], of_one[place % LANES]) = (f[place] - mean, 1.0);
         }
         substitute(&self.rows, self.width, &self.inverse, &mut sides);
-        // Sums of the solutions for f and for 1: their products with the vector of ones.
+        // Sums over all positions of the solutions for f and for the vector of ones.
         let mut sums = [0.0; 2];
         for (at, inverse) in self.inverse.iter().enumerate() {
             let [of_f, of_one] = sides[at / LANES].each_ref().map(|side| side[at % LANES]);
@@ -115,7 +116,7 @@ impl FreeFactor {
         is_solved.then_some((steps, mean + level))
     }
 
-    /// Adds a variable that becomes free; returns whether there was capacity.
+    /// Adds a variable that becomes free; returns `false` if the capacity is exhausted.
     pub fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, variable: usize) -> bool {
         let n = self.places.len();
         if n == self.width * LANES {
@@ -140,7 +141,7 @@ impl FreeFactor {
         true
     }
 
-    /// Removes the variable at a position.
+    /// Removes the variable at a position of the factors.
     pub fn leave(&mut self, place: usize) {
         let (before, rest) = self.rows.split_at_mut(place * self.width);
         let (own, after) = rest.split_at_mut(self.width);

@@ -1,9 +1,9 @@
-//! Solution of a binary problem by linear equations: an active-set method [Scheinberg 2006].
+//! Active-set method: solution of a binary problem by linear equations [Scheinberg 2006].
 //!
-//! Pairwise steps approach the optimum in a few steps, but may need a million steps to reach it. If the variables at bounds are known, the optimum is the
-//! solution of linear equations: f is equal on all free variables, and the sum of their changes is 0. If the solution exceeds a bound, the step ends at the
-//! bound, and the variable is removed. Otherwise, the bound variable with the largest violation of the optimality conditions becomes free, until no variable
-//! violates them. Few features imply few free variables, so [their equations](super::active_set::free_factor) are small.
+//! Pairwise steps approach the optimum quickly, but may need a million steps to reach it. If the variables at bounds are known, the optimum is the solution of
+//! linear equations: f is equal on all free variables, and the sum of their changes is 0. If the solution exceeds a bound, the step ends at the bound, and the
+//! variable is removed from the free variables. Otherwise, the bound variable with the largest violation of the optimality conditions becomes free. The method
+//! ends when no variable violates the conditions. Few features imply few free variables, so [their equations](super::active_set::free_factor) are small.
 
 mod free_factor;
 
@@ -16,25 +16,25 @@ use crate::smo::variables::bounds;
 
 /// Maximum number of free variables in the equations; further variables are added later.
 const MAX_FREE: usize = 384;
-/// Maximum number of variables that become free together.
+/// Maximum number of variables that become free in one step.
 const MAX_ENTERING: usize = 8;
 /// Minimum violation of a variable that becomes free, as a fraction of the largest violation.
 const SHARE_OF_FARTHEST: f64 = 0.5;
-/// Maximum number of repetitions if f is unequal on the free variables after a solve, because of linearly dependent rows.
+/// Maximum number of repeated solves if linearly dependent rows leave f unequal on the free variables.
 const MAX_REPEATS: u64 = 8;
 
-/// Goal of the active-set method.
+/// Stopping criteria of the active-set method.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActiveSetGoal {
     /// Penalty C.
     pub c: f64,
-    /// Maximum violation of the optimality conditions.
+    /// Maximum violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
-    /// Maximum number of steps. Each step ends at the optimum of the free variables, or with one variable fewer.
+    /// Maximum number of steps. Each step ends at the optimum of the free variables, or at a bound that removes one variable.
     pub most_ways: u64,
 }
 
-/// Optimises β of the problem's rows and `f = y − Kβ` by active-set steps. Returns the number of steps; 0 if fewer than two variables are free.
+/// Optimises β and its gradient `f = y − Kβ` by active-set steps. Returns the number of steps; 0 if fewer than two variables are free.
 pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     labels: &[f64],
@@ -65,20 +65,20 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
 struct ActiveSet<'a> {
     labels: &'a [f64],
     beta: &'a mut [f64],
-    /// f = y − Kβ before the last changes of β.
+    /// Gradient f = y − Kβ before the last changes of β.
     f: &'a mut [f64],
     /// Changes of β since f was updated.
     changes: Vec<f64>,
     c: f64,
     factor: FreeFactor,
-    /// Whether each variable has a position in the factors.
+    /// Whether each variable has a position in the factors, that is, whether it is free.
     has_place: Vec<bool>,
     /// Common f of all free variables after the last solve.
     level: f64,
 }
 
 impl<'a> ActiveSet<'a> {
-    /// Creates the state for the free variables; `None` if fewer than two are free.
+    /// Creates the state for the variables between their bounds; returns `None` if fewer than two are free.
     fn new<T: Scalar, G: Gram<T>>(
         gram: &mut G,
         labels: &'a [f64],
@@ -115,7 +115,7 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
-    /// Moves to the optimum of the free variables; variables that reach a bound stay there. Returns the number of steps.
+    /// Moves β to the optimum of the free variables; variables that reach a bound stay there. Returns the number of steps.
     fn solve_free(&mut self, most_ways: u64) -> u64 {
         let mut f = self.factor.values(&self.f[..]);
         for n_ways in 0..most_ways {
@@ -144,7 +144,7 @@ impl<'a> ActiveSet<'a> {
         most_ways
     }
 
-    /// Returns the fraction of the given steps up to the first bound, at most 1, and the blocking variable, if any: its position and its bound.
+    /// Returns the fraction of the given steps up to the first bound, at most 1, and the position and bound of the blocking variable, if any.
     fn step_fraction(&self, steps: &[f64]) -> (f64, Option<(usize, f64)>) {
         let (mut share, mut blocked) = (1.0, None);
         for (place, variable) in self.factor.variables() {
@@ -158,7 +158,7 @@ impl<'a> ActiveSet<'a> {
         (share, blocked)
     }
 
-    /// Updates f to the current β.
+    /// Updates the gradient f to the current β.
     fn follow<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G) {
         gram.take_times(&self.changes, self.f);
         self.changes.fill(0.0);
@@ -168,7 +168,7 @@ impl<'a> ActiveSet<'a> {
         violation(self.beta, self.labels, self.f, self.c)
     }
 
-    /// Returns the bound variables with the largest violations, if a violation exceeds those of all free variables.
+    /// Returns the bound variables with the largest violations, if they exceed the violations of all free variables.
     fn entering(&self) -> Vec<usize> {
         let mut beyond = vec![0.0; self.beta.len()];
         let mut farthest = [0.0_f64; 2];
@@ -192,7 +192,7 @@ impl<'a> ActiveSet<'a> {
         entering
     }
 
-    /// Makes variables free, up to the capacity. Returns true if at least one was added, or if none was to be added.
+    /// Makes variables free, up to the capacity. Returns true if at least one variable was added, or if none had to be added.
     fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, entering: &[usize]) -> bool {
         for (number, &variable) in entering.iter().enumerate() {
             if !self.factor.join(gram, variable) {
