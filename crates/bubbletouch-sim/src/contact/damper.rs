@@ -24,9 +24,9 @@ pub fn relaxation_factor(taxel: &Taxel, dt: f64) -> f64 {
 /// Deflections and forces of one patch between steps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DamperState {
-    /// Metres, shape (n_taxels,).
+    /// Deflection of each taxel, metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// Newtons, never negative, shape (n_taxels,).
+    /// Force of each taxel, newtons, never negative, shape (n_taxels,).
     pub force: Vec<f64>,
 }
 
@@ -39,10 +39,10 @@ impl DamperState {
         }
     }
 
-    /// Advances by `dt` seconds (positive) to the contact deflections δ* at the step's end, metres, shape (n_taxels,).
+    /// Advances the state by `dt` seconds (positive). `contact` contains the contact deflections δ* at the step's end, metres, shape (n_taxels,).
     ///
     /// # Panics
-    /// If the length of `contact`, or of a list with one taxel each, differs from the length of the state.
+    /// If `contact`, or a list with one entry per taxel, has another length than the state.
     pub fn step(&mut self, taxels: &Taxels, dt: f64, contact: &[f64]) {
         assert_eq!(contact.len(), self.deflection.len());
         let states = self.deflection.iter_mut().zip(&mut self.force).zip(contact);
@@ -68,7 +68,7 @@ impl DamperState {
     }
 }
 
-/// Relaxation of equal taxels over a step of fixed length.
+/// Relaxation factors of taxels with equal stiffness and damping, for a step of fixed length.
 pub struct Relaxation {
     stiffness: f64,
     /// Remaining fraction φ of a deflection after the step.

@@ -1,4 +1,4 @@
-//! Motion of one object among others along a line until a skin carries a given force, within the limits of a step.
+//! Motion of one object along a line until a skin carries a given force, within travel limits.
 
 use super::force_goal::FORCE_ACCURACY;
 use super::root_search::crossing;
@@ -9,38 +9,38 @@ use crate::objects::Model;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// Result of moving an object to a force.
+/// Travel and force after an object was moved to a force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeldForce {
     /// Travel of the object along the direction, metres.
     pub travel: f64,
-    /// Σ k δ of the patch at this travel, N.
+    /// Force Σ k δ that the springs carry at this travel, N.
     pub force: f64,
 }
 
-/// Skin, and one object among others that is moved onto the skin along a line.
+/// Skin, and one of several objects that is moved onto the skin along a line.
 #[derive(Clone, Copy, Debug)]
 pub struct MovedObject<'a> {
     /// Patch of the skin.
     pub patch: &'a Patch,
     /// All objects of the scene.
     pub objects: &'a [Model],
-    /// Number of the moved object.
+    /// Index of the moved object.
     pub moving: usize,
     /// Direction of the motion, unit vector, in the patch frame.
     pub direction: DVec3,
 }
 
 impl MovedObject<'_> {
-    /// Moves the object until the springs of the patch carry `force` newtons together (Σ k δ of all objects). The accuracy is a relative 1e-13 or
-    /// the last bit of the travel.
+    /// Moves the object until the springs of the patch carry `force` newtons together (Σ k δ, due to all objects). The accuracy is a relative 1e-13 or the last
+    /// bit of the travel.
     ///
-    /// `poses` has one `patch_from_object` per object; the moved object's is its pose before any travel, and afterwards its pose at the last press.
-    /// `travels`, metres, ascending: the lower limit, the present travel, and the upper limit. If the force is not
-    /// reached between the limits, the object moves to the limit on this side. If the force jumps past `force`, the upper side of the jump is returned.
+    /// `poses` contains one `patch_from_object` per object; the moved object's pose is its pose before any travel, and afterwards its pose at the last press.
+    /// `travels`, metres, ascending, contains the lower limit, the present travel, and the upper limit. If the force is not reached between the limits, the
+    /// object moves to the nearer limit. If the force jumps past `force`, the upper side of the jump is returned.
     ///
     /// # Panics
-    /// If the number of poses differs from the number of objects, or `moving` is not a number of an object.
+    /// If the number of poses differs from the number of objects, or `moving` is not the index of an object.
     pub fn hold(
         &self,
         poses: &mut [Pose],

@@ -1,14 +1,14 @@
-//! Choice of the vector instructions of the kernels.
+//! Choice of the vector instructions of the press kernels.
 
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
-/// Vector instructions of x86-64; other processors have only their baseline. All choices give the same bits, because no operations are fused.
-/// Choices other than the best serve comparisons.
+/// Vector instructions of x86-64; other processors have only their baseline. All choices give bitwise equal results, because no operations are fused. Choices
+/// other than the best serve comparisons.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Instructions {
-    /// The last choice below that the processor supports.
+    /// Best instructions that the processor supports.
     #[default]
     Best,
     /// Instructions that every processor of the compilation target has.
@@ -43,7 +43,7 @@ impl Instructions {
         Vec::new()
     }
 
-    /// Resolves `Best` to its name, and an unsupported choice to the best supported one.
+    /// Resolves `Best` to the best supported instructions, and also an unsupported choice.
     pub fn resolved(self) -> Self {
         let here = Self::here();
         match here.contains(&self) {

@@ -1,6 +1,7 @@
-//! Lanes of a vector whose values are below a limit.
+//! Iteration over the lanes of a vector whose values are below a limit.
 
-/// Iterator over the lanes whose values are below a limit, ascending. Implemented as a named type because the compiler does not use vector
+/// Iterator over the indices of lanes whose values are below a limit, ascending. Implemented as a named type because the compiler does not use vector
+/// instructions in closures.
 /// instructions in closures.
 #[derive(Clone, Copy, Default)]
 pub struct LanesBelow {
@@ -9,7 +10,7 @@ pub struct LanesBelow {
 }
 
 impl LanesBelow {
-    /// Compares `values`, at most 32, with the limit.
+    /// Compares `values` (at most 32) with the limit.
     #[inline(always)]
     pub fn new<const N: usize>(values: &[f64; N], limit: f64) -> Self {
         let mut pending = 0;

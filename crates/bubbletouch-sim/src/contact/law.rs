@@ -30,11 +30,11 @@ pub fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)
 }
 
-/// Factor of squares that are compared before a root is taken: below 1 by more than rounding. Larger: rounding decides; smaller: more roots that
-/// change nothing.
+/// Safety factor for squares that are compared before a root is taken: below 1 by more than rounding. If larger, rounding decides comparisons; if smaller,
+/// roots are taken needlessly.
 const ALMOST: f64 = 1.0 - 1e-12;
 
-/// Returns the deflection √q − h, metres, that a sphere needs; q is positive.
+/// Returns the deflection √q − h, metres, that a sphere needs; q must be positive.
 #[inline(always)]
 pub(crate) fn deflection(q: f64, height: f64) -> f64 {
     q.sqrt() - height
@@ -47,16 +47,17 @@ pub(crate) fn is_in_front(q: f64, height: f64, behind: f64) -> bool {
     q > gap * gap
 }
 
-/// Returns whether an obstacle counts; `far_side` is the height at which a taxel would rest on its far side, metres. See [`is_in_front`].
+/// Returns whether an obstacle counts: it is not wholly behind the substrate. `far_side` is the height at which a taxel would rest on the obstacle's far side,
+/// metres.
 #[inline(always)]
 pub(super) fn reaches_front(far_side: f64, behind: f64) -> bool {
     far_side >= behind
 }
 
-/// Returns the deflection that a sphere needs, metres; 0 if the sphere does not count, and at most 0 if it is above the taxel.
+/// Returns the deflection that a sphere needs, metres; 0 if the sphere does not count, and at most 0 if the sphere is above the taxel.
 #[inline(always)]
 pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
-    // The root is taken for every value: selecting between two numbers compiles to a vector instruction, a branch does not.
+    // The root is taken for every value, because selecting between two numbers compiles to a vector instruction and a branch does not.
     let depth = deflection(q.max(0.0), height);
     if is_in_front(q, height, behind) {
         depth
@@ -65,20 +66,20 @@ pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
     }
 }
 
-/// Returns whether a sphere may need more than a deflection of at least 0, metres, without taking a root. The result false is exact.
+/// Returns whether a sphere may need more than a given deflection (metres, at least 0), without taking a root. The result `false` is exact.
 #[inline(always)]
 pub(super) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
     shortfall(q, height, deflection) < 0.0
 }
 
-/// Returns a value below zero if √q − h may be above the deflection, m².
+/// Returns a value, m², that is negative if √q − h may exceed the given deflection.
 #[inline(always)]
 fn shortfall(q: f64, height: f64, deflection: f64) -> f64 {
     let bar = (height + deflection).max(0.0);
     bar * bar * ALMOST - q
 }
 
-/// Returns the squares of the spheres that count, and −1 for those that do not; `squares` are q, m², and `heights` h, metres.
+/// Returns the squares q of the spheres that count, and −1 for the other spheres; `squares` are q, m², and `heights` h, metres.
 #[inline(always)]
 pub(crate) fn squares_in_front<const N: usize>(
     squares: &[f64; N],
@@ -93,7 +94,7 @@ pub(crate) fn squares_in_front<const N: usize>(
     squares
 }
 
-/// Returns whether √q − h may be above a deflection in any lane; `squares` are q, m², and `heights` h, metres. The result false is exact.
+/// Returns whether √q − h may exceed a deflection in any lane; `squares` are q, m², and `heights` h, metres. The result `false` is exact.
 #[inline(always)]
 pub(crate) fn beats<const N: usize>(
     squares: &[f64; N],
@@ -107,11 +108,11 @@ pub(crate) fn beats<const N: usize>(
     !LanesBelow::new(&shortfalls, 0.0).is_empty()
 }
 
-/// Raises deflections to √q − h where q is above zero; `squares` are q, m², and `heights` h, metres.
+/// Raises deflections to √q − h where q is positive; `squares` are q, m², and `heights` h, metres.
 ///
-/// Indexed loops over local copies let the compiler vectorise this function. Iterator adapters compiled elsewhere would remain calls, and memory that
-/// may alias is not vectorised. The roots of all lanes are taken, because those of negative numbers cost no more. The maximum avoids a
-/// masked store, which takes ten times as long on some processors.
+/// Indexed loops over local copies let the compiler vectorise this function. Iterator adapters compiled elsewhere would remain calls, and memory that may alias
+/// is not vectorised. The roots of all lanes are taken, because roots of negative numbers cost no more. The maximum avoids a masked store, which takes ten
+/// times as long on some processors.
 #[inline(always)]
 pub(crate) fn indent<const N: usize>(
     squares: &[f64; N],
@@ -147,7 +148,7 @@ mod tests {
             indent(&counting, &heights, &mut raised);
             for k in 0..8 {
                 let (q, h) = (squares[k], heights[k]);
-                // Rule with the root taken.
+                // The rule, evaluated with a root.
                 let far_side = h + q.max(0.0).sqrt();
                 let counts = q > 0.0 && reaches_front(far_side, behind);
                 n_counting += usize::from(counts);

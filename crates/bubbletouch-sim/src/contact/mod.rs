@@ -1,4 +1,4 @@
-//! Contact: a [`Patch`](crate::world::Patch), objects and poses → deflections \[BT\].
+//! Contact \[BT\]: computes the taxels' deflections from a [`Patch`](crate::world::Patch), objects and poses.
 //!
 //! For taxel i (rest centre p, axis n, radius ρ) and sphere j (centre c, radius R): `S = ρ + R`, `h = (c − p)·n`,
 //! `b² = |c − p|² − h²`. If `b < S`, the sphere needs `δ_ij = √(S² − b²) − h`. The contact deflection is
@@ -10,13 +10,11 @@
 //! On a mesh the taxel stays on its substrate's side of every triangle swept by a ball of radius ρ. The module `swept_triangle` has the
 //! equations for faces, edges and corners.
 //!
-//! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The
-//! deflection of a taxel of a flat patch therefore never decreases with the depth. At a pose without a path ([`press_at_pose`],
-//! [`press_with_contacts`]) and for free objects, a sphere or a mesh counts until it is wholly behind the substrate. The rule is applied to each taxel
-//! separately. The obstacle is behind if a taxel resting on its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (predicate in the
-//! module `law`).
-//! A ball that moves through a skin therefore leaves it taxel by taxel. In a time loop, and along the path of a press, a part that pushed a taxel in
-//! the step before continues to push this taxel.
+//! **Behind the substrate.** A press to a depth, a travel or a force approaches from the front, and all spheres count at any depth. The deflection of a taxel
+//! of a flat patch therefore never decreases with the depth. At a pose without a path ([`press_at_pose`], [`press_with_contacts`]) and for free objects, a
+//! sphere or a mesh counts until it is wholly behind the substrate. The rule is applied to each taxel separately. The obstacle is behind if a taxel resting on
+//! its far side would be behind the substrate, `h + √(S² − b²) < −s − ρ` (module `law`). A ball that moves through a skin therefore leaves it taxel by taxel.
+//! In a time loop, and along the path of a press, a part that pushed a taxel in the step before continues to push this taxel.
 //!
 //! A taxel that an object would push further than its stroke s is saturated; [`Contact`] counts such taxels.
 //!
@@ -33,9 +31,8 @@
 //! A **touch to a force** ends where the springs carry Σ k δ = F together; the result equals a press to the travel found.
 //! [`MovedObject`] presses one object among others to a force.
 //!
-//! **Friction** is optional: with [`Shear`](crate::world::Shear) springs the objects drag the tips of the taxels until they slip. With
-//! friction each taxel measures a three-axis force ([`FrictionState`] has the equations). Without friction, and to the bit with μ = 0, the forces
-//! equal `spring_load`.
+//! **Friction** is optional. With [`Shear`](crate::world::Shear) springs the objects drag the taxels sideways until they slip. With friction each taxel
+//! measures a three-axis force ([`FrictionState`] has the equations). Without friction, and also with μ = 0, the forces are bitwise equal to `spring_load`.
 
 mod damper;
 pub mod equilibrium;

@@ -1,7 +1,7 @@
 //! Presses of any patch on any objects: to a depth, a travel or a force along the patch's z axis, or at a given pose.
 //!
-//! A flat grid with equal radii and substrate heights is pressed row by row (`grid`), any other patch taxel by taxel
-//! (`tree`). Both kernels agree to rounding.
+//! A flat grid with equal radii and substrate heights is pressed row by row (`grid`), any other patch taxel by taxel (`tree`). The results of the two kernels
+//! are equal up to rounding.
 
 use super::grid::{OutputBuffer, Row, TravelGoal, force};
 use super::press_summary::Contact;
@@ -12,16 +12,16 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::{Patch, Taxels};
 
-/// End condition of a press.
+/// Condition that ends a press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// Presses at the given pose, without travel: [`press_at_pose`].
+    /// No travel: the patch presses at the given pose ([`press_at_pose`]).
     Pose,
-    /// Depth past first contact, metres: [`press_to_depth`].
+    /// Depth past first contact, metres ([`press_to_depth`]).
     Depth(f64),
-    /// Travel from the given pose, metres: [`press_to_travel`].
+    /// Travel from the given pose, metres ([`press_to_travel`]).
     Travel(f64),
-    /// Force that the springs carry together, newtons: [`press_to_force`].
+    /// Force that the springs carry together, newtons ([`press_to_force`]).
     Force(f64),
 }
 
@@ -96,7 +96,7 @@ fn press_with_output(
     assert_eq!(output.row.len(), patch.n_taxels(), "one number a taxel");
     let contact = to_goal(patch, placed, goal, (workspace, &mut output))?;
     match workspace.is_on_grid() {
-        // The kernel has written the row, or nothing is touched.
+        // Either the kernel has written the row, or nothing is touched.
         true => output.finish(),
         false => output.row.write(workspace.deflections()),
     }
@@ -118,7 +118,7 @@ fn to_goal(
     Ok(to_place(patch, placed, until, scratch))
 }
 
-/// Presses to a pose, a travel or a depth. Returns `None` if the goal is a depth and the patch meets nothing.
+/// Presses at a pose, to a travel or to a depth. Returns `None` if the goal is a depth and the patch meets nothing.
 fn to_place(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),
@@ -127,7 +127,7 @@ fn to_place(
 ) -> Option<Contact> {
     let by_rows = |workspace: &Workspace| match until {
         TravelGoal::Depth(_) | TravelGoal::Travel(_) => true,
-        // At a pose a mesh may be behind some taxels, and held parts push from behind the substrate.
+        // At a pose a mesh may be behind the substrate of some taxels, and held parts push from behind.
         TravelGoal::Pose => {
             objects.iter().all(|object| object.spheres().is_some()) && !workspace.holds_any()
         }
@@ -171,7 +171,8 @@ fn to_place(
 /// Returns the travel along z at which the first taxel is touched, metres; negative if a taxel is touched already. Returns `None` if no
 /// travel touches anything.
 ///
-/// `patch_from_objects` has one pose per object. Closed form: a taxel that travels along a line meets a sphere at a root of a quadratic equation.
+/// `patch_from_objects` contains one pose per object. The closed form is exact: a taxel that travels along a line meets a sphere at a root of a quadratic
+/// equation.
 ///
 /// # Panics
 /// If the number of poses differs from the number of objects.
@@ -230,8 +231,8 @@ pub fn press_to_travel(
 
 /// Presses until the springs carry `force` newtons together, Σ k δ, to within a relative 1e-12 or the last bit of the travel.
 ///
-/// Returns `None`, with zero deflections, if the patch meets nothing. The travel may be negative. The result equals
-/// [`press_to_depth`] at the depth `travel − first_contact` (see [`first_contact`]).
+/// Returns `None`, with zero deflections, if the patch meets nothing. The travel may be negative. The result equals a press to the depth `travel −
+/// first_contact`, where `first_contact` is the travel at first contact.
 ///
 /// # Errors
 /// If `force` is not a positive number or exceeds the largest force that the object can exert within the taxels' strokes. The message contains
@@ -288,7 +289,7 @@ fn to_force(
     }
 }
 
-/// Presses as [`press_with_contacts`](super::press_with_contacts) does, without recording contacts.
+/// Presses at the given poses without recording contacts; otherwise like [`press_with_contacts`](super::press_with_contacts).
 ///
 /// # Panics
 /// If the number of poses differs from the number of objects.

@@ -4,16 +4,16 @@
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub value: f64,
-    /// Derivative, possibly approximate: a wrong one costs steps but does not change the result.
+    /// Derivative, possibly approximate; an inexact derivative costs steps but does not change the result.
     pub slope: f64,
 }
 
-/// Number of steps after which the bracket is halved instead of a Newton step. Larger: a function with kinks may converge slowly; smaller: a smooth
-/// function needs more steps.
+/// Number of Newton steps after which the bracket is halved once. If larger, a function with kinks may converge slowly; if smaller, a smooth function needs
+/// more steps.
 const HALVED_EACH: usize = 3;
 
-/// Returns the argument at which a function reaches `wanted`. The value is smaller at `low` and not smaller at `high`. The search ends within
-/// `tolerance` of the value or at the last bit of the argument; if the tolerance is negative, only at the last bit.
+/// Returns the argument at which a function reaches the value `wanted`. The function must be smaller than `wanted` at `low`, and not smaller at `high`. The
+/// search ends within `tolerance` of the value or at the last bit of the argument; if the tolerance is negative, only at the last bit.
 ///
 /// If the function jumps past the value, the upper side of the jump is returned.
 pub(crate) fn crossing(

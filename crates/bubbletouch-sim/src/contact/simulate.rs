@@ -1,4 +1,4 @@
-//! The time loop: a moving patch over moving or fixed objects.
+//! Time loop: a moving patch over moving or fixed objects.
 
 use super::tree;
 use super::{DamperState, Workspace};
@@ -9,25 +9,25 @@ use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use ndarray::{Array1, Array2, ArrayView1};
 
-/// Frames recorded over time.
+/// Deflections and forces of a patch, recorded over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// Times, seconds, shape (n_frames,).
+    /// Time of each frame, seconds, shape (n_frames,).
     pub time: Array1<f64>,
-    /// Metres, shape (n_frames, n_taxels).
+    /// Deflections, metres, shape (n_frames, n_taxels).
     pub deflection: Array2<f64>,
-    /// Newtons, shape (n_frames, n_taxels).
+    /// Forces, newtons, shape (n_frames, n_taxels).
     pub force: Array2<f64>,
     /// Number of taxels at their stroke, summed over frames.
     pub n_saturated: usize,
 }
 
-/// Moves the patch and the objects along their plans from t = 0 and records `n_frames` frames. Frame k shows the time (k + 1) dt, seconds.
+/// Moves the patch and the objects along their plans from t = 0 and records `n_frames` frames. Frame k is recorded at the time (k + 1) dt, seconds.
 ///
-/// A part that pushed a taxel in the frame before continues to push this taxel, even from behind the substrate, as in a
+/// A part of an object that pushed a taxel in the previous frame continues to push this taxel, even from behind the substrate, as in a direct press.
 /// direct press.
 ///
-/// `world_from_objects` has one plan per object; the plan of a fixed object has no phases. Any `dt` is stable.
+/// `world_from_objects` contains one plan per object; the plan of a fixed object has no phases. The simulation is stable for any `dt`.
 ///
 /// # Errors
 /// If `dt` is not positive, or the number of plans differs from the number of objects.

@@ -6,12 +6,12 @@ use super::wrench::Wrench;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// Sum of the spring forces of some contacts.
+/// Sum of the spring forces at some contacts, and their centre of pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLoad {
     /// Load on the objects without friction: Σ k δ n_c / (n_c·n) at the contact points.
     pub on_object: Wrench,
-    /// Sum of the taxels' readings Σ k δ, N.
+    /// Sum of the taxels' readings, Σ k δ, N.
     pub spring_force: f64,
     /// Mean rest centre of the touched taxels, weighted by k δ; metres, in the patch frame. `None` if none is touched.
     pub center_of_pressure: Option<DVec3>,
@@ -26,7 +26,7 @@ impl SpringLoad {
     }
 }
 
-/// Sum of forces along the taxels' axes at some contacts.
+/// Sum of forces along the taxels' axes at some contacts, and their centre of pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxialLoad {
     /// Load on the objects without friction: Σ f n_c / (n_c·n) at the contact points.
@@ -37,7 +37,7 @@ pub struct AxialLoad {
     pub center_of_pressure: Option<DVec3>,
 }
 
-/// Sums forces along the axes at the contacts of a press of this patch; `force_of` returns the force of a contact, newtons.
+/// Sums forces along the taxels' axes over the contacts of a press; `force_of` returns the force of a contact, newtons.
 ///
 /// # Panics
 /// If the taxel of a contact does not exist in the patch.
@@ -61,10 +61,10 @@ pub fn axial_load<'a>(
     }
 }
 
-/// Sums the spring forces of the contacts of a press of this patch: of all, or of those with one object.
+/// Sums the spring forces over the given contacts of a press: all contacts, or those with one object.
 ///
-/// The force on an object is −∇ Σ ½ k δ² by its motion in the patch frame. Exceptions are saturated taxels, whose energy no longer changes,
-/// and grazing contacts, whose gradient is bounded. \[BT\]
+/// The force on an object is −∇ Σ ½ k δ² with respect to the object's position in the patch frame. Exceptions are saturated taxels, whose energy no longer
+/// changes, and grazing contacts, whose gradient is bounded. \[BT\]
 ///
 /// # Panics
 /// If the taxel of a contact does not exist in the patch.
@@ -93,7 +93,7 @@ pub fn spring_load<'a>(
     }
 }
 
-/// Returns Σ k δ, N, and its derivative, N/m, while the objects selected by `moved` move along a direction (unit, in the patch frame).
+/// Returns the force Σ k δ, N, and its derivative, N/m, while the objects selected by `moved` move along a direction (unit vector in the patch frame).
 pub(super) fn sample(
     patch: &Patch,
     contacts: &[TaxelContact],

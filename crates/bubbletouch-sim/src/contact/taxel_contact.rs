@@ -5,25 +5,24 @@ use super::wrench::Wrench;
 use crate::world::Taxel;
 use glam::DVec3;
 
-/// Cosine between the contact normal and the taxel's axis below which a contact is grazing. The object's flank is then parallel to the
-/// axis within 0.6°, and a light touch would cause an arbitrarily large lateral force. Larger: real lateral forces are
-/// reduced; smaller: forces jump as spheres pass by.
+/// Cosine between the contact normal and the taxel's axis below which a contact is grazing. The object's flank is then parallel to the axis within 0.6°, and a
+/// light touch would cause an arbitrarily large lateral force. If larger, real lateral forces are reduced; if smaller, forces jump as spheres pass by.
 pub const GRAZING: f64 = 0.01;
 
 /// Contact of one taxel with the sphere or triangle that pushes it furthest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaxelContact {
-    /// Number of the taxel in the layout.
+    /// Index of the taxel in the layout.
     pub taxel: usize,
-    /// Number of the object in the scene.
+    /// Index of the object in the scene.
     pub object: usize,
-    /// Number of the sphere in its union, or of the triangle in its mesh.
+    /// Index of the sphere in its union, or of the triangle in its mesh.
     pub part: usize,
     /// Deflection δ, metres, above 0 to the stroke.
     pub deflection: f64,
-    /// Deflection that the object needs, without the stop, metres; larger than `deflection` if the taxel is saturated.
+    /// Deflection that the object needs, not limited to the stroke, metres; larger than `deflection` if the taxel is saturated.
     pub needed: f64,
-    /// Contact normal n_c in the patch frame: unit, from the object's surface to the taxel at the deflection needed.
+    /// Contact normal n_c in the patch frame: a unit vector from the object's surface to the taxel at the deflection needed.
     pub normal: DVec3,
     /// Cosine −n_c·n of the angle between normal and axis, 0 to 1; 1 for a head-on contact.
     pub cosine: f64,
@@ -34,24 +33,23 @@ pub struct TaxelContact {
 impl TaxelContact {
     /// Returns ∂δ/∂x for a motion x of the object in the patch frame: `−n_c / (n_c·n)`, its length bounded by 1 / [`GRAZING`].
     ///
-    /// A spring force f on the taxel exerts the frictionless force `−f ∂δ/∂x` on the object, −∇ of ½ k δ² \[BT\]. For a saturated
-    /// taxel the gradient is that of the deflection needed without the stop.
+    /// A spring force f on the taxel exerts the frictionless force `−f ∂δ/∂x` on the object, −∇ of ½ k δ² \[BT\]. For a saturated taxel the gradient is
+    /// computed from the deflection needed without the stop.
     pub fn gradient(&self) -> DVec3 {
         self.normal / self.cosine.max(GRAZING)
     }
 
-    /// Returns the frictionless load on the object for a force (N) of the taxel along its axis: at the contact point, opposite to
-    /// the [gradient](Self::gradient).
+    /// Returns the frictionless load on the object for a force (N) of the taxel along its axis. The load acts at the contact point, opposite to the gradient.
     pub fn push(&self, force: f64) -> Wrench {
         Wrench::at(self.point, -force * self.gradient())
     }
 
-    /// Returns whether the deflection needed exceeds the stroke; `taxel` is the taxel of the contact.
+    /// Returns whether the deflection needed exceeds the stroke of `taxel`, the taxel of this contact.
     pub fn is_saturated(&self, taxel: &Taxel) -> bool {
         self.needed > saturation_limit(taxel.stroke)
     }
 
-    /// Returns whether the gradient is limited by its bound.
+    /// Returns whether the gradient is limited by its bound, 1 / [`GRAZING`].
     pub fn is_grazing(&self) -> bool {
         self.cosine < GRAZING
     }

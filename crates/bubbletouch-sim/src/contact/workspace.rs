@@ -5,33 +5,33 @@ use super::instructions::Instructions;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 
-/// SignalWorkspace memory of one thread and the result of its last press. Reuse avoids allocations once the largest patch has been pressed.
+/// Scratch memory of one thread, and the result of its last press. Reuse avoids allocations once the largest patch has been pressed.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     instructions: Instructions,
     /// Workspace for flat grids pressed along their axis.
     grid: GridPress,
-    /// Whether the last press used `grid`.
+    /// Whether the last press used the grid workspace.
     is_on_grid: bool,
-    /// Metres, shape (n_taxels,).
+    /// Deflections, metres, shape (n_taxels,).
     pub(super) deflections: Vec<f64>,
     /// Object and part that determine each deflection, shape (n_taxels,); unspecified for untouched taxels.
     pub(super) deciding: Vec<[u32; 2]>,
-    /// Touched taxels, ascending after a press.
+    /// Indices of the touched taxels, ascending after a press.
     pub(super) touched: Vec<u32>,
-    /// Spheres of an object near the patch.
+    /// Indices of an object's spheres near the patch.
     pub(super) near: Vec<u32>,
-    /// Lines of the last even grid.
+    /// Lines (columns and rows) of the last even grid.
     pub(super) lines: GridLines,
     /// Contacts of the touched taxels, in the order of `touched`.
     pub(super) contacts: Vec<TaxelContact>,
-    /// Parts that push their taxels even from behind the substrate; see [`hold`](Self::hold).
+    /// Parts of objects that push their taxels even from behind the substrate.
     pub(super) held: Vec<HeldTaxel>,
-    /// Poses of the objects along their path.
+    /// Poses of the objects along the path of a press.
     pub(super) poses: Vec<Pose>,
 }
 
-/// HeldTaxel taxel, with the object and part that hold it.
+/// Taxel that is held by a part of an object, even from behind the substrate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldTaxel {
     pub taxel: u32,
@@ -69,12 +69,12 @@ impl Workspace {
         self.is_on_grid
     }
 
-    /// Returns the contacts of the last press, ascending by taxel; empty after [presses](super::press_at_pose) that do not record contacts.
+    /// Returns the contacts of the last press, ascending by taxel; empty after presses that do not record contacts.
     pub fn contacts(&self) -> &[TaxelContact] {
         &self.contacts
     }
 
-    /// Marks parts that push their taxels even from behind the substrate, until the next call. An object that moves through the front of a patch
+    /// Marks parts of objects that push their taxels even from behind the substrate, until the next call. An object that moves through the front of a patch
     /// thereby continues to press the taxels that it has pressed.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.held.clear();
@@ -96,12 +96,12 @@ impl Workspace {
             }));
     }
 
-    /// Returns whether any part is held.
+    /// Returns whether any part of an object is held.
     pub fn holds_any(&self) -> bool {
         !self.held.is_empty()
     }
 
-    /// Returns the grid workspace for the next press, which is of a flat grid along its axis.
+    /// Returns the grid workspace and marks the next press as a press of a flat grid along its axis.
     pub(super) fn on_grid(&mut self) -> &mut GridPress {
         self.is_on_grid = true;
         self.contacts.clear();
@@ -123,7 +123,7 @@ impl Workspace {
         self.deciding.resize(n_taxels, [0; 2]);
     }
 
-    /// Raises the deflection of a taxel to `needed`; of parts that need equal deflections the first counts.
+    /// Raises the deflection of a taxel to `needed`, metres; of parts that need equal deflections the first counts.
     #[inline(always)]
     pub(super) fn push(&mut self, taxel: u32, needed: f64, deciding: [u32; 2]) {
         let number = taxel as usize;

@@ -1,4 +1,4 @@
-//! Wrenches: a force with its torque about an origin.
+//! Wrenches: forces with their torques about an origin.
 
 use glam::DVec3;
 use std::ops::{Add, Neg};

@@ -5,8 +5,8 @@ use super::symmetric::Six;
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 
-/// Pose of a free object. A motion has six numbers: three translations of the centre of mass along the world's axes, and three rotations
-/// about them. A rotation is multiplied by the arm, so that all six numbers are in metres.
+/// Pose of a free object during the descent. A motion has six components: three translations of the centre of mass along the world's axes, and three rotations
+/// about them. Rotations are multiplied by the arm (the object's radius), so that all components are in metres.
 #[derive(Clone, Debug)]
 pub(super) struct Body<'a> {
     /// Number of the object in the list passed to the solver.
@@ -33,7 +33,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Returns the arm, metres: the distance from the centre of mass at which rotations are measured as displacements.
+    /// Returns the object's radius, metres, by which angles are multiplied to express rotations as displacements.
     pub fn arm(&self) -> f64 {
         self.object.radius
     }
@@ -43,7 +43,7 @@ impl<'a> Body<'a> {
         Pose::new(self.rotation, self.center - from_origin)
     }
 
-    /// Moves the body by six numbers; returns the translation, metres.
+    /// Moves the body by a motion of six components; returns the translation, metres.
     pub fn go(&mut self, motion: &[f64]) -> DVec3 {
         let (shift, turn) = (DVec3::from_slice(motion), DVec3::from_slice(&motion[3..]));
         self.center += shift;
@@ -52,14 +52,14 @@ impl<'a> Body<'a> {
         shift
     }
 
-    /// Returns the residual of a force (N) and a torque (N·m) together with the weight: see [`Equilibrium::imbalance`](super::Equilibrium::imbalance).
+    /// Returns the residual of force (N) and torque (N·m) relative to the weight, as defined by `Equilibrium::imbalance`.
     pub fn imbalance_of(&self, (force, torque): (DVec3, DVec3)) -> f64 {
         let weight = self.weight.length();
         let of_force = (force + self.weight).length() / weight;
         of_force.max(torque.length() / (weight * self.arm()))
     }
 
-    /// Returns the direction from the start to the present position, perpendicular to the weight; the weight's direction if the body fell straight.
+    /// Returns the unit vector from the start position to the present position, perpendicular to the weight; the weight's direction if the body fell straight.
     pub fn way_out(&self) -> DVec3 {
         let down = self.weight.normalize();
         let way = self.center - self.start;
@@ -72,14 +72,14 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Returns the displacement of a point of a body by each unit motion, per metre; `from_center` is the vector from the centre of mass to the point.
+/// Returns the displacement of a body's point for each of the six unit motions, per metre; `from_center` points from the centre of mass to the point.
 pub(super) fn unit_motions(axes: &[DVec3; 3], from_center: DVec3, arm: f64) -> [DVec3; 6] {
     let [x, y, z] = *axes;
     let turn = |axis: DVec3| axis.cross(from_center) / arm;
     [x, y, z, turn(x), turn(y), turn(z)]
 }
 
-/// Returns the derivative by each motion of a body of a quantity whose derivative by the displacement of a point is `gradient`.
+/// Returns the derivatives with respect to the six motions of a body, by the chain rule; `gradient` is the derivative with respect to the point's displacement.
 pub(super) fn along(ways: &[DVec3; 6], gradient: DVec3) -> Six {
     ways.map(|way| gradient.dot(way))
 }

@@ -1,4 +1,4 @@
-//! Descent along the energy to a pose at rest.
+//! Descent of the energy to a pose at rest.
 
 use super::body::Body;
 use super::energy::{Energy, PairLoad, wrenches};
@@ -12,49 +12,52 @@ use super::shear_springs::{self, Spring};
 use super::symmetric::{Symmetric, norm};
 use glam::DVec3;
 
-/// Largest number of poses evaluated per body; a body that rolls across a whole skin takes some hundreds. Larger: problems that do not converge take
-/// longer; smaller: long rolls do not converge.
+/// Maximum number of poses evaluated per body; a body that rolls across a whole skin needs some hundreds. If larger, problems that do not converge take longer;
+/// if smaller, long rolls do not converge.
 const MAX_STEPS: usize = 4000;
-/// Largest number of multiplier updates; three to six are usual.
+/// Maximum number of multiplier updates; three to six are usual.
 const MAX_ROUNDS: usize = 40;
-/// Imbalance at which the iteration stops; a tenth of the largest accepted imbalance.
+/// Imbalance (relative residual of force and torque) at which the iteration stops: a tenth of the largest accepted imbalance.
 const TARGET_IMBALANCE: f64 = 1e-7;
-/// Largest imbalance of a pose that is reported at rest; needed for steep flanks, where no nearby pose is better.
+/// Largest imbalance (relative residual of force and torque) of a pose that is reported as at rest. The value is needed for steep flanks, near which no pose is
+/// better.
 const ACCEPTED_IMBALANCE: f64 = 1e-6;
-/// [Complementarity residual](super::energy::Energy::complementarity_residual) at which the iteration stops.
+/// Complementarity residual (violation of the contact constraints) at which the iteration stops.
 const TARGET_RESIDUAL: f64 = 1e-7;
-/// Largest complementarity residual of a pose that is reported at rest; needed if many stops carry and rounding limits their stiffness.
+/// Largest complementarity residual of a pose that is reported as at rest. The value is needed if many stops carry load and rounding limits their stiffness.
 const ACCEPTED_RESIDUAL: f64 = 1e-5;
-/// Largest step, relative to the longest allowed one, whose contacts are all gathered. Larger: more pairs; smaller: more steps.
+/// Length of a step, relative to the longest allowed one, up to which all contacts are gathered. A larger value gathers more pairs; a smaller one needs more
+/// steps.
 const NEARBY: f64 = 0.04;
-/// Width of the smoothing of ties, relative to the largest deflection and to the deflection at which a taxel carries all the weight.
+/// Width of the smoothing of ties (taxels pushed equally far by several spheres), relative to the largest deflection and to the deflection at which one taxel
+/// carries all the weight.
 const SMOOTHING: f64 = 1e-2;
-/// Least smoothing, in units of rounding of the object's size.
+/// Minimum smoothing of ties, in multiples of the rounding error of the object's size.
 const LAST_BITS: f64 = 64.0;
-/// Maximum number of rounds of smoothing. Each round makes the smoothed kinks of the energy steeper by a factor of 5; rounding hides further rounds.
+/// Maximum number of smoothing rounds. Each round makes the smoothed kinks of the energy steeper by a factor of 5; rounding hides further rounds.
 const MAX_TIGHTENINGS: usize = 12;
-/// Distance below which two places count as equal, relative to size and travel of the object.
+/// Distance below which two positions count as equal, relative to size and travel of the object.
 const SAME_PLACE: f64 = 1e-15;
 
-/// Reused memory of descents; the multipliers of one descent start the next one.
+/// Reusable memory of descents; the multipliers of one descent initialise the next one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DescentWorkspace {
     /// Energy at the current poses.
     pub now: Energy,
-    /// Memory for the energy at the next poses.
+    /// Memory for the energy at the trial poses.
     next: Energy,
     model: Model,
     pub multipliers: Multipliers,
 }
 
-/// Bodies during a descent.
+/// State of a descent: bodies, step lengths and energies.
 pub(super) struct Descent<'a, 'b> {
     pub workspace: &'b mut DescentWorkspace,
-    /// Bodies, ground, and present multipliers.
+    /// Bodies, ground, and present multipliers of the descent.
     pub scene: Scene<'a>,
-    /// Length of the longest step, metres.
+    /// Length of the longest allowed step, metres.
     pub farthest: f64,
-    /// Trust-region radius, metres.
+    /// Trust-region radius of the next step, metres.
     pub reach: f64,
     pub n_steps: usize,
 }
@@ -63,9 +66,9 @@ pub(super) struct Descent<'a, 'b> {
 pub(super) enum End {
     /// All bodies are at rest.
     Rest,
-    /// Bodies that nothing below them can stop.
+    /// Some bodies fall without end; contains the indices of these bodies.
     Endless(Vec<usize>),
-    /// The step limit was reached.
+    /// The descent reached its step limit.
     Exhausted,
 }
 
@@ -107,7 +110,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         }
     }
 
-    /// Repeats descents with improved multipliers. If they no longer approach rest, the best pose within the accepted tolerances is returned.
+    /// Repeats descents with updated multipliers. If the residuals no longer decrease, the best pose within the accepted tolerances is returned.
     pub fn run(&mut self) -> End {
         self.look(&[]);
         let mut complementarity_residual = f64::INFINITY;
@@ -134,7 +137,7 @@ impl<'a, 'b> Descent<'a, 'b> {
                 (best, least) = (Some(self.scene.clone()), now);
             }
             let Some(deepest) = self.deepest() else {
-                // The body floats less than the last bit above taxels that are too stiff for its weight.
+                // The body floats by less than the last bit above taxels that are too stiff for its weight.
                 return End::Exhausted;
             };
             let energy = &self.workspace.now;
@@ -143,7 +146,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             if deepest > 0.0 {
                 smoothness.smoothing = smoothness.smoothing.min(SMOOTHING * deepest);
             }
-            // Where the energy is concave between ties, multipliers converge only with steeper sides.
+            // If the energy is concave between ties, multipliers converge only with less smoothing.
             if now > TARGET_RESIDUAL.max(0.25 * complementarity_residual)
                 && n_tightened < MAX_TIGHTENINGS
             {
@@ -169,7 +172,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             && self.complementarity_residual() <= complementarity_residual
     }
 
-    /// Returns the largest residual of all islands.
+    /// Returns the largest complementarity residual of all islands (groups of bodies in contact).
     fn complementarity_residual(&self) -> f64 {
         let now = &self.workspace.now;
         let islands = now.pairs.islands(self.scene.bodies.len());
@@ -178,7 +181,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             .fold(0.0, f64::max)
     }
 
-    /// Returns the bodies of the island farthest from rest.
+    /// Returns the bodies of the island with the largest residual.
     pub fn most_restless(&self) -> Vec<usize> {
         let now = &self.workspace.now;
         let islands = now.pairs.islands(self.scene.bodies.len());
@@ -193,7 +196,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         all.filter(|&body| Some(islands[body]) == worst).collect()
     }
 
-    /// Descends to a stationary point of the smooth energy that is no saddle.
+    /// Descends to a stationary point of the smoothed energy that is not a saddle.
     fn descend(&mut self) -> End {
         while self.n_steps < MAX_STEPS * self.scene.bodies.len() {
             if let Some((loose, way, room)) = self.loose() {
@@ -230,7 +233,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         End::Exhausted
     }
 
-    /// Returns the [slope](Scene::slope) of the energy and the best step; `None` at a stationary point that is no saddle.
+    /// Returns the slope of the energy and the best step; `None` at a stationary point that is not a saddle.
     fn best(&mut self) -> Option<(f64, Step)> {
         let (gradient, hessian) = self.derivatives();
         let slope = self.scene.slope(&gradient);
@@ -248,7 +251,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         model.lay(&self.scene, now)
     }
 
-    /// Takes a step if the energy decreases. Returns the ratio of actual to predicted gain, or `None` if the step was rejected.
+    /// Takes a step if the energy decreases. Returns the ratio of actual to predicted decrease, or `None` if the step was rejected.
     fn try_step(&mut self, step: &Step, slope: f64) -> Option<f64> {
         let bodies = self.scene.bodies.clone();
         let fallen = self.go(&step.motion);
@@ -259,7 +262,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         self.workspace.next.pairs.behind = behind;
         let after = self.workspace.now.loads.elastic;
         let gain = before - after + fallen;
-        // The difference of the energies is below rounding; the slope then decides.
+        // If the difference of the energies is below rounding, the slope decides.
         let noise = 1e-14 * (before.abs() + after.abs() + fallen.abs());
         let is_noise = step.gain <= 100.0 * noise;
         let is_better = match is_noise {
@@ -285,14 +288,14 @@ impl<'a, 'b> Descent<'a, 'b> {
             .sum()
     }
 
-    /// Returns a group of bodies that nothing holds, the direction of its motion (unit vector), and the distance it may move, metres.
+    /// Returns a group of unsupported bodies, the direction of its motion (unit vector), and the distance it may move, metres.
     fn loose(&self) -> Option<(Loose, DVec3, f64)> {
         let down = self.scene.bodies[0].weight.normalize();
         let all = Loose::all(&self.workspace.now.pairs, self.scene.bodies.len());
         all.into_iter().find_map(|loose| {
             let way = loose.direction(self.scene.ground, down)?;
             let room = match loose.clearance(&self.scene.bodies, self.scene.ground, way) {
-                // Steps find the direction along a plane, together with nearby contacts.
+                // Ordinary steps find the direction along a plane, together with nearby contacts.
                 None if loose.slides() => return None,
                 room => room.unwrap_or(0.0).max(self.farthest),
             };
@@ -326,33 +329,33 @@ impl<'a, 'b> Descent<'a, 'b> {
         bodies.for_each(|&body| self.scene.bodies[body].center += by);
     }
 
-    /// Returns the distance, metres, below which places count as equal.
+    /// Returns the distance, metres, below which two positions count as equal.
     fn same_place(&self) -> f64 {
         let bodies = self.scene.bodies.iter();
         let sizes = bodies.map(|body| body.arm() + body.center.length());
         SAME_PLACE * sizes.fold(f64::INFINITY, f64::min)
     }
 
-    /// Evaluates the energy at the pose; `behind` lists the spheres that were behind taxels at the pose before.
+    /// Evaluates the energy at the current poses; `behind` lists the spheres that were behind a taxel's substrate at the previous poses.
     fn look(&mut self, behind: &[(Key, Part)]) {
         self.n_steps += 1;
-        // A long step is not fully covered: the list would contain most spheres.
+        // For a long step not all contacts are gathered: the list would contain most spheres.
         let step = self.reach.min(self.nearby());
         self.workspace.now.look(&self.scene, step, behind);
     }
 
-    /// Evaluates the energy at the pose with the present list of spheres behind taxels.
+    /// Re-evaluates the energy at the current poses with the present list of spheres behind taxels.
     fn look_again(&mut self) {
         let behind = std::mem::take(&mut self.workspace.now.pairs.behind);
         self.look(&behind);
     }
 
-    /// Returns the length of a step, metres, up to which all contacts that the step makes are gathered.
+    /// Returns the length of a step, metres, up to which all contacts that the step can make are gathered.
     fn nearby(&self) -> f64 {
         NEARBY * self.farthest
     }
 
-    /// Returns the largest deflection, metres; 0 if only rigid contacts carry, `None` if nothing carries.
+    /// Returns the largest deflection of any taxel, metres; 0 if only rigid contacts carry load, `None` if nothing carries load.
     fn deepest(&self) -> Option<f64> {
         let now = &self.workspace.now;
         let carrying = now.loads.carrying(&now.pairs.groups);
@@ -364,7 +367,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             .reduce(f64::max)
     }
 
-    /// Returns the imbalance of each body with these loads, dimensionless.
+    /// Returns the imbalance of each body under these loads, dimensionless.
     fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
         let pairs = &self.workspace.now.pairs.all;
         let Scene {

@@ -1,4 +1,4 @@
-//! Elastic energy of the skins that free objects press at their present poses, and its forces.
+//! Elastic energy of the skins that free objects press at their present poses, and the resulting forces.
 
 use super::body::Body;
 use super::free_object::PlacedSkin;
@@ -9,30 +9,30 @@ use super::scene::Scene;
 use super::shear_springs::{self, Spring};
 use glam::DVec3;
 
-/// Weight of violated rigid contacts in [`Energy::complementarity_residual`], 1/m.
+/// Weight of violated rigid contacts in the complementarity residual, 1/m.
 const RIGID_MISS: f64 = 1e-7 / 3e-10;
 
-/// Energy at the present poses of all bodies, with the contacts and loads from which its model is built. Reuse avoids allocations.
+/// Energy at the present poses of all bodies, with the contacts and loads from which the quadratic model is built. Reusing the struct avoids allocations.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Energy {
     pub pairs: Pairs,
     pub loads: Loads,
 }
 
-/// Load of one pair on its taxel or rigid contact.
+/// Load of one pair (a sphere and a taxel, or a rigid contact).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PairLoad {
-    /// Number of the pair.
+    /// Index of the pair in the list of all pairs.
     pub pair: usize,
-    /// Force along the axis including the stop's, newtons.
+    /// Force along the taxel's axis, including the stop's force, newtons.
     pub force: f64,
-    /// Part of the force carried by the stop, newtons.
+    /// Part of the force that the taxel's stop carries, newtons.
     pub stop: f64,
 }
 
 impl Energy {
-    /// Evaluates the energy at the present poses and gathers the contacts within a motion of `step` metres. `behind` lists the spheres that were
-    /// behind taxels at the pose before.
+    /// Evaluates the energy at the present poses and gathers the contacts within a motion of `step` metres. `behind` lists the spheres that were behind a
+    /// taxel's substrate at the previous poses.
     pub fn look(&mut self, scene: &Scene, step: f64, behind: &[(Key, Part)]) {
         let margins = Margins {
             step,
@@ -48,7 +48,7 @@ impl Energy {
         self.loads.elastic += shear_springs::energy(&scene.springs, &scene.bodies);
     }
 
-    /// Returns the load of each pair. Each taxel carries k times its deflection, plus the force of its stop.
+    /// Returns the load of each pair: each taxel carries its stiffness times its deflection, plus the force of its stop.
     pub fn pair_loads(&self) -> Vec<PairLoad> {
         let mut all = Vec::new();
         for (group, load) in self.loads.carrying(&self.pairs.groups) {
@@ -64,11 +64,11 @@ impl Energy {
         all
     }
 
-    /// Returns the complementarity residual of each [island](Pairs::islands), dimensionless, by the island's number; 0 if nothing touches.
+    /// Returns the complementarity residual of each island of bodies in contact, dimensionless, by the island's number; 0 for an island without contacts.
     ///
-    /// Without violations, spheres that share a taxel push it equally far, a stop that carries is reached exactly, and no stop is passed. The residual
-    /// is the taxel's stiffness times the largest violation, divided by the largest force of a spring. Rigid contacts count with
-    /// the stiffness [`RIGID_MISS`].
+    /// At a solution, spheres that share a taxel push it equally far, a stop that carries load is reached exactly, and no stop is exceeded. The residual is the
+    /// taxel's stiffness times the largest violation, divided by the largest force of a spring. For rigid contacts the stiffness is replaced by the constant
+    /// [`RIGID_MISS`].
     pub fn complementarity_residual(&self, islands: &[usize]) -> Vec<f64> {
         let (mut loose, mut largest) = (vec![0.0_f64; islands.len()], vec![0.0_f64; islands.len()]);
         let mut rigid = loose.clone();
@@ -95,12 +95,12 @@ impl Energy {
         loose
     }
 
-    /// Returns the violation of the constraints of one taxel or rigid contact, metres; see [complementarity_residual](Self::complementarity_residual).
+    /// Returns the constraint violation of one taxel or rigid contact, metres, from which the complementarity residual is computed.
     fn miss(&self, group: &Group, load: &Load) -> f64 {
         let past = load.deepest - group.stroke;
         let of_stop: f64 = if load.stop > 0.0 { past.abs() } else { past };
         if load.force == 0.0 {
-            // Pressed, but below the smoothed maximum that uses the shares of an earlier pose.
+            // The taxel is pressed, but lies below the smoothed maximum, which uses the shares of an earlier pose.
             return of_stop.max(load.deepest);
         }
         let sharing = group
@@ -112,7 +112,7 @@ impl Energy {
     }
 }
 
-/// Returns the force (N) and the torque about the centre of mass (N·m) of pairs and tangential springs on each body, in the world.
+/// Returns for each body the force (N) and the torque about its centre of mass (N·m) of all pairs and tangential springs, in the world frame.
 pub(super) fn wrenches(
     (loads, pairs): (&[PairLoad], &[Pair]),
     springs: &[Spring],

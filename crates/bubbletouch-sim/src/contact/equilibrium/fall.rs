@@ -1,4 +1,4 @@
-//! Free fall and sliding: the distance that bodies can safely move before they meet something.
+//! Free fall and sliding: the distance that unsupported bodies can safely move before they meet an obstacle.
 
 use super::body::Body;
 use super::free_object::Ground;
@@ -8,10 +8,10 @@ use super::rigid_contact::Touched;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Slope, relative to the weight, up to which planes hold a body; well below the accepted imbalance of a pose at rest.
+/// Slope of the energy, relative to the weight, below which planes hold a body. The value is well below the accepted imbalance of a pose at rest.
 const FLAT: f64 = 1e-8;
 
-/// Group of bodies that are in contact only with one another and with planes.
+/// Group of bodies in contact only with one another and with planes; no skin or obstacle supports it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loose {
     pub bodies: Vec<usize>,
@@ -20,7 +20,7 @@ pub(super) struct Loose {
 }
 
 impl Loose {
-    /// Returns all such groups among `n_bodies` bodies with these pairs, and unions of groups.
+    /// Returns all unsupported groups among `n_bodies` bodies with these pairs, and the unions of such groups.
     pub fn all(pairs: &Pairs, n_bodies: usize) -> Vec<Self> {
         let islands = pairs.islands(n_bodies);
         let mut all = vec![Self::default(); n_bodies];
@@ -40,7 +40,7 @@ impl Loose {
             }
         }
         all.retain(|group| !group.bodies.is_empty() && !group.is_held);
-        // Groups on equal planes are also moved together, as a last resort: side by side they may block one another forever.
+        // As a last resort, groups on equal planes are also moved together: side by side, groups can block one another forever.
         let mut unions: BTreeMap<BTreeSet<usize>, Vec<usize>> = BTreeMap::new();
         for group in &all {
             let union = unions.entry(group.planes.clone()).or_default();
@@ -57,12 +57,12 @@ impl Loose {
         all
     }
 
-    /// Returns the direction (unit vector) of the motion under gravity: `down`, constrained by the planes touched; `None` if these hold the group.
+    /// Returns the unit vector of the motion under gravity: `down`, constrained by the planes touched. Returns `None` if the planes hold the group.
     pub fn direction(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
         let normals = self.planes.iter().map(|&plane| ground.planes[plane].normal);
         let normals: Vec<DVec3> = normals.collect();
-        // Candidates are `down` and its projections onto planes and onto lines where two meet; the longest that enters no plane is the constrained
-        // direction.
+        // Candidates are `down` and its projections onto planes and onto the lines where two planes meet. The longest candidate that enters no plane is the
+        // constrained direction.
         let along_one = normals
             .iter()
             .map(|normal| down.reject_from_normalized(*normal));
@@ -78,8 +78,8 @@ impl Loose {
         (way.length() > FLAT).then(|| way.normalize())
     }
 
-    /// Returns a lower bound, metres, of the distance along `way` (unit vector) to skins, obstacles, other `bodies`, and planes not touched.
-    /// Infinite if nothing is in this direction; `None` if something is too near to decide.
+    /// Returns a lower bound, metres, of the distance along `way` (unit vector) to skins, obstacles, other `bodies`, and planes not yet touched. The bound is
+    /// infinite if nothing lies in this direction; `None` if something is too near to decide.
     pub fn clearance(&self, bodies: &[Body], ground: &Ground, way: DVec3) -> Option<f64> {
         let others = bodies.iter().enumerate();
         let others = others.filter(|(other, _)| !self.bodies.contains(other));
@@ -90,12 +90,12 @@ impl Loose {
         (nearest > 0.0).then_some(nearest)
     }
 
-    /// Returns whether the group touches planes.
+    /// Returns whether the group touches a plane.
     pub fn slides(&self) -> bool {
         !self.planes.is_empty()
     }
 
-    /// Returns the distance between one body of the group and the nearest thing in its direction, metres.
+    /// Returns the distance from one body of the group to the nearest object along the direction, metres.
     fn gap(&self, body: &Body, ground: &Ground, others: &[&Body], way: DVec3) -> f64 {
         let mut nearest = f64::INFINITY;
         let mut meet = |gap: f64, is_on_way: bool| {

@@ -9,7 +9,7 @@ use crate::text::in_range::positive;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// Rigid object subject to gravity and contact forces only.
+/// Rigid object that moves only under gravity and contact forces.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeObject<'a> {
     pub(super) spheres: &'a [Sphere],
@@ -23,7 +23,7 @@ impl<'a> FreeObject<'a> {
     /// Creates an object of `mass` (kg, positive) with its centre of mass given in the object's frame (metres).
     ///
     /// # Errors
-    /// If a value is not finite, or the mass is not positive.
+    /// If a value is not finite or the mass is not positive.
     pub fn new(spheres: &'a SphereUnion, mass: f64, center_of_mass: DVec3) -> Result<Self> {
         positive("object mass", mass, "kg")?;
         if !center_of_mass.is_finite() {
@@ -42,24 +42,24 @@ impl<'a> FreeObject<'a> {
     }
 }
 
-/// Skin at a pose, as part of the ground.
+/// Skin patch at a pose, as part of the ground that carries free objects.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedSkin<'a> {
-    /// Patch of the skin.
+    /// Patch with the skin's taxels.
     pub patch: &'a Patch,
     /// Pose of the patch in the world.
     pub world_from_patch: Pose,
-    /// Deflection of each taxel by objects that are not free, metres; empty if there are none.
+    /// Deflection of each taxel due to fixed or imposed objects, metres; empty if there are none.
     pub pushed: &'a [f64],
-    /// Deflection of each taxel one step ago, metres, and the length of this step, seconds, for the dampers. `None` without dampers, or if nothing has
-    /// moved for long.
+    /// Deflection of each taxel one step ago, metres, and the length of this step, seconds, for the dampers. `None` if there are no dampers or the taxels have
+    /// relaxed.
     pub before: Option<(&'a [f64], f64)>,
     /// Tangential springs that act on objects at the beginning of the step; empty without friction.
     pub tangential_springs: &'a [TangentialSpring],
 }
 
 impl<'a> PlacedSkin<'a> {
-    /// Creates a skin that nothing else has pushed or pushes.
+    /// Creates a skin without contacts, now and one step ago.
     pub fn new(patch: &'a Patch, world_from_patch: Pose) -> Self {
         Self {
             patch,
@@ -77,7 +77,7 @@ impl<'a> PlacedSkin<'a> {
         })
     }
 
-    /// Returns the stiffness within the step beyond the [relaxed](Self::relaxed) deflection: k / (1 − φ), N/m.
+    /// Returns the stiffness of a taxel beyond its relaxed deflection, within the step, N/m: k / (1 − φ) with the relaxation factor φ.
     pub(super) fn stiffness(&self, taxel: usize) -> f64 {
         let taxel = self.patch.taxels().at(taxel);
         match self.before {
@@ -110,14 +110,14 @@ pub struct Obstacle<'a> {
 pub struct Ground<'a> {
     /// Elastic skins.
     pub skins: Vec<PlacedSkin<'a>>,
-    /// Rigid half-spaces.
+    /// Rigid half-spaces, such as a table.
     pub planes: Vec<HalfSpace>,
-    /// Rigid obstacles.
+    /// Fixed rigid obstacles.
     pub obstacles: Vec<Obstacle<'a>>,
 }
 
 impl Ground<'_> {
-    /// Returns the ground relative to another origin.
+    /// Returns the ground in a frame with another origin.
     pub(super) fn seen_from(&self, origin: DVec3) -> Self {
         let mut near = self.clone();
         for skin in &mut near.skins {

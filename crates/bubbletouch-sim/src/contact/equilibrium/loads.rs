@@ -1,4 +1,4 @@
-//! Loads of taxels, and their shares among the spheres that push them.
+//! Loads of taxels, and their distribution among the spheres that push them.
 //!
 //! For taxel i with ψ the smoothed maximum of its deflections, k its stiffness and s its stroke, the energy is
 //!
@@ -6,7 +6,7 @@
 //! E = Σ ½ k ψ² + (max(0, λ + κ (ψ − s))² − λ²) / 2κ
 //! ```
 //!
-//! The value ψ is measured from the taxel's free position, and k includes the damper's stiffness within the step. For a rigid contact k = s = 0.
+//! The smoothed maximum ψ is measured from the taxel's free position, and k includes the damper's stiffness within the step. For a rigid contact k = s = 0.
 //!
 //! The second term is the augmented Lagrangian of the rigid stop ψ ≤ s \[RW\]. With the correct λ the stop holds exactly, and
 //! λ is the force on it.
@@ -16,76 +16,76 @@ use super::pairs::{Group, Pairs};
 use super::tied_max::tied_max;
 use std::collections::BTreeMap;
 
-/// Multipliers of stops and of shared taxels.
+/// Lagrange multipliers of stops and of taxels shared by several spheres.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Multipliers {
-    /// λ: forces on stops, newtons.
+    /// Multipliers λ: the forces on stops, newtons.
     pub stops: BTreeMap<Key, f64>,
-    /// Shares w⁰ of taxels that several spheres push.
+    /// Shares w⁰ of each sphere in the force of a taxel that several spheres push.
     pub shares: BTreeMap<Key, Vec<(Part, f64)>>,
 }
 
-/// Parameters that make the energy smooth.
+/// Parameters that smooth the kinks of the energy.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smoothness {
-    /// Smoothing μ of soft taxels, metres.
+    /// Smoothing width μ of soft taxels, metres.
     pub smoothing: f64,
-    /// μ k of stiff taxels, relative to the weight. A smoothing that is small for a soft taxel can exceed the deflection of a stiff one.
+    /// Smoothing of stiff taxels, μ k relative to the weight. A width that is small for a soft taxel can exceed the deflection of a stiff one.
     pub load: f64,
-    /// Least μ, metres; below this value rounding of deflections would decide ties.
+    /// Minimum smoothing width μ, metres; below this value rounding of deflections would decide ties.
     pub least: f64,
     /// Stiffness κ of stops in the augmented Lagrangian, N/m.
     pub stop_stiffness: f64,
 }
 
 impl Smoothness {
-    /// Returns μ of a taxel, metres.
+    /// Returns the smoothing width μ of a taxel, metres.
     fn for_group(&self, group: &Group) -> f64 {
         let of_load = self.load * group.weight / group.stiffness;
         self.smoothing.min(of_load).max(self.least)
     }
 
-    /// Multiplies the smoothing by a factor below 1, which makes ties steeper.
+    /// Multiplies the smoothing width by a factor below 1.
     pub fn tighten(&mut self, factor: f64) {
         self.smoothing *= factor;
         self.load *= factor;
     }
 }
 
-/// Load of a group of pairs on a taxel.
+/// Load of all spheres together on one taxel or rigid contact.
 #[derive(Clone, Debug)]
 pub(super) struct Load {
-    /// Number of pairs with a share above zero.
+    /// Number of spheres that carry a share of the force.
     pub n_sharing: usize,
-    /// max δ, metres; negative if nothing touches the taxel.
+    /// Largest deflection max δ that a sphere needs, metres; negative if nothing touches the taxel.
     pub deepest: f64,
-    /// Smoothing μ of the taxel, metres.
+    /// Smoothing width μ of the taxel, metres.
     pub smoothing: f64,
-    /// Force on the stop, newtons.
+    /// Force of the taxel's stop, newtons.
     pub stop: f64,
-    /// Force along the axis including the stop's, newtons; 0 if nothing touches the taxel.
+    /// Force along the axis, including the stop's force, newtons; 0 if nothing touches the taxel.
     pub force: f64,
-    /// Derivative of the force with respect to ψ, N/m.
+    /// Derivative of the taxel's force with respect to the smoothed maximum ψ, N/m.
     pub tangent: f64,
 }
 
-/// Loads of all groups of pairs.
+/// Loads of all taxels and rigid contacts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loads {
-    /// One load per group.
+    /// Loads, one per taxel or rigid contact.
     pub all: Vec<Load>,
-    /// One share per pair.
+    /// Shares of the taxels' forces, one per pair.
     pub shares: Vec<f64>,
     /// Elastic energy E, joules.
     pub elastic: f64,
-    /// One deflection per pair, metres.
+    /// Deflections that the spheres need, metres, one per pair.
     deflections: Vec<f64>,
     known: Vec<f64>,
     sharing: Vec<f64>,
 }
 
 impl Loads {
-    /// Computes the loads of pairs with these deflections, metres.
+    /// Computes the loads of pairs with the given deflections, metres.
     pub fn weigh(
         &mut self,
         (multipliers, smoothness): (&Multipliers, &Smoothness),
@@ -141,7 +141,7 @@ impl Loads {
         });
     }
 
-    /// Returns the nonzero loads and their groups.
+    /// Returns the groups with a nonzero load, and these loads.
     pub fn carrying<'a>(
         &'a self,
         groups: &'a [Group],
@@ -150,7 +150,7 @@ impl Loads {
         all.filter(|(_, load)| load.force > 0.0)
     }
 
-    /// Returns the multipliers for which a pose at rest is also at rest without smoothing.
+    /// Returns the multipliers that keep a pose at rest when the smoothing is removed.
     pub fn multipliers(&self, pairs: &Pairs) -> Multipliers {
         let mut multipliers = Multipliers::default();
         for (group, load) in self.carrying(&pairs.groups) {

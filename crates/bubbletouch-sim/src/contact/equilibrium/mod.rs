@@ -1,19 +1,19 @@
 //! Equilibrium of free objects on taxels, tables, obstacles and each other.
 //!
-//! Without friction the forces of the taxels are −∇ of their elastic energy. Objects are therefore at rest where
-//! `E = Σ ½ k δ² − Σ m g·x` is stationary, and stable where E has a minimum \[BT\]. All objects form one problem with six unknowns each, since δ is
-//! the largest deflection that any of them needs. [`EquilibriumSolver::solve_all`] minimises E from the initial poses by a trust-region Newton
-//! method with closed-form derivatives. The energy never increases, and the method leaves saddles because it follows negative curvature. An object
-//! without a minimum [escapes](Outcome::Escaped), and the others continue without it.
+//! Without friction the forces of the taxels are −∇ of their elastic energy. Objects are therefore at rest where `E = Σ ½ k δ² − Σ m g·x` is stationary, and
+//! stable where E has a minimum \[BT\]. All objects form one problem with six unknowns each, since δ is the largest deflection that any of them needs. The
+//! solver ([`EquilibriumSolver`]) minimises E from the initial poses by a trust-region Newton method with closed-form derivatives. The energy never increases,
+//! and the method leaves saddles because it follows negative curvature. If the energy has no minimum for an object, the object [escapes](Outcome::Escaped), and
+//! the others continue without it.
 //!
-//! E has three kinds of kinks, all of which are kept exactly by constraints with multipliers:
+//! The energy E has three kinds of kinks, all of which are kept exactly by constraints with multipliers:
 //!
 //! - Taxels between two spheres of one object or of two (`tied_max`). The multipliers are the shares of the spheres.
 //! - Rigid stops of taxels at their stroke. The multipliers are the forces on the stops.
 //! - Rigid contacts with half-spaces ([`HalfSpace`]), fixed objects ([`Obstacle`]), and other free objects. The multipliers are the contact forces.
 //!
-//! A damper delays its taxel. Within a step Δt a free taxel returns to φ δ_before (φ = e^(−k Δt / c)); beyond this deflection its stiffness
-//! is k / (1 − φ). The energy within a step is therefore E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and the forces equal those of
+//! A damper delays its taxel. Within a step Δt a free taxel returns to φ δ_before (φ = e^(−k Δt / c)); beyond this deflection its stiffness is k / (1 − φ). The
+//! energy within a step is therefore E = Σ ½ k/(1 − φ) (δ − φ δ_before)², and its forces equal the damped forces in
 //! [`DamperState`](crate::contact::DamperState).
 //!
 //! With friction, the shear springs of the taxels that touched an object at the beginning of the step also act on this object (`shear_springs`).

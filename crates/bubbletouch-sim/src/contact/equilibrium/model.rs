@@ -1,6 +1,6 @@
-//! Model of the energy near a pose: deflections are linear in the motion, and their curvature is weighted with the forces at the pose.
+//! Quadratic model of the energy near a pose: deflections are linear in the motion, and their curvature is weighted with the forces at the pose.
 //!
-//! The model therefore includes taxels that a step lifts off or meets, which cause the strongest changes of the energy's curvature.
+//! The model includes taxels that a step lifts off or meets, because these change the curvature of the energy most.
 
 use super::energy::Energy;
 use super::loads::Loads;
@@ -15,21 +15,21 @@ use glam::DVec3;
 /// Maximum number of iterations that minimise the quadratic model.
 const MAX_STEPS: usize = 40;
 
-/// Model of the energy; a motion has six numbers per [body](super::body::Body).
+/// Quadratic model of the energy; a motion has six components per body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Model {
     slopes: Slopes,
-    /// Loads after the motion evaluated last.
+    /// Loads after the motion that was evaluated last.
     loads: Loads,
     curvature: Symmetric,
     held: ShearSpringModel,
-    /// Workspace for one taxel: for each body that pushes it, the weighted mean of the energy gradients of its loads.
+    /// Workspace for one taxel: the mean energy gradient of each body that pushes the taxel, weighted with the loads.
     means: Vec<(u32, Six)>,
-    /// Workspace for one taxel: for each body that pushes it, the sum of these gradients.
+    /// Workspace for one taxel: the sum of the energy gradients of each body that pushes the taxel.
     sums: Vec<(u32, Six)>,
 }
 
-/// Step, and the decrease of the model, joules.
+/// Step of the bodies, and the predicted decrease of the energy, joules.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     pub motion: Vec<f64>,
@@ -37,7 +37,7 @@ pub(super) struct Step {
 }
 
 impl Model {
-    /// Sets up the model around the pose of this energy; returns the gradient (N) and the Hessian (N/m) there.
+    /// Sets up the model around a pose with the given energy; returns the gradient (N) and the Hessian (N/m) at this pose.
     pub fn lay(
         &mut self,
         scene: &Scene,
@@ -83,7 +83,7 @@ impl Model {
         self.loads.elastic + self.held.energy_after(motion) + bent - fallen
     }
 
-    /// Returns the gradient (N) and the Hessian (N/m) after a motion that leads to these loads.
+    /// Returns the gradient (N) and the Hessian (N/m) after a motion with the given loads.
     fn derivatives(
         &mut self,
         scene: &Scene,
@@ -133,8 +133,8 @@ impl Model {
         (gradient, hessian)
     }
 
-    /// Returns a motion of at most `reach` that lowers the model, by trust-region Newton steps inside it. The model must have been
-    /// [set up](Self::lay) around this energy, with this gradient and Hessian.
+    /// Returns a motion of length at most `reach` that decreases the model, found by trust-region Newton steps. The model must have been set up around this
+    /// energy, gradient and Hessian.
     pub fn best(
         &mut self,
         scene: &Scene,
@@ -192,7 +192,7 @@ fn of_body(sums: &mut Vec<(u32, Six)>, body: u32) -> &mut Six {
     &mut sums[at].1
 }
 
-/// Adds `factor · v vᵀ`.
+/// Adds `factor · v vᵀ` to the Hessian.
 fn add_square(hessian: &mut Symmetric, factor: f64, v: &[(u32, Six)]) {
     for (a, x) in v {
         for (b, y) in v {
@@ -217,8 +217,8 @@ mod tests {
     use glam::{DQuat, DVec2};
     use rand::Rng;
 
-    /// Two objects of seven spheres penetrate each other, an obstacle and a plane, and press a tilted bed of taxels deeply enough for some stops.
-    /// The step includes dampers, and some tangential springs act on the objects.
+    /// Compares the derivatives of the energy with finite differences. Two objects of seven spheres penetrate each other, an obstacle and a plane, and press a
+    /// tilted bed of taxels, some up to their stops. The step includes dampers, and some tangential springs act on the objects.
     #[test]
     fn gradient_and_hessian_are_the_differences_of_the_energy() {
         let taxel = Taxel {
@@ -240,7 +240,7 @@ mod tests {
         );
         let skin = PlacedSkin::new(&patch, world_from_patch);
         let before = Some((&before[..], 0.01));
-        // Some stick, some slip.
+        // Some springs stick, some slip.
         let tips: Vec<TangentialSpring> = (0..12)
             .map(|k| TangentialSpring {
                 taxel: 100 + 7 * k,

@@ -1,13 +1,14 @@
 //! Pair of a sphere of a free object and the taxel or rigid contact that it pushes.
 //!
-//! A rigid surface is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as deflection, and the
+//! A rigid surface is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the contact
+//! force as the force of the stop.
 //! contact force as force of the stop.
 
 use super::reach::Reach;
 use super::rigid_contact::{Touched, Touching};
 use glam::{DMat3, DVec3};
 
-/// Index of a body in the descent, and number of one of its spheres.
+/// Sphere of a body: index of the body in the descent, and number of the sphere.
 pub(super) type Part = (u32, u32);
 
 /// Taxel or rigid contact that a sphere pushes.
@@ -15,36 +16,36 @@ pub(super) type Part = (u32, u32);
 pub(super) enum Key {
     /// Number of the skin, and number of the taxel in it.
     Taxel(u32, u32),
-    /// Rigid contact of one sphere; other free objects are given by their index among the bodies.
+    /// Rigid contact of one sphere; another free object is given by its index among the bodies.
     Rigid(Part, Touched),
 }
 
-/// Marks a pair whose deflection is due to objects that are not free.
+/// Placeholder sphere of a pair whose deflection is due to fixed or imposed objects.
 pub(super) const OTHERS: Part = (u32::MAX, u32::MAX);
 
-/// Sphere and the taxel or rigid contact that it pushes.
+/// Sphere of a free object, and the taxel or rigid contact that it pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub key: Key,
     pub part: Part,
-    /// Deflection past the free position, metres; negative if the two do not touch yet.
+    /// Deflection past the taxel's free position, metres; negative if sphere and taxel do not touch yet.
     pub deflection: f64,
     pub kind: Kind,
     /// Vector from the centre of mass to the sphere's centre; in the patch frame for taxels, in the world for rigid contacts.
     pub arm: DVec3,
 }
 
-/// Dependence of a pair's deflection on motions.
+/// How a pair's deflection depends on motions.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     Taxel(Reach),
     Rigid(Touching),
-    /// Fixed: the deflection by objects that are not free.
+    /// The deflection is fixed: it is due to fixed or imposed objects.
     Fixed,
 }
 
 impl Pair {
-    /// Returns gradient and curvature of the deflection by the sphere's motion relative to its counterpart; `None` for fixed pairs.
+    /// Returns gradient and curvature of the deflection with respect to the sphere's motion relative to its counterpart; `None` for fixed pairs.
     pub fn derivatives(&self) -> Option<(DVec3, DMat3)> {
         match &self.kind {
             Kind::Taxel(reach) => {
@@ -56,7 +57,7 @@ impl Pair {
         }
     }
 
-    /// Returns the bodies on which the deflection depends: index, sign of their motion, and vector from their centre of mass to the point.
+    /// Returns the bodies on which the deflection depends: index, sign of the motion, and vector from the centre of mass to the contact point.
     pub fn ends(&self) -> impl Iterator<Item = (usize, f64, DVec3)> {
         let other = match &self.kind {
             Kind::Rigid(touching) => touching.other,
@@ -67,7 +68,7 @@ impl Pair {
         own.into_iter().chain(other)
     }
 
-    /// Returns the force on the sphere, newtons, in the frame of its arm, for a force (N) along the axis of the taxel.
+    /// Returns the force on the sphere, newtons, for a force (N) along the taxel's axis; in the patch frame for taxels, in the world for rigid contacts.
     pub fn push(&self, force: f64) -> DVec3 {
         let gradient = self.derivatives().map(|(gradient, _)| gradient);
         -force * gradient.unwrap_or(DVec3::ZERO)

@@ -1,6 +1,7 @@
 //! Pairs of spheres of free objects and the taxels or rigid contacts that they push, or could push after a small step.
 //!
-//! A rigid contact is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as deflection, and the
+//! A rigid contact is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the contact
+//! force as the force of the stop. Taxels and rigid contacts thus share one pair type.
 //! contact force as force on the stop. Taxels and rigid contacts thus share one pair type.
 
 use super::super::taxel_contact::GRAZING;
@@ -12,16 +13,16 @@ use super::rigid_pairs::gather_rigid;
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
-/// Taxel or rigid contact, and the pairs that push it.
+/// Taxel or rigid contact, with all spheres that push it.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
     pub key: Key,
     pub pairs: Range<usize>,
-    /// Stiffness, N/m; 0 for a rigid contact.
+    /// Stiffness of the taxel, N/m; 0 for a rigid contact.
     pub stiffness: f64,
-    /// Stroke from the free position, metres; 0 for a rigid contact.
+    /// Stroke from the taxel's free position, metres; 0 for a rigid contact.
     pub stroke: f64,
-    /// Deflection by objects that are not free, metres.
+    /// Deflection due to fixed or imposed objects, metres.
     pub others: f64,
     /// Weight of the lightest body that pushes the taxel, newtons.
     pub weight: f64,
@@ -32,26 +33,26 @@ pub(super) struct Group {
 pub(super) struct Margins {
     /// Distance that spheres may move without meeting a taxel that is not gathered, metres.
     pub step: f64,
-    /// Pairs whose deflection is less than the taxel's largest one by more than this are omitted, metres.
+    /// Largest difference, metres, between a taxel's largest deflection and the deflection of a gathered pair; other pairs are omitted.
     pub window: f64,
 }
 
-/// Pairs at the present poses of all bodies.
+/// Pairs of spheres and taxels or rigid contacts at the present poses of all bodies.
 ///
-/// A sphere behind a taxel's substrate does not push the taxel. A sphere that comes up from behind also does not push it: the energy would
-/// jump at the substrate, and an object could hang on this jump. Pairs of this kind are stored until sphere and taxel are apart.
+/// A sphere behind a taxel's substrate does not push the taxel, not even when it later comes up from behind. Otherwise the energy would jump at the substrate,
+/// and an object could hang on this jump. Pairs of this kind are stored until sphere and taxel separate.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
     /// Pairs that push or could push, sorted by taxel or rigid contact and then by sphere.
     pub all: Vec<Pair>,
     pub groups: Vec<Group>,
-    /// Pairs that do not push because the sphere came from behind; sorted.
+    /// Pairs that do not push because the sphere came from behind the substrate; sorted.
     pub behind: Vec<(Key, Part)>,
     deepest: Vec<f64>,
 }
 
 impl Pairs {
-    /// Gathers the pairs at the present poses; `behind` lists the pairs that were behind before.
+    /// Gathers the pairs at the present poses; `behind` lists the pairs whose sphere was behind the substrate before.
     pub fn look(
         &mut self,
         bodies: &[Body],
@@ -75,7 +76,7 @@ impl Pairs {
         }
     }
 
-    /// Returns for each of `n_bodies` bodies the number of its island: bodies that touch one another or share taxels have equal numbers.
+    /// Returns the island number of each of `n_bodies` bodies. Bodies that touch one another or share taxels form an island.
     pub fn islands(&self, n_bodies: usize) -> Vec<usize> {
         let mut islands: Vec<usize> = (0..n_bodies).collect();
         for group in &self.groups {
@@ -103,7 +104,7 @@ impl Pairs {
     ) {
         let tree = skin.patch.tree();
         let Some(bounds) = tree.bounds() else { return };
-        // A sphere may move by twice the step: along it, and by turning.
+        // A sphere can move by twice the step: by translation and by rotation.
         let more = GRAZING * tree.depth() + 2.0 * margins.step;
         let to_patch = skin.world_from_patch.inverse();
         let is_near = |body: &Body| {
@@ -129,7 +130,7 @@ impl Pairs {
             let Key::Taxel(_, taxel) = pair.key else {
                 continue;
             };
-            // For a taxel that nothing pushes yet, all candidates are kept.
+            // If nothing pushes a taxel yet, all candidates are kept.
             let deepest = deepest[taxel as usize];
             if deepest == 0.0 || pair.deflection >= deepest - margins.window {
                 all[kept] = pair;
@@ -183,7 +184,7 @@ impl Pairs {
         }
     }
 
-    /// Adds the deflections by other objects of taxels that a free object pushes, too.
+    /// Adds the deflections due to fixed or imposed objects to those taxels that a free object also pushes.
     fn gather_others(&mut self, number: u32, skin: &PlacedSkin) {
         let deepest = self.deepest.iter_mut().zip(skin.pushed);
         for (taxel, (deepest, others)) in deepest.enumerate() {

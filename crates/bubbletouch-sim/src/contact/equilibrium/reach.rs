@@ -1,26 +1,26 @@
-//! Deflection of one taxel by one sphere, with its derivatives by the sphere's motion.
+//! Deflection of one taxel by one sphere, with its derivatives with respect to the sphere's motion.
 
 use super::super::law;
 use super::super::taxel_contact::GRAZING;
 use crate::world::PlacedTaxel;
 use glam::{DMat3, DVec3};
 
-/// δ of a sphere and a taxel, and the quantities from which it is computed; all in the patch frame.
+/// Deflection δ of a taxel by a sphere, and the quantities from which δ is computed; all in the patch frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
     /// Deflection δ, metres.
     pub deflection: f64,
-    /// Vector from the taxel's axis to the sphere's centre, metres.
+    /// Vector from the taxel's axis to the sphere's centre, perpendicular to the axis, metres.
     beside: DVec3,
-    /// Axis n of the taxel, unit.
+    /// Axis n of the taxel, unit vector.
     axis: DVec3,
-    /// Sum of the radii S = ρ + R, metres.
+    /// Sum of the radii of taxel and sphere, S = ρ + R, metres.
     reach: f64,
 }
 
-/// First two derivatives of δ with respect to the sphere's centre.
+/// First and second derivative of δ with respect to the sphere's centre.
 pub(super) struct Derivatives {
-    /// Gradient ∂δ/∂c.
+    /// Gradient ∂δ/∂c, dimensionless.
     pub gradient: DVec3,
     /// Second derivative ∂²δ/∂c², 1/m.
     pub curvature: DMat3,
@@ -28,12 +28,11 @@ pub(super) struct Derivatives {
 }
 
 impl Reach {
-    /// Computes δ of a sphere (in the patch frame) and a taxel, ignoring the substrate. Returns `None` if the sphere does not push the taxel
-    /// and cannot after a motion of `motion` metres.
+    /// Computes the deflection δ of a taxel by a sphere (in the patch frame), ignoring the substrate. Returns `None` if the sphere does not push the taxel and
+    /// cannot push it after a motion of `motion` metres.
     ///
-    /// `δ = √(S² − b²) − h` for `√(S² − b²) ≥ γS` with γ = [`GRAZING`]. On steeper flanks of the sphere δ continues along
-    /// the tangent, so a sphere that comes from the side climbs a slope of 1/γ instead of a cliff. Forces use the same bound 1/γ of the
-    /// gradient.
+    /// The deflection is `δ = √(S² − b²) − h` for `√(S² − b²) ≥ γS` with γ = [`GRAZING`]. On steeper flanks of the sphere δ continues along the tangent, so a
+    /// sphere that comes from the side climbs a slope of 1/γ instead of a cliff. Forces use the same bound 1/γ of the gradient.
     pub fn new(center: DVec3, radius: f64, taxel: &PlacedTaxel, motion: f64) -> Option<Self> {
         let (axis, reach) = (taxel.axis, taxel.radius + radius);
         let from_rest = center - taxel.center;
@@ -61,7 +60,7 @@ impl Reach {
         })
     }
 
-    /// Returns whether the sphere is on the far side of the substrate, which is `taxel.behind` along the axis.
+    /// Returns whether the sphere is wholly behind the substrate, whose height along the axis is `taxel.behind`.
     pub fn is_behind(&self, taxel: &PlacedTaxel, center: DVec3) -> bool {
         let height = (center - taxel.center).dot(self.axis);
         let q = self.reach * self.reach - self.beside.length_squared();
@@ -106,7 +105,7 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
 mod tests {
     use super::*;
 
-    /// Taxel at the origin with ρ = 1 mm, s = 5 mm.
+    /// Creates a taxel at the origin with ρ = 1 mm and s = 5 mm.
     fn taxel(axis: DVec3) -> PlacedTaxel {
         let (x, y) = axis.any_orthonormal_pair();
         PlacedTaxel {
@@ -125,7 +124,7 @@ mod tests {
         let taxel = taxel(axis);
         let at = |c: DVec3| Reach::new(c, 4e-3, &taxel, 0.0).unwrap();
         let side = axis.any_orthonormal_vector();
-        // The last case is on the slope beside the sphere.
+        // The last case is on the tangent beside the sphere.
         for (beside, height) in [
             (1e-3, 2e-3),
             (3e-3, -1e-3),

@@ -1,4 +1,4 @@
-//! Individual loads on objects at rest.
+//! Individual contact loads on objects at rest.
 
 use super::body::Body;
 use super::energy::PairLoad;
@@ -11,37 +11,37 @@ use glam::DVec3;
 /// Load between one taxel and one sphere of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaxelLoad {
-    /// Number of the skin in the list of the ground.
+    /// Index of the skin in the ground's list of skins.
     pub skin: usize,
-    /// Number of the taxel in its layout.
+    /// Index of the taxel in its layout.
     pub taxel: usize,
-    /// Number of the object.
+    /// Index of the object in the solver's input.
     pub object: usize,
-    /// Number of the sphere in its object.
+    /// Index of the sphere in its object.
     pub sphere: usize,
     /// Force of the sphere on the taxel along the taxel's axis, newtons, above 0.
     pub force: f64,
-    /// Part of `force` that the spring at its stroke does not carry, newtons; 0 below the stroke. The value is the share in the reaction of the stop, the
-    /// multiplier of δ ≤ s.
+    /// Reaction of the taxel's stop, newtons: the part of `force` that the spring at its stroke does not carry; 0 below the stroke. The value is the multiplier
+    /// of the constraint δ ≤ s.
     pub stop: f64,
-    /// Whether the sphere's flank is nearly parallel to the axis: see [`GRAZING`](crate::contact::GRAZING).
+    /// Whether the sphere's flank is nearly parallel to the axis ([`GRAZING`](crate::contact::GRAZING)).
     pub is_grazing: bool,
-    /// Load of the taxel on the object, in the patch frame: force n_c / (n_c·n).
+    /// Load of the taxel on the object, in the patch frame: force n_c / (n_c·n) at the contact point.
     pub on_object: Wrench,
 }
 
-/// Load between something rigid and one sphere of an object.
+/// Contact load between one sphere of an object and a rigid counterpart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// Number of the object.
+    /// Index of the object in the solver's input.
     pub object: usize,
-    /// Number of the sphere in its object.
+    /// Index of the sphere in its object.
     pub sphere: usize,
     /// Rigid counterpart of the sphere.
     pub other: Touched,
-    /// Contact point, metres, in the world.
+    /// Contact point in the world, metres.
     pub point: DVec3,
-    /// Force on the object, newtons, in the world; the opposite force acts on the counterpart.
+    /// Force on the object in the world, newtons; the opposite force acts on the counterpart.
     pub force: DVec3,
 }
 
@@ -70,7 +70,7 @@ impl TaxelLoad {
 }
 
 impl Touch {
-    /// `of_body` maps the index of a body to the number of its object.
+    /// The list `of_body` maps the index of a body to the index of its object.
     pub(super) fn new(
         pair: &Pair,
         touched: Touched,

@@ -17,7 +17,7 @@ pub(super) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Returns the largest force on a body in a gradient of the energy, relative to the weight of this body.
+    /// Returns the largest force on a body in a gradient of the energy, divided by this body's weight.
     pub fn slope(&self, gradient: &[f64]) -> f64 {
         let each = self.bodies.iter().zip(gradient.chunks(6));
         each.map(|(body, part)| norm(part) / body.weight.length())

@@ -1,14 +1,15 @@
-//! Friction of taxels whose shear springs act on free objects.
+//! Friction of taxels: shear springs that act on free objects.
 //!
-//! The material point a of the object drags the tip that touched it at the beginning of the step. Let v = u + P (a − a₀) perpendicular to
-//! the taxel's axis, k_t the stiffness of the shear spring, and r = μ f / k_t. The energy of the spring is
+//! The object's material point a, which touched the taxel at the beginning of the step, drags the end of the taxel's shear spring. Let v = u + P (a − a₀)
+//! perpendicular to the taxel's axis, k_t the stiffness of the shear spring, and r = μ f / k_t. The energy of the spring is
 //!
 //! ```text
 //! ½ k_t |v|²               |v| ≤ r        it sticks
 //! k_t r (|v| − ½ r)        |v| > r        it slips
 //! ```
 //!
-//! The derivative is k_t times v, returned to the cone. The radius r depends on the force f in equilibrium. Each round of a descent therefore takes r
+//! The derivative is the force k_t v, limited to the friction cone. The radius r depends on the force f in equilibrium. Each round of a descent therefore takes
+//! r from the solution of the previous round, until both agree: a fixed-point iteration of Tresca's friction \[NJ\].
 //! from the solution of the last round, until both agree: a fixed-point iteration of Tresca's friction \[NJ\].
 
 use super::body::{Body, along, unit_motions};
@@ -21,10 +22,10 @@ use super::symmetric::{Six, Symmetric, dot};
 use crate::contact::friction::{TangentialSpring, TangentialSpringState};
 use glam::{DVec2, DVec3};
 
-/// Factor by which rounding may move a tip beyond its cone without a slip.
+/// Relative tolerance of the friction cone: rounding up to this factor does not count as slip.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// Shear spring between a taxel's tip and a body.
+/// Shear spring between a taxel and a body.
 #[derive(Clone, Debug)]
 pub(super) struct Spring {
     skin: usize,
@@ -33,14 +34,14 @@ pub(super) struct Spring {
     pub body: usize,
     /// x and y axes of the taxel's frame, in the world.
     axes: [DVec3; 2],
-    /// Place of the point at the beginning of the step, moved with the patch; in the world.
+    /// Position of the point at the beginning of the step, moved with the patch; in the world, metres.
     start: DVec3,
-    /// Limit r = μ f / k_t of |v|, metres.
+    /// Radius r = μ f / k_t of the friction cone, metres: the largest |v|.
     reach: f64,
 }
 
 impl Spring {
-    /// Returns all shear springs that act on these bodies.
+    /// Returns all shear springs that act on the given bodies.
     pub fn all(bodies: &[Body], ground: &Ground) -> Vec<Self> {
         let skins = ground.skins.iter().enumerate();
         let tips = skins.flat_map(|skin| {
@@ -63,20 +64,20 @@ impl Spring {
         springs.collect()
     }
 
-    /// Returns the vector from the body's centre of mass to the point, in the world.
+    /// Returns the vector from the body's centre of mass to the spring's point, in the world, metres.
     fn arm(&self, bodies: &[Body]) -> DVec3 {
         let body = &bodies[self.body];
         body.rotation * (self.tip.point - body.object.center_of_mass)
     }
 
-    /// Returns v, metres.
+    /// Returns the spring's displacement v, metres.
     fn stretch(&self, bodies: &[Body]) -> DVec2 {
         let way = bodies[self.body].center + self.arm(bodies) - self.start;
         let [x, y] = self.axes;
         self.tip.displacement + DVec2::new(way.dot(x), way.dot(y))
     }
 
-    /// Returns the energy of the spring, joules, at v.
+    /// Returns the energy of the spring at displacement v, joules.
     fn energy(&self, v: DVec2) -> f64 {
         let (k, r, length) = (self.tip.shear.stiffness, self.reach, v.length());
         match length <= r {
@@ -85,12 +86,12 @@ impl Spring {
         }
     }
 
-    /// Returns the derivative of the energy by v, newtons.
+    /// Returns the derivative of the spring's energy with respect to v, newtons.
     fn slope(&self, v: DVec2) -> DVec2 {
         self.tip.shear.stiffness * v.clamp_length_max(self.reach)
     }
 
-    /// Returns the second derivative of the energy by v, N/m: the isotropic part, and the amount subtracted along v.
+    /// Returns the second derivative of the spring's energy with respect to v, N/m: the isotropic part, and the amount subtracted along v.
     fn bend(&self, v: DVec2) -> (f64, f64) {
         let (k, length) = (self.tip.shear.stiffness, v.length());
         if self.reach > 0.0 && length <= self.reach {
@@ -100,7 +101,7 @@ impl Spring {
         (slipping, slipping)
     }
 
-    /// Returns the force on the body, newtons, in the world.
+    /// Returns the force of the spring on the body, in the world, newtons.
     fn force(&self, v: DVec2) -> DVec3 {
         let DVec2 { x, y } = -self.slope(v);
         x * self.axes[0] + y * self.axes[1]
@@ -122,7 +123,7 @@ impl Spring {
         }
     }
 
-    /// Returns the state of the spring in equilibrium, with the number of its object.
+    /// Returns the state of the spring in equilibrium, with the index of its object.
     pub fn load(&self, bodies: &[Body], skins: &[PlacedSkin]) -> TangentialSpringState {
         let v = self.stretch(bodies);
         let place = bodies[self.body].center + self.arm(bodies);
@@ -140,7 +141,7 @@ impl Spring {
     }
 }
 
-/// Returns the energy of the springs, joules.
+/// Returns the energy of all shear springs, joules.
 pub(super) fn energy(springs: &[Spring], bodies: &[Body]) -> f64 {
     let each = springs.iter();
     each.map(|spring| spring.energy(spring.stretch(bodies)))
@@ -156,7 +157,7 @@ pub(super) fn add_wrenches(springs: &[Spring], bodies: &[Body], to: &mut [(DVec3
     }
 }
 
-/// Updates the cones from the present normal forces; returns the largest change of a friction force, relative to the body's weight.
+/// Updates the friction cones from the present normal forces; returns the largest change of a friction force, relative to the body's weight.
 pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loads)) -> f64 {
     let mut most = 0.0_f64;
     for spring in springs {
@@ -169,15 +170,15 @@ pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loa
     most
 }
 
-/// Shear springs in a model of the energy: v is linear in the motion.
+/// Shear springs in a quadratic model of the energy: the displacement v is linear in the motion.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ShearSpringModel {
-    /// Each spring with v at the pose, and the derivative of v by the motion of its body.
+    /// Each spring with its displacement v at the pose, and the derivative of v with respect to the motion of its body.
     all: Vec<(Spring, DVec2, [Six; 2])>,
 }
 
 impl ShearSpringModel {
-    /// Sets up the model at a pose; adds the curvature of the energy due to rotations.
+    /// Sets up the springs' model at a pose; adds the curvature of the energy due to rotations.
     pub fn lay(&mut self, springs: &[Spring], bodies: &[Body], curvature: &mut Symmetric) {
         self.all.clear();
         for spring in springs {
@@ -209,7 +210,7 @@ impl ShearSpringModel {
         })
     }
 
-    /// Returns the energy after a motion, joules.
+    /// Returns the energy of the springs after a motion, joules.
     pub fn energy_after(&self, motion: &[f64]) -> f64 {
         self.after(motion)
             .map(|(spring, v, _)| spring.energy(v))

@@ -1,14 +1,14 @@
-//! Derivatives of deflections by the motions of bodies.
+//! Derivatives of deflections with respect to the motions of bodies.
 
 use super::body::{Body, along, unit_motions};
 use super::pair::Pair;
 use super::symmetric::{Six, Symmetric, dot};
 use glam::DVec3;
 
-/// ∂δ of each pair by the motions of the bodies on which it depends.
+/// Derivatives ∂δ of each pair with respect to the motions of the bodies on which δ depends.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slopes {
-    /// Start of the entries of each pair, and the end of the last.
+    /// Offset of the first entry of each pair, followed by the end of the last pair.
     first: Vec<u32>,
     all: Vec<(u32, Six)>,
 }
@@ -18,7 +18,7 @@ impl Slopes {
         &self.all[self.first[pair] as usize..self.first[pair + 1] as usize]
     }
 
-    /// Returns the change of a pair's deflection by a motion, to first order, metres.
+    /// Returns the first-order change of a pair's deflection by a motion, metres.
     pub fn dot(&self, pair: usize, motion: &[f64]) -> f64 {
         let of = self.for_pair(pair).iter();
         of.map(|(body, slope)| dot(slope, &motion[6 * *body as usize..]))
@@ -31,8 +31,8 @@ impl Slopes {
         self.first.push(0);
     }
 
-    /// Appends the derivatives of the next pair; `axes` are the world's, in the frame of its arm. If `force` (newtons) is positive, adds the energy's
-    /// curvature.
+    /// Appends the derivatives of the next pair. `axes` are the world's axes in the frame of the pair's arm. If `force` (newtons) is positive, the curvature of
+    /// the energy is added.
     pub fn lay(
         &mut self,
         bodies: &[Body],
@@ -66,7 +66,7 @@ impl Slopes {
     }
 }
 
-/// Adds the second-order term of a rotation θ, which maps r to r + θ × r + ½ θ × (θ × r): a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
+/// Adds the second-order term of a rotation θ, r → r + θ × r + ½ θ × (θ × r). The term is a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
 pub(super) fn add_turning(
     curvature: &mut Symmetric,
     body: usize,

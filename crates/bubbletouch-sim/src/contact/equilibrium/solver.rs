@@ -12,30 +12,30 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
 
-/// Result of the solver for one object.
+/// Outcome of the equilibrium search for one object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// The object is at rest: forces and torques balance, and no small motion lowers the energy.
     AtRest,
     /// The object left all patches, or no patch supports it.
     Escaped {
-        /// Direction from the start, unit, in the world; across gravity unless the object fell straight down.
+        /// Direction from the start position, unit vector in the world; perpendicular to gravity unless the object fell straight down.
         direction: DVec3,
     },
-    /// The step limit was reached for the object and those that touch it. The other objects are at rest without them.
+    /// The solver reached its step limit for the object and those that touch it. The other objects are at rest without them.
     NotConverged,
 }
 
-/// Final pose of a free object, and the forces on it.
+/// Final pose of a free object, and the contact forces on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
     /// Pose `world_from_object`.
     pub pose: Pose,
-    /// Result of the solver.
+    /// Outcome of the equilibrium search.
     pub outcome: Outcome,
     /// Force of taxels (springs and stops) and of rigid contacts on the object, newtons, in the world.
     pub force: DVec3,
-    /// Torque of these forces about the centre of mass, N·m.
+    /// Torque of the contact forces about the centre of mass, N·m.
     pub torque: DVec3,
     /// Largest of the force residual divided by the weight and the torque residual divided by weight times radius of the object;
     /// dimensionless.
@@ -44,27 +44,27 @@ pub struct Equilibrium {
     pub n_touched: usize,
     /// Number of taxels whose stops carry the object.
     pub n_saturated: usize,
-    /// Number of taxels pushed along a flank nearly parallel to their axis: see [`GRAZING`](crate::contact::GRAZING).
+    /// Number of taxels pushed along a flank nearly parallel to their axis ([`GRAZING`](crate::contact::GRAZING)).
     pub n_grazing: usize,
-    /// Number of poses that the solver evaluated, of all objects together.
+    /// Number of poses that the solver evaluated, in total over all objects.
     pub n_steps: usize,
 }
 
 impl Equilibrium {
-    /// Returns whether the object is still in the scene: at rest, or not converged.
+    /// Returns whether the object is still in the scene, that is, at rest or not converged.
     pub fn is_there(&self) -> bool {
         !matches!(self.outcome, Outcome::Escaped { .. })
     }
 }
 
-/// Solver for resting poses; multipliers of the last solution start the next one.
+/// Solver for resting poses; the multipliers of one solution initialise the next one.
 #[derive(Clone, Debug, Default)]
 pub struct EquilibriumSolver {
     workspace: DescentWorkspace,
     loads: Vec<TaxelLoad>,
     touches: Vec<Touch>,
     tangential_springs: Vec<TangentialSpringState>,
-    /// Numbers of the objects to which the multipliers belong.
+    /// Indices of the objects to which the multipliers belong.
     numbers: Vec<usize>,
 }
 
@@ -74,13 +74,13 @@ impl EquilibriumSolver {
         Self::default()
     }
 
-    /// Returns the loads of taxels in the last solution, in the order of skins and taxels, without those of escaped objects. Together with the
-    /// [touches](Self::touches) they sum to the forces of each [`Equilibrium`].
+    /// Returns the loads of taxels in the last solution, ordered by skin and taxel; loads of escaped objects are omitted. Together with the rigid contacts
+    /// ([`touches`](Self::touches)) the loads sum to the forces of each [`Equilibrium`].
     pub fn loads(&self) -> &[TaxelLoad] {
         &self.loads
     }
 
-    /// Returns the tangential springs in the last solution, in the order of skins and taxels.
+    /// Returns the tangential springs in the last solution, ordered by skin and taxel.
     pub fn tangential_springs(&self) -> &[TangentialSpringState] {
         &self.tangential_springs
     }
@@ -93,7 +93,7 @@ impl EquilibriumSolver {
     /// Solves for the equilibrium of one object on skins, from the pose `start` (`world_from_object`), under `gravity` (m/s², in the world).
     ///
     /// # Errors
-    /// If [`solve_all`](Self::solve_all) fails.
+    /// If `solve_all` fails.
     pub fn solve(
         &mut self,
         object: &FreeObject,
@@ -109,9 +109,9 @@ impl EquilibriumSolver {
         Ok(solutions[0])
     }
 
-    /// Solves for the equilibrium of several objects together; `starts` has one `world_from_object` per object, `gravity` is in m/s², in the world.
+    /// Solves for the equilibrium of several objects together. `starts` contains one `world_from_object` per object; `gravity` is in m/s², in the world.
     ///
-    /// The energy never increases from the start to the solution; objects at rest do not move. The ground is fixed.
+    /// The energy never increases from the start poses to the solution, and objects at rest do not move. The ground is fixed.
     ///
     /// # Errors
     /// If the gravity is zero or not finite, or a pose is not finite.
@@ -127,7 +127,7 @@ impl EquilibriumSolver {
     ) -> Result<Vec<Equilibrium>> {
         assert_eq!(objects.len(), starts.len());
         check(gravity, starts)?;
-        // The origin is at the first object: far from the world's origin, coordinates have too few digits to balance stiff springs.
+        // The origin is at the first object. Far from the world's origin, coordinates have too few digits to balance stiff springs.
         let origin = starts.first().map_or(DVec3::ZERO, |pose| pose.translation);
         let ground = ground.seen_from(origin);
         let from_there = |pose: &Pose| Pose::new(pose.rotation, pose.translation - origin);
@@ -143,8 +143,8 @@ impl EquilibriumSolver {
         Ok(solutions)
     }
 
-    /// Descends repeatedly. Objects that leave or do not converge are removed, and the others continue. If a descent does not converge, it is
-    /// repeated once from its last poses without multipliers: those of a diverged iteration would mislead the next.
+    /// Descends repeatedly. Objects that leave or do not converge are removed, and the others continue. If a descent does not converge, it is repeated once
+    /// from its last poses without multipliers, because multipliers of a diverged iteration mislead the next one.
     fn solve_bodies<'s>(
         &mut self,
         mut bodies: Vec<Body<'s>>,
@@ -239,7 +239,7 @@ impl EquilibriumSolver {
         }
     }
 
-    /// Reports the loads on the bodies in `done`, with the numbers of their objects.
+    /// Reports the loads on the bodies in `done`, with the indices of their objects.
     fn report(
         &mut self,
         bodies: &[Body],

@@ -1,9 +1,9 @@
-//! Symmetric matrices over the motions of several bodies, and the best step of a quadratic model in a ball.
+//! Symmetric matrices over the motions of several bodies, and the minimum of a quadratic model in a ball (trust region).
 
-/// Three translations and three rotations of one body.
+/// Motion of one body, or a derivative with respect to it: three translations and three rotations.
 pub(super) type Six = [f64; 6];
 
-/// Returns the dot product, with independent partial sums that a processor adds at once.
+/// Returns the dot product of two slices, with independent partial sums that vector instructions add in parallel.
 #[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
@@ -23,14 +23,14 @@ pub(super) fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Symmetric matrix with n rows.
+/// Symmetric matrix with n rows and columns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Symmetric {
     n: usize,
     entries: Vec<f64>,
 }
 
-/// Cholesky factor L of `L Lᵀ`: lower triangular, row by row.
+/// Cholesky factor L of the matrix `L Lᵀ`: lower triangular, row by row.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
     n: usize,
@@ -53,7 +53,7 @@ impl Symmetric {
         &self.entries[i * self.n..][..self.n]
     }
 
-    /// Returns the entries of row i from column `first` on.
+    /// Returns the entries of row i, beginning at column `first`.
     pub fn part_mut(&mut self, i: usize, first: usize) -> &mut [f64] {
         &mut self.entries[i * self.n..][first..self.n]
     }
@@ -68,7 +68,7 @@ impl Symmetric {
         }
     }
 
-    /// Returns whether all eigenvalues are above 0, to rounding.
+    /// Returns whether all eigenvalues are above 0, to rounding accuracy.
     pub fn is_convex(&self) -> bool {
         self.factor(1e-9 * self.size()).is_some()
     }
@@ -83,8 +83,8 @@ impl Symmetric {
         rows.fold(0.0, f64::max)
     }
 
-    /// Returns the Cholesky factor with `shift` added to the diagonal; `None` if the sum is not positive definite. Leading zeros of a
-    /// row are preserved and skipped, so bodies that do not touch cost nothing.
+    /// Returns the Cholesky factor of the matrix with `shift` added to the diagonal; `None` if this sum is not positive definite. Leading zeros of a row are
+    /// preserved and skipped, so bodies that do not touch cost nothing.
     pub fn factor(&self, shift: f64) -> Option<Factor> {
         let n = self.n;
         let mut rows = self.entries.clone();
@@ -102,7 +102,7 @@ impl Symmetric {
                 row[j] = (row[j] - dot(&row[both..j], &other[both..j])) / other[j];
             }
             let left = row[i] + shift - dot(&row[from..i], &row[from..i]);
-            // Also false for NaN.
+            // The condition is also false for NaN.
             if !(left > 0.0 && left.is_finite()) {
                 return None;
             }
@@ -142,7 +142,8 @@ impl Factor {
 
     /// Returns an approximate eigenvector of the lowest eigenvalue, of length 1, by inverse iteration.
     fn weakest(&self) -> Vec<f64> {
-        /// The shift is within a hundredth of the eigenvalue, so each iteration gains two digits; if two eigenvalues nearly agree, either vector will do.
+        /// Number of inverse iterations. The shift is within a hundredth of the eigenvalue, so each iteration gains two digits; if two eigenvalues nearly
+        /// agree, either eigenvector is valid.
         const N_ITERATIONS: usize = 6;
         let mut vector: Vec<f64> = (0..self.n).map(|i| 1.0 + 0.1 * (i % 7) as f64).collect();
         for _ in 0..N_ITERATIONS {
@@ -154,16 +155,16 @@ impl Factor {
     }
 }
 
-/// Returns the step d with |d| ≤ `reach` that minimises `g·d + ½ dᵀHd`, and the decrease; H may have negative
-/// curvature. \[MS\]
+/// Returns the step d with |d| ≤ `reach` that minimises the quadratic model `g·d + ½ dᵀHd`, and the decrease of the model. The Hessian H may have negative
+/// eigenvalues. \[MS\]
 ///
 /// The step solves `(H + σ) d = −g` with the least σ ≥ 0 for which H + σ is positive definite and |d| ≤ `reach`. Newton's method solves
 /// `1/|d| = 1/reach` for σ. If g has no component along the lowest eigenvector of an indefinite H (the hard case), this vector is added up to
 /// the boundary of the ball.
 pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64>, f64) {
-    /// Relative distance from the boundary of the ball within which a step counts as on it.
+    /// Relative distance from the boundary of the trust region within which a step counts as on the boundary.
     const NEAR: f64 = 1e-9;
-    /// First σ tried for an indefinite H, relative to the largest; larger and smaller values need more iterations.
+    /// First shift σ tried for an indefinite H, relative to the largest shift; both larger and smaller values need more iterations.
     const FIRST: f64 = 1e-3;
     let (size, slope) = (h.size(), norm(gradient));
     let flat = 1e-14 * size.max(slope / reach);
@@ -245,7 +246,7 @@ mod tests {
         ((0..n).map(|_| rng.gen_range(-1.0..1.0)).collect(), m)
     }
 
-    /// Returns an approximate eigenvector of the lowest eigenvalue: the least shift that makes a matrix positive definite.
+    /// Returns an approximate eigenvector of the lowest eigenvalue, found by bisecting the least shift that makes the matrix positive definite.
     fn lowest(m: &Symmetric) -> Vec<f64> {
         let (mut low, mut high) = (0.0, 2.0 * m.size());
         for _ in 0..60 {
@@ -277,7 +278,7 @@ mod tests {
             let n = 6 * (1 + seed as usize % 3);
             let (mut g, m) = random_case(seed, n);
             if seed % 4 == 0 {
-                // Hard case: no component along the lowest direction.
+                // Hard case: the gradient has no component along the lowest eigenvector.
                 if m.factor(0.0).is_none() {
                     let vector = lowest(&m);
                     let along = dot(&g, &vector);

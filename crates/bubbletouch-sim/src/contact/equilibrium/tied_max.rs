@@ -1,6 +1,6 @@
 //! Maximum of several deflections, smoothed for Newton's method; the smoothing vanishes at convergence.
 //!
-//! A taxel between two spheres touches both, and the shares of its force on each are unknown. The maximum is
+//! A taxel between two spheres touches both, and the distribution of its force among them is unknown. The maximum is
 //! `max over w in the simplex of w·δ`; its augmented Lagrangian about the present shares w⁰,
 //!
 //! ```text
@@ -9,7 +9,7 @@
 //!
 //! has the gradient w. Replacing w⁰ by w and repeating makes ψ converge to the maximum itself \[RW\].
 
-/// Value ψ of the smoothed maximum, and the number of shares.
+/// Value ψ of the smoothed maximum, and the number of nonzero shares.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct TiedMax {
     pub value: f64,
@@ -17,8 +17,8 @@ pub(super) struct TiedMax {
     pub n_sharing: usize,
 }
 
-/// Returns the smoothed maximum of `deflections` and writes the shares to `shares`. `known` has w⁰ of each deflection, and Σ w⁰² over all
-/// spheres, including those omitted from the list; `None` if no shares are known.
+/// Returns the smoothed maximum of `deflections` and writes the shares to `shares`. `known` contains w⁰ of each deflection, and Σ w⁰² over all spheres,
+/// including those omitted from the list. `None` means that no shares are known.
 pub(super) fn tied_max(
     deflections: &[f64],
     known: Option<(&[f64], f64)>,
@@ -38,7 +38,7 @@ pub(super) fn tied_max(
     let highest = (0..deflections.len())
         .map(at)
         .fold(f64::NEG_INFINITY, f64::max);
-    // Only values within one of the highest can have a share.
+    // Only values within the smoothing width of the largest can have a share.
     let mut near: Vec<f64> = (0..deflections.len())
         .map(at)
         .filter(|v| *v > highest - 1.0)
@@ -53,7 +53,7 @@ pub(super) fn tied_max(
         }
     }
     shares.extend((0..deflections.len()).map(|j| (at(j) - level).max(0.0)));
-    // Part of |w − w⁰|² that does not depend on the list: Σ w⁰², or the 1 for which a clear maximum has its exact value.
+    // Part of |w − w⁰|² that does not depend on the list: Σ w⁰² if shares are known. Otherwise 1, so that a unique maximum keeps its exact value.
     let mut value = 0.5 * smoothing * known.map_or(1.0, |(_, squares)| -squares);
     for (j, share) in shares.iter().enumerate() {
         value += share * deflections[j] - 0.5 * smoothing * share * (share - 2.0 * about(j));

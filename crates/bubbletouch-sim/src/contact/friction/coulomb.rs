@@ -14,19 +14,20 @@
 
 use glam::DVec2;
 
-/// Factor by which rounding may move a trial beyond the rim without a slip. Larger: creep counts as sticking; smaller: rest on the rim counts as slip.
+/// Factor by which rounding may move the trial displacement beyond the rim without a slip. If larger, creep counts as sticking; if smaller, rest on the rim
+/// counts as slip.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// State of the spring's end after a drag.
+/// State of a friction spring's end after a drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Dragged {
-    /// Displacement u, metres, |u| ≤ r.
+    /// Displacement u of the spring's end, metres, |u| ≤ r.
     pub displacement: DVec2,
-    /// Whether the end slipped during the drag.
+    /// Whether the spring's end slipped during the drag.
     pub has_slipped: bool,
 }
 
-/// Drags the spring's end from `displacement` by `motion`, with the limit r ≥ 0; all in metres.
+/// Drags the spring's end from `displacement` by `motion`, with the radius `limit` ≥ 0 of the friction disc; all in metres.
 pub(crate) fn drag(displacement: DVec2, motion: DVec2, limit: f64) -> Dragged {
     let is_outside = displacement.length() > limit * ROUNDING;
     let start = within(displacement, limit);
@@ -51,7 +52,7 @@ fn within(displacement: DVec2, limit: f64) -> DVec2 {
     displacement * (limit / length)
 }
 
-/// Moves the end from inside the disc to its rim, and then along the rim.
+/// Moves the spring's end from inside the disc to its rim, and then along the rim.
 fn slide(start: DVec2, motion: DVec2, limit: f64) -> DVec2 {
     if limit == 0.0 {
         return DVec2::ZERO;
@@ -80,7 +81,7 @@ mod tests {
     use crate::random::Seed;
     use rand::Rng;
 
-    /// Returns a start inside a disc, a motion, and the disc's radius.
+    /// Returns a random start inside a disc, a random motion, and the disc's radius.
     fn random_case(case: u64) -> (DVec2, DVec2, f64) {
         let mut rng = Seed::new(5).named("drag").numbered(case).rng();
         let mut random =

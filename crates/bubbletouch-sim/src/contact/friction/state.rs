@@ -1,8 +1,8 @@
 //! Three-axis contact forces: shear springs and Coulomb friction at the taxels.
 //!
-//! In addition to the spring (k, δ) along its axis n, a taxel has a shear spring at its tip: stiffness k_t, displacement u perpendicular to
-//! the axis. While the taxel is in contact, the object drags the tip. During a step the object moves from the pose X₀ to X₁ (patch frame). Let a
-//! be the material point of the object that touches the taxel at the start of the step, and b the point that touches at the end:
+//! In addition to the spring (k, δ) along its axis n, a taxel has a shear spring with stiffness k_t and displacement u perpendicular to the axis. While the
+//! taxel is in contact, the object drags the end of the shear spring. During a step the object moves from the pose X₀ to X₁ (patch frame). Let a be the
+//! material point of the object that touches the taxel at the start of the step, and b the point that touches at the end:
 //!
 //! ```text
 //! Δ = P ½ [(X₁ a − X₀ a) + (X₁ b − X₀ b)],   P = 1 − n nᵀ         tangential motion; the spring carries the motion along n
@@ -12,7 +12,8 @@
 //! The module `coulomb` solves the step of u in closed form: the predictor u + Δ is returned to the friction cone at the step's end.
 //! If the object rolls, X₁ a − X₀ a and X₁ b − X₀ b cancel to second order, so rolling drags nothing.
 //!
-//! For a free object the motion is unknown before its equilibrium, which depends on the shear springs. The step of a free object therefore omits b and
+//! For a free object the motion is unknown before its equilibrium, which depends on the shear springs. The step of a free object therefore omits b and returns
+//! u + Δ radially to the cone (module `shear_springs`). On a straight path both rules give equal u.
 //! returns u + Δ radially to the cone (`equilibrium::shear_springs`). On a straight path both rules give the same u.
 //!
 //! **Normal direction**: the sensor's axis, f_n = f = k δ (+ c δ̇ with a damper), not the contact normal n_c. Friction perpendicular to the axis
@@ -22,14 +23,15 @@
 //! flank at an angle θ, Coulomb's cone about n_c differs by the order of μ tan θ; head-on both cones are equal. The shift of the contact point by
 //! u is neglected; it is of the order of μ f / k_t.
 //!
-//! The force on the object is therefore the frictionless one, −∇ Σ ½ k δ², minus Σ f_t at the contact points. For μ = 0 every u is
+//! The force on the object is therefore the frictionless one, −∇ Σ ½ k δ², minus Σ f_t at the contact points. For μ = 0 every u is exactly zero, and the total
+//! load is bitwise equal to [`spring_load`](crate::contact::spring_load).
 //! exactly zero, and the [load](FrictionState::load) equals [`spring_load`](crate::contact::spring_load) to the bit.
 //!
-//! **Laws**: the friction cone holds after any step, and no step size is unstable. The work of f_t on the object is at most the energy released by
-//! the shear springs, at any step size, so friction only dissipates. While f is constant, one step along a straight path equals many steps. If f
-//! changes, the error of a step is of first order. The same holds for taxels that come into contact within a step, whose u is zero at the
-//! step's end. If a taxel leaves contact or touches another object, u is reset to zero. For a saturated taxel the normal force
-//! is the spring's k s. The additional force of the stop is unknown, so the friction is a lower bound; a press counts such taxels.
+//! **Laws**: the friction cone holds after any step, and no step size is unstable. The work of f_t on the object is at most the energy released by the shear
+//! springs, at any step size, so friction only dissipates. While f is constant, one step along a straight path equals many steps. If f changes, the error of a
+//! step is of first order. Taxels that come into contact within a step also have a first-order error, because their u is zero at the step's end. If a taxel
+//! leaves contact or touches another object, u is reset to zero. For a saturated taxel the normal force is the spring's k s. The additional force of the stop
+//! is unknown, so the friction is a lower bound; a press counts such taxels.
 
 use super::coulomb::{Dragged, drag};
 use super::tangential_spring::{TangentialSpring, TangentialSpringState};
@@ -39,24 +41,24 @@ use crate::geometry::Pose;
 use crate::world::{Patch, Shears};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
-/// Mode of the tangential contact of a taxel.
+/// Mode of the tangential contact of a taxel: free, stick or slip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactMode {
     /// No contact: no object presses the taxel.
     #[default]
     Free,
-    /// The tip of the taxel moves with the object.
+    /// The contact sticks: the end of the shear spring moves with the object.
     Stick,
     /// The contact slipped during the last step because the tangential force reached the friction cone.
     Slip,
 }
 
-/// Normal force that limits friction.
+/// Source of the normal force that limits friction.
 #[derive(Clone, Copy, Debug)]
 pub enum NormalForce<'a> {
-    /// Springs only: k δ.
+    /// Spring forces k δ only.
     Springs,
-    /// Springs and dampers; the damper state must have been advanced to the same contacts.
+    /// Forces of springs and dampers; the damper state must have been advanced to the same contacts.
     Dampers(&'a DamperState),
 }
 
@@ -87,7 +89,7 @@ pub struct FrictionLoad {
     pub friction: Wrench,
 }
 
-/// Shear springs of one patch between steps.
+/// Shear springs of one patch, carried from step to step.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
@@ -120,29 +122,29 @@ pub struct FrictionLoad {
 #[derive(Clone, Debug)]
 pub struct FrictionState {
     shears: Shears,
-    /// Three-axis readings, N, shape (n_taxels,).
+    /// Readings of three-axis sensors, newtons, shape (n_taxels,).
     forces: Vec<DVec3>,
-    /// Shape (n_taxels,).
+    /// Contact mode of each taxel, shape (n_taxels,).
     contact_modes: Vec<ContactMode>,
-    /// Contacts of taxels, ascending by taxel.
+    /// Contacts of all taxels, ascending by taxel.
     held: Vec<TaxelContactState>,
-    /// Taxels in contact at the step before; used only during a step.
+    /// Contacts one step ago, ascending by taxel; used only during a step.
     before: Vec<TaxelContactState>,
     /// Poses `patch_from_object` after the last step.
     poses: Vec<Pose>,
 }
 
-/// Contact between a taxel's tip and an object.
+/// Tangential contact between a taxel and an object.
 #[derive(Clone, Copy, Debug)]
 struct TaxelContactState {
     taxel: usize,
     object: usize,
-    /// Material point of the object that the tip touches, metres, in the object's frame.
+    /// Material point of the object that the taxel touches, metres, in the object's frame.
     point: DVec3,
-    /// Position of the material point, and position where the friction acts, metres, in the patch frame.
+    /// Positions, in the patch frame, metres: of the material point, and of the point where the friction acts.
     place: DVec3,
     acts_at: DVec3,
-    /// Tangential displacement u, metres, along x and y of the taxel's frame.
+    /// Tangential displacement u of the shear spring, metres, along x and y of the taxel's frame.
     displacement: DVec2,
 }
 
@@ -150,7 +152,7 @@ impl FrictionState {
     /// Creates the state of an untouched patch: no taxel is in contact.
     ///
     /// # Errors
-    /// If [`Shears::check_on`] refuses the shear springs.
+    /// If the shear springs do not fit the patch (`Shears::check_on`).
     pub fn at_rest(patch: &Patch, shears: Shears) -> Result<Self> {
         shears.check_on(patch)?;
         Ok(Self {
@@ -168,24 +170,24 @@ impl FrictionState {
         &self.shears
     }
 
-    /// Returns the readings of three-axis sensors (`force3`), N, shape (n_taxels,): the force of the object on each tip.
-    /// The components x and y, along the axes of the taxel's [frame](crate::world::Layout::frame), are friction plus the lateral force of an inclined
-    /// contact. The component z is the force against the taxel's axis, never negative. The reading is zero if nothing presses the taxel.
+    /// Returns the readings of three-axis sensors (`force3`), N, shape (n_taxels,): the force of the object on each taxel. The components x and y lie along the
+    /// axes of the taxel's frame; they are friction plus the lateral force of an inclined contact. The component z is the force against the taxel's axis, never
+    /// negative. The reading is zero if nothing presses the taxel.
     pub fn force3(&self) -> &[DVec3] {
         &self.forces
     }
 
-    /// Returns the contact modes of the last step, shape (n_taxels,).
+    /// Returns the contact mode of each taxel in the last step, shape (n_taxels,).
     pub fn contact_modes(&self) -> &[ContactMode] {
         &self.contact_modes
     }
 
-    /// Returns the friction on one taxel's tip along x and y of the taxel's [frame](crate::world::Layout::frame), N: k_t u, at most μ f.
+    /// Returns the friction on one taxel along x and y of the taxel's [frame](crate::world::Layout::frame), N. The friction is k_t u, at most μ f.
     pub fn friction(&self, taxel: usize) -> DVec2 {
         self.shears.at(taxel).stiffness * self.displacement(taxel)
     }
 
-    /// Returns u of one taxel along x and y of the taxel's [frame](crate::world::Layout::frame), metres; zero if the taxel is not in contact.
+    /// Returns the shear displacement u of one taxel along x and y of the taxel's frame, metres; zero if the taxel is not in contact.
     pub fn displacement(&self, taxel: usize) -> DVec2 {
         self.held(taxel)
             .map_or(DVec2::ZERO, |held| held.displacement)
@@ -196,7 +198,7 @@ impl FrictionState {
         found.ok().map(|index| &self.held[index])
     }
 
-    /// Returns the tangential springs of the taxels in contact, ascending by taxel; they act on free objects in the next step.
+    /// Returns the tangential springs of the taxels in contact, ascending by taxel. The springs act on free objects in the next step.
     pub fn tangential_springs(&self) -> impl Iterator<Item = TangentialSpring> {
         self.held.iter().map(|held| TangentialSpring {
             taxel: held.taxel,
@@ -209,7 +211,7 @@ impl FrictionState {
         })
     }
 
-    /// Replaces the contacts of one object by the given contacts (ascending by taxel) at the given pose, with u = 0.
+    /// Replaces the contacts of one object by the given contacts (ascending by taxel) at the given pose; their displacement u is zero.
     pub fn put(
         &mut self,
         patch: &Patch,
@@ -236,8 +238,8 @@ impl FrictionState {
         }
     }
 
-    /// Advances the shear springs by one step, from the poses of the step before to `patch_from_objects`.
-    /// `contacts` are the contacts of a press at the step's end, ascending by taxel. At the first step, and at any first contact, u is zero.
+    /// Advances the shear springs by one step, from the poses of the previous step to `patch_from_objects`. `contacts` are the contacts of a press at the
+    /// step's end, ascending by taxel. At the first step, and at any first contact, u is zero.
     ///
     /// # Panics
     /// If the taxel or object of a contact does not exist.
@@ -251,9 +253,8 @@ impl FrictionState {
         self.step_with(patch, contacts, patch_from_objects, normal, &[])
     }
 
-    /// Advances the shear springs by one step, with free objects in [equilibrium](crate::contact::equilibrium).
-    /// `held_at_rest`, ascending by taxel, is the result of the equilibrium that was solved with the [tangential springs](Self::tangential_springs) of
-    /// the step before.
+    /// Advances the shear springs by one step, with free objects in equilibrium. `held_at_rest`, ascending by taxel, is the result of the equilibrium that was
+    /// solved with the [tangential springs](Self::tangential_springs) of the previous step.
     ///
     /// # Panics
     /// If the taxel or object of a contact does not exist.
@@ -321,7 +322,7 @@ impl FrictionState {
         counts
     }
 
-    /// Returns the sum of the forces that taxels exert on objects after a step: over all its contacts, or over those with one object.
+    /// Returns the sum of the forces that taxels exert on objects after a step, over the given contacts (all, or those with one object).
     pub fn load<'a>(
         &self,
         patch: &Patch,
@@ -353,7 +354,7 @@ impl Dragged {
     }
 }
 
-/// Returns the component of a vector (patch frame) perpendicular to a taxel's axis, along x and y of the taxel's frame.
+/// Returns the components of a vector (patch frame) along x and y of a taxel's frame, which are perpendicular to the taxel's axis.
 fn across(frame: &DMat3, vector: DVec3) -> DVec2 {
     (frame.transpose() * vector).xy()
 }

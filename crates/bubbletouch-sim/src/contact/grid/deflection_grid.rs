@@ -2,16 +2,17 @@
 
 use std::ops::Range;
 
-/// Columns indented together: lanes of 256 bits, f64. Larger: needless columns beside narrow footprints; smaller: more instructions.
+/// Number of columns that are computed together: lanes of 256 bits, f64. A larger value computes needless columns beside narrow footprints; a smaller one needs
+/// more instructions.
 pub(super) const BLOCK: usize = 4;
 
-/// Columns indented together in footprints wider than three blocks: lanes of 512 bits, f64.
+/// Number of columns that are computed together in footprints wider than three blocks: lanes of 512 bits, f64.
 pub(super) const WIDE: usize = 8;
 
-/// Deflections of a grid, row by row, and the rectangle outside of which all are zero.
+/// Deflections of a grid, row by row, and a rectangle outside of which all deflections are zero.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DeflectionGrid {
-    /// Metres, shape (n_taxels,), padded by one block so that the last row consists of whole blocks too.
+    /// Deflections, metres, shape (n_taxels,), padded by one block so that the last row also consists of whole blocks.
     deflections: Vec<f64>,
     n_columns: usize,
     n_taxels: usize,
@@ -25,7 +26,7 @@ impl DeflectionGrid {
         &self.deflections[..self.n_taxels]
     }
 
-    /// Sets all deflections of a grid to zero; visits only the covered rectangle.
+    /// Sets all deflections of a grid to zero, visiting only the covered rectangle.
     pub fn clear(&mut self, n_columns: usize, n_rows: usize) {
         if (self.n_columns, self.n_taxels) == (n_columns, n_columns * n_rows) {
             self.each_row(|_, taxels| taxels.fill(0.0));
@@ -38,21 +39,21 @@ impl DeflectionGrid {
         self.columns = n_columns..0;
     }
 
-    /// Enlarges the rectangle to contain some rows and columns.
+    /// Enlarges the covered rectangle to contain the given rows and columns.
     #[inline(always)]
     pub fn cover(&mut self, rows: &Range<usize>, columns: &Range<usize>) {
         self.rows = self.rows.start.min(rows.start)..self.rows.end.max(rows.end);
         self.columns = self.columns.start.min(columns.start)..self.columns.end.max(columns.end);
     }
 
-    /// Returns some columns of a row.
+    /// Returns the deflections of the given columns of a row.
     #[inline(always)]
     pub fn row(&mut self, row: usize, columns: Range<usize>) -> &mut [f64] {
         let first = row * self.n_columns;
         &mut self.deflections[first + columns.start..first + columns.end]
     }
 
-    /// Returns blocks of columns of a row, from column `first`; beyond the row's end a block contains taxels of the next row.
+    /// Returns N blocks of a row's deflections, beginning at column `first`; beyond the row's end a block contains taxels of the next row.
     #[inline(always)]
     pub fn blocks<const N: usize>(&mut self, row: usize, first: usize) -> &mut [[f64; BLOCK]; N] {
         let first = row * self.n_columns + first;
@@ -60,7 +61,7 @@ impl DeflectionGrid {
         blocks.try_into().expect("so many blocks are cut")
     }
 
-    /// Returns a wide block of columns of a row, from column `first`, all of them in the row.
+    /// Returns a wide block of a row's deflections, beginning at column `first`; all columns must lie in the row.
     #[inline(always)]
     pub fn wide_block(&mut self, row: usize, first: usize) -> &mut [f64; WIDE] {
         let first = row * self.n_columns + first;
@@ -68,7 +69,7 @@ impl DeflectionGrid {
         block.expect("a row is as long")
     }
 
-    /// Visits the covered part of each row, with the number of its first taxel.
+    /// Visits the covered part of each row, with the index of its first taxel.
     #[inline(always)]
     pub fn each_row(&mut self, mut visit: impl FnMut(usize, &mut [f64])) {
         for row in self.rows.clone() {

@@ -9,12 +9,12 @@ use crate::objects::{ContactFace, MeshModel, Model};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use std::cell::Cell;
 
-/// For each taxel, the travel at which a triangle stops the taxel: the least height in the patch frame as the patch rises.
+/// Travel at which a triangle first stops each taxel: the least height in the patch frame as the patch rises.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Envelope {
-    /// Metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel.
+    /// Heights, metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel.
     pub heights: Vec<f64>,
-    /// Smallest height, metres.
+    /// Smallest of the heights, metres.
     pub first: f64,
 }
 
@@ -26,7 +26,7 @@ impl Envelope {
         self.first = f64::INFINITY;
     }
 
-    /// Finds the heights at which meshes stop the taxels, up to the goal. Returns whether there is a mesh; `first` is the travel at first contact with
+    /// Computes the heights at which meshes stop the taxels, up to the goal. Returns whether there is a mesh. `first` is the travel at first contact with
     /// spheres.
     pub fn look(&mut self, placed: &PlacedObjects, (goal, first): (TravelGoal, f64)) -> bool {
         let pairs = placed.objects.iter().zip(placed.patch_from_objects);
@@ -44,7 +44,7 @@ impl Envelope {
         has_meshes
     }
 
-    /// Lowers the heights to those of a mesh, up to the limit.
+    /// Lowers the heights to the heights at which a mesh stops the taxels, up to the limit.
     fn lower(
         &mut self,
         mesh: &MeshModel,
@@ -78,24 +78,24 @@ impl Envelope {
     }
 }
 
-/// State of the search over one mesh. The heights are in cells, so that the search can compare a box with the heights found so far.
+/// State of the search over one mesh. The heights are divided into cells, so that the search can compare a box with the heights found so far.
 struct Sweep<'a> {
     view: MeshView,
     /// Radius ρ of a taxel, metres.
     radius: f64,
     lines: &'a GridLines,
-    /// Goal, and the travel at first contact with the objects evaluated before.
+    /// Goal of the press, and the travel at first contact with the objects evaluated before.
     goal: (TravelGoal, f64),
     heights: &'a [Cell<f64>],
     first: &'a Cell<f64>,
 }
 
-/// Number of taxels near a box up to which the box is tested for being hidden before it is opened. Larger: needless tests, if triangles are as large as
-/// taxels; smaller: needlessly opened boxes, if triangles are much smaller.
+/// Maximum number of taxels near a box for which the search tests whether the box is hidden. If larger, tests are wasted on triangles as large as taxels; if
+/// smaller, boxes of small triangles are opened needlessly.
 const FEW: usize = 2;
 
 impl Sweep<'_> {
-    /// Returns the travel up to which heights matter, metres.
+    /// Returns the travel, metres, beyond which heights are not needed.
     fn limit(&self) -> f64 {
         match self.goal {
             (TravelGoal::Travel(travel), _) => travel,
@@ -104,7 +104,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Returns a lower bound, metres, of the travel at which a triangle in a box stops a taxel; infinite if the box cannot lower any height.
+    /// Returns a lower bound, metres, of the travel at which a triangle in a box stops a taxel; infinite if no triangle in the box can lower a height.
     fn bound(&self, bounds: &Aabb) -> f64 {
         let [low, high] = self.view.turned(bounds);
         if self.view.is_beside(low, high) || self.is_hidden(low, high) {
@@ -113,8 +113,8 @@ impl Sweep<'_> {
         low.z - self.radius
     }
 
-    /// Returns whether a small box lowers none of the few heights near it. At a horizontal distance b from the box, a ball stops no
-    /// lower than √(ρ² − b²) below the box.
+    /// Returns whether no triangle in a small box can lower the heights of the few taxels near the box. At a horizontal distance b from the box, a ball stops
+    /// no lower than √(ρ² − b²) below the box.
     fn is_hidden(&self, low: DVec3, high: DVec3) -> bool {
         let (center, half) = (0.5 * (low + high), 0.5 * (high - low) + self.radius);
         let rows = self.lines.y.within(center.y, half.y);
@@ -163,7 +163,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Lowers the heights of the taxels between the corners of a rectangle by the function `height`.
+    /// Lowers the heights of the taxels inside a rectangle, given by two corners, to the value of the function `height`.
     #[inline]
     fn lower_under(&self, ground: (DVec2, DVec2), height: impl Fn(DVec2) -> Option<f64>) {
         let (low, high) = ground;
@@ -189,14 +189,14 @@ impl Sweep<'_> {
     }
 }
 
-/// Transform from a mesh's frame to the patch frame.
+/// Transform from a mesh's frame to the patch frame, with which boxes are rotated.
 struct MeshView {
     rotation: DMat3,
     translation: DVec3,
-    /// Positive and negative parts of the rotation: their products with a box's corners are the bounds of the rotated box.
+    /// Positive and negative parts of the rotation matrix; their products with a box's corners are the bounds of the rotated box.
     positive: DMat3,
     negative: DMat3,
-    /// Largest |x| and |y| of a taxel, plus ρ.
+    /// Half the patch's width along x and y, including the taxels' radius ρ, metres.
     half_size: DVec2,
 }
 

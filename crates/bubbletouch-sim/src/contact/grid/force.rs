@@ -16,7 +16,7 @@ use crate::objects::Model;
 use crate::text::in_range::positive;
 use crate::world::EvenGrid;
 
-/// Presses to a force, as [`press_to_force`](crate::contact::press_to_force), with taxels of one stiffness, N/m.
+/// Presses a grid to a force, as `press_to_force` does. All taxels have one stiffness, N/m.
 pub(crate) fn press(
     (grid, stiffness): (&EvenGrid, f64),
     objects: &[Model],
@@ -54,7 +54,7 @@ pub(crate) fn press(
 /// Relative rounding of a force that is the sum of thousands of springs: far above 1e-16, far below any measurable difference.
 const ROUNDING: f64 = 1e-12;
 
-/// Force F(t) of a grid up to a travel.
+/// Force F(t) of a grid as a function of the travel t, up to a largest travel.
 struct ForceCurve<'a> {
     /// Travels t_i at which taxels begin to move, metres.
     starts: &'a [f64],
@@ -65,7 +65,7 @@ struct ForceCurve<'a> {
 }
 
 impl<'a> ForceCurve<'a> {
-    /// Creates the curve from the gathered objects, up to a travel.
+    /// Creates the force curve from the gathered objects, up to a travel, metres.
     fn new(press: &'a mut GridPress, (grid, stiffness): (&EvenGrid, f64), travel: f64) -> Self {
         let starts = press.starts(grid, travel);
         let last = starts.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
@@ -77,7 +77,7 @@ impl<'a> ForceCurve<'a> {
         }
     }
 
-    /// Returns F, N, and its derivative, N/m.
+    /// Returns the force F, N, and its derivative, N/m, at a travel, metres.
     fn at(&self, travel: f64) -> Sample {
         let (mut deflection, mut n_moving) = (0.0, 0);
         for start in self.starts {
@@ -96,7 +96,7 @@ impl<'a> ForceCurve<'a> {
         self.at(self.end).value
     }
 
-    /// Returns the travel, metres, at which the force is `force`, at most the largest.
+    /// Returns the travel, metres, at which the springs carry `force`, N, which is at most the largest force.
     fn travel(&self, force: f64) -> f64 {
         let first = self.starts.iter().fold(self.end, |a, &b| a.min(b));
         crossing(

@@ -6,27 +6,27 @@ use std::ops::Range;
 /// Bound of rounding errors of positions on the grid, in pitches: far above 1e-16 of the largest grid, far below any measurable distance.
 const ROUNDING: f64 = 1e-9;
 
-/// Columns and rows of a grid.
+/// Columns and rows of a grid, as positions of lines.
 #[derive(Clone, Debug, Default)]
 pub struct GridLines {
-    /// Columns, given by their x.
+    /// Columns, given by their x coordinates.
     pub x: Lines,
-    /// Rows, given by their y.
+    /// Rows, given by their y coordinates.
     pub y: Lines,
     grid: Option<Grid>,
 }
 
-/// Equidistant lines, ascending.
+/// Equidistant lines, in ascending order.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     /// Positions of the lines, metres.
     pub positions: Vec<f64>,
-    /// Lines per metre.
+    /// Number of lines per metre.
     density: f64,
 }
 
 impl GridLines {
-    /// Sets the lines to those of a grid; returns at once if the grid is unchanged.
+    /// Sets the lines to the columns and rows of a grid; returns at once if the grid is unchanged.
     pub fn lay(&mut self, grid: &Grid) {
         if self.grid.as_ref() == Some(grid) {
             return;
@@ -39,7 +39,7 @@ impl GridLines {
 }
 
 impl Lines {
-    /// Creates lines at given positions, metres, ascending and equidistant.
+    /// Creates lines at the given positions, metres, ascending and equidistant.
     pub fn at(positions: &[f64]) -> Self {
         let steps = positions.len().saturating_sub(1).max(1) as f64;
         let length =
@@ -61,11 +61,11 @@ impl Lines {
     #[inline(always)]
     pub fn nearest(&self, coordinate: f64) -> f64 {
         let index = (coordinate - self.positions[0]) * self.density + 0.5;
-        // The cast truncates, and saturates beside the grid.
+        // The cast truncates, and saturates for coordinates beside the grid.
         self.positions[(index as u32 as usize).min(self.positions.len() - 1)]
     }
 
-    /// Returns the lines within `half_width` of a coordinate, including those that are beyond by no more than rounding.
+    /// Returns the range of lines within `half_width` of a coordinate, metres; the range includes lines that are farther away only by rounding.
     ///
     /// Casts truncate and saturate beside the grid. Casts replace floor and ceil, which are function calls on the oldest supported processors.
     /// The cast to 32 bits needs fewer instructions than one to 64 bits.

@@ -1,4 +1,4 @@
-//! Row of an array of the caller that receives the deflections of a press.
+//! Output buffer of a press: a row of the caller's array that receives the deflections.
 
 /// Destination of a press: one deflection per taxel, metres, in single or double precision.
 ///
@@ -34,16 +34,16 @@ impl Row<'_> {
     }
 }
 
-/// Row that is filled with zeros while the spheres are evaluated, and then receives their deflections.
+/// Output row that is filled with zeros while the spheres are evaluated, and then receives the deflections.
 pub(crate) struct OutputBuffer<'a> {
     pub row: Row<'a>,
     n_filled: usize,
-    /// Number of values that are filled in one step.
+    /// Number of values that one step fills with zeros.
     step: usize,
 }
 
 impl<'a> OutputBuffer<'a> {
-    /// Creates the buffer of a row with any contents.
+    /// Creates the buffer of a row with arbitrary contents.
     pub fn new(row: Row<'a>) -> Self {
         Self {
             row,
@@ -52,7 +52,7 @@ impl<'a> OutputBuffer<'a> {
         }
     }
 
-    /// Creates the buffer of a row that contains zeros.
+    /// Creates the buffer of a row that already contains zeros.
     pub fn from_zeros(row: Row<'a>) -> Self {
         Self {
             n_filled: row.len(),
@@ -61,18 +61,18 @@ impl<'a> OutputBuffer<'a> {
         }
     }
 
-    /// Creates a buffer without a row.
+    /// Creates a buffer without an output row.
     pub fn none() -> Self {
         Self::new(Row::Double(&mut []))
     }
 
-    /// Distributes the filling over `n_steps` steps.
+    /// Distributes the filling with zeros over `n_steps` steps.
     pub fn in_steps(&mut self, n_steps: usize) {
         let step = (self.row.len() - self.n_filled).div_ceil(n_steps.max(1));
         self.step = step.next_multiple_of(LINE);
     }
 
-    /// Fills the values of one step.
+    /// Fills the values of one step with zeros.
     #[inline(always)]
     pub fn step(&mut self) {
         if self.step > 0 {
@@ -80,7 +80,7 @@ impl<'a> OutputBuffer<'a> {
         }
     }
 
-    /// Fills the remaining values.
+    /// Fills the remaining values with zeros.
     pub fn finish(&mut self) {
         self.fill(self.row.len());
     }
@@ -97,5 +97,5 @@ impl<'a> OutputBuffer<'a> {
     }
 }
 
-/// Values per fill unit: one or two cache lines of 64 bytes.
+/// Number of values that are filled at once: one or two cache lines of 64 bytes.
 const LINE: usize = 16;

@@ -4,14 +4,14 @@ use super::lines::GridLines;
 use crate::geometry::Pose;
 use crate::objects::Model;
 
-/// Goal of a press on a grid, and rule for the spheres that count.
+/// Goal of a press on a grid; it also determines whether spheres behind the substrate count.
 #[derive(Clone, Copy)]
 pub(crate) enum TravelGoal {
-    /// Travel from the front, metres; all spheres count.
+    /// Travel of a press from the front, metres; all spheres count.
     Travel(f64),
     /// No travel. A sphere that is wholly behind the substrate of a taxel does not push this taxel.
     Pose,
-    /// Depth past first contact from the front, metres; all spheres count.
+    /// Depth past first contact of a press from the front, metres; all spheres count.
     Depth(f64),
 }
 
@@ -20,10 +20,10 @@ pub(super) struct PlacedObjects<'a> {
     pub objects: &'a [Model],
     /// Poses `patch_from_object`, one per object.
     pub patch_from_objects: &'a [Pose],
-    /// Radius ρ of a taxel, metres.
+    /// Radius ρ of the taxels, metres.
     pub radius: f64,
     /// Height of the substrate, metres; −∞ if the press comes from the front.
     pub behind: f64,
-    /// Lines of the grid.
+    /// Lines (columns and rows) of the grid.
     pub lines: &'a GridLines,
 }

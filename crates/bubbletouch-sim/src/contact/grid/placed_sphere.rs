@@ -8,28 +8,28 @@ use crate::objects::{Cluster, ClusterBounds, MAX_IN_CLUSTER, Sphere};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
-/// Sphere in the patch frame with the taxel's radius added to its own, so that the taxel can be treated as a point.
+/// Sphere in the patch frame whose radius is enlarged by the taxel's radius, so that the taxel can be treated as a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedSphere {
     pub center: DVec3,
-    /// Sum of the radii S = ρ + R, metres.
+    /// Sum of the radii of taxel and sphere, S = ρ + R, metres.
     pub reach: f64,
 }
 
-/// Factor that covers rounding of a reach: far above 1e-16 and far below any measurable difference.
+/// Factor that covers rounding of a radius: far above 1e-16 and far below any measurable difference.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Largest number of columns for which a footprint is treated as a square. Larger: needless taxels beside large spheres; smaller: needless
-/// computations at the ends of short rows.
+/// Largest number of columns for which a sphere's footprint is treated as a square. If larger, taxels beside large spheres are computed needlessly; if smaller,
+/// the ends of short rows are.
 const SQUARE: usize = 10;
 
-/// Transform from an object's frame to the patch frame.
+/// Transform from an object's frame to the patch frame, with which spheres are selected.
 #[derive(Clone, Debug)]
 pub(crate) struct View {
     /// Rows of the rotation matrix.
     rows: DMat3,
     translation: DVec3,
-    /// Radius ρ of a taxel, metres.
+    /// Radius ρ of the taxels, metres.
     taxel_radius: f64,
     /// Largest |x| and |y| of a taxel, metres.
     half_size: [f64; 2],
@@ -47,7 +47,8 @@ impl View {
         }
     }
 
-    /// Writes for each cluster a travel before which none of its spheres meets a taxel, metres; infinite if its projection misses the patch.
+    /// Writes, for each cluster of spheres, a travel before which none of its spheres meets a taxel, metres; infinite if the cluster's projection misses the
+    /// patch.
     #[inline(always)]
     pub fn lay_starts(&self, bounds: &ClusterBounds, starts: &mut [f64]) {
         let n = starts.len();
@@ -77,7 +78,7 @@ impl View {
         }
     }
 
-    /// Returns for each sphere of a cluster the travel before which it meets no taxel, metres.
+    /// Returns, for each sphere of a cluster, the travel before which the sphere meets no taxel, metres.
     #[inline(always)]
     pub fn starts(&self, cluster: &Cluster) -> [f64; MAX_IN_CLUSTER] {
         let [x, y, z] = cluster.centers;
@@ -125,7 +126,8 @@ fn less<const N: usize>(value: f64, numbers: &[f64; N]) -> [f64; N] {
 }
 
 impl PlacedSphere {
-    /// Returns the travel at first contact, metres: with the taxel nearest to the sphere's axis; infinite if the sphere passes between taxels.
+    /// Returns the travel at first contact, metres, that is, with the taxel nearest to the sphere's axis. The travel is infinite if the sphere passes between
+    /// taxels.
     #[inline(always)]
     pub fn first_touch(&self, lines: &GridLines) -> f64 {
         let DVec3 { x, y, z } = self.center;
@@ -138,7 +140,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises each deflection to the one that the sphere needs with its centre at `height` above the grid, metres.
+    /// Raises each deflection to the deflection that the sphere needs with its centre at `height` above the grid, metres.
     #[inline(always)]
     pub fn indent(&self, lines: &GridLines, height: f64, deflections: &mut DeflectionGrid) {
         let reach2 = self.reach * self.reach;
@@ -160,7 +162,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises deflections by a sphere whose centre is below the substrate's height `behind`, metres: only taxels whose substrate is inside the sphere are
+    /// Raises deflections by a sphere whose centre is below the substrate's height `behind`, metres. Only taxels whose substrate is inside the sphere are
     /// pushed.
     #[cold]
     pub fn indent_through(
@@ -190,7 +192,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Indents N blocks of each row, from column `first`.
+    /// Raises the deflections of N blocks in each row, beginning at column `first`.
     #[inline(always)]
     fn indent_square<const N: usize>(
         &self,
@@ -219,7 +221,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Indents in each row the columns that the sphere reaches, more than a block of them.
+    /// Raises the deflections of all columns that the sphere reaches, row by row; the footprint is wider than a block.
     #[inline(always)]
     fn indent_rows(
         &self,
@@ -256,8 +258,8 @@ impl PlacedSphere {
         }
     }
 
-    /// Increases the deflection of each taxel that the sphere pushes further, and marks these taxels. If the
-    /// sphere is behind the substrate, whose height is `behind`, it does not count.
+    /// Increases the deflection of each taxel that the sphere pushes further, and marks these taxels. A sphere behind the substrate, whose height is `behind`,
+    /// does not count.
     ///
     /// The footprint is the region where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, small
     /// footprints to a square. The comparison with S in the innermost loop decides exactly.

@@ -14,21 +14,21 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::EvenGrid;
 
-/// SignalWorkspace memory of one thread.
+/// Workspace of one thread for presses of flat grids.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GridPress {
     pub instructions: Instructions,
-    /// Lines of the last grid.
+    /// Lines (columns and rows) of the last grid.
     lines: GridLines,
     /// Search for the spheres that can press.
     search: SphereSearch,
     /// Heights at which the meshes stop the taxels; empty if there are no meshes.
     envelope: Envelope,
     deflections: DeflectionGrid,
-    /// Height of the substrate, metres: −s − ρ at a pose, −∞ if the press comes from the front and all spheres count.
-    /// A sphere with a lower centre pushes only taxels whose substrate is inside the sphere.
+    /// Height of the substrate, metres: −s − ρ at a pose, −∞ if the press comes from the front and all spheres count. A sphere with a lower centre pushes only
+    /// taxels whose substrate is inside the sphere.
     behind: f64,
-    /// Result of [`starts`](Self::starts) in the last press to a force.
+    /// Travels at which the taxels began to move in the last press to a force, metres.
     starts: Vec<f64>,
 }
 
@@ -38,8 +38,7 @@ impl GridPress {
         self.deflections.deflections()
     }
 
-    /// Gathers the spheres that press a taxel before the goal. Returns the travel to first contact if the
-    /// goal is a depth; `None` if no travel touches anything.
+    /// Gathers the spheres that press a taxel before the goal. Returns the travel at first contact if the goal is a depth; `None` if the patch meets nothing.
     pub(crate) fn gather(
         &mut self,
         grid: &EvenGrid,
@@ -71,7 +70,7 @@ impl GridPress {
         first.is_finite().then_some(first)
     }
 
-    /// Indents the patch at a travel; the objects must have been gathered for this travel or a larger one.
+    /// Computes the deflections of the patch at a travel; the objects must have been gathered for this travel or a larger one.
     pub(crate) fn indent(
         &mut self,
         grid: &EvenGrid,
@@ -113,7 +112,7 @@ impl GridPress {
         self.deflections.clear(grid.grid.nx, grid.grid.ny);
     }
 
-    /// Computes the deflections that the objects need at a travel, without the limit of the stroke.
+    /// Computes the deflections that the objects need at a travel, not limited to the stroke.
     fn push(&mut self, grid: &EvenGrid, travel: f64, output: &mut OutputBuffer) {
         self.touch_nothing(grid);
         output.in_steps(self.search.found.len());
@@ -140,7 +139,7 @@ impl GridPress {
 }
 
 for_instructions! {
-    /// Indents the taxels by all spheres that count at a travel, and fills the output in the meantime.
+    /// Raises the deflections by all spheres that count at a travel, and fills the output row with zeros in the meantime.
     fn indent_all(
         spheres: &[PlacedSphere],
         lines: &GridLines,
@@ -170,7 +169,7 @@ fn indent_each(
 }
 
 for_instructions! {
-    /// Counts touched and saturated taxels, limits deflections to the stroke, and writes them into `row` if there is one.
+    /// Counts touched and saturated taxels, limits deflections to the stroke, and writes them into the output row if there is one.
     fn stop_at_stroke(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [usize; 2] = stop_each
 }
 
@@ -206,7 +205,7 @@ fn stop_each(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [u
     [stop.n_touched, stop.n_saturated]
 }
 
-/// Stop of the taxels, and the counts of touched and saturated taxels.
+/// Stroke that limits the deflections, and the numbers of touched and saturated taxels.
 struct Stop {
     stroke: f64,
     limit: f64,
@@ -215,7 +214,7 @@ struct Stop {
 }
 
 impl Stop {
-    /// Counts a deflection and returns it limited to the stroke.
+    /// Counts a deflection as touched or saturated, and returns it limited to the stroke.
     #[inline(always)]
     fn limit(&mut self, deflection: f64) -> f64 {
         self.n_touched += usize::from(deflection > 0.0);

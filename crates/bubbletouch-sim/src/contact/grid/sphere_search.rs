@@ -1,4 +1,4 @@
-//! Search for the spheres that can press a flat grid: first by clusters of neighbours, then by the spheres of nearby clusters.
+//! Search for the spheres that can press a flat grid: first by clusters of neighbouring spheres, then sphere by sphere in nearby clusters.
 
 use super::placed_objects::{PlacedObjects, TravelGoal};
 use super::placed_sphere::{PlacedSphere, View};
@@ -7,14 +7,14 @@ use crate::contact::instructions::for_instructions;
 use crate::contact::law;
 use crate::objects::{Model, SphereClusters};
 
-/// Reused scratch memory of a search.
+/// Workspace of a search for spheres.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SphereSearch {
-    /// Transforms of the sphere unions, in their order.
+    /// Transforms of the sphere unions to the patch frame, in the order of the unions.
     views: Vec<View>,
-    /// For each cluster a travel before which none of its spheres presses a taxel, metres; infinite beside the patch.
+    /// Travel before which no sphere of a cluster presses a taxel, metres, for each cluster; infinite beside the patch.
     starts: Vec<f64>,
-    /// Spheres that can press, in the patch frame before the travel.
+    /// Spheres that can press a taxel, in the patch frame before the travel.
     pub found: Vec<PlacedSphere>,
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct SphereSearch {
 const LOOK: usize = 8;
 
 for_instructions! {
-    /// Finds the spheres that can press a taxel before the goal, and returns the travel at first contact. Infinite if no taxel is touched,
+    /// Finds the spheres that can press a taxel before the goal, and returns the travel at first contact, metres. The travel is infinite if no taxel is touched
     /// or if the goal is not a depth.
     ///
     /// For a depth, the nearest cluster is evaluated first, so that most other clusters can be excluded by their bounds.
@@ -69,7 +69,7 @@ impl SphereSearch {
         }
     }
 
-    /// Returns the travel at which the first sphere meets its first taxel, metres.
+    /// Returns the travel at which the first sphere meets a taxel, metres.
     #[inline(always)]
     fn first_touch(&self, placed: &PlacedObjects) -> f64 {
         let mut lowest = [f64::INFINITY; LOOK];
@@ -84,7 +84,7 @@ impl SphereSearch {
         }
         let lowest = lowest.into_iter().fold(f64::INFINITY, f64::min);
         let mut first = f64::INFINITY;
-        // The first pass evaluates the nearest cluster alone, the second one those that may be nearer than its first contact.
+        // The first pass evaluates the nearest cluster alone; the second pass evaluates clusters that may be nearer than its first contact.
         for limit in [lowest.next_up(), f64::INFINITY] {
             for (union, view, starts) in self.unions(placed.objects) {
                 for (look, starts) in starts.iter().enumerate() {
@@ -102,7 +102,7 @@ impl SphereSearch {
         first
     }
 
-    /// Gathers the spheres that press before a travel and for which `counts` returns true.
+    /// Gathers the spheres that press a taxel before a travel and for which `counts` returns true.
     #[inline(always)]
     fn gather(&mut self, objects: &[Model], limit: f64, counts: impl Fn(&PlacedSphere) -> bool) {
         let mut found = std::mem::take(&mut self.found);
@@ -121,7 +121,7 @@ impl SphereSearch {
         self.found = found;
     }
 
-    /// Returns the unions with their transforms and the travels of their clusters.
+    /// Returns the sphere unions with their transforms and the travels of their clusters.
     #[inline(always)]
     fn unions<'a>(
         &'a self,

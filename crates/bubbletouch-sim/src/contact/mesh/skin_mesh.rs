@@ -1,4 +1,4 @@
-//! Stop of a taxel by a mesh as the taxel moves up along its axis.
+//! Contact of a taxel with a mesh: the height at which the mesh stops the taxel as it moves up along its axis.
 
 use super::swept_triangle::stopping_height;
 use crate::contact::law;
@@ -15,17 +15,17 @@ pub(crate) struct MeshAt<'a> {
     rotation: DMat3,
 }
 
-/// Triangle that stops a taxel.
+/// Height at which a mesh stops a taxel, and the triangle that does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stop {
-    /// Height of the taxel's centre along its axis above its rest centre, metres; below zero.
+    /// Height of the taxel's centre along its axis, relative to its rest centre, metres; negative.
     pub height: f64,
-    /// Number of the triangle in the mesh.
+    /// Index of the triangle in the mesh.
     pub triangle: usize,
 }
 
-/// Offset from the axis, in radii, of the ray that tests the taxel's substrate. Diagonals of boxes often run
-/// through the axes of grids, and a ray along an edge hits both of its triangles or none.
+/// Offset from the axis, in radii, of the ray that tests the taxel's substrate. Diagonals of boxes often lie on the axes of grids, and a ray along an edge hits
+/// both of its triangles or none.
 const BESIDE: DVec2 = DVec2::new(0.011, 0.007);
 
 impl<'a> MeshAt<'a> {
@@ -38,14 +38,14 @@ impl<'a> MeshAt<'a> {
         }
     }
 
-    /// Returns a ball around the mesh, in the patch frame: centre and radius, metres.
+    /// Returns a bounding ball of the mesh in the patch frame: centre and radius, metres.
     pub fn ball(&self) -> (DVec3, f64) {
         let bounds = self.mesh.bounds();
         let radius = 0.5 * bounds.size().length();
         (self.pose.transform_point(bounds.center()), radius)
     }
 
-    /// Returns the stop of a taxel; `None` if the mesh does not push the taxel.
+    /// Returns the height and the triangle at which the mesh stops a taxel; `None` if the mesh does not push the taxel.
     ///
     /// If several triangles stop the taxel at equal heights, the choice among them is arbitrary but reproducible.
     pub fn stop(&self, taxel: &PlacedTaxel) -> Option<Stop> {
@@ -72,15 +72,15 @@ impl<'a> MeshAt<'a> {
         }
     }
 
-    /// Returns the stop of a taxel by one triangle, even behind the taxel's substrate.
+    /// Returns the height at which one triangle stops a taxel, even if the triangle is behind the taxel's substrate.
     pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<Stop> {
         let turned = AxisView::new(self, taxel).turned(&self.mesh.mesh().triangle(triangle));
         let height = stopping_height(&turned, taxel.radius, DVec2::ZERO)?;
         Some(Stop { height, triangle })
     }
 
-    /// Returns the triangle through which a taxel's axis entered the mesh, if the substrate is inside the solid mesh. The nearest triangle
-    /// behind the substrate then faces outwards, and the nearest one ahead shows its inner side.
+    /// Returns the triangle through which a taxel's axis entered the mesh, if the substrate is inside the solid mesh. In that case the nearest triangle behind
+    /// the substrate faces outwards, and the nearest one ahead shows its inner side.
     fn entered(&self, view: &AxisView) -> Option<Stop> {
         let beside = view.taxel.radius * BESIDE;
         let place = view.to_mesh(beside.extend(view.taxel.behind));
@@ -111,12 +111,12 @@ impl<'a> MeshAt<'a> {
     }
 }
 
-/// Transform from a mesh's frame to a taxel's: z along the taxel's axis, origin at its rest centre.
+/// Transform from a mesh's frame to a taxel's frame: z along the taxel's axis, origin at its rest centre.
 struct AxisView<'a> {
     taxel: &'a PlacedTaxel,
     rotation: DMat3,
     translation: DVec3,
-    /// Absolute values of the rotation's entries, which rotate half the size of a box.
+    /// Absolute values of the rotation matrix, which rotate the half-size of a box.
     absolute: DMat3,
 }
 
@@ -146,13 +146,12 @@ impl<'a> AxisView<'a> {
         self.rotation.transpose() * (place - self.translation)
     }
 
-    /// Returns the taxel's axis in the mesh's frame.
+    /// Returns the direction of the taxel's axis in the mesh's frame.
     fn up_in_mesh(&self) -> DVec3 {
         self.rotation.transpose() * DVec3::Z
     }
 
-    /// Returns a lower bound of the heights at which a triangle in a box stops the taxel; infinite if none can, or only behind the
-    /// substrate.
+    /// Returns a lower bound of the heights at which a triangle in a box stops the taxel; infinite if no triangle can, or only triangles behind the substrate.
     fn lowest(&self, bounds: &Aabb) -> f64 {
         let center = self.rotation * bounds.center() + self.translation;
         let half = self.absolute * (0.5 * bounds.size()) + self.taxel.radius;
@@ -163,7 +162,7 @@ impl<'a> AxisView<'a> {
         center.z - half.z
     }
 
-    /// Returns the height at which a triangle stops the taxel; `None` if it misses the taxel, or touches only behind the substrate.
+    /// Returns the height at which a triangle stops the taxel; `None` if the triangle misses the taxel or touches it only behind the substrate.
     fn stop(&self, triangle: &Triangle) -> Option<f64> {
         let turned = self.turned(triangle);
         let radius = self.taxel.radius;
@@ -171,7 +170,7 @@ impl<'a> AxisView<'a> {
         if law::reaches_front(height, self.taxel.behind) {
             return Some(height);
         }
-        // The far side: the highest place of contact for a taxel that moves down from above.
+        // Height of the far side: the highest place of contact for a taxel that moves down from above.
         let mirrored = Triangle(turned.0.map(|v| DVec3::new(v.x, v.y, -v.z)));
         let highest = -stopping_height(&mirrored, radius, DVec2::ZERO)?;
         law::reaches_front(highest, self.taxel.behind).then_some(height)

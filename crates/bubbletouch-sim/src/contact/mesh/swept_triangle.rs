@@ -34,14 +34,14 @@ pub fn stopping_height(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f6
     heights.flatten().reduce(f64::min)
 }
 
-/// Returns the height at which a ball stops at a corner, metres.
+/// Returns the height of the ball's centre at which a corner stops the ball, metres.
 #[inline]
 pub(crate) fn corner_height(corner: DVec3, radius: f64, at: DVec2) -> Option<f64> {
     let q = radius * radius - at.distance_squared(corner.xy());
     (q > 0.0).then(|| -law::deflection(q, corner.z))
 }
 
-/// Face moved down by the ball's radius along its normal.
+/// Face of a triangle, moved down by the ball's radius along the face's normal.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweptFace {
     corners: [DVec2; 3],
@@ -51,7 +51,7 @@ pub(crate) struct SweptFace {
 }
 
 impl SweptFace {
-    /// Creates the face; `None` if it is seen edge-on. `normal` is the triangle's.
+    /// Creates the swept face from the triangle's corners and `normal`; `None` if the face is vertical.
     #[inline]
     pub fn new(corners: &[DVec3; 3], normal: DVec3, radius: f64) -> Option<Self> {
         if normal.z.abs() < STEEP {
@@ -65,14 +65,14 @@ impl SweptFace {
         })
     }
 
-    /// Returns the lowest and highest corner of the ground area under the face.
+    /// Returns the lowest and highest corner of the ground rectangle under the face.
     #[inline]
     pub fn ground(&self) -> (DVec2, DVec2) {
         let [a, b, c] = self.corners;
         (a.min(b).min(c), a.max(b).max(c))
     }
 
-    /// Returns the height at which a ball stops at the face itself, metres.
+    /// Returns the height of the ball's centre at which the face stops the ball, metres.
     #[inline]
     pub fn height(&self, at: DVec2) -> Option<f64> {
         let [a, b, c] = self.corners;
@@ -86,28 +86,27 @@ impl SweptFace {
     }
 }
 
-/// Lower side of a tube around an edge, without the part that faces hide.
+/// Lower side of a tube around an edge, without the part that adjacent faces hide.
 ///
-/// Distances along and beside the edge are stored as multiples of its ground length, because most tests succeed before
-/// this length is needed.
+/// Distances along and beside the edge are stored as multiples of its ground length, because most tests are decided before this length is needed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweptEdge {
     from: DVec3,
     edge: DVec3,
-    /// Square of the edge's length on the ground, m².
+    /// Squared length of the edge's projection onto the ground, m².
     length2: f64,
     radius: f64,
-    /// Range of distances beside the edge, positive to the left, in which the edge can stop the ball, times the edge's length.
+    /// Range of distances beside the edge, positive to the left, in which the edge can stop the ball; multiplied by the edge's length.
     beside: [f64; 2],
-    /// Normals of the edge's faces, pointing down, if the faces lie on different sides.
+    /// Normals of the two adjacent faces, pointing down, if the faces lie on different sides of the edge.
     between: Option<[DVec3; 2]>,
 }
 
 impl SweptEdge {
-    /// Creates the edge; `None` if it is a point as seen from below, or if its faces hide it altogether.
+    /// Creates the swept edge; `None` if the edge is vertical or wholly hidden by its faces.
     ///
-    /// `faces` has the unit normals of the faces at the edge, zero for none. Seen from above, a face lies to the left of the edge if
-    /// its normal points up, and to the right if its normal points down.
+    /// `faces` contains the unit normals of the faces at the edge, zero for a missing face. Seen from above, a face lies to the left of the edge if its normal
+    /// points up, and to the right if its normal points down.
     ///
     /// A face hides the edge if the direction from the edge to the centre of the stopped ball points towards the face. The hidden region begins where
     /// the face, moved down by the radius, begins: at the distance ρ n·aside beside the edge.
@@ -164,7 +163,7 @@ impl SweptEdge {
         (low + a.min(b) - arc, high + a.max(b) + arc)
     }
 
-    /// Returns the height at which a ball stops at the visible part of the edge, metres.
+    /// Returns the height of the ball's centre at which the visible part of the edge stops the ball, metres.
     #[inline]
     pub fn height(&self, at: DVec2) -> Option<f64> {
         let from = at - self.from.xy();

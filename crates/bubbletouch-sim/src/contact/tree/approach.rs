@@ -1,4 +1,4 @@
-//! Motion of a patch with any layout along a line past first contact.
+//! Approach of a patch with any layout along a line, and presses past first contact.
 
 use super::near_spheres::{PlacedUnion, needed_of_leaf};
 use super::path::{ApproachPath, ContactRequest, meeting};
@@ -13,29 +13,29 @@ use glam::DVec3;
 use std::cell::Cell;
 use std::sync::OnceLock;
 
-/// Motion of a patch along a direction.
+/// Approach of a patch along a direction, for presses past first contact.
 ///
-/// First contact depends on the taxels' spheres and the direction, not on the taxels' axes. The search therefore uses taxels at the same
-/// places whose axes are the direction and whose strokes are unlimited. The taxel with the largest deflection touches first.
+/// First contact depends on the taxels' spheres and the direction, not on the taxels' axes. The search therefore uses a copy of the taxels whose axes are the
+/// direction and whose strokes are unlimited. The taxel with the largest deflection touches first.
 #[derive(Clone, Debug)]
 pub struct Approach<'a> {
     patch: &'a Patch,
     direction: DVec3,
-    /// Created on first use; the one along z belongs to the patch.
+    /// Copy of the taxels with axes along the direction, created on first use; the copy along z belongs to the patch.
     travelling: OnceLock<Travelling>,
 }
 
 impl<'a> Approach<'a> {
-    /// Creates the motion of a patch along a direction (unit vector, in the patch frame).
+    /// Creates the approach of a patch along a direction (unit vector, in the patch frame).
     ///
     /// # Errors
-    /// If the length of the direction is not one.
+    /// If the direction is not a unit vector.
     pub fn new(patch: &'a Patch, direction: DVec3) -> Result<Self> {
         ApproachPath::check(direction)?;
         Ok(Self::along(patch, direction))
     }
 
-    /// Creates the motion of a patch along its z axis.
+    /// Creates the approach of a patch along its z axis.
     pub(crate) fn ahead(patch: &'a Patch) -> Self {
         Self::along(patch, DVec3::Z)
     }
@@ -48,7 +48,7 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// Returns the taxels with their axes turned into the direction of travel.
+    /// Returns the copy of the taxels whose axes are the direction of travel.
     fn travelling(&self) -> &Travelling {
         if self.direction == DVec3::Z {
             return self.patch.ahead();
@@ -57,8 +57,8 @@ impl<'a> Approach<'a> {
         self.travelling.get_or_init(make)
     }
 
-    /// Returns the travel at which a taxel first meets an object, metres; negative if the patch is past this contact. Returns `None` if the
-    /// path misses all objects.
+    /// Returns the travel at which a taxel first meets an object, metres; negative if the patch is past this contact. Returns `None` if the path misses all
+    /// objects.
     ///
     /// `patch_from_objects` has one pose per object.
     ///
@@ -71,7 +71,7 @@ impl<'a> Approach<'a> {
             "one pose an object"
         );
         let [_, end] = meeting(self.patch, objects, patch_from_objects, self.direction)?;
-        // At this travel the patch is past everything on its path.
+        // At this travel the patch is past all objects on its path.
         let mut farthest = 0.0;
         for (object, pose) in objects.iter().zip(patch_from_objects) {
             let pose = Pose {
@@ -100,8 +100,8 @@ impl<'a> Approach<'a> {
         farthest
     }
 
-    /// Returns the largest deflection by a sphere union. The cluster with the largest bound is evaluated first, then those whose bound exceeds the
-    /// deflection found.
+    /// Returns the larger of `others` and the largest deflection by a sphere union, metres. The cluster with the largest bound is evaluated first, then those
+    /// whose bound exceeds the deflection found.
     fn farthest_sphere(&self, union: &SphereUnion, pose: &Pose, others: f64) -> f64 {
         let (placed, travelling) = (PlacedUnion::new(union, pose), &self.travelling().taxels);
         let mut foremost = (others, None);
@@ -133,7 +133,7 @@ impl<'a> Approach<'a> {
         self.travelling().front + ball.radius - ball.center.dot(self.direction)
     }
 
-    /// Returns an upper bound of the deflection of a node's taxels by a ball. All taxels are parallel, so the bound uses the distance from their axes.
+    /// Returns an upper bound of the deflection of a tree node's taxels by a ball. All taxels are parallel, so the bound uses the distance from their axes.
     #[inline(always)]
     fn most_of(&self, node: &Node, ball: &Sphere) -> f64 {
         let room = node.margin(ball.center, ball.radius);
@@ -146,7 +146,7 @@ impl<'a> Approach<'a> {
     /// Presses to a depth (metres, positive) past first contact and records the contacts in the workspace. Returns `None`, with zero
     /// deflections, if the path misses all objects.
     ///
-    /// A part that pushes a taxel continues to push it behind the substrate, so nothing passes through the skin.
+    /// A part of an object that pushes a taxel continues to push it behind the substrate, so no object passes through the skin.
     ///
     /// # Panics
     /// If the number of poses differs from the number of objects.
@@ -161,8 +161,8 @@ impl<'a> Approach<'a> {
         self.press_and_slide(objects, patch_from_objects, motion, None, workspace)
     }
 
-    /// Presses to a depth and then slides along a straight line (metres, in the patch frame). With friction, the objects drag the tips of the taxels;
-    /// the friction begins at rest, and its forces are those at the end of the path.
+    /// Presses to a depth and then slides along a straight line (metres, in the patch frame). With friction, the objects drag the taxels sideways. The friction
+    /// is zero at the start of the path; `friction` then contains the forces at the end of the path.
     ///
     /// # Panics
     /// If the number of poses differs from the number of objects, or the friction belongs to another patch.
@@ -180,8 +180,8 @@ impl<'a> Approach<'a> {
         path.press_and_slide(travels, slide, friction)
     }
 
-    /// Computes the deflections from one travel to another without contacts; returns `None` if `travels` is `None`. Taxels whose axes are parallel to
-    /// the direction need no steps: their deflection follows from the travel past their contact.
+    /// Computes the deflections from one travel to another without recording contacts; returns `None` if `travels` is `None`. Taxels whose axes are parallel to
+    /// the direction need no steps, because their deflection follows from the travel past their contact.
     pub(crate) fn deflect(
         &self,
         objects: &[Model],
@@ -217,7 +217,7 @@ impl<'a> Approach<'a> {
 }
 
 for_instructions! {
-    /// Returns the largest deflection by each of some spheres, or `others` if that is larger.
+    /// Returns the larger of `others` and the largest deflection by each of some spheres, metres.
     fn farthest_of_each(
         approach: &Approach,
         placed: &PlacedUnion,

@@ -1,4 +1,4 @@
-//! Motion of a patch with any layout along a line to a given force.
+//! Approach of a patch with any layout along a line to a given force.
 
 use super::approach::Approach;
 use super::path::{ApproachPath, meeting};
@@ -14,10 +14,10 @@ use crate::text::in_range::positive;
 impl Approach<'_> {
     /// Presses until the springs carry `force` newtons together, Σ k δ, to within a relative 1e-12 or the last bit of the travel.
     ///
-    /// `patch_from_objects` has the objects' poses before the motion, one per object. Returns `None` if the path misses all objects; the workspace then
-    /// contains the last press on the path. On a curved skin several travels can have this force; the first one found by steps of half a stroke is
-    /// returned. If the force jumps past `force` (an edge meets a taxel from the side), the
-    /// upper side of the jump is returned. A part that pushes a taxel continues to push it behind the substrate, so nothing passes through the skin.
+    /// `patch_from_objects` contains the objects' poses before the motion, one per object. Returns `None` if the path misses all objects; the workspace then
+    /// contains the last press on the path. On a curved skin several travels can have this force; the first one found by steps of half a stroke is returned. If
+    /// the force jumps past `force` (an edge meets a taxel from the side), the upper side of the jump is returned. A part that pushes a taxel continues to push
+    /// it behind the substrate, so no object passes through the skin.
     ///
     /// # Errors
     /// If `force` is not a positive number or is not reached on the path past the objects. The message contains the largest force and its travel.
@@ -65,7 +65,7 @@ impl ApproachPath<'_> {
         }))
     }
 
-    /// Returns two travels, with a smaller force at the first and at least `force` at the second; `None` if nothing is touched.
+    /// Returns two travels, metres: the force is smaller than `force` at the first and not smaller at the second. Returns `None` if nothing is touched.
     fn bracket(&mut self, [start, end]: [f64; 2], force: f64) -> Result<Option<[f64; 2]>> {
         let mut largest = (0.0, start);
         let n_steps = self.patch.n_steps(end - start);
@@ -89,7 +89,7 @@ impl ApproachPath<'_> {
         Err(unreachable_force(force, largest.0, &where_to))
     }
 
-    /// Returns Σ k δ, N, and its derivative with respect to the travel, N/m.
+    /// Returns the force Σ k δ, N, and its derivative with respect to the travel, N/m.
     fn sample(&mut self, travel: f64) -> Sample {
         self.press(travel);
         sample(

@@ -6,7 +6,7 @@ use crate::objects::{Sphere, SphereUnion};
 use crate::world::{LEAF, Leaf};
 use glam::{DMat3, DVec3};
 
-/// An object's spheres in the patch frame.
+/// Spheres of an object, placed in the patch frame.
 pub(crate) struct PlacedUnion<'a> {
     union: &'a SphereUnion,
     rotation: DMat3,
@@ -22,7 +22,7 @@ impl<'a> PlacedUnion<'a> {
         }
     }
 
-    /// Returns the sphere with this number, in the patch frame.
+    /// Returns the sphere with the given index, in the patch frame.
     #[inline(always)]
     pub fn at(&self, number: u32) -> Sphere {
         self.place(self.union.spheres()[number as usize])
@@ -36,18 +36,18 @@ impl<'a> PlacedUnion<'a> {
         }
     }
 
-    /// Returns the clusters that may count, with their bounding balls.
+    /// Returns the indices of all clusters of spheres, with their bounding balls in the patch frame.
     pub fn clusters(&self) -> impl Iterator<Item = (usize, Sphere)> {
         let bounds = self.union.clusters().bounds();
         (0..bounds.len()).map(|cluster| (cluster, self.place(bounds.ball(cluster))))
     }
 
-    /// Returns the numbers of the spheres of a cluster.
+    /// Returns the indices of the spheres of a cluster.
     pub fn cluster(&self, cluster: usize) -> &'a [u32] {
         self.union.clusters().numbers(cluster)
     }
 
-    /// Collects the numbers of the spheres of those clusters that may count, ascending.
+    /// Collects the indices of the spheres of those clusters for which `may_count` returns true; ascending.
     pub fn gather(&self, mut may_count: impl FnMut(&Sphere) -> bool, numbers: &mut Vec<u32>) {
         numbers.clear();
         for (cluster, ball) in self.clusters() {
@@ -59,11 +59,11 @@ impl<'a> PlacedUnion<'a> {
     }
 }
 
-/// Returns the deflection that a sphere needs, metres; at most 0 if the sphere misses the taxel or lies behind its substrate. `from` is
-/// the vector from the sphere's centre to the taxel's; `frame` has two unit vectors perpendicular to the axis and the axis. `reach` is the sum of both
-/// radii, metres, and `behind` the substrate's height along the axis.
+/// Returns the deflection that a sphere needs, metres; at most 0 if the sphere misses the taxel or lies behind its substrate. `from` is the vector from the
+/// sphere's centre to the taxel's. `frame` contains two unit vectors perpendicular to the axis, and the axis. `reach` is the sum of both radii, metres, and
+/// `behind` the substrate's height along the axis.
 ///
-/// The operations have the order of the grid kernel, so that both agree to the last bit on a grid.
+/// The operations have the order of the grid kernel, so that the two kernels return equal bits on a grid.
 #[inline(always)]
 pub(crate) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f64) -> f64 {
     let [across_x, across_y, axis] = frame;
@@ -72,7 +72,7 @@ pub(crate) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f
     law::needed(q, height, behind)
 }
 
-/// Returns the deflections that a sphere (in the patch frame) needs of the taxels of a leaf, metres.
+/// Returns the deflections that a sphere (in the patch frame) needs of the taxels in a leaf of the taxel tree, metres.
 #[inline(always)]
 pub(crate) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
     let mut needed = [0.0; LEAF];

@@ -1,4 +1,4 @@
-//! Path of a patch along a line past objects, in steps.
+//! Path of a patch along a line past objects, divided into steps.
 
 use super::press::{self, press_with_contacts};
 use crate::contact::{Contact, FrictionState, NormalForce, Workspace};
@@ -8,13 +8,13 @@ use crate::objects::Model;
 use crate::world::{Patch, Taxel, TaxelTree};
 use glam::DVec3;
 
-/// Length of a step relative to the shortest stroke. Larger: a short peak of the force may be missed, and small spheres may pass through; smaller:
-/// needless presses.
+/// Length of a step relative to the shortest stroke. If larger, a short peak of the force may be missed, and small spheres may pass through; if smaller,
+/// presses are wasted.
 const STEP: f64 = 0.5;
-/// Length of a step with friction relative to the smallest taxel's radius. Larger: taxels that come into contact within a step are dragged too little;
-/// smaller: more presses for at most a hundredth of the shear.
+/// Length of a step with friction relative to the smallest taxel's radius. If larger, taxels that come into contact within a step are dragged too little. If
+/// smaller, more presses change the shear by at most one per cent.
 const FRICTION_STEP: f64 = 0.25;
-/// Largest number of steps of a path; if strokes are far shorter than the path, steps become longer.
+/// Maximum number of steps of a path; if strokes are far shorter than the path, steps become longer.
 const MAX_STEPS: f64 = 4096.0;
 
 /// Patch, and the poses of the objects before it moves along a direction (unit vector, in the patch frame).
@@ -27,7 +27,7 @@ pub(crate) struct ApproachPath<'a> {
     pub workspace: &'a mut Workspace,
 }
 
-/// Whether a press records contacts.
+/// Whether a press along a path records contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ContactRequest {
     /// Contacts are recorded at the end of the path.
@@ -50,7 +50,7 @@ impl Patch {
 }
 
 impl ApproachPath<'_> {
-    /// Returns an error unless the length of a direction is one.
+    /// Returns an error unless the direction is a unit vector.
     pub fn check(direction: DVec3) -> Result<()> {
         match direction.is_finite() && (direction.length() - 1.0).abs() < 1e-9 {
             true => Ok(()),
@@ -62,7 +62,7 @@ impl ApproachPath<'_> {
         }
     }
 
-    /// Returns the number of steps for a part of the path (metres) with friction.
+    /// Returns the number of steps with friction for a part of the path of this length, metres.
     pub fn n_friction_steps(&self, length: f64) -> usize {
         let step = FRICTION_STEP * self.patch.least(|taxel| taxel.radius);
         // Rounding of the length must not add a step.
@@ -71,12 +71,12 @@ impl ApproachPath<'_> {
         n_steps.max(self.patch.n_steps(length))
     }
 
-    /// Presses at a travel, metres.
+    /// Presses the patch at a travel, metres.
     pub fn press(&mut self, travel: f64) -> Contact {
         self.press_at(travel * self.direction)
     }
 
-    /// Presses after the patch has moved (metres, in the patch frame), computed as the opposite motion of the objects.
+    /// Presses after the patch has moved by a vector (metres, in the patch frame), computed as the opposite motion of the objects.
     pub fn press_at(&mut self, moved: DVec3) -> Contact {
         self.at(moved, press_with_contacts)
     }
@@ -115,7 +115,7 @@ impl ApproachPath<'_> {
         counts
     }
 
-    /// Presses from one travel to another and slides along a straight line; `None` if nothing is met.
+    /// Presses from one travel to another and then slides along a straight line; `None` if the patch meets nothing.
     pub fn press_and_slide(
         &mut self,
         travels: Option<[f64; 2]>,

@@ -14,7 +14,7 @@ use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
 use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel, TaxelTree};
 use glam::DVec3;
 
-/// Raises the deflection of each taxel to the one that an object needs, without the limit of the stroke.
+/// Raises the deflection of each taxel to the deflection that an object needs, not limited to the stroke.
 pub(crate) fn push(
     patch: &Patch,
     objects: &[Model],
@@ -27,7 +27,7 @@ pub(crate) fn push(
     push_held(patch, objects, patch_from_objects, workspace);
 }
 
-/// Raises the deflections of the taxels of a tree, which may be those of an even grid; held parts are ignored.
+/// Raises the deflections of the taxels of a tree; the tree may be built from an even grid. Held parts are ignored.
 pub(crate) fn push_tree(
     (taxels, even_grid): (&TaxelTree, Option<&EvenGrid>),
     n_taxels: usize,
@@ -62,7 +62,7 @@ pub(crate) fn push_tree(
     }
 }
 
-/// Pushes taxels by held parts behind the substrate; parts in front of it push their taxels anyway.
+/// Pushes taxels by held parts behind the substrate; parts in front of the substrate push their taxels in any case.
 fn push_held(
     patch: &Patch,
     objects: &[Model],
@@ -81,7 +81,7 @@ fn push_held(
                 let [across_x, across_y] = taxel.across;
                 let frame = [across_x, across_y, taxel.axis];
                 let needed = |behind| needed_along(from, frame, taxel.radius + radius, behind);
-                // In front of the substrate the part has pushed already.
+                // In front of the substrate the part has already pushed the taxel.
                 if needed(taxel.behind) > 0.0 {
                     continue;
                 }
@@ -97,7 +97,7 @@ fn push_held(
     workspace.held = held;
 }
 
-/// Pushes taxels in rows, equal to [`push_by_spheres`] to the bit, without a search; spheres above all taxels are skipped.
+/// Pushes taxels in rows without a search; spheres above all taxels are skipped. The result is bitwise equal to [`push_by_spheres`].
 fn push_along_rows(
     grid: &EvenGrid,
     (object, union, near): (usize, &SphereUnion, &[u32]),
@@ -181,7 +181,7 @@ fn push_by_mesh(
     });
 }
 
-/// Deflects the taxels and records the part that determines each deflection.
+/// Computes the deflections and records the part that determines each deflection.
 pub(crate) fn deflect(
     patch: &Patch,
     objects: &[Model],
@@ -205,12 +205,11 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
     counts
 }
 
-/// Presses a patch on objects at their given poses and records the contacts; `patch_from_objects` has one pose per object.
+/// Presses a patch on objects at their given poses and records the contacts; `patch_from_objects` contains one pose per object.
 ///
-/// Parts behind the substrate of a taxel do not count for this taxel (rule in [`contact`](crate::contact)). An object below a forearm therefore
-/// does not press on its upper side. A part pushed far past the stroke is also behind the substrate;
-/// [`press_to_depth`](crate::contact::press_to_depth) counts it because its path is known. One part determines each deflection: of parts with equal
-/// deflections the first object, and its first sphere.
+/// Parts of objects behind the substrate of a taxel do not count for this taxel (rule in the module `contact`). An object below a forearm therefore does not
+/// press on its upper side. A part pushed far past the stroke is also behind the substrate; a press to a depth counts it because its path is known. One part
+/// determines each deflection: of parts with equal deflections the first object, and its first sphere.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
@@ -291,7 +290,7 @@ fn meet(
     counts
 }
 
-/// Returns the point of an object's part nearest to a place, and the direction from there to the place; in the patch frame.
+/// Returns the point of an object's part (sphere or triangle) nearest to a position, and the direction from this point to the position; in the patch frame.
 fn nearest_point(object: &Model, part: usize, pose: &Pose, place: DVec3) -> (DVec3, DVec3) {
     match object {
         Model::Spheres(union) => {
