@@ -6,44 +6,56 @@ use bubbletouch::report::advice_answers::{Answer, answers, answers_json};
 use bubbletouch::{Result, kinds};
 use std::path::PathBuf;
 
-/// List the cheapest configuration that meets all requirements, or the best one
+/// Find the cheapest configuration that meets all requirements
 ///
-/// All requirements are filters of one Pareto front of value and cost. With --accuracy or --reach the answer is the cheapest configuration
-/// that is good enough; without them it is the best one that the limits (--budget, --max-…) allow.
+/// All requirements filter one Pareto front of value and cost. With --accuracy or --reach, the answer is the cheapest configuration that reaches the
+/// value. Otherwise it is the best configuration within the limits (--budget, --max-…).
 ///
-/// Noise, sensor errors and other properties of the world are conditions, not choices: there is an answer for each condition of a study,
-/// for those that are given, or for the worst.
+/// Noise, sensor errors and other properties of the world are conditions, not choices. There is one answer for each condition, for the conditions of
+/// --given, or for the worst (--worst).
 ///
-/// It reads the results of a study of any kind: the first table whose rows are choices with a value and a cost. Of a study that recognises
-/// objects this is the table of all configurations, with the times of the classifier alone. Accuracies are those of simulated touches,
-/// times those of the machine that ran the study.
+/// The command reads the first table of the folder whose rows are choices with a value and a cost. In a recognition study, this is the table of all
+/// configurations, with the times of the classifier alone. Accuracies are of simulated touches, and times are of the machine that ran the study.
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch advise results/quickstart --accuracy 0.9 --max-measurements 64"
+)]
 pub struct Args {
-    /// A folder of results
+    /// Results folder
     #[arg(default_value = "results/quickstart")]
     results: PathBuf,
     #[command(flatten)]
     wish: WishArgs,
-    /// The cost to keep small: decision_time, training_time, taxels, measurements (of a decision), or any column of costs [default:
-    /// decision_time, or the first cost of the table]
-    #[arg(long, value_name = "COST")]
+    /// Minimise this cost [default: decision_time, or the first cost]
+    ///
+    /// Any column of costs, such as decision_time, training_time, taxels or measurements (of a decision).
+    #[arg(long, value_name = "COST", help_heading = "Selection")]
     cost: Option<String>,
-    /// The column of values to judge by [default: accuracy, or the first value of the table]
-    #[arg(long, value_name = "COLUMN", conflicts_with = "accuracy")]
+    /// Judge by this value [default: accuracy, or the first value]
+    #[arg(
+        long,
+        value_name = "COLUMN",
+        conflicts_with = "accuracy",
+        help_heading = "Selection"
+    )]
     value: Option<String>,
-    /// The table to read, by its file's name, if several have choices
-    #[arg(long, value_name = "FILE")]
+    /// Read this table, if several tables list choices
+    #[arg(long, value_name = "FILE", help_heading = "Selection")]
     table: Option<String>,
-    /// Only where a condition has this value: noise=0.05, "noise=5 %", test_sensor=another_skin, none where it has no value; as often as needed
-    #[arg(long, value_name = "CONDITION=VALUE")]
+    /// Select a value of a condition, such as noise=0.05; repeatable
+    ///
+    /// Other forms: "noise=5 %", test_sensor=another_skin, and none for rows without a value.
+    #[arg(long, value_name = "CONDITION=VALUE", help_heading = "Selection")]
     given: Vec<String>,
-    /// One answer for all conditions: each choice counts as accurate as in the condition that is worst for it
-    #[arg(long)]
+    /// Give one answer that holds in every condition
+    ///
+    /// Each choice has the value of its worst condition.
+    #[arg(long, help_heading = "Selection")]
     worst: bool,
-    /// Answer in JSON
-    #[arg(long)]
+    /// Print the answer as JSON
+    #[arg(long, help_heading = "Output")]
     json: bool,
-    /// The name that --budget had
+    /// Former name of --budget
     #[arg(long, hide = true, value_parser = renamed)]
     budget_us: Option<f64>,
 }
@@ -51,37 +63,75 @@ pub struct Args {
 #[derive(clap::Args)]
 #[group(required = true, multiple = true)]
 struct WishArgs {
-    /// The share of right decisions that is needed, such as 0.9
-    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    /// Require this fraction of correct decisions, such as 0.9
+    #[arg(
+        long,
+        value_name = "SHARE",
+        allow_negative_numbers = true,
+        help_heading = "Requirements"
+    )]
     accuracy: Option<f64>,
-    /// The value that is needed, in the unit of its column: at least so much, or at most where less is better
+    /// Require this value, in the unit of its column
+    ///
+    /// The value is a lower bound, or an upper bound if smaller values are better.
     #[arg(
         long,
         value_name = "N",
         allow_negative_numbers = true,
-        conflicts_with = "accuracy"
+        conflicts_with = "accuracy",
+        help_heading = "Requirements"
     )]
     reach: Option<f64>,
-    /// The largest --cost, in the unit of its column: microseconds a decision, seconds to train, taxels, measurements …
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    /// Limit the cost, in the unit of its column
+    ///
+    /// For example microseconds per decision, seconds of training, taxels, or measurements.
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        help_heading = "Requirements"
+    )]
     budget: Option<f64>,
-    /// The most measurements of a decision
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    /// Limit the measurements of a decision
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        help_heading = "Requirements"
+    )]
     max_measurements: Option<f64>,
-    /// The most taxels
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    /// Limit the number of taxels
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        help_heading = "Requirements"
+    )]
     max_taxels: Option<f64>,
-    /// The longest time of a decision, milliseconds
-    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
+    /// Limit the time of a decision
+    #[arg(
+        long,
+        value_name = "MS",
+        allow_negative_numbers = true,
+        help_heading = "Requirements"
+    )]
     max_answer_ms: Option<f64>,
-    /// The longest time to train, seconds
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    /// Limit the training time
+    #[arg(
+        long,
+        value_name = "S",
+        allow_negative_numbers = true,
+        help_heading = "Requirements"
+    )]
     max_training_s: Option<f64>,
 }
 
 /// Refuses an option by a name that it has no more.
 fn renamed(_: &str) -> std::result::Result<f64, String> {
-    Err("it is called --budget, in the unit of --cost (microseconds a decision if that is left out)".to_owned())
+    Err(
+        "it is called --budget, in the unit of --cost (microseconds per decision by default)"
+            .to_owned(),
+    )
 }
 
 pub fn advise(args: &Args) -> Result<()> {
@@ -142,7 +192,7 @@ impl Args {
         };
         match advice {
             Ok(advice) => head + &self.advice_in_words(offers, advice),
-            Err(refused) => format!("{head}nothing: {refused}"),
+            Err(refused) => format!("{head}no configuration: {refused}"),
         }
     }
 
@@ -157,10 +207,10 @@ impl Args {
         text += &format!("\n  {}", offers.gives(choice));
         if let Some(certain) = &advice.certain {
             let certain = offers.in_words(certain);
-            text += &format!("\nWith the whole interval good enough: {certain}");
+            text += &format!("\nIf the whole interval must be good enough: {certain}");
         }
         let Some(next) = &advice.next_up else {
-            return text + "\nNothing here is better";
+            return text + "\nNo configuration is better";
         };
         let gain = offers.value_words((next.value - choice.value).abs());
         let cost = offers.cost.number_words(next.cost - choice.cost);

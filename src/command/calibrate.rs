@@ -9,44 +9,78 @@ use bubbletouch::{Error, Result};
 use std::ops::Range;
 use std::path::PathBuf;
 
+/// Estimate a sensor's noise and errors from recorded frames
+///
+/// The output is the [signal] table of a study. Each number has a 95 % interval. A comment states why a quantity is not identifiable. Noise,
+/// smoothing and drift need frames of the untouched skin (--untouched or --untouched-frames).
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch calibrate frames.npy --untouched-frames 0..200,900..1000 --full-scale 4095"
+)]
 pub struct Args {
-    /// Readings in the order of time (.npy, .npz, .csv): n × rows × columns or n × F × rows × columns
+    /// Readings in order of time: .npy, .npz or .csv
+    ///
+    /// The shape is n × rows × columns or n × F × rows × columns.
     frames: PathBuf,
-    /// A letter for each axis: n touches, t frames, y rows, x columns, c taxels [default: "n y x" or "n t y x"]
-    #[arg(long, value_name = "ORDER")]
+    /// Name the axes of the frames [default: "n y x" or "n t y x"]
+    ///
+    /// One letter for each axis: n touches, t frames, y rows, x columns, c taxels.
+    #[arg(long, value_name = "ORDER", help_heading = "Input")]
     order: Option<String>,
-    /// Rows and columns of frames that are rows of numbers
-    #[arg(long, value_name = "ROWS,COLUMNS", value_parser = grid)]
+    /// Set rows and columns of frames that are flat lists
+    #[arg(long, value_name = "ROWS,COLUMNS", value_parser = grid, help_heading = "Input")]
     grid: Option<[usize; 2]>,
-    /// The same of the untouched skin, over the same session
-    #[arg(long, value_name = "FILE.npy", conflicts_with = "untouched_frames")]
+    /// Read frames of the untouched skin, from the same session
+    #[arg(
+        long,
+        value_name = "FILE.npy",
+        conflicts_with = "untouched_frames",
+        help_heading = "Input"
+    )]
     untouched: Option<PathBuf>,
-    /// Which of the frames nothing touches, from 0, the last of each range left out: 0..200,900..1000
-    #[arg(long, value_name = "FROM..TO,...", value_delimiter = ',', value_parser = range)]
+    /// Take these frames as untouched, such as 0..200,900..1000
+    ///
+    /// Frames are counted from 0. A range excludes its end.
+    #[arg(long, value_name = "FROM..TO,...", value_delimiter = ',', value_parser = range, help_heading = "Input")]
     untouched_frames: Vec<Range<usize>>,
-    /// Newtons that press the skin in each frame: n numbers, for the stiffness of taxels
-    #[arg(long, value_name = "FILE.npy", requires = "stroke_mm")]
+    /// Read the force of each frame, newtons, to estimate stiffness
+    #[arg(
+        long,
+        value_name = "FILE.npy",
+        requires = "stroke_mm",
+        help_heading = "Input"
+    )]
     forces: Option<PathBuf>,
-    /// What an untouched taxel reads
+    /// Set the reading of an untouched taxel
     #[arg(
         long,
         value_name = "READING",
         default_value_t = 0.0,
-        allow_negative_numbers = true
+        allow_negative_numbers = true,
+        help_heading = "Sensor"
     )]
     zero: f64,
-    /// What a taxel at its full scale reads [default: the largest reading]
-    #[arg(long, value_name = "READING", allow_negative_numbers = true)]
+    /// Set the reading at full scale [default: the largest reading]
+    #[arg(
+        long,
+        value_name = "READING",
+        allow_negative_numbers = true,
+        help_heading = "Sensor"
+    )]
     full_scale: Option<f64>,
-    /// How far a taxel at its full scale is pushed in
-    #[arg(long, value_name = "MM")]
+    /// Set the deflection at full scale
+    #[arg(long, value_name = "MM", help_heading = "Sensor")]
     stroke_mm: Option<f64>,
-    /// How far apart taxels are, for the width of a smoothing
-    #[arg(long, value_name = "MM", default_value_t = 1.0)]
+    /// Set the distance between taxels
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 1.0,
+        help_heading = "Sensor"
+    )]
     pitch_mm: f64,
-    /// Write the table to a file, not to standard output
-    #[arg(long, value_name = "FILE.toml")]
+    /// Write the table to this file instead of standard output
+    #[arg(long, value_name = "FILE.toml", help_heading = "Output")]
     output: Option<PathBuf>,
 }
 

@@ -27,77 +27,96 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+/// Train, test and time one classifier on exported features
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch classify features --classifier rbf_svm --c-grid 0.1,1,10"
+)]
 pub struct Args {
-    /// A folder with features, labels, train and test as .npy, .npz or .csv files, as bubbletouch features writes it
+    /// Folder that bubbletouch features wrote
+    ///
+    /// The folder contains features, labels, train and test as .npy, .npz or .csv files.
     folder: PathBuf,
-    /// Which classifier, by its name in studies: linear_svm, rbf_svm, polynomial_svm …
-    #[arg(long, value_name = "NAME", value_parser = word::<ClassifierKind>)]
+    /// Train this classifier: linear_svm, rbf_svm, polynomial_svm, …
+    #[arg(long, value_name = "NAME", value_parser = word::<ClassifierKind>, help_heading = "Classifier")]
     classifier: ClassifierKind,
-    /// A file of integers or texts, the group of every row of features (poses, grasps, days …): refuses a group that both trains and
-    /// tests, keeps groups whole in the folds of --c-grid, and takes the interval of the accuracy from groups, not rows
-    #[arg(long, value_name = "FILE")]
+    /// Read the group of every row (pose, grasp, day, …)
+    ///
+    /// The file contains one integer or text for each row of features. A group that both trains and tests is refused. Folds of --c-grid keep groups
+    /// whole, and the interval of the accuracy comes from groups, not rows.
+    #[arg(long, value_name = "FILE", help_heading = "Input")]
     groups: Option<PathBuf>,
-    /// Soft-margin penalty C [default: 1]
-    #[arg(long, value_name = "C")]
+    /// Set the soft-margin penalty C [default: 1]
+    #[arg(long, value_name = "C", help_heading = "Classifier")]
     c: Option<f64>,
-    /// Choose C among these instead, by cross-validation of the training rows
+    /// Choose C from this grid by cross-validation
     #[arg(
         long,
         value_name = "C,C,…",
         value_delimiter = ',',
-        conflicts_with = "c"
+        conflicts_with = "c",
+        help_heading = "Cross-validation"
     )]
     c_grid: Vec<f64>,
-    /// Choose γ among these multiples of scale as well
+    /// Choose γ from this grid of multiples of scale
     #[arg(
         long,
         value_name = "X,X,…",
         value_delimiter = ',',
-        conflicts_with = "gamma"
+        conflicts_with = "gamma",
+        help_heading = "Cross-validation"
     )]
     gamma_grid: Vec<f64>,
-    /// Folds of that cross-validation [default: 5]
-    #[arg(long, value_name = "K")]
+    /// Use K folds [default: 5]
+    #[arg(long, value_name = "K", help_heading = "Cross-validation")]
     cv_folds: Option<usize>,
-    /// What trains an SVM: smo or coordinate_descent [default: smo]
-    #[arg(long, value_name = "NAME", value_parser = word::<Solver>)]
+    /// Train an SVM by smo or coordinate_descent [default: smo]
+    #[arg(long, value_name = "NAME", value_parser = word::<Solver>, help_heading = "Classifier")]
     solver: Option<Solver>,
-    /// γ of the RBF and polynomial kernels, for scaled features: a number, or scale for 1 / (m · variance) [default: scale]
-    #[arg(long, value_name = "GAMMA", value_parser = gamma)]
+    /// Set γ of the kernel: a number, or scale [default: scale]
+    ///
+    /// γ is for scaled features; scale is 1 / (m · variance) of m features.
+    #[arg(long, value_name = "GAMMA", value_parser = gamma, help_heading = "Classifier")]
     gamma: Option<Gamma>,
-    /// d of the polynomial kernel [default: 3]
-    #[arg(long, value_name = "D")]
+    /// Set the degree d of the polynomial kernel [default: 3]
+    #[arg(long, value_name = "D", help_heading = "Classifier")]
     degree: Option<u32>,
-    /// c₀ of the polynomial kernel [default: 1]
-    #[arg(long, value_name = "C0")]
+    /// Set the constant c₀ of the polynomial kernel [default: 1]
+    #[arg(long, value_name = "C0", help_heading = "Classifier")]
     coef0: Option<f64>,
-    /// How two-class SVMs make a many-class one: one_vs_one, one_vs_rest … [default: one_vs_one]
-    #[arg(long, value_name = "HOW", value_parser = word::<Multiclass>)]
+    /// Combine two-class SVMs by one_vs_one, one_vs_rest, … [default: one_vs_one]
+    #[arg(long, value_name = "HOW", value_parser = word::<Multiclass>, help_heading = "Classifier")]
     multiclass: Option<Multiclass>,
-    /// How features are scaled, fitted on training rows: standard, overall or none
-    #[arg(long, value_name = "HOW", default_value = "standard", value_parser = word::<Scaling>)]
+    /// Scale features by standard, overall or none
+    ///
+    /// The scale is computed from the training rows.
+    #[arg(long, value_name = "HOW", default_value = "standard", value_parser = word::<Scaling>, help_heading = "Classifier")]
     scaling: Scaling,
-    /// Stopping tolerance of the solver of an SVM or logistic regression [default: 0.001]
-    #[arg(long, value_name = "EPS")]
+    /// Set the stopping tolerance of the solver [default: 0.001]
+    #[arg(long, value_name = "EPS", help_heading = "Classifier")]
     tolerance: Option<f64>,
-    /// Root of whatever the classifier draws
-    #[arg(long, value_name = "N", default_value_t = 2018)]
+    /// Set the seed of the classifier
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 2018,
+        help_heading = "Classifier"
+    )]
     seed: u64,
     /// Train on the first N training rows [default: all]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", help_heading = "Input")]
     train_rows: Option<usize>,
-    /// Train and predict N times; the times are medians
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    /// Train and predict N times; print median times
+    #[arg(long, value_name = "N", default_value_t = 1, help_heading = "Run")]
     repeat: usize,
-    /// Write the predicted labels of the test rows, in their order, to a .npy file
-    #[arg(long, value_name = "FILE")]
+    /// Write the predicted labels of the test rows to .npy
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     predictions: Option<PathBuf>,
-    /// Print one JSON object instead of lines for people
-    #[arg(long)]
+    /// Print one JSON object
+    #[arg(long, help_heading = "Output")]
     json: bool,
-    /// Threads; all cores when left out. Results are the same at any number
-    #[arg(long, value_name = "N")]
+    /// Use N threads; results do not depend on N [default: all cores]
+    #[arg(long, value_name = "N", help_heading = "Run")]
     threads: Option<usize>,
 }
 
@@ -349,7 +368,7 @@ fn tell(found: &Findings) -> Result<()> {
     ))?;
     if let (Some(n_train), Some(n_test)) = (found.n_train_groups, found.n_test_groups) {
         let few = match n_test < FEW_GROUPS {
-            true => ", too few to say much",
+            true => ", too few for a narrow interval",
             false => "",
         };
         say(format_args!(

@@ -12,17 +12,23 @@ use bubbletouch::report::rank_agreement::rank_agreement;
 use bubbletouch::{Error, Result, kinds};
 use std::path::PathBuf;
 
+/// Compare two results folders: differences, significance, rank correlation
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch compare results/first results/second --html differences.html"
+)]
 pub struct Args {
-    /// A folder that `bubbletouch run` wrote
+    /// First results folder
     first: PathBuf,
-    /// Another one, of a study of the same kind
+    /// Second results folder, of a study of the same kind
     second: PathBuf,
-    /// Write every value and every cost that both have to a CSV file; other entries that differ are in the text
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write all values and costs that both contain to a CSV file
+    ///
+    /// The text lists all other entries that differ.
+    #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     out: Option<PathBuf>,
-    /// Write sentences, charts and tables to a page
-    #[arg(long, value_name = "FILE.html")]
+    /// Write sentences, charts and tables to an HTML page
+    #[arg(long, value_name = "FILE.html", help_heading = "Output")]
     html: Option<PathBuf>,
 }
 

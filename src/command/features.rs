@@ -9,18 +9,34 @@ use bubbletouch::report::progress;
 use bubbletouch::study::FEATURE_FILES;
 use std::path::PathBuf;
 
+/// Write the features of one configuration as NumPy files
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch features experiments/cans.toml --configuration 3 --out features"
+)]
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
-    /// Which configuration, by its number in the study's tables
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    /// Select the configuration by its number in the study's tables
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        help_heading = "Selection"
+    )]
     configuration: usize,
-    /// Which trial, from 0
-    #[arg(long, value_name = "T", default_value_t = 0)]
+    /// Select the trial, counted from 0
+    #[arg(
+        long,
+        value_name = "T",
+        default_value_t = 0,
+        help_heading = "Selection"
+    )]
     trial: usize,
-    /// Where to write features.npy, labels.npy, train.npy, test.npy, objects.csv and configuration.toml
-    #[arg(long, value_name = "FOLDER")]
+    /// Write features, labels and split to this folder
+    ///
+    /// The files are features.npy, labels.npy, train.npy, test.npy, objects.csv and configuration.toml.
+    #[arg(long, value_name = "FOLDER", help_heading = "Output")]
     out: PathBuf,
 }
 

@@ -7,12 +7,16 @@ use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
+/// Merge the shards of a study; write tables, charts and a report
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch merge study.toml --out results/study --from from_machine_1"
+)]
 pub struct Args {
     #[command(flatten)]
     run: RunArgs,
-    /// More folders with journals of shards, such as those of other machines
-    #[arg(long, value_name = "FOLDER")]
+    /// Read shard journals from this folder, too; repeatable
+    #[arg(long, value_name = "FOLDER", help_heading = "Input")]
     from: Vec<PathBuf>,
 }
 
@@ -38,7 +42,7 @@ pub fn merge(args: &Args) -> Result<()> {
         return Err(Error::input(
             folder.display(),
             format!("{n_pending} of {n_all} work items are in none of the {n_journals} journals"),
-            "the journals of all shards, each run to its end (or bubbletouch run, which does here what is left)",
+            "the journals of all shards, each run to its end (or bubbletouch run, which computes the missing work items)",
         ));
     }
     let outcome = study.run(&RunOptions {

@@ -1,4 +1,4 @@
-//! The command line: one file a subcommand, each `Args` → work → files or terminal.
+//! Command line: one file for each subcommand. The doc comments of its `Args` are its help.
 
 mod advise;
 mod calibrate;
@@ -29,11 +29,12 @@ use bubbletouch::Result;
 use clap::{CommandFactory, Parser, Subcommand};
 use options::study_args::QUICKSTART_FILE;
 
-/// Simulated touch for robot skin: press objects on arrays of taxels, compress what they feel, recognise the object.
+/// Simulate touch on robot skin, compress the frames, recognise the object
 ///
-/// Without a subcommand it runs experiments/quickstart.toml and writes results/quickstart/.
+/// Without a subcommand, bubbletouch runs experiments/quickstart.toml and writes results/quickstart/.
 #[derive(Parser)]
 #[command(name = "bubbletouch", version, propagate_version = true)]
+#[command(after_help = "Example:\n  bubbletouch press --object mug")]
 struct CommandLine {
     #[command(subcommand)]
     command: Option<Command>,
@@ -41,57 +42,27 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Run a study: simulate, compress, recognise; write tables, charts and a report
-    ///
-    /// A table of its file says of which kind it is: [recognition] (which object is touched), [reconstruction] (how exactly frames are
-    /// reconstructed from measurements), [object_detail] (how detailed models of objects must be), [whole_body] (what a body of
-    /// millions of taxels costs) or [stability] (at which settings contact methods fail).
     Run(run::Args),
-    /// Put the shards of a study together, and write its tables, charts and report
-    Merge(merge::Args),
-    /// Run a study as an array of Slurm jobs, and the merge after them; what failed is submitted again by the same command
-    Slurm(slurm::Args),
-    /// Write the charts and the page of a folder of results again, from its tables
-    ///
-    /// A table, or the study, that was changed after its run is refused: manifest.json holds the SHA-256 of each.
-    Report(report::Args),
-    /// Say what moved between two folders of results, whether chance explains it, and whether both rank designs alike
-    Compare(compare::Args),
-    /// Check the files of a folder of results, and run a few of its work items again, compared byte by byte
-    Verify(verify::Args),
-    /// Print the configurations, touches and memory of a study without running it
     Plan(plan::Args),
-    /// Say which setting is the cheapest that is accurate enough, or the most accurate that is cheap enough
+    Report(report::Args),
     Advise(advise::Args),
-    /// Write a study's touches as NumPy files, to train elsewhere
-    ///
-    /// Frames are the deflections of the press: without noise, smoothing and sensor errors. With --configuration they are what that cell of the
-    /// study reads, with all of these.
+    Compare(compare::Args),
+    Verify(verify::Args),
+    Merge(merge::Args),
+    Slurm(slurm::Args),
     Touches(touches::Args),
-    /// Write what one cell of a study learns from as NumPy files, to train on exactly those rows elsewhere
     Features(features::Args),
-    /// Train and test one classifier on such a folder, and time it
     Classify(classify::Args),
-    /// Say what noise, gains, drift, crosstalk ... a skin has, from its recorded frames, as the [signal] of a study
-    ///
-    /// Each number comes with its 95 % interval; what frames do not tell is a comment that says why. Noise, smoothing and drift need frames of the
-    /// untouched skin (--untouched or --untouched-frames).
     Calibrate(calibrate::Args),
-    /// Simulate a scene: robots, skin and objects that move, from one TOML file
-    Simulate(simulate::Args),
-    /// Press one object on one array and write or draw the deflections
     Press(press::Args),
-    /// Say what is in a recording, or draw it, still or moving
-    Recording(recording::Args),
-    /// List the built-in objects, or draw one
     Objects(objects::Args),
-    /// Write completions for a shell to standard output
+    Simulate(simulate::Args),
+    Recording(recording::Args),
     Completions(shell::CompletionArgs),
-    /// Write the manual page, or those of all subcommands
     Man(shell::ManArgs),
 }
 
-/// Parses the command line and does what it says; exits with 2 if it cannot be parsed.
+/// Parses the command line and runs its subcommand; exits with code 2 if the command line is invalid.
 pub fn dispatch() -> Result<()> {
     bubbletouch::files::protect_inputs();
     let line = match CommandLine::try_parse() {
@@ -130,8 +101,64 @@ pub fn dispatch() -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::CommandLine;
-    use clap::{Command, CommandFactory};
+    use clap::{Command, CommandFactory, Parser};
     use std::collections::BTreeSet;
+
+    /// Maximum number of words of a help line, without its default.
+    const MAX_WORDS: usize = 12;
+
+    /// Calls `check` with every subcommand, nested ones included.
+    fn for_each(command: &Command, check: &mut impl FnMut(&Command)) {
+        for subcommand in command.get_subcommands() {
+            check(subcommand);
+            for_each(subcommand, check);
+        }
+    }
+
+    fn check_line(place: &str, line: &str) {
+        let words = line.split(" [").next().unwrap().split_whitespace();
+        assert!(
+            (1..=MAX_WORDS).contains(&words.count()),
+            "{place}: {line:?}: one to {MAX_WORDS} words"
+        );
+        let lower = line.to_lowercase();
+        let words: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).collect();
+        for word in ["cell", "cells", "say", "says"] {
+            assert!(!words.contains(&word), "{place}: {line:?}: {word}");
+        }
+    }
+
+    #[test]
+    fn help_lines_are_short_and_options_have_headings() {
+        for_each(&CommandLine::command(), &mut |command| {
+            let name = command.get_name();
+            check_line(name, &command.get_about().unwrap().to_string());
+            for argument in command.get_arguments().filter(|a| !a.is_hide_set()) {
+                let place = format!("{name} {}", argument.get_id());
+                check_line(&place, &argument.get_help().unwrap().to_string());
+                let is_grouped = argument.get_help_heading().is_some();
+                assert!(is_grouped || argument.is_positional(), "{place}");
+            }
+        });
+    }
+
+    #[test]
+    fn every_subcommand_has_an_example_that_is_parsed() {
+        let mut n_examples = 0;
+        for_each(&CommandLine::command(), &mut |command| {
+            let after = command.get_after_help().map(ToString::to_string);
+            let after = after.unwrap_or_else(|| panic!("{}: no example", command.get_name()));
+            let example = after.strip_prefix("Example:\n  ").unwrap();
+            let (line, _) = example.split_once(" > ").unwrap_or((example, ""));
+            let words: Vec<&str> = line.split(' ').collect();
+            assert!(words.contains(&command.get_name()), "{example}");
+            if let Err(error) = CommandLine::try_parse_from(words) {
+                panic!("{example}: {error}");
+            }
+            n_examples += 1;
+        });
+        assert!(n_examples > 18, "{n_examples}");
+    }
 
     /// Clap asserts this itself, but only in builds with debug assertions.
     fn names_are_unique(command: &Command) {

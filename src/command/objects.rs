@@ -22,52 +22,68 @@ const TILE: usize = 240;
 /// Objects in a row of a sheet.
 const COLUMNS: usize = 6;
 
-/// List objects, draw them, or look at a mesh.
+/// List or draw objects; inspect, pack and show meshes
 ///
-/// Without a name: all built-in objects, or those of a set. Sizes are in millimetres, x × y × z.
+/// Without a name, the command lists all built-in objects, or those of a set. Sizes are in millimetres, x × y × z.
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch objects mug --out mug.png")]
 #[command(args_conflicts_with_subcommands = true)]
 pub struct Args {
     #[command(subcommand)]
     action: Option<Action>,
-    /// Objects by name; all when left out
+    /// Names of objects [default: all]
     names: Vec<String>,
-    /// Only this set: household, balls, boxes, cans or hands
-    #[arg(long, value_name = "SET", conflicts_with = "names")]
+    /// Select a set: household, balls, boxes, cans or hands
+    #[arg(
+        long,
+        value_name = "SET",
+        conflicts_with = "names",
+        help_heading = "Input"
+    )]
     set: Option<String>,
-    /// A TOML file of objects instead of the built-in ones
-    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["set", "mesh"])]
+    /// Read objects from a TOML file, not the built-in ones
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["set", "mesh"], help_heading = "Input")]
     objects: Option<PathBuf>,
-    /// A PLY, OBJ or STL mesh instead; packed with spheres to be drawn
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "set"])]
+    /// Draw a PLY, OBJ or STL mesh, packed with spheres
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "set"], help_heading = "Input")]
     mesh: Option<PathBuf>,
-    /// Unit of the mesh file: m, cm, mm or in [default: m, and 0.1 mm to 10 m large]
-    #[arg(long, value_name = "UNIT", conflicts_with_all = ["names", "set", "objects"])]
+    /// Set the unit of the mesh: m, cm, mm or in
+    ///
+    /// Without this option, the unit is the metre, and the mesh must be 0.1 mm to 10 m large.
+    #[arg(long, value_name = "UNIT", conflicts_with_all = ["names", "set", "objects"], help_heading = "Input")]
     unit: Option<LengthUnit>,
-    /// How far the spheres may be from the surface [default: 0.25]
-    #[arg(long, value_name = "MM", conflicts_with = "mesh")]
+    /// Limit the distance between spheres and surface [default: 0.25]
+    #[arg(
+        long,
+        value_name = "MM",
+        conflicts_with = "mesh",
+        help_heading = "Input"
+    )]
     surface_error_mm: Option<f64>,
-    /// Draw instead of listing: one picture, or a sheet if there are several objects
-    #[arg(long, value_name = "FILE.png")]
+    /// Draw to this file instead of listing
+    ///
+    /// One object gives one picture, several give a sheet.
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 
 #[derive(clap::Subcommand)]
 enum Action {
-    /// Say how large a mesh is, whether it is closed, and what is wrong with it
     Mesh(MeshArgs),
-    /// Pack a mesh or a built-in object with few spheres, to a surface error of your choice
     Pack(objects_pack::Args),
-    /// Draw an object, the spheres that stand for it, and the error between them
     Show(objects_show::Args),
 }
 
+/// Print the size, closedness and faults of a mesh
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch objects mesh scan.ply --unit mm")]
 struct MeshArgs {
-    /// A PLY, OBJ or STL file
+    /// PLY, OBJ or STL file
     file: PathBuf,
-    /// Unit of the file: m, cm, mm or in [default: m, and 0.1 mm to 10 m large]
-    #[arg(long, value_name = "UNIT")]
+    /// Set the unit of the mesh: m, cm, mm or in
+    ///
+    /// Without this option, the unit is the metre, and the mesh must be 0.1 mm to 10 m large.
+    #[arg(long, value_name = "UNIT", help_heading = "Input")]
     unit: Option<LengthUnit>,
 }
 

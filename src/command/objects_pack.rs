@@ -16,24 +16,22 @@ const N_POINTS: usize = 100_000;
 /// Points of the box around a solid at which it is measured, at most, about. Larger: gigabytes at tolerances of a micrometre.
 const MAX_POINTS: f64 = 1e6;
 
-/// Pack a mesh or a built-in object with few spheres.
-///
-/// No sphere reaches more than half the surface error outside the object, and no point of its outer surface is farther than that
-/// error from the spheres. A ball is one sphere, its own. Of a mesh both are proved, or the command fails; the object is then
-/// the union of its closed parts, and clefts narrower than a thousandth of the surface error count as closed. Both are also
-/// measured and reported.
+/// Pack an object with few spheres to a surface error
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch objects pack mug --surface-error-mm 0.5 --out mug.csv"
+)]
 pub struct Args {
     #[command(flatten)]
     object: WhichObject,
-    /// How far the two surfaces may be apart
-    #[arg(long, value_name = "MM")]
+    /// Limit the distance between spheres and surface
+    #[arg(long, value_name = "MM", help_heading = "Packing")]
     surface_error_mm: f64,
-    /// The name that it had
+    /// Former name of --surface-error-mm
     #[arg(long, hide = true, value_parser = renamed)]
     tolerance_mm: Option<f64>,
-    /// Where the spheres go: columns x, y, z, r in metres
-    #[arg(long, value_name = "FILE.csv")]
+    /// Write the spheres: columns x, y, z, r, metres
+    #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     out: PathBuf,
 }
 

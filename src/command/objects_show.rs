@@ -11,31 +11,46 @@ use bubbletouch::report::fit_picture::fit_picture;
 use bubbletouch::study::load_spheres;
 use std::path::PathBuf;
 
-/// Draw an object, its spheres and the error map, side by side.
-///
-/// The spheres are a packing made now, or those of a file, for instance of `objects pack`. Colours of the error map: red
-/// where spheres reach outside the object, blue where they stay inside.
+/// Draw an object, its spheres and the error between them
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch objects show mug --surface-error-mm 0.5 --out fit.png"
+)]
 pub struct Args {
     #[command(flatten)]
     object: WhichObject,
     /// Pack to this surface error
-    #[arg(long, value_name = "MM", default_value_t = 0.5)]
+    #[arg(
+        long,
+        value_name = "MM",
+        default_value_t = 0.5,
+        help_heading = "Packing"
+    )]
     surface_error_mm: f64,
-    /// The name that it had
+    /// Former name of --surface-error-mm
     #[arg(long, hide = true, value_parser = renamed)]
     tolerance_mm: Option<f64>,
-    /// Show these spheres instead: a CSV file with columns x, y, z, r
-    #[arg(long, value_name = "FILE.csv", conflicts_with = "surface_error_mm")]
+    /// Show the spheres of a CSV file (columns x,y,z,r)
+    #[arg(
+        long,
+        value_name = "FILE.csv",
+        conflicts_with = "surface_error_mm",
+        help_heading = "Packing"
+    )]
     spheres: Option<PathBuf>,
-    /// Unit of the file of spheres: m, cm, mm or in [default: m]
-    #[arg(long, value_name = "UNIT")]
+    /// Set the unit of --spheres: m, cm, mm or in [default: m]
+    #[arg(long, value_name = "UNIT", help_heading = "Packing")]
     spheres_unit: Option<LengthUnit>,
-    /// Where the picture goes
-    #[arg(long, value_name = "FILE.png")]
+    /// Write the picture to this file
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     out: PathBuf,
-    /// Pixels along a side of each of the three panels, 200 to 6000
-    #[arg(long, value_name = "PIXELS", default_value_t = 560)]
+    /// Set the side of each of three panels, 200 to 6000 pixels
+    #[arg(
+        long,
+        value_name = "PIXELS",
+        default_value_t = 560,
+        help_heading = "Output"
+    )]
     panel_px: usize,
 }
 

@@ -15,20 +15,25 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+/// Print the size of a study: configurations, touches, memory
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch plan experiments/cans.toml --time=5")]
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
     #[command(flatten)]
     memory: MemoryLimit,
-    /// Run the study for some seconds, keep nothing, and estimate the time of the whole run
+    /// Run the study for some seconds and estimate its run time
+    ///
+    /// Nothing of the sample is kept.
     #[arg(
         long,
         value_name = "SECONDS",
         num_args = 0..=1,
         require_equals = true,
         default_missing_value = "2",
-        value_parser = seconds
+        value_parser = seconds,
+        help_heading = "Run"
     )]
     time: Option<f64>,
 }

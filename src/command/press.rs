@@ -24,73 +24,92 @@ use std::path::PathBuf;
 
 const MM: f64 = 1e-3;
 
-/// Press one object on one array.
+/// Press one object on one array; draw or write deflections
 ///
-/// The object lies on a table and the patch comes from above, along its own axis, to first contact and then further by
-/// the depth, or until it feels the force.
+/// The object lies on a table. The patch approaches from above along its own axis, to first contact and then further by the depth, or until the
+/// springs carry the force.
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch press --object mug --depth-mm 3 --out mug.png")]
 pub struct Args {
     #[command(flatten)]
     source: Source,
-    /// A TOML file of objects instead of the built-in ones, for --object
-    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["mesh", "spheres"])]
+    /// Read objects from a TOML file, not the built-in ones
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["mesh", "spheres"], help_heading = "Object")]
     objects: Option<PathBuf>,
-    /// How far past first contact; beyond the stroke taxels stay saturated [default: 3 for objects and meshes; spheres are read where they are]
-    #[arg(long, value_name = "MM")]
+    /// Press this deep past first contact [default: 3; spheres stay in place]
+    ///
+    /// Taxels that reach their stroke are saturated.
+    #[arg(long, value_name = "MM", help_heading = "Press")]
     depth_mm: Option<f64>,
-    /// Instead of a depth: until all springs together carry so many newtons
+    /// Press until all springs together carry this force
     #[arg(
         long,
         visible_alias = "force",
         value_name = "N",
-        conflicts_with = "depth_mm"
+        conflicts_with = "depth_mm",
+        help_heading = "Press"
     )]
     force_n: Option<f64>,
     #[command(flatten)]
     place: Place,
     #[command(flatten)]
     many: press_poses::Args,
-    /// What a mesh becomes: mesh (itself), packed or vertex_spheres [default: mesh]
-    #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>, conflicts_with_all = ["object", "spheres"])]
+    /// Represent a mesh as mesh, packed or vertex_spheres [default: mesh]
+    #[arg(long, value_name = "MODEL", value_parser = word::<ModelSpec>, conflicts_with_all = ["object", "spheres"], help_heading = "Object")]
     model: Option<ModelSpec>,
-    /// Unit of the file of the mesh or the spheres: m, cm, mm or in [default: m, and of a size that the array can feel]
-    #[arg(long, value_name = "UNIT", conflicts_with = "object")]
+    /// Set the unit of the file: m, cm, mm or in
+    ///
+    /// Without this option, the unit is the metre, and a file of a size that the array cannot measure is refused.
+    #[arg(
+        long,
+        value_name = "UNIT",
+        conflicts_with = "object",
+        help_heading = "Object"
+    )]
     unit: Option<LengthUnit>,
-    /// How far the spheres of a built-in object, or of a packed mesh, may be from its surface [default: 0.25; of a packed mesh a
-    /// tenth of the pitch]
-    #[arg(long, value_name = "MM")]
+    /// Limit the distance between spheres and surface [default: 0.25; pitch / 10 for meshes]
+    #[arg(long, value_name = "MM", help_heading = "Object")]
     surface_error_mm: Option<f64>,
-    /// Columns and rows of the array
-    #[arg(long, value_name = "NXxNY", default_value = "64x64", value_parser = parse_taxels)]
+    /// Set the columns and rows of the array
+    #[arg(long, value_name = "NXxNY", default_value = "64x64", value_parser = parse_taxels, help_heading = "Array")]
     taxels: (usize, usize),
-    /// Distance between taxels
-    #[arg(long, value_name = "MM", default_value_t = 2.0)]
+    /// Set the distance between taxels
+    #[arg(long, value_name = "MM", default_value_t = 2.0, help_heading = "Array")]
     pitch_mm: f64,
-    /// Radius of a taxel [default: half the pitch]
-    #[arg(long, value_name = "MM")]
+    /// Set the radius of a taxel [default: half the pitch]
+    #[arg(long, value_name = "MM", help_heading = "Array")]
     taxel_radius_mm: Option<f64>,
-    /// How far a taxel can be pushed in
-    #[arg(long, value_name = "MM", default_value_t = 5.0)]
+    /// Set the largest deflection of a taxel
+    #[arg(long, value_name = "MM", default_value_t = 5.0, help_heading = "Array")]
     stroke_mm: f64,
-    /// How stiff a taxel's spring is, for --force-n [default: 100]
-    #[arg(long, value_name = "N/M")]
+    /// Set the spring constant of a taxel, for --force-n [default: 100]
+    #[arg(long, value_name = "N/M", help_heading = "Array")]
     stiffness_n_per_m: Option<f64>,
-    /// Write ny × nx deflections in metres to a .csv, .npz or .png file instead of drawing them here
-    #[arg(long, value_name = "FILE")]
+    /// Write deflections to .csv, .npz or .png; do not draw
+    ///
+    /// The array has ny × nx deflections in metres.
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 
 #[derive(clap::Args)]
 #[group(required = true, multiple = false)]
 struct Source {
-    /// A built-in object (bubbletouch objects lists them), or one of --objects
-    #[arg(long, value_name = "NAME")]
+    /// Press a built-in object, or one of --objects
+    #[arg(long, value_name = "NAME", help_heading = "Object")]
     object: Option<String>,
-    /// A PLY, OBJ or STL mesh
-    #[arg(long, value_name = "FILE")]
+    /// Press a PLY, OBJ or STL mesh
+    #[arg(long, value_name = "FILE", help_heading = "Object")]
     mesh: Option<PathBuf>,
-    /// Spheres x,y,z,r, in the patch frame: taxels rest in the plane z = 0, axes along +z
-    #[arg(long, value_name = "FILE", conflicts_with = "Place")]
+    /// Press spheres of a CSV file (columns x,y,z,r)
+    ///
+    /// The columns are in the patch frame: taxels rest in the plane z = 0, axes along +z.
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "Place",
+        help_heading = "Object"
+    )]
     spheres: Option<PathBuf>,
 }
 

@@ -9,23 +9,23 @@ const MM: f64 = 1e-3;
 #[derive(clap::Args)]
 #[group(id = "Place", multiple = true)]
 pub struct Place {
-    /// Which stable pose the object lies in, from 0 (the likeliest) [default: as modelled, its z up]
-    #[arg(long, value_name = "N")]
+    /// Lay the object in stable pose N, 0 the likeliest [default: as modelled]
+    #[arg(long, value_name = "N", help_heading = "Press")]
     rest: Option<usize>,
-    /// Where the patch is over the object's middle, along x
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    /// Shift the patch along x from the object's middle
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
     offset_x_mm: f64,
-    /// The same along y
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    /// Shift the patch along y from the object's middle
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
     offset_y_mm: f64,
-    /// How the object is turned about the vertical
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    /// Turn the object about the vertical
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
     yaw_deg: f64,
-    /// How the patch is tilted about its x axis
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    /// Tilt the patch about its x axis
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
     tilt_x_deg: f64,
-    /// The same about its y axis
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite)]
+    /// Tilt the patch about its y axis
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, default_value_t = 0.0, value_parser = finite, help_heading = "Press")]
     tilt_y_deg: f64,
 }
 

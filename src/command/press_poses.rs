@@ -23,16 +23,18 @@ const MAX_REPEATS: usize = 1_000_000;
 #[derive(clap::Args)]
 #[group(id = "Poses", multiple = true)]
 pub struct Args {
-    /// Instead of one place: press the object at every pose of a CSV file, to the depth past first contact or, without one, where
-    /// it is. Columns x, y, z in metres and qw, qx, qy, qz: the object in the patch frame (taxels rest in the plane z = 0, axes
-    /// along +z). --out takes a .npy file of n × ny × nx metres
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["Place", "force_n"])]
+    /// Press the object at every pose of a CSV file
+    ///
+    /// Columns x, y, z in metres and qw, qx, qy, qz: the object in the patch frame (taxels rest in the plane z = 0, axes along +z). With --depth-mm,
+    /// each pose is moved to that depth past first contact; otherwise it is used as given. With --out FILE.npy, the array has n × ny × nx deflections
+    /// in metres.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["Place", "force_n"], help_heading = "Press")]
     pub poses: Option<PathBuf>,
-    /// How often each pose is pressed to be timed [default: 1]
-    #[arg(long, value_name = "N")]
+    /// Press each pose N times for timing [default: 1]
+    #[arg(long, value_name = "N", help_heading = "Press")]
     repeat: Option<usize>,
-    /// Say travel, taxels and time of each pose as JSON
-    #[arg(long)]
+    /// Print travel, taxels and time of each pose as JSON
+    #[arg(long, help_heading = "Output")]
     json: bool,
 }
 

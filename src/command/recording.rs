@@ -16,33 +16,43 @@ use bubbletouch::{Error, Result};
 use ndarray::Array2;
 use std::path::{Path, PathBuf};
 
-/// Show a recording (.npz).
-///
-/// Without options: its frames, patches and objects, and what each patch felt at most.
+/// Describe a recording of a scene, or draw it
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch recording results/ball/recording.npz --patch forearm --animate ball.png"
+)]
 pub struct Args {
-    /// A recording as bubbletouch writes it
+    /// Recording that bubbletouch simulate wrote
     file: PathBuf,
-    /// Which patch to draw; needed if there are several
-    #[arg(long, value_name = "NAME")]
+    /// Select the patch to draw, if there are several
+    #[arg(long, value_name = "NAME", help_heading = "Selection")]
     patch: Option<String>,
-    /// What to draw: deflection or force [default: deflection]
-    #[arg(long, value_name = "WHAT", value_parser = word::<Quantity>)]
+    /// Draw deflection or force [default: deflection]
+    #[arg(long, value_name = "WHAT", value_parser = word::<Quantity>, help_heading = "Selection")]
     quantity: Option<Quantity>,
-    /// Draw this frame, counted from 0: to --out, or here if the patch is a grid
-    #[arg(long, value_name = "K", conflicts_with = "animate")]
+    /// Draw frame K, counted from 0
+    ///
+    /// The picture is written to --out, or drawn here if the patch is a grid.
+    #[arg(
+        long,
+        value_name = "K",
+        conflicts_with = "animate",
+        help_heading = "Selection"
+    )]
     frame: Option<usize>,
-    /// Where to write the picture of --frame
-    #[arg(long, value_name = "FILE.png")]
+    /// Write the picture of --frame to this file
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     out: Option<PathBuf>,
-    /// Write an animated PNG, which browsers play; at most 600 of its frames, evenly in time
-    #[arg(long, value_name = "FILE.png")]
+    /// Write an animated PNG, for browsers
+    ///
+    /// The animation has at most 600 frames of the recording, evenly in time.
+    #[arg(long, value_name = "FILE.png", help_heading = "Output")]
     animate: Option<PathBuf>,
-    /// Pictures in a second of the animation, at most (up to 50) [default: 25]
-    #[arg(long, value_name = "N")]
+    /// Limit the pictures per second of the animation (at most 50) [default: 25]
+    #[arg(long, value_name = "N", help_heading = "Output")]
     fps: Option<f64>,
-    /// Seconds of the recording in a second of the animation: 0.1 is ten times slower than it was [default: 1]
-    #[arg(long, value_name = "X")]
+    /// Play the recording at X times its speed [default: 1]
+    #[arg(long, value_name = "X", help_heading = "Output")]
     speed: Option<f64>,
 }
 
@@ -115,8 +125,12 @@ fn draw_frame(args: &Args, file: &mut RecordingFile, frame: usize) -> Result<()>
         }
         (None, None) => {
             let name = &patch.name;
-            let given = format!("patch {name} is no grid, which the terminal could show");
-            return Err(Error::input("--frame", given, "--out FILE.png beside it"));
+            let given = format!("patch {name} is not a grid; the terminal shows grids only");
+            return Err(Error::input(
+                "--frame",
+                given,
+                "--frame with --out FILE.png",
+            ));
         }
     }
     note(format_args!("{}: {said}", patch.name));

@@ -10,15 +10,19 @@ use bubbletouch::study::provenance::MANIFEST_FILE;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
+/// Redraw the charts and the page of a results folder
+///
+/// The tables and the study must be unchanged since the run: manifest.json contains the SHA-256 of each.
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch report results/cans --chart-format both")]
 pub struct Args {
-    /// A folder that `bubbletouch run` wrote
+    /// Results folder that bubbletouch run wrote
     results: PathBuf,
-    /// Draw every chart as a file; without it the first 24
-    #[arg(long)]
+    /// Write every chart as a file, not only the first 24
+    #[arg(long, help_heading = "Output")]
     all_charts: bool,
     /// Write charts as svg, png or both
-    #[arg(long, value_name = "FORMAT", default_value = "svg", value_parser = word::<ChartFormat>)]
+    #[arg(long, value_name = "FORMAT", default_value = "svg", value_parser = word::<ChartFormat>, help_heading = "Output")]
     chart_format: ChartFormat,
 }
 

@@ -11,21 +11,35 @@ use bubbletouch::{Error, Result};
 use std::path::Path;
 use std::sync::Arc;
 
+/// Run a study; write tables, charts and a report
+///
+/// The study's table gives its kind: [recognition] (which object is touched), [reconstruction] (how exactly frames are reconstructed from
+/// measurements), [object_detail] (how detailed models of objects must be), [whole_body] (the cost of a body with millions of taxels) or [stability]
+/// (the settings at which contact methods fail).
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch run experiments/cans.toml --out results/cans")]
 pub struct Args {
     #[command(flatten)]
     run: RunArgs,
-    /// Start over; the old folder of results is renamed to FOLDER.1, FOLDER.2 ... Without it, a run goes on from
-    /// what an earlier run of the same study has finished
-    #[arg(long)]
+    /// Start over; rename the old folder to FOLDER.1, FOLDER.2, …
+    ///
+    /// Without this option, the run continues with the work items that an earlier run of this study has not finished.
+    #[arg(long, help_heading = "Run")]
     fresh: bool,
-    /// Stop at the first work item that fails, rather than record it in failures.csv and go on
-    #[arg(long)]
+    /// Stop at the first work item that fails
+    ///
+    /// Without this option, failures.csv lists the failed work items and the run continues.
+    #[arg(long, help_heading = "Run")]
     fail_fast: bool,
-    /// Do only part I of N of the work, for one of N processes or machines; `bubbletouch merge` puts them together
-    #[arg(long, value_name = "I/N", conflicts_with = "chart_format")]
+    /// Run part I of N; bubbletouch merge joins the parts
+    #[arg(
+        long,
+        value_name = "I/N",
+        conflicts_with = "chart_format",
+        help_heading = "Run"
+    )]
     shard: Option<Shard>,
-    /// Run anew, unless the run before was interrupted
+    /// Run anew, unless the previous run was interrupted
     #[arg(long, hide = true)]
     demonstration: bool,
 }

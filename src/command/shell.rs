@@ -9,17 +9,24 @@ use clap_complete::Shell;
 use clap_mangen::Man;
 use std::path::{Path, PathBuf};
 
+/// Write the completions of a shell to standard output
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch completions bash > ~/.local/share/bash-completion/completions/bubbletouch"
+)]
 pub struct CompletionArgs {
-    /// The shell that reads them
+    /// Shell that reads the completions
     shell: Shell,
 }
 
+/// Write the manual page, or the pages of all subcommands
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch man --out ~/.local/share/man/man1")]
 pub struct ManArgs {
-    /// Write a page for the command and one for each subcommand into a folder such as share/man/man1; else the first goes to
-    /// standard output
-    #[arg(long, value_name = "FOLDER")]
+    /// Write the pages of all subcommands to this folder
+    ///
+    /// Without this option, the page of the command is written to standard output.
+    #[arg(long, value_name = "FOLDER", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 

@@ -11,22 +11,29 @@ use bubbletouch::study::progress::{Progress, Silent};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Simulate a scene: robots, skin and objects that move.
-///
-/// Writes recording.npz (deflections, forces and poses over time; see `bubbletouch recording`), wrenches.csv (what each patch feels
-/// as a whole, in its frame), scene.toml (the scene with its defaults) and manifest.json (the files that it may replace).
+/// Simulate a scene of robots, skin and moving objects
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch simulate experiments/scenes/ball_over_forearm.toml --out results/ball"
+)]
 pub struct Args {
-    /// The scene, a TOML file; experiments/scenes/ has some
+    /// Scene, a TOML file such as those of experiments/scenes/
     scene: PathBuf,
-    /// Where to write
-    #[arg(long, value_name = "FOLDER")]
+    /// Write the recording to this folder
+    #[arg(long, value_name = "FOLDER", help_heading = "Output")]
     out: PathBuf,
-    /// End it early: its first frames, as in the whole scene
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    /// End the scene at this time
+    ///
+    /// The frames are the first frames of the whole scene, bit by bit.
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_negative_numbers = true,
+        help_heading = "Run"
+    )]
     until_s: Option<f64>,
-    /// Say nothing but errors
-    #[arg(long)]
+    /// Print errors only
+    #[arg(long, help_heading = "Output")]
     quiet: bool,
 }
 

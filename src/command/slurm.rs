@@ -18,21 +18,27 @@ const MAX_JOBS: usize = 4_000_000;
 /// Digits of the hash in a job's name. Fewer: two runs may share a name; more: squeue cuts the name.
 const HASH_DIGITS: usize = 12;
 
+/// Submit a study as an array of Slurm jobs, then its merge
+///
+/// If the command runs again, it submits the shards that are neither finished nor queued.
 #[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch slurm study.toml --array 8 --threads 4 --time 2:00:00 --mem 4G"
+)]
 pub struct Args {
     #[command(flatten)]
     results: ResultsArgs,
-    /// Into how many jobs the study is divided
-    #[arg(long, value_name = "N")]
+    /// Divide the study into N jobs
+    #[arg(long, value_name = "N", help_heading = "Jobs")]
     array: usize,
-    /// Time limit of a job, as sbatch takes it: 2:00:00
-    #[arg(long, value_name = "TIME")]
+    /// Limit the time of a job, in sbatch's format: 2:00:00
+    #[arg(long, value_name = "TIME", help_heading = "Jobs")]
     time: Option<String>,
-    /// Memory of a job, as sbatch takes it: 4G
-    #[arg(long, value_name = "SIZE")]
+    /// Limit the memory of a job, in sbatch's format: 4G
+    #[arg(long, value_name = "SIZE", help_heading = "Jobs")]
     mem: Option<String>,
-    /// Partition of the cluster
-    #[arg(long, value_name = "NAME")]
+    /// Submit to this partition of the cluster
+    #[arg(long, value_name = "NAME", help_heading = "Jobs")]
     partition: Option<String>,
 }
 
@@ -74,7 +80,7 @@ pub fn slurm(args: &Args) -> Result<()> {
     let merge = args.submit_merge(shards.as_deref(), &folder)?;
     said?;
     say(format_args!(
-        "submitted their merge as job {merge}; the same command submits again what fails"
+        "submitted their merge as job {merge}; the same command submits failed shards again"
     ))
 }
 

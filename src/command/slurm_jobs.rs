@@ -39,7 +39,7 @@ fn answer(command: &mut Command) -> Result<String> {
     let output = command.output().map_err(|error| match error.kind() {
         io::ErrorKind::NotFound => {
             let allowed = "a machine from which jobs can be submitted (without Slurm: bubbletouch run --shard)";
-            Error::input(&name, "there is no such command here", allowed)
+            Error::input(&name, "the command is not installed", allowed)
         }
         _ => Error::io(&name, "run", error),
     })?;
@@ -47,7 +47,7 @@ fn answer(command: &mut Command) -> Result<String> {
         true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
         false => {
             let said = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-            Err(Error::input(&name, said, "what Slurm takes"))
+            Err(Error::input(&name, said, "options that Slurm accepts"))
         }
     }
 }

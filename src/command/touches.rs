@@ -15,24 +15,33 @@ use bubbletouch::{Error, Result};
 use std::collections::HashSet;
 use std::path::PathBuf;
 
+/// Write the touches of a study as NumPy files
+///
+/// Frames are deflections of the press, without noise, smoothing and sensor errors. With --configuration, they are the readings of that
+/// configuration.
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch touches experiments/cans.toml --out touches")]
 pub struct Args {
     #[command(flatten)]
     study: StudyArgs,
-    /// Where to write frames.npy, shear.npy (of skins that read shear), labels.npy, poses.npy, depths.npy, touches.csv, objects.csv, recorded.toml and manifest.json
-    /// (quantities and units of frames and shear); one folder for each array, and for each value of an axis that changes touches, if the study has several
-    #[arg(long, value_name = "FOLDER")]
+    /// Write frames, labels, poses and a manifest to this folder
+    ///
+    /// The files are frames.npy, shear.npy (of skins that read shear), labels.npy, poses.npy, depths.npy, touches.csv, objects.csv, recorded.toml and
+    /// manifest.json (quantities and units). A study with several arrays, or with axes that change touches, has a folder for each.
+    #[arg(long, value_name = "FOLDER", help_heading = "Output")]
     out: PathBuf,
-    /// Frames as this configuration of the study reads them (its number in the study's tables), with noise and whatever else its signal has;
-    /// on its array alone, the deepest frame of each touch
-    #[arg(long, value_name = "N")]
+    /// Write frames as configuration N reads them, with noise
+    ///
+    /// N is the number in the tables of the study. The frames are of its array, at the deepest position of each touch.
+    #[arg(long, value_name = "N", help_heading = "Selection")]
     configuration: Option<usize>,
-    /// The trial that they are read in, from 0
+    /// Read the frames in trial T, counted from 0
     #[arg(
         long,
         value_name = "T",
         default_value_t = 0,
-        requires = "configuration"
+        requires = "configuration",
+        help_heading = "Selection"
     )]
     trial: usize,
 }
@@ -213,11 +222,11 @@ impl Args {
         let (given, allowed) = match plan.spec.recorded {
             Some(_) => (
                 "a study of recorded frames",
-                "a study that presses objects or simulates human touches (bubbletouch features writes what others learn from)",
+                "a study that presses objects or simulates human touches (bubbletouch features writes features for other programs)",
             ),
             None => (
                 "--configuration in a study of human touches",
-                "a study that presses objects (bubbletouch features writes what others learn from)",
+                "a study that presses objects (bubbletouch features writes features for other programs)",
             ),
         };
         Err(Error::input(place, given, allowed))

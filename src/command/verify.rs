@@ -10,18 +10,28 @@ use bubbletouch::study::provenance::{MANIFEST_FILE, SOURCE};
 use bubbletouch::{Error, Result};
 use std::path::PathBuf;
 
+/// Check a results folder and re-run some of its work items
+///
+/// Every file is compared with its SHA-256 in manifest.json. New results are compared with the stored ones byte by byte.
 #[derive(clap::Args)]
+#[command(after_help = "Example:\n  bubbletouch verify results/quickstart --work-items 10")]
 pub struct Args {
-    /// A folder that `bubbletouch run` wrote
+    /// Results folder that bubbletouch run wrote
     results: PathBuf,
-    /// How many work items to run again, drawn at random
-    #[arg(long, value_name = "N", default_value_t = 5)]
-    configurations: usize,
-    /// Seed of the random draw: another one draws other work items
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    /// Re-run N randomly drawn work items
+    #[arg(
+        long,
+        aliases = ["configurations", "cells"],
+        value_name = "N",
+        default_value_t = 5,
+        help_heading = "Run"
+    )]
+    work_items: usize,
+    /// Set the seed of the random draw
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Run")]
     draw: u64,
-    /// Threads; all cores when left out
-    #[arg(long, value_name = "N")]
+    /// Use N threads [default: all cores]
+    #[arg(long, value_name = "N", help_heading = "Run")]
     threads: Option<usize>,
     #[command(flatten)]
     memory: MemoryLimit,
@@ -48,6 +58,6 @@ pub fn verify(args: &Args) -> Result<()> {
     }
     set_threads(args.threads)?;
     let study = load_study(folder, Some(&manifest), args.memory.bytes()?)?;
-    let said = study.verify(folder, args.configurations, args.draw, to_stderr().as_ref())?;
+    let said = study.verify(folder, args.work_items, args.draw, to_stderr().as_ref())?;
     say(format_args!("{}: {said}", folder.display()))
 }

@@ -387,7 +387,7 @@ fn groups_change_the_interval_and_the_folds_and_nothing_else() {
 #[test]
 fn people_read_that_groups_were_held_out_and_that_two_are_few() {
     let (said, _) = grouped_folder().succeeds(&[&["classify", "."], &GROUPED[..]].concat());
-    let line = "split     by groups: 3 to train on, 2 to test; the interval comes from 2 groups, too few to say much";
+    let line = "split     by groups: 3 to train on, 2 to test; the interval comes from 2 groups, too few for a narrow interval";
     assert!(said.contains(line), "{said}");
 }
 

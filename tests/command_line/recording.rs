@@ -144,7 +144,7 @@ fn what_cannot_be_shown_is_said_and_writes_nothing() {
         (
             &["touch.npz", "--frame=0", "--patch=finger"],
             2,
-            "finger is no grid",
+            "finger is not a grid",
         ),
         (
             &["touch.npz", "--frame=0", "--patch=palm", "--out=a.jpg"],

@@ -191,7 +191,7 @@ const SPEAKERS: [&str; 24] = [
     "plan study.toml",
     "recording scene/recording.npz",
     "recording scene/recording.npz --frame 0",
-    "verify results/study --configurations 1",
+    "verify results/study --work-items 1",
     "report results/study",
     "compare results/study results/study --html o.html",
     "classify features --classifier linear_svm",

@@ -264,7 +264,7 @@ fn without_slurm_the_command_says_so() {
     assert_eq!(output.status.code(), Some(2));
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(
-        error.contains("squeue: there is no such command here"),
+        error.contains("squeue: the command is not installed"),
         "{error}"
     );
 }

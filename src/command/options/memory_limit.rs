@@ -5,8 +5,10 @@ use bubbletouch::{Error, Result};
 
 #[derive(clap::Args)]
 pub struct MemoryLimit {
-    /// Limit memory in GiB: fewer threads work, or the study is refused [default: what the machine has]
-    #[arg(long, value_name = "GIB")]
+    /// Limit the memory, GiB [default: the machine's memory]
+    ///
+    /// Below a small limit, fewer work items run at the same time. If a single one does not fit, the study is refused.
+    #[arg(long, value_name = "GIB", help_heading = "Run")]
     memory_gib: Option<f64>,
 }
 

@@ -18,17 +18,18 @@ const QUICKSTART: &str = include_str!("../../../experiments/quickstart.toml");
 
 #[derive(clap::Args)]
 pub struct StudyArgs {
-    /// The study, a TOML file
+    /// Study, a TOML file
     pub study: PathBuf,
-    /// A folder of PLY, OBJ or STL meshes, one object a file, or a TOML file of objects; replaces the study's objects, or the folder
-    /// of its scans
-    #[arg(long, value_name = "FOLDER or FILE.toml")]
+    /// Replace the study's objects by a mesh folder or TOML file
+    ///
+    /// A folder contains one PLY, OBJ or STL mesh for each object. In a study of recorded frames, this is the folder of the recorded files.
+    #[arg(long, value_name = "FOLDER|FILE.toml", help_heading = "Input")]
     objects: Option<PathBuf>,
-    /// Root of all randomness; replaces the study's
-    #[arg(long, value_name = "N")]
+    /// Replace the study's seed
+    #[arg(long, value_name = "N", help_heading = "Input")]
     seed: Option<u64>,
-    /// Threads; all cores when left out. Results are the same at any number
-    #[arg(long, value_name = "N")]
+    /// Use N threads; results do not depend on N [default: all cores]
+    #[arg(long, value_name = "N", help_heading = "Run")]
     pub threads: Option<usize>,
 }
 

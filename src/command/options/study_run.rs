@@ -22,8 +22,8 @@ use std::time::SystemTime;
 pub struct ResultsArgs {
     #[command(flatten)]
     pub study: StudyArgs,
-    /// The folder of results: tables, charts and report.html [default: results/ and the study's name]
-    #[arg(long, value_name = "FOLDER")]
+    /// Write results to this folder [default: results/ and the study's name]
+    #[arg(long, value_name = "FOLDER", help_heading = "Output")]
     pub out: Option<PathBuf>,
 }
 
@@ -41,14 +41,14 @@ pub struct RunArgs {
     pub results: ResultsArgs,
     #[command(flatten)]
     memory: MemoryLimit,
-    /// Say nothing but errors
-    #[arg(long, conflicts_with = "json")]
+    /// Print errors only
+    #[arg(long, conflicts_with = "json", help_heading = "Output")]
     quiet: bool,
-    /// Say what happens as JSON lines on standard output
-    #[arg(long)]
+    /// Write progress as JSON lines to standard output
+    #[arg(long, help_heading = "Output")]
     json: bool,
     /// Write charts as svg, png or both
-    #[arg(long, value_name = "FORMAT", default_value = "svg", value_parser = word::<ChartFormat>)]
+    #[arg(long, value_name = "FORMAT", default_value = "svg", value_parser = word::<ChartFormat>, help_heading = "Output")]
     chart_format: ChartFormat,
 }
 

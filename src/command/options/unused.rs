@@ -9,10 +9,6 @@ pub fn check_used(option: &str, is_given: bool, can_act: bool, user: &str) -> Re
     if !is_given || can_act {
         return Ok(());
     }
-    let allowed = format!("{user}, or no such option");
-    Err(Error::input(
-        option,
-        "given, but nothing here uses it",
-        allowed,
-    ))
+    let allowed = format!("{user}, or the command without this option");
+    Err(Error::input(option, "given, but not used here", allowed))
 }

@@ -16,19 +16,28 @@ const FINE: f64 = 1e-4;
 
 #[derive(clap::Args)]
 pub struct WhichObject {
-    /// A PLY, OBJ or STL file, or the name of a built-in object or of one of --objects
+    /// Mesh file (PLY, OBJ, STL), or name of an object
     object: String,
-    /// A TOML file of objects instead of the built-in ones
-    #[arg(long, value_name = "FILE.toml")]
+    /// Read objects from a TOML file, not the built-in ones
+    #[arg(long, value_name = "FILE.toml", help_heading = "Input")]
     objects: Option<PathBuf>,
-    /// Unit of a mesh file: m, cm, mm or in [default: m, and 0.1 mm to 10 m large]
-    #[arg(long, value_name = "UNIT")]
+    /// Set the unit of the mesh: m, cm, mm or in
+    ///
+    /// Without this option, the unit is the metre, and the mesh must be 0.1 mm to 10 m large.
+    #[arg(long, value_name = "UNIT", help_heading = "Input")]
     unit: Option<LengthUnit>,
-    /// Take a mesh as its surface without thickness, holes and all, not as the solid that it encloses
-    #[arg(long)]
+    /// Treat a mesh as a surface without thickness
+    ///
+    /// Holes stay open. Otherwise a mesh is the solid that it encloses.
+    #[arg(long, help_heading = "Input")]
     as_sheet: bool,
-    /// Close holes of a mesh that are at most this wide, and say so
-    #[arg(long, value_name = "MM", conflicts_with = "as_sheet")]
+    /// Close holes of a mesh up to this width
+    #[arg(
+        long,
+        value_name = "MM",
+        conflicts_with = "as_sheet",
+        help_heading = "Input"
+    )]
     close_holes_mm: Option<f64>,
 }
 

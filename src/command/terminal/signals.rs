@@ -10,7 +10,7 @@ pub fn keep_journal_on_signals(journal: &Arc<Journal>) -> Result<()> {
     let journal = Arc::clone(journal);
     let set = ctrlc::set_handler(move || {
         let synced = journal.stop();
-        note("\nstopped: all that is finished is kept; the same command goes on from there");
+        note("\nstopped: finished work items are kept; the same command continues the run");
         if let Err(error) = synced {
             note(format_args!("error: {error}"));
         }

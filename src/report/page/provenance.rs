@@ -23,7 +23,7 @@ pub(crate) fn provenance_html(manifest: &Manifest) -> String {
             format!("{} to {}", manifest.started, manifest.ended),
         ),
         (
-            "Cells",
+            "Configurations",
             format!(
                 "{} in {} trials; {} evaluations were finished before this run, {} failed",
                 manifest.n_configurations,

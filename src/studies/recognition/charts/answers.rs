@@ -161,7 +161,7 @@ fn remarks(tables: &[Table]) -> Vec<String> {
     let n_needed = n_needed.find(|(row, n)| n.is_finite() && is_short(*row));
     let said = [
         (n_left_out > 0.0).then(|| format!(
-            "Up to {n_left_out} test touches of a trial fill no whole group of fused touches and are left out."
+            "Up to {n_left_out} test touches of a trial are left out, because they do not fill a whole decision."
         )),
         (n_capped > 0.0).then(|| format!(
             "{n_capped} binary SVMs stopped at the iteration cap: their configurations may do better with more iterations or a smaller C."

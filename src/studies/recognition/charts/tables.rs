@@ -27,7 +27,7 @@ const ACCURACY: File<(Configuration, TrialScore)> = File::new(
 );
 const SUMMARY: File<(Configuration, CellScore)> = File::new(
     "summary.csv",
-    "Cells over their trials",
+    "Configurations over their trials",
     "Means over trials.",
 )
 .summary();
@@ -40,7 +40,7 @@ const CONFUSION: File<Confusion> =
     File::new("confusion.csv", "What was taken for what", "").summary();
 const COMPARISON: File<Comparison> = File::new(
     "comparison.csv",
-    "Cells against the best of their condition",
+    "Configurations against the best of their condition",
     "A t-test paired over trials, corrected for their overlap; the p-value of Holm is corrected for the number of configurations too.",
 )
 .summary();

@@ -141,10 +141,10 @@ pub struct Confused {
     fraction_high: f64 => Note "95 % interval, upper end": Share, optional;
     /// Largest number of fused touches. Present only if the study fuses touches.
     #[serde(skip_serializing_if = "Option::is_none")]
-    max_touches_per_decision: Option<usize> => Note "most touches fused": Linear, optional;
+    max_touches_per_decision: Option<usize> => Note "most touches per decision": Linear, optional;
     /// `fraction` in decisions on `max_touches_per_decision` touches. Present only if the study fuses touches.
     #[serde(skip_serializing_if = "Option::is_none")]
-    fraction_at_max_touches: Option<f64> => Value(Less) "share with most touches fused": Share, optional;
+    fraction_at_max_touches: Option<f64> => Value(Less) "fraction with most touches": Share, optional;
 } }
 
 row! {
