@@ -1,43 +1,43 @@
 //! Neighbours among the taxels of a skin, and their distances along its surface.
 //!
-//! Two taxels are neighbours if no third one lies in the ball whose diameter they span (a Gabriel graph). An inner taxel of a grid has four
-//! neighbours, one of a hexagonal layout six, at any pitch; on curved layouts the neighbours are the surrounding taxels. Taxels with opposed
-//! axes belong to opposite sides of a thin sheet and are not neighbours. Taxels at one place are neighbours, and share their other neighbours. Places
+//! Two taxels are neighbours if no third one lies in the ball whose diameter they span (a Gabriel graph). At any pitch, an inner taxel has four
+//! neighbours in a grid and six in a hexagonal layout; on curved layouts the neighbours are the surrounding taxels. Taxels with opposed
+//! axes belong to opposite sides of a thin wall and are not neighbours. Taxels at one position are neighbours, and share their other neighbours. Positions
 //! farther apart than three times the local spacing are not neighbours: the skin has a gap.
 //!
-//! The distance along the surface is the length of an arc that turns as far as the axes do: chord · (θ/2) / sin(θ/2). The angle between the axes
-//! is θ. The formula is exact on planes, on spheres, and across and along cylinders.
+//! The distance along the surface is the length of an arc that turns by the angle θ between the axes: chord · (θ/2) / sin(θ/2). The formula is exact on planes,
+//! on spheres, and across and along cylinders.
 
 use super::Patch;
 use glam::DVec3;
 
-/// Largest distance between neighbours, as a multiple of the local spacing (see `around`). Smaller: sparse places of draped layouts lose some
-/// neighbours; larger: taxels at both edges of a gap in the skin become neighbours.
+/// Largest distance between neighbours, as a multiple of the local spacing. If smaller, sparse regions of draped layouts lose some neighbours; if larger,
+/// taxels at opposite edges of a gap in the skin become neighbours.
 const REACH: f64 = 3.0;
-/// Distance, relative to a taxel's radius, below which two taxels are at one place; such a distance is not a spacing.
+/// Distance, relative to a taxel's radius, below which two taxels coincide; such a distance does not count as spacing.
 const COINCIDENT: f64 = 0.01;
-/// Number of taxels in one line after which the search for a taxel beside the line ends. Larger: more distant rows become neighbours, long lines take
+/// Number of taxels in one line after which the search for a taxel beside the line ends. If larger, more distant rows become neighbours and long lines take
 /// longer.
 const MAX_IN_LINE: usize = 256;
 /// Cosine between the directions to two taxels above which both lie along one line.
 const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Cosine between axes below which two taxels belong to opposite sides of a thin sheet.
+/// Cosine between axes below which two taxels belong to opposite sides of a thin wall.
 const OPPOSED: f64 = -0.5;
 /// Factor that covers rounding of squared distances: the corners of a square lie exactly on the ball around its diagonal.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Neighbours of every taxel of a skin.
+/// Neighbours of every taxel of a skin, as a symmetric graph.
 ///
-/// Invariant: symmetric; each list ascends.
+/// Invariant: the relation is symmetric; the list of each taxel ascends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
-    /// Start of each taxel's neighbours in the list, followed by the end of the last.
+    /// Offset of each taxel's neighbours in the list, followed by the length of the list.
     starts: Vec<usize>,
     taxels: Vec<u32>,
 }
 
 impl Neighbours {
-    /// Finds the neighbours; about a microsecond per taxel.
+    /// Finds the neighbours of all taxels; takes about a microsecond per taxel.
     pub fn new(skin: &Patch) -> Self {
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         for taxel in 0..skin.n_taxels() {
@@ -58,12 +58,12 @@ impl Neighbours {
         }
     }
 
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of the skin.
     pub fn n_taxels(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Returns the neighbours of a taxel, by their numbers in the layout, ascending.
+    /// Returns the neighbours of a taxel, as ascending indices in the layout.
     ///
     /// # Panics
     /// If the taxel does not exist.
@@ -72,14 +72,14 @@ impl Neighbours {
         neighbours.iter().map(|&other| other as usize)
     }
 
-    /// Returns the largest number of neighbours of a taxel.
+    /// Returns the largest number of neighbours of any taxel.
     pub fn most(&self) -> usize {
         let counts = self.starts.windows(2).map(|ends| ends[1] - ends[0]);
         counts.max().unwrap_or(0)
     }
 
-    /// Returns the taxels within `reach` metres of `taxel` along the surface, including itself, with their distances. Taxels whose axes are opposed
-    /// count only if steps between neighbours within `reach` lead to them, such as around a thin finger.
+    /// Returns the taxels within `reach` metres of `taxel` along the surface, including the taxel itself, with their distances. Taxels with opposed axes count
+    /// only if they can be reached by steps between neighbours within `reach`, for example around a thin finger.
     pub fn within(&self, skin: &Patch, taxel: usize, reach: f64) -> Vec<(usize, f64)> {
         let near = others_within(skin, taxel, reach.min(size(skin)));
         let near = near
@@ -102,7 +102,7 @@ impl Neighbours {
     }
 }
 
-/// Returns the distance of two taxels along the surface, metres.
+/// Returns the distance between two taxels along the surface, metres.
 fn along_surface(skin: &Patch, [a, b]: [usize; 2]) -> f64 {
     let (centers, axes) = (skin.layout().centers(), skin.layout().axes());
     let half = 0.5 * axes[a].angle_between(axes[b]);
@@ -110,8 +110,8 @@ fn along_surface(skin: &Patch, [a, b]: [usize; 2]) -> f64 {
     centers[a].distance(centers[b]) * bent
 }
 
-/// Returns the other taxels on this side within [`REACH`] times the local spacing, nearest first. The spacing is the distance to the nearest
-/// taxel across the direction of the nearest one. Distant rows are therefore neighbours, however dense each row is.
+/// Returns the other taxels on this side of the skin within [`REACH`] times the local spacing, nearest first. The spacing is the distance to the nearest taxel
+/// in a direction across the nearest one. Distant rows are therefore neighbours, however dense each row is.
 fn around(skin: &Patch, taxel: usize) -> Vec<usize> {
     let centers = skin.layout().centers();
     let away = |other: usize| centers[other] - centers[taxel];
@@ -167,7 +167,7 @@ fn others_within(skin: &Patch, taxel: usize, radius: f64) -> Vec<usize> {
     others
 }
 
-/// Returns whether none of some taxels is between two. A taxel at the place of one of the two is not between them.
+/// Returns whether none of the taxels `around` lies between the two taxels. A taxel that coincides with one of the two is not between them.
 fn is_free(skin: &Patch, [a, b]: [usize; 2], around: &[usize]) -> bool {
     let centers = skin.layout().centers();
     let middle: DVec3 = 0.5 * (centers[a] + centers[b]);
@@ -277,7 +277,7 @@ mod tests {
             let arc = radius * 0.07 * taxel.abs_diff(5) as f64;
             assert!((distance - arc).abs() < 1e-12, "{taxel}");
         }
-        // Five taxels before, the taxel itself and seven behind: 1.4 mm each.
+        // Five taxels before, the taxel itself, and seven behind: 1.4 mm each.
         assert_eq!(found.len(), 13);
         let places =
             (0..10).map(|k| DVec3::new(PITCH * f64::from(k % 5), 0.0, 1e-4 * f64::from(k / 5)));

@@ -1,4 +1,4 @@
-//! Patch of skin of any shape.
+//! Patch of skin with any layout of taxels.
 
 use super::taxel_tree::TaxelTree;
 use super::{Grid, Layout, Taxel, Taxels};
@@ -6,16 +6,16 @@ use crate::error::Result;
 use glam::DVec3;
 use std::sync::OnceLock;
 
-/// Rigid substrate with taxels in any layout, with equal or individual properties.
+/// Rigid substrate with taxels in any layout; their properties are equal or individual.
 ///
-/// Invariant: one set of taxel properties for all or one each; the trees belong to the layout and the taxels.
+/// Invariant: one set of taxel properties for all taxels, or one per taxel; the search trees belong to the layout and the taxels.
 #[derive(Clone, Debug)]
 pub struct Patch {
     name: String,
     layout: Layout,
     taxels: Taxels,
     even_grid: Option<EvenGrid>,
-    /// Created on first use.
+    /// Search tree over the taxels, created on first use.
     tree: OnceLock<TaxelTree>,
     ahead: OnceLock<Travelling>,
 }
@@ -28,11 +28,11 @@ pub(crate) struct EvenGrid {
     pub radius: f64,
     /// Stroke s of all taxels, metres.
     pub stroke: f64,
-    /// Height of the substrate, metres: [`Taxel::substrate`].
+    /// Height of the substrate above the rest centres, metres ([`Taxel::substrate`]).
     pub behind: f64,
 }
 
-/// Taxels of a patch with axes along a direction of travel.
+/// Copy of a patch's taxels whose axes are a direction of travel.
 #[derive(Clone, Debug)]
 pub(crate) struct Travelling {
     pub taxels: TaxelTree,
@@ -43,7 +43,7 @@ pub(crate) struct Travelling {
 }
 
 impl Travelling {
-    /// Creates the taxels for travel along a unit vector.
+    /// Creates the copy of the taxels for travel along a unit vector.
     pub fn new(patch: &Patch, direction: DVec3) -> Self {
         let (layout, taxels) = (&patch.layout, &patch.taxels);
         let places = layout.centers().iter().enumerate();
@@ -57,11 +57,11 @@ impl Travelling {
 }
 
 impl Patch {
-    /// Creates a patch and checks its taxels. The search tree is built at the first press: about a microsecond per taxel.
+    /// Creates a patch and checks its taxels. The search tree is built at the first press, which takes about a microsecond per taxel.
     ///
     /// # Errors
-    /// If a property of a taxel is out of its range, or the numbers of taxels and places differ. The message begins with the patch's name and contains the
-    /// taxel (from 1).
+    /// If a property of a taxel is out of its range, or the numbers of taxel properties and rest centres differ. The message begins with the patch's name and
+    /// contains the taxel (from 1).
     pub fn new(
         name: impl Into<String>,
         layout: impl Into<Layout>,
@@ -75,7 +75,7 @@ impl Patch {
     /// Creates a flat rectangular grid of equal taxels with the name `patch`.
     ///
     /// # Errors
-    /// If [`Grid::check`] or [`Taxel::check`] fails, or there are too many taxels.
+    /// If the grid or the taxel is invalid, or there are too many taxels.
     pub fn grid(grid: Grid, taxel: Taxel) -> Result<Self> {
         let layout = Layout::grid(&grid)?;
         taxel.check()?;
@@ -123,12 +123,12 @@ impl Patch {
         self.tree.get_or_init(make)
     }
 
-    /// Returns the taxels for travel along z.
+    /// Returns the copy of the taxels for travel along z.
     pub(crate) fn ahead(&self) -> &Travelling {
         self.ahead.get_or_init(|| Travelling::new(self, DVec3::Z))
     }
 
-    /// Returns the grid, if the layout is one and all taxels have equal radius and stroke.
+    /// Returns the grid if the layout is a grid and all taxels have equal radius and stroke.
     pub(crate) fn even_grid(&self) -> Option<&EvenGrid> {
         self.even_grid.as_ref()
     }

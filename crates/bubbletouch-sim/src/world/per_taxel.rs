@@ -1,9 +1,9 @@
-//! Property of the taxels of a patch: one value for all, or one each.
+//! Property of the taxels of a patch: one value for all taxels, or one value per taxel.
 
 use super::taxel::Taxel;
 use crate::error::{Error, Result};
 
-/// Property of the taxels of a patch, in the order of its layout.
+/// Property of the taxels of a patch: one value for all taxels, or one value per taxel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PerTaxel<T> {
     /// One value for all taxels.
@@ -33,8 +33,8 @@ impl<T> PerTaxel<T> {
         }
     }
 
-    /// Checks that there is one value, or one for each place of the patch, and that each is valid. Errors contain the patch's name, and the taxel (from 1)
-    /// if there is one value each.
+    /// Checks that there is one value, or one per taxel of the patch, and that each value is valid. Errors contain the patch's name, and also the taxel (from
+    /// 1) if there is one value per taxel.
     pub(super) fn check(
         &self,
         patch: &str,
@@ -57,7 +57,7 @@ impl<T> PerTaxel<T> {
         Ok(())
     }
 
-    /// Returns the stored values: one, or one per taxel.
+    /// Returns the stored values: a single one, or one per taxel.
     pub fn all(&self) -> &[T] {
         match self {
             Self::Equal(equal) => std::slice::from_ref(equal),

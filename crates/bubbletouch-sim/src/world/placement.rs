@@ -19,14 +19,14 @@ use std::f64::consts::TAU;
 /// Half a turn about x: the patch's z points down. Written as constants, so that the rotation is exact.
 const FACING_DOWN: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
 
-/// Difference, metres or radians, below which two values are the same pose: far below the resolution of any skin and far above rounding. Larger:
-/// fine steps would be merged; smaller: 0.1 + 0.2 and 0.3 would be two poses.
+/// Difference, metres or radians, below which two values count as one pose: far below the resolution of any skin and far above rounding. If larger, fine steps
+/// are merged; if smaller, 0.1 + 0.2 and 0.3 are two poses.
 const SAME_POSE: f64 = 1e-9;
 
-/// Values of one coordinate of a touch, in SI units: metres, radians.
+/// Values of one coordinate of a touch, in metres or radians: a list, or a uniform range.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spread {
-    /// Listed values, all different, at least one.
+    /// List of different values, at least one.
     Values(Vec<f64>),
     /// Uniform distribution from `low` to `high`.
     Uniform {
@@ -41,7 +41,7 @@ pub enum Spread {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RestPoses {
-    /// The pose of the model, with the object's own z up.
+    /// The pose of the model in its file, with the object's own z up.
     #[default]
     AsModelled,
     /// The stable resting poses on the table.
@@ -49,7 +49,7 @@ pub enum RestPoses {
 }
 
 impl RestPoses {
-    /// Returns the resting poses of one object.
+    /// Returns the resting poses of one object that this choice selects.
     pub fn poses(self, object: &Model) -> Vec<RestPose> {
         match self {
             Self::AsModelled => vec![as_modelled(object)],
@@ -58,10 +58,10 @@ impl RestPoses {
     }
 }
 
-/// Coordinate of a touch.
+/// Coordinate of a touch, over which a study can vary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TouchAxis {
-    /// Resting pose.
+    /// Resting pose of the object.
     Rest,
     /// Offset of the patch along table x.
     OffsetX,
@@ -73,7 +73,7 @@ pub enum TouchAxis {
     TiltX,
     /// Tilt of the patch about its own y axis.
     TiltY,
-    /// Depth: travel of the patch past first contact.
+    /// Travel of the patch past first contact.
     Depth,
 }
 
@@ -91,11 +91,12 @@ impl TouchAxis {
         }
     }
 
-    /// Returns the spread of listed values, keeping the first of values that are the same pose. Yaws of 0 and a full turn, for example, are one yaw.
+    /// Returns the spread of listed values without duplicates: of values that are one pose, the first is kept. Yaws of 0 and a full turn, for example, are one
+    /// yaw.
     pub fn listed(self, values: Vec<f64>) -> Spread {
         let mut first: Vec<usize> = (0..values.len()).collect();
         let pairs = self.same_poses(&values);
-        // The pairs form chains of neighbours: two passes assign the first value of a chain to all its members.
+        // The pairs form chains of close values; two passes assign the first value of a chain to all its members.
         for &(one, other) in pairs.iter().chain(pairs.iter().rev()) {
             let earlier = first[one].min(first[other]);
             (first[one], first[other]) = (earlier, earlier);
@@ -105,7 +106,7 @@ impl TouchAxis {
         Spread::Values(kept.map(|(_, (value, _))| value).collect())
     }
 
-    /// Returns pairs of indices of values that are the same pose: values closer than [`SAME_POSE`], for yaws modulo a turn.
+    /// Returns pairs of indices of values that count as one pose: values closer than [`SAME_POSE`], for yaws modulo a full turn.
     pub(super) fn same_poses(self, values: &[f64]) -> Vec<(usize, usize)> {
         let is_turn = self == Self::Yaw;
         let place = |value: f64| {
@@ -127,7 +128,7 @@ impl TouchAxis {
     }
 }
 
-/// Rules for choosing the touches of an object; [`touches`](super::touches()) applies them.
+/// Rules for choosing the touches of an object, applied by [`touches`](super::touches()).
 ///
 /// - No uniform spread, no `per_object`: every combination of resting poses and values; the first [`TouchAxis`] varies slowest.
 /// - No uniform spread, `per_object` given: this number of different combinations, drawn without replacement, all equally likely.
@@ -138,26 +139,26 @@ impl TouchAxis {
 pub struct Placement {
     /// Resting poses of the object.
     pub rest: RestPoses,
-    /// Offset of the patch's axis along table x from the middle of the object's box; metres.
+    /// Range of the offset of the patch's axis along table x from the middle of the object's bounding box; metres.
     pub offset_x: Spread,
-    /// Offset of the patch's axis along table y; metres.
+    /// Range of the offset of the patch's axis along table y from the middle of the object's bounding box; metres.
     pub offset_y: Spread,
-    /// Yaw: turn of the object about table z; radians.
+    /// Range of the yaw, the turn of the object about table z; radians.
     pub yaw: Spread,
-    /// Tilt of the patch about its own x axis; radians, less than a quarter turn either way.
+    /// Range of the patch's tilt about its own x axis; radians, less than a quarter turn in either direction.
     pub tilt_x: Spread,
-    /// Tilt of the patch about its own y axis, after `tilt_x`; radians, less than a quarter turn either way.
+    /// Range of the patch's tilt about its own y axis, after `tilt_x`; radians, less than a quarter turn in either direction.
     pub tilt_y: Spread,
-    /// Depth: travel of the patch past first contact; metres, zero or positive.
+    /// Range of the depth, the travel of the patch past first contact; metres, zero or positive.
     pub depth: Spread,
     /// Number of touches of each object; every combination if `None`.
     pub per_object: Option<usize>,
 }
 
-/// One touch of one object.
+/// One touch of one object: resting pose, offsets, angles and depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
-    /// Index of the resting pose in the object's list.
+    /// Index of the resting pose in the object's list of poses.
     pub rest: usize,
     /// Offset of the patch's axis at the height of the object's top, table x and y, metres.
     pub offset: [f64; 2],
@@ -186,11 +187,11 @@ impl Placement {
 }
 
 impl Touch {
-    /// Returns the group of this touch: the index of its value on each of these axes. Splits keep whole groups
-    /// (an offset, a yaw, a resting pose) out of training.
+    /// Returns the group of this touch: the index of its value on each of these axes. Data splits keep whole groups (an offset, a yaw, a resting pose) out of
+    /// training.
     ///
     /// # Errors
-    /// If the values of an axis are uniformly distributed: no two touches share one.
+    /// If the values of an axis are uniformly distributed, because no two touches share a value.
     pub fn group(&self, axes: &[TouchAxis]) -> Result<Vec<usize>> {
         let index = |axis: &TouchAxis| {
             self.indices[*axis as usize].ok_or_else(|| {
@@ -204,7 +205,7 @@ impl Touch {
         axes.iter().map(index).collect()
     }
 
-    /// Returns the value on an axis, in SI units; for the resting pose its number.
+    /// Returns the coordinate of the touch on an axis, in SI units; for the resting pose its index.
     pub fn value(&self, axis: TouchAxis) -> f64 {
         match axis {
             TouchAxis::Rest => self.rest as f64,
@@ -231,7 +232,7 @@ impl Touch {
 }
 
 impl Placement {
-    /// Returns the spread of each axis except [`TouchAxis::Rest`], in product order.
+    /// Returns the spread of each axis except [`TouchAxis::Rest`], in the order of the product.
     pub fn spreads(&self) -> [(TouchAxis, &Spread); 6] {
         [
             (TouchAxis::OffsetX, &self.offset_x),
@@ -295,7 +296,7 @@ mod tests {
         let mut touch = touch();
         touch.yaw = FRAC_PI_2;
         let pose = touch.patch_from_object(&REST);
-        // Object x points along table y, which is −y of the patch, because the patch is rotated about x by half a turn.
+        // The object's x points along table y, which is −y of the patch, because the patch is rotated about x by half a turn.
         close(pose.transform_vector(DVec3::X), DVec3::NEG_Y);
         close(pose.transform_vector(DVec3::Y), DVec3::NEG_X);
     }

@@ -1,4 +1,4 @@
-//! Lateral properties of a taxel's tip: shear spring and friction.
+//! Lateral properties of a taxel: shear spring and friction.
 
 use super::{Patch, PerTaxel};
 use crate::error::Result;
@@ -7,19 +7,19 @@ use crate::text::in_range::{not_negative, positive};
 /// Shear spring and friction of a taxel, optional for a [`Patch`]; without them taxels move along their axes only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
-    /// Shear stiffness k_t, N/m, positive: stiffness of the tip perpendicular to the taxel's axis.
+    /// Shear stiffness k_t perpendicular to the taxel's axis, N/m, positive.
     pub stiffness: f64,
-    /// Coefficient of friction μ between tip and object, zero or positive.
+    /// Coefficient of friction μ between taxel and object, zero or positive.
     pub friction: f64,
 }
 
 impl Shear {
-    /// Returns the largest displacement of the tip before it slips, metres: μ f / k_t for a normal force of `force` newtons.
+    /// Returns the largest shear displacement without slip, metres: μ f / k_t for a normal force f of `force` newtons.
     pub fn reach(&self, force: f64) -> f64 {
         self.friction * force / self.stiffness
     }
 
-    /// Checks the properties.
+    /// Checks the shear stiffness and the coefficient of friction.
     ///
     /// # Errors
     /// If a property is out of its range; the error names the first one.
@@ -29,7 +29,7 @@ impl Shear {
     }
 }
 
-/// Shear springs of a patch.
+/// Shear springs of a patch: equal or one per taxel.
 pub type Shears = PerTaxel<Shear>;
 
 impl Shears {

@@ -7,24 +7,23 @@ use glam::DVec3;
 /// Sensing element: a sphere on a spring and damper that slides along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taxel {
-    /// Radius ρ, metres, positive.
+    /// Radius ρ of the sphere, metres, positive.
     pub radius: f64,
-    /// Stiffness k, N/m, positive.
+    /// Stiffness k of the spring, N/m, positive.
     pub stiffness: f64,
-    /// Damping c, N·s/m, zero or positive.
+    /// Damping c of the damper, N·s/m, zero or positive.
     pub damping: f64,
     /// Stroke s, metres, positive: deflection at which the taxel is saturated.
     pub stroke: f64,
 }
 
 impl Taxel {
-    /// Returns the height of the substrate above the rest centre, along the axis, metres: −s − ρ. The contact law (`contact::law`) ignores objects behind
-    /// it.
+    /// Returns the height of the substrate relative to the rest centre, along the axis, metres: −s − ρ. The contact law ignores objects behind the substrate.
     pub fn substrate(&self) -> f64 {
         -self.stroke - self.radius
     }
 
-    /// Checks the properties.
+    /// Checks the properties of the taxel.
     ///
     /// # Errors
     /// If a property is out of its range; the error names the first one.
@@ -36,35 +35,35 @@ impl Taxel {
     }
 }
 
-/// Rectangular grid of rest positions, centred on the patch's origin.
+/// Rectangular grid of rest centres, centred on the patch's origin.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grid {
     /// Number of columns, along patch x.
     pub nx: usize,
     /// Number of rows, along patch y.
     pub ny: usize,
-    /// Distance between neighbours, metres, positive.
+    /// Distance between neighbouring taxels, metres, positive.
     #[serde(rename = "pitch_m")]
     pub pitch: f64,
 }
 
 impl Grid {
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of the grid.
     pub fn n_taxels(&self) -> usize {
         self.nx * self.ny
     }
 
-    /// Returns x of a column, metres: `(column − (nx − 1)/2) · pitch`.
+    /// Returns the x coordinate of a column, metres: `(column − (nx − 1)/2) · pitch`.
     pub fn x(&self, column: usize) -> f64 {
         (column as f64 - 0.5 * (self.nx as f64 - 1.0)) * self.pitch
     }
 
-    /// Returns y of a row, metres: `(row − (ny − 1)/2) · pitch`.
+    /// Returns the y coordinate of a row, metres: `(row − (ny − 1)/2) · pitch`.
     pub fn y(&self, row: usize) -> f64 {
         (row as f64 - 0.5 * (self.ny as f64 - 1.0)) * self.pitch
     }
 
-    /// Returns rest centres and axes, row by row (patch y, ascending).
+    /// Returns rest centres and axes of the grid, row by row (patch y, ascending).
     pub(super) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let rows = (0..self.ny).map(|row| self.y(row));
         rows.flat_map(move |y| {
@@ -72,7 +71,7 @@ impl Grid {
         })
     }
 
-    /// Checks the properties.
+    /// Checks the size and pitch of the grid.
     ///
     /// # Errors
     /// If a property is out of its range; the error names the first one.

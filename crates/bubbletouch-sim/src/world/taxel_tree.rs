@@ -1,67 +1,68 @@
-//! Tree of boxes over the taxels of a patch, with which a sphere finds the taxels within its reach.
+//! Tree of bounding boxes over the taxels of a patch, which finds the taxels within reach of a sphere.
 //!
-//! Let h = (c − p)·n, and b the distance beside the axis. A sphere (c, R) pushes a taxel (rest centre p, axis n, radius ρ, stroke s) only if
-//! b < S = ρ + R. Also, the sphere must not be wholly behind the substrate: `h + √(S² − b²) ≥ −s − ρ` (see [`contact`](crate::contact)).
-//! So the distance of c from the taxel's segment, from p back to p − (s + ρ) n, is less than S. The boxes bound these segments.
+//! Let h = (c − p)·n, and b the distance of c from the axis. A sphere (c, R) pushes a taxel (rest centre p, axis n, radius ρ, stroke s) only if b < S = ρ + R.
+//! Also, the sphere must not be wholly behind the substrate: `h + √(S² − b²) ≥ −s − ρ`. So the distance of c from the taxel's segment, from p back to p − (s +
+//! ρ) n, is less than S. The boxes bound these segments.
 
 use super::{Layout, Taxel, Taxels};
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// Largest number of taxels in a leaf, evaluated with one or two vector instructions. Larger: needless taxels; smaller: needless boxes.
+/// Maximum number of taxels in a leaf, evaluated with one or two vector instructions. If larger, taxels are evaluated needlessly; if smaller, more boxes are
+/// tested.
 pub(crate) const LEAF: usize = 8;
-/// Stroke without a limit, metres.
+/// Stroke of taxels without a stop, metres.
 const ENDLESS: f64 = 1e6;
 /// Factor that covers rounding of a reach: far above 1e-16 and far below any measurable difference.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Taxels of a patch, grouped by neighbourhood.
+/// Taxels of a patch, grouped by neighbourhood in a tree of boxes.
 #[derive(Clone, Debug)]
 pub struct TaxelTree {
-    /// Nodes, each before all nodes below it.
+    /// Nodes of the tree, each before all nodes below it.
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
     /// Largest depth s + ρ of a taxel, metres.
     depth: f64,
 }
 
-/// Taxel with the quantities that its contact needs.
+/// Taxel with the quantities that the contact law needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedTaxel {
-    /// Number of the taxel in the layout.
+    /// Index of the taxel in the layout.
     pub number: u32,
-    /// Rest centre p, metres.
+    /// Rest centre p of the taxel, metres.
     pub center: DVec3,
     /// Unit vectors perpendicular to the axis; X and Y for a taxel along Z, so that a flat patch is computed like a grid.
     pub across: [DVec3; 2],
-    /// Axis n, unit.
+    /// Axis n of the taxel, unit vector.
     pub axis: DVec3,
-    /// Radius ρ, metres.
+    /// Radius ρ of the taxel, metres.
     pub radius: f64,
-    /// Height of the substrate along the axis, metres: [`Taxel::substrate`].
+    /// Height of the substrate along the axis, relative to the rest centre, metres ([`Taxel::substrate`]).
     pub behind: f64,
 }
 
-/// Neighbouring taxels, coordinate by coordinate. Unused places repeat the last taxel, with everything behind its substrate.
+/// Group of neighbouring taxels, coordinate by coordinate. Unused entries repeat the last taxel, with everything behind its substrate.
 #[derive(Clone, Debug)]
 pub(crate) struct Leaf {
     pub numbers: [u32; LEAF],
-    /// Rest centres p: x, y, z, metres.
+    /// Rest centres p of the taxels: x, y, z, metres.
     pub centers: [[f64; LEAF]; 3],
     /// Two unit vectors perpendicular to each axis.
     pub across: [[[f64; LEAF]; 3]; 2],
-    /// Axes n, unit.
+    /// Axes n of the taxels, unit vectors.
     pub axes: [[f64; LEAF]; 3],
-    /// Radii ρ, metres.
+    /// Radii ρ of the taxels, metres.
     pub radii: [f64; LEAF],
-    /// Heights of the substrates, −s − ρ, metres.
+    /// Heights of the taxels' substrates, −s − ρ, metres.
     pub behind: [f64; LEAF],
 }
 
-/// Number that marks an unused place.
+/// Taxel index that marks an unused entry of a leaf.
 const NONE: u32 = u32::MAX;
 
-/// Box around the segments of some taxels.
+/// Node of the tree: a box around the segments of some taxels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub bounds: Aabb,
@@ -69,7 +70,7 @@ pub(crate) struct Node {
     pub radius: f64,
     /// Index of the leaf, if the node is one.
     leaf: Option<u32>,
-    /// Index of the first node that is not below this one.
+    /// Index of the first node after this node's descendants.
     next: u32,
 }
 
@@ -89,7 +90,7 @@ impl TaxelTree {
         tree
     }
 
-    /// Creates the tree for travel along a direction (unit): all axes equal the direction, and strokes are unlimited.
+    /// Creates the tree for travel along a direction (unit vector): all axes equal the direction, and strokes are unlimited.
     pub fn travelling(layout: &Layout, taxels: &Taxels, direction: DVec3) -> Self {
         let endless = |taxel: &Taxel| Taxel {
             stroke: ENDLESS,
@@ -106,29 +107,29 @@ impl TaxelTree {
         )
     }
 
-    /// Returns the box around the segments of all taxels, metres; `None` if there are none.
+    /// Returns the box around the segments of all taxels, metres; `None` if there are no taxels.
     pub fn bounds(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
     }
 
-    /// Returns the largest ρ, metres.
+    /// Returns the largest radius ρ of a taxel, metres.
     pub fn largest_radius(&self) -> f64 {
         self.nodes.first().map_or(0.0, |root| root.radius)
     }
 
-    /// Returns the largest s + ρ, metres.
+    /// Returns the largest depth s + ρ of a taxel, metres.
     pub fn depth(&self) -> f64 {
         self.depth
     }
 
-    /// Returns whether a ball may push a taxel; metres, in the patch frame. May also be true for a ball that only comes near.
+    /// Returns whether a ball may push a taxel; metres, in the patch frame. The result may also be true for a ball that only comes near.
     #[inline]
     pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
         let root = self.nodes.first();
         root.is_some_and(|root| root.is_near(center, radius))
     }
 
-    /// Calls `visit` with each taxel that a ball can push, and possibly with others nearby; metres, in the patch frame.
+    /// Calls `visit` with each taxel that a ball can push, and possibly with other taxels nearby; metres, in the patch frame.
     #[inline]
     pub(crate) fn each_near(
         &self,
@@ -162,7 +163,7 @@ impl TaxelTree {
         }
     }
 
-    /// Creates the nodes of some taxels, split across the longest side of the box around their centres into full leaves; returns the first node.
+    /// Creates the nodes of some taxels, split across the longest side of the box around their centres into full leaves. Returns the index of the first node.
     fn split(&mut self, of: (&Layout, &Taxels), numbers: &mut [u32]) -> usize {
         let (layout, taxels) = of;
         let index = self.nodes.len();
@@ -182,7 +183,7 @@ impl TaxelTree {
         let low = all().fold(DVec3::INFINITY, DVec3::min);
         let side = (all().fold(DVec3::NEG_INFINITY, DVec3::max) - low).max_position();
         let half = (numbers.len() / 2).next_multiple_of(LEAF);
-        // Ties are broken by number, so that the tree depends on the taxels only.
+        // Ties are broken by index, so that the tree depends on the taxels only.
         numbers.select_nth_unstable_by(half, |&a, &b| {
             let order = center(a)[side].total_cmp(&center(b)[side]);
             order.then(a.cmp(&b))
@@ -220,13 +221,13 @@ impl Leaf {
         }
     }
 
-    /// Returns a vector of one taxel.
+    /// Returns the k-th taxel's vector from coordinates stored by component.
     #[inline(always)]
     pub fn vector(&self, of: &[[f64; LEAF]; 3], k: usize) -> DVec3 {
         DVec3::new(of[0][k], of[1][k], of[2][k])
     }
 
-    /// Returns the taxels one by one.
+    /// Returns the taxels of the leaf one by one.
     fn taxels(&self) -> impl Iterator<Item = PlacedTaxel> {
         let numbers = self.numbers.iter().enumerate();
         let numbers = numbers.take_while(|(_, number)| **number != NONE);
@@ -276,7 +277,7 @@ impl Node {
         self.margin(center, radius) >= 0.0
     }
 
-    /// Returns (R + ρ)² minus the squared distance between a ball's centre and the node's box, m²: an upper bound for each of the node's taxels.
+    /// Returns (R + ρ)² minus the squared distance between a ball's centre and the node's box, m². The value is an upper bound for each of the node's taxels.
     #[inline(always)]
     pub fn margin(&self, center: DVec3, radius: f64) -> f64 {
         let reach = (self.radius + radius) * ROUNDING;
@@ -285,7 +286,7 @@ impl Node {
 }
 
 impl PlacedTaxel {
-    /// Returns a taxel of a layout by its number.
+    /// Creates the placed taxel of a layout by its index.
     pub fn new(layout: &Layout, taxels: &Taxels, number: usize) -> Self {
         let frame = layout.frame(number);
         let taxel = taxels.at(number);

@@ -1,4 +1,4 @@
-//! Generation of an object's touches from a [`Placement`].
+//! Generation of an object's touches from placement rules.
 
 use super::placement::{Placement, Spread, Touch, TouchAxis};
 use super::rest::RestPose;
@@ -8,10 +8,10 @@ use rand::Rng;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
-/// Largest number of touches of one object: far above any study; stops a mistyped list before memory runs out.
+/// Maximum number of touches of one object: far above any study; it stops a mistyped list before memory runs out.
 pub const MAX_TOUCHES: usize = 10_000_000;
 
-/// Touches of one object, by the rules of [`Placement`], created one at a time: even millions of touches need no memory.
+/// Touches of one object, by the rules of a [`Placement`]. Touches are created one at a time, so even millions need no memory.
 #[derive(Clone, Debug)]
 pub struct TouchSource<'a> {
     spreads: [(TouchAxis, &'a Spread); 6],
@@ -20,14 +20,14 @@ pub struct TouchSource<'a> {
     order: Order,
 }
 
-/// Mapping from numbers to touches.
+/// Rule that maps the index of a touch to its coordinates.
 #[derive(Clone, Debug)]
 enum Order {
-    /// `n` touches, each drawn by its own number.
+    /// Total of `n` touches, each drawn randomly from its own index.
     Drawn(usize),
-    /// All `n` combinations, in order.
+    /// All `n` combinations of values, in order.
     Product(usize),
-    /// Randomly chosen combinations, by their numbers.
+    /// Randomly chosen combinations, by their indices.
     Chosen(Vec<usize>),
 }
 
@@ -52,7 +52,7 @@ impl<'a> TouchSource<'a> {
         })
     }
 
-    /// Returns the number of touches.
+    /// Returns the number of touches of the object.
     pub fn n_touches(&self) -> usize {
         match &self.order {
             Order::Drawn(n) | Order::Product(n) => *n,
@@ -60,10 +60,10 @@ impl<'a> TouchSource<'a> {
         }
     }
 
-    /// Returns the touch with a number below [`n_touches`](Self::n_touches).
+    /// Returns the touch with the given index, which must be below `n_touches`.
     ///
     /// # Panics
-    /// If combinations are chosen and the number is not below [`n_touches`](Self::n_touches).
+    /// If combinations are chosen and the index is not below `n_touches`.
     pub fn touch(&self, number: usize) -> Touch {
         match &self.order {
             Order::Drawn(_) => {
@@ -79,7 +79,7 @@ impl<'a> TouchSource<'a> {
 /// Returns all touches of one object.
 ///
 /// # Errors
-/// If [`TouchSource::new`] fails.
+/// If the placement is invalid ([`TouchSource::new`]).
 pub fn touches(placement: &Placement, rests: &[RestPose], seed: &Seed) -> Result<Vec<Touch>> {
     let source = TouchSource::new(placement, rests, seed)?;
     Ok((0..source.n_touches()).map(|n| source.touch(n)).collect())
@@ -116,7 +116,7 @@ fn order(
     }
 }
 
-/// Returns the listed values of each axis; empty for a uniform axis.
+/// Returns the listed values of each axis; an empty list for a uniform axis.
 fn values<'a>(spreads: &[(TouchAxis, &'a Spread); 6]) -> [&'a [f64]; 6] {
     spreads.map(|(_, spread)| match spread {
         Spread::Values(values) => values.as_slice(),
@@ -124,7 +124,7 @@ fn values<'a>(spreads: &[(TouchAxis, &'a Spread); 6]) -> [&'a [f64]; 6] {
     })
 }
 
-/// Returns the touch of one combination; the last axis varies fastest.
+/// Returns the touch of the combination with the given index; the last axis varies fastest.
 fn combined(values: &[&[f64]; 6], mut combination: usize) -> Touch {
     let mut indices = [0; 7];
     for (axis, values) in values.iter().enumerate().rev() {
@@ -136,8 +136,8 @@ fn combined(values: &[&[f64]; 6], mut combination: usize) -> Touch {
     touch_at(coordinates, indices.map(Some))
 }
 
-/// Returns `count` different numbers below n in random order: the start of a shuffle that stores only the moved places.
-/// The result for a smaller count is a prefix of the result for a larger one.
+/// Returns `count` different numbers below n in random order: the start of a shuffle that stores only the moved entries. The result for a smaller count is a
+/// prefix of the result for a larger one.
 fn without_replacement(n: usize, count: usize, seed: &Seed) -> Vec<usize> {
     let mut rng = seed.named("combinations").rng();
     let mut moved = HashMap::new();
@@ -170,7 +170,7 @@ fn drawn(spreads: &[(TouchAxis, &Spread); 6], rests: &[RestPose], touch: &Seed) 
     touch_at(coordinates, indices)
 }
 
-/// Returns the resting pose whose part of [0, 1) contains `position`.
+/// Returns the index of the resting pose whose part of the interval [0, 1) contains `position`.
 fn drawn_rest(rests: &[RestPose], position: f64) -> usize {
     let total: f64 = rests.iter().map(|rest| rest.probability).sum();
     let mut left = position * total;
@@ -239,7 +239,7 @@ fn check_spread(axis: TouchAxis, spread: &Spread) -> Result<()> {
     }
 }
 
-/// Returns the allowed values of an axis, as a test and as text.
+/// Returns the allowed values of an axis, as a predicate and as text.
 fn range_of(axis: TouchAxis) -> (fn(f64) -> bool, &'static str) {
     match axis {
         TouchAxis::Depth => (

@@ -78,7 +78,7 @@ impl Envelope {
     }
 }
 
-/// State of the search over one mesh. The heights are divided into cells, so that the search can compare a box with the heights found so far.
+/// State of the search over one mesh. The heights are stored in `Cell`s, so that the search can read and lower them at any time.
 struct Sweep<'a> {
     view: MeshView,
     /// Radius ρ of a taxel, metres.

@@ -1,17 +1,17 @@
-//! Time course of a touch: states, connected by minimum-jerk movements.
+//! Time course of a touch: states of the hand, connected by minimum-jerk movements.
 
 /// State of the hand relative to the touched place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct State {
     /// Height of the hand above first contact, metres; negative while the hand presses.
     pub height: f64,
-    /// Displacement along the skin, metres.
+    /// Displacement of the hand along the skin, metres.
     pub slid: f64,
     /// Closing of the fingers, 0 to 1.
     pub closed: f64,
 }
 
-/// Sequence of states.
+/// Time course of a touch: a start state, and phases that end in further states.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Course {
     start: State,
@@ -27,22 +27,22 @@ impl Course {
         }
     }
 
-    /// Returns the final state.
+    /// Returns the state of the hand at the end of the course.
     pub fn end(&self) -> State {
         self.phases.last().map_or(self.start, |phase| phase.1)
     }
 
-    /// Appends a movement to a state.
+    /// Appends a movement of `seconds` to the state `to`.
     pub fn go(&mut self, seconds: f64, to: State) {
         self.phases.push((seconds, to));
     }
 
-    /// Appends a pause.
+    /// Appends a pause of `seconds` in the present state.
     pub fn wait(&mut self, seconds: f64) {
         self.go(seconds, self.end());
     }
 
-    /// Appends a descent to `-depth`; its last `rise` seconds are below the height 0.
+    /// Appends a descent of the hand to the depth `depth`, metres; its last `rise` seconds are spent in contact (height below 0).
     pub fn press(&mut self, depth: f64, rise: f64) {
         let from = self.end();
         let above = time_of_share(from.height / (from.height + depth));
@@ -53,19 +53,19 @@ impl Course {
         self.go(rise / (1.0 - above), to);
     }
 
-    /// Appends an ascent to a height; its first `fall` seconds are below the height 0.
+    /// Appends an ascent of the hand to a height, metres; its first `fall` seconds are spent in contact (height below 0).
     pub fn lift(&mut self, height: f64, fall: f64) {
         let from = self.end();
         let below = time_of_share(-from.height / (height - from.height));
         self.go(fall / below, State { height, ..from });
     }
 
-    /// Returns the duration, seconds.
+    /// Returns the duration of the course, seconds.
     pub fn duration(&self) -> f64 {
         self.phases.iter().map(|phase| phase.0).sum()
     }
 
-    /// Returns the state at a time in seconds; constant before the start and after the end.
+    /// Returns the state of the hand at a time in seconds; constant before the start and after the end.
     pub fn at(&self, time: f64) -> State {
         let (mut begin, mut from) = (0.0, self.start);
         for &(seconds, to) in &self.phases {
@@ -85,15 +85,15 @@ impl Course {
     }
 }
 
-/// Returns the fraction of a minimum-jerk movement completed after a fraction of its time, both 0 to 1 \[FH\].
+/// Returns the fraction of a minimum-jerk movement that is completed after the fraction `t` of its time, both 0 to 1 \[FH\].
 fn least_jerk(t: f64) -> f64 {
     t * t * t * (10.0 - t * (15.0 - 6.0 * t))
 }
 
-/// Returns the fraction of the time after which a fraction of the movement is completed.
+/// Returns the fraction of the time after which the given fraction of a minimum-jerk movement is completed, both 0 to 1.
 fn time_of_share(way: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
-    // Each bisection gains one of the 53 bits.
+    // Each bisection determines one of the 53 bits.
     for _ in 0..53 {
         let middle = 0.5 * (low + high);
         match least_jerk(middle) < way {

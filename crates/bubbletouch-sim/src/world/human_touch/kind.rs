@@ -6,21 +6,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TouchKind {
-    /// One short touch.
+    /// The hand touches the arm once, briefly.
     Tap,
-    /// One long touch.
+    /// The hand touches the arm once and stays for a while.
     Hold,
-    /// Slides along the arm.
+    /// The hand slides along the arm.
     Stroke,
-    /// Presses with the flat hand, and presses deeper while it pushes along the skin.
+    /// The flat hand presses, and presses deeper while it pushes along the skin.
     Shove,
-    /// Touches several times.
+    /// The hand touches the arm several times.
     Pat,
-    /// Closes the fingers around the arm.
+    /// The fingers close around the arm.
     Grab,
 }
 
-/// All kinds, in the order of their labels.
+/// All kinds of touch, in the order of their class labels.
 pub const TOUCH_KINDS: [TouchKind; 6] = [
     TouchKind::Tap,
     TouchKind::Hold,
@@ -31,7 +31,7 @@ pub const TOUCH_KINDS: [TouchKind; 6] = [
 ];
 
 impl TouchKind {
-    /// Returns the name of the kind in files, one word.
+    /// Returns the name of the kind in files, a single word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tap => "tap",

@@ -7,18 +7,17 @@ use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::FRAC_PI_2;
 
-/// Largest distance between the spheres of a hand and its surface, metres. Larger: a finger acts like a row of balls; smaller: a frame costs
-/// more (10 to 30 µs for 100 spheres).
+/// Largest distance between the spheres of a hand and its surface, metres. If larger, a finger acts like a row of balls; if smaller, a frame costs more (10 to
+/// 30 µs for 100 spheres).
 const SURFACE_ERROR: f64 = 0.5e-3;
 
-/// Largest inclination of a hand, radians. Larger: a flat hand, which is rigid, touches with the ball of the thumb or
-/// a finger alone.
+/// Largest inclination of a hand, radians. If larger, a flat hand (which is rigid) touches only with the ball of the thumb or a finger.
 const LEVEL: f64 = 0.03;
 
 /// Bending of the fingers of a fist, as a fraction of [`Hand::curled`].
 const FIST: f64 = 0.85;
 
-/// Hand before its motion.
+/// Posture of a hand before it moves: finger positions, orientation, and the point above the touched place.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Posture {
     /// Hand with open fingers.
@@ -44,7 +43,7 @@ impl Posture {
             false => Hand::curled(FIST),
         };
         open.length = length;
-        // Fingertips touch first: the wrist is higher.
+        // Fingertips touch first if the wrist is higher.
         let mut pitch = rng.gen_range(-LEVEL..=LEVEL);
         if !is_flat {
             pitch = -rng.gen_range(0.35..=0.8);
@@ -72,8 +71,8 @@ impl Posture {
         }
     }
 
-    /// Closes the fingers until each would be `grip` metres deep in the skin of an arm of radius `surface`, with the hand at
-    /// `-depth`. A finger that does not reach the arm closes to a fist.
+    /// Closes the fingers until each would be `grip` metres deep in the skin of an arm of radius `surface`, with the hand at the depth `depth`. A finger that
+    /// does not reach the arm closes to a fist.
     pub fn close(&mut self, surface: f64, depth: f64, grip: f64) {
         let height = self.first_contact(surface) - depth;
         let fist = Hand::curled(1.0);
@@ -113,7 +112,7 @@ impl Posture {
         heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Returns the height of the anchor at which a ball touches; `None` if the ball passes beside the arm.
+    /// Returns the height of the anchor at which a ball of the hand touches the arm, metres; `None` if the ball passes beside the arm.
     fn touches_at(&self, ball: &Sphere, surface: f64) -> Option<f64> {
         let at = self.place_from_hand * (ball.center - self.anchor);
         let reach = ball.radius + surface;
@@ -121,7 +120,7 @@ impl Posture {
         (square > 0.0).then(|| square.sqrt() - at.z - surface)
     }
 
-    /// Returns the penetration of a ball into the arm with the anchor at a height, metres; negative outside.
+    /// Returns the penetration of a ball into the arm with the anchor at the given height, metres; negative if the ball is outside.
     fn sunk(&self, ball: Sphere, surface: f64, height: f64) -> f64 {
         let at = self.place_from_hand * (ball.center - self.anchor);
         ball.radius + surface - at.y.hypot(at.z + height + surface)
@@ -129,7 +128,7 @@ impl Posture {
 
     /// Returns `patch_from_hand` for the anchor at `height` metres above a place of the arm.
     pub fn pose(&self, (along, around): (f64, f64), radius: f64) -> Pose {
-        // The frame of the place at +x (its x is −z of the arm, y is unchanged, z is the arm's x), rotated around the arm.
+        // Frame of the touched place at +x (its x is −z of the arm, y is unchanged, z is the arm's x), rotated around the arm.
         let rotation = DQuat::from_rotation_z(around) * DQuat::from_rotation_y(FRAC_PI_2);
         let place = radius * (rotation * DVec3::Z) + along * DVec3::Z;
         let patch_from_hand = rotation * self.place_from_hand;
@@ -137,13 +136,13 @@ impl Posture {
     }
 }
 
-/// Returns the spheres of a hand, within [`SURFACE_ERROR`].
+/// Returns the hand as a union of spheres, within [`SURFACE_ERROR`] of its surface.
 pub(super) fn spheres(hand: &Hand) -> SphereUnion {
     let solid = hand.solid().expect("fingers between open and closed");
     solid.pack(SURFACE_ERROR).expect("a hand takes few spheres")
 }
 
-/// Sets a digit (0 to 3 are fingers, 4 is the thumb) by interpolation between two hands.
+/// Sets one digit (0 to 3 are fingers, 4 is the thumb) by interpolation between two hands.
 fn bend(hand: &mut Hand, from: &Hand, to: &Hand, (digit, share): (usize, f64)) {
     let between = |a: f64, b: f64| a + share * (b - a);
     let pose = |a: &FingerPose, b: &FingerPose| FingerPose {
@@ -160,7 +159,8 @@ fn bend(hand: &mut Hand, from: &Hand, to: &Hand, (digit, share): (usize, f64)) {
     }
 }
 
-/// Returns the least fraction for which a condition holds, to 1e-4; 1 if there is none. The search takes steps, because a finger can move past the arm.
+/// Returns the smallest fraction, 0 to 1, for which a condition holds, to 1e-4; 1 if there is none. The search proceeds in steps, because a finger can move
+/// past the arm.
 fn first_share(is_so: impl Fn(f64) -> bool) -> f64 {
     const STEPS: usize = 40;
     let share = |step: usize| step as f64 / STEPS as f64;
@@ -178,7 +178,7 @@ fn first_share(is_so: impl Fn(f64) -> bool) -> f64 {
     high
 }
 
-/// Returns the middle of the touching part: the fingertips, or a point near the knuckles of the flat hand.
+/// Returns the middle of the touching part of a hand: the fingertips, or a point near the knuckles of the flat hand.
 fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
     let strands = hand.strands();
     match fingers {
@@ -193,7 +193,7 @@ fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
     }
 }
 
-/// Returns balls along the phalanges of a digit (0 to 3 are fingers, 4 is the thumb).
+/// Returns balls along the phalanges (finger bones) of a digit (0 to 3 are fingers, 4 is the thumb).
 fn phalanges(hand: &Hand, digit: usize) -> Vec<Sphere> {
     const STEPS: usize = 6;
     let strand = if digit == 4 { Hand::THUMB } else { digit };

@@ -6,45 +6,45 @@ use std::ops::RangeInclusive;
 
 /// Ranges of the parameters of one kind of touch, drawn uniformly. Parameters that a kind does not use are not drawn.
 ///
-/// The default ranges are our choice, except for the length of the hand.
+/// The default ranges were chosen for this project, except for the length of the hand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TouchRanges {
     /// Length of the hand, metres; adults have 0.16 to 0.21 \[BK\].
     pub hand_length: RangeInclusive<f64>,
-    /// Numbers of touching fingers: 1 to 4 are fingertips, 5 is the flat hand. Ignored by shove (flat) and grab.
+    /// Numbers of touching fingers: 1 to 4 are fingertips, 5 is the flat hand. Ignored by shove (always the flat hand) and grab.
     pub fingers: Vec<usize>,
-    /// Place along the arm's axis, metres from the middle.
+    /// Position of the touch along the arm's axis, metres from the middle.
     pub along: RangeInclusive<f64>,
-    /// Angle around the arm, radians.
+    /// Position of the touch around the arm, radians from +x.
     pub around: RangeInclusive<f64>,
-    /// Angle of the fingers from across the arm towards its axis, radians.
+    /// Angle of the fingers from the direction across the arm towards the arm's axis, radians.
     pub yaw: RangeInclusive<f64>,
     /// Height of the hand above the skin at the start and the end, metres.
     pub clearance: RangeInclusive<f64>,
     /// Depth of the hand past first contact, metres.
     pub depth: RangeInclusive<f64>,
-    /// Time from first contact to the depth, and back, seconds each.
+    /// Time from first contact to the largest depth, and back, seconds each.
     pub rise: RangeInclusive<f64>,
-    /// Time at the depth, seconds.
+    /// Time at the largest depth, seconds.
     pub hold: RangeInclusive<f64>,
-    /// Pat: number of contacts.
+    /// Number of contacts; used by pat.
     pub contacts: RangeInclusive<usize>,
-    /// Pat: height of the hand between contacts, metres.
+    /// Height of the hand between contacts, metres; used by pat.
     pub lift: RangeInclusive<f64>,
-    /// Stroke, shove: length of the path along the skin, metres.
+    /// Length of the path along the skin, metres; used by stroke and shove.
     pub travel: RangeInclusive<f64>,
-    /// Stroke, shove: mean speed, metres per second.
+    /// Mean speed along the skin, metres per second; used by stroke and shove.
     pub speed: RangeInclusive<f64>,
-    /// Stroke, shove: angle from the arm's axis, radians; both directions along the arm are equally likely.
+    /// Direction of the path, radians from the arm's axis; both directions along the arm are equally likely. Used by stroke and shove.
     pub direction: RangeInclusive<f64>,
-    /// Grab: time in which the fingers close, and open, seconds each.
+    /// Time in which the fingers close, and time in which they open, seconds each; used by grab.
     pub closing: RangeInclusive<f64>,
-    /// Grab: depth of each finger in the skin, metres.
+    /// Depth of each finger in the skin, metres; used by grab.
     pub grip: RangeInclusive<f64>,
 }
 
 impl TouchRanges {
-    /// Returns the default ranges of a kind.
+    /// Returns the default ranges of one kind of touch.
     pub fn usual(kind: TouchKind) -> Self {
         let tap = Self {
             hand_length: 0.165..=0.205,
@@ -107,7 +107,7 @@ impl TouchRanges {
         }
     }
 
-    /// Checks the ranges.
+    /// Checks that every range is valid.
     ///
     /// # Errors
     /// If a range is empty, not finite, or outside the values for which a touch is defined; the error names the range.

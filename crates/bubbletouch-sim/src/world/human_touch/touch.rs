@@ -1,4 +1,4 @@
-//! One touch: its drawn parameters, and the resulting motion of the hand.
+//! Human touch: its randomly drawn parameters, and the resulting motion of the hand.
 
 use super::course::{Course, State};
 use super::posture::{Posture, spheres};
@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// Touch of a forearm by a hand.
+/// Touch of a forearm by a hand: drawn parameters, and the motion of the hand over time.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -31,17 +31,17 @@ use std::ops::RangeInclusive;
 pub struct HumanTouch {
     /// Kind of the touch.
     pub kind: TouchKind,
-    /// Number of touching fingertips (1 to 4); 5 is the flat hand, or a grab.
+    /// Number of touching fingertips (1 to 4); 5 for the flat hand or a grab.
     pub fingers: usize,
-    /// Place along the arm's axis (+z) where the touch begins, metres from the middle.
+    /// Position along the arm's axis (+z) where the touch begins, metres from the middle.
     pub along: f64,
     /// Angle around the arm where the touch begins, radians from +x.
     pub around: f64,
     /// Largest depth of the hand past first contact, metres; the palm's depth for a grab.
     pub depth: f64,
-    /// Time from first contact to the largest depth, and back, seconds each.
+    /// Time from first contact to the largest depth, and time back, seconds each.
     pub rise: f64,
-    /// Time of each contact at the largest depth, seconds.
+    /// Time that each contact lasts at the largest depth, seconds.
     pub hold: f64,
     /// Number of contacts.
     pub contacts: usize,
@@ -51,7 +51,7 @@ pub struct HumanTouch {
     pub direction: f64,
     /// Distance of the skin from the arm's axis, metres.
     pub surface: f64,
-    /// Height of the anchor above the skin at first contact of the open hand, metres.
+    /// Height of the hand's anchor point above the skin at first contact of the open hand, metres.
     first_contact: f64,
     posture: Posture,
     course: Course,
@@ -60,11 +60,11 @@ pub struct HumanTouch {
 /// State of the hand at one instant of a touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandState {
-    /// Size of the hand, and bending of its fingers.
+    /// Hand at this instant: its size, and the bending of its fingers.
     pub hand: Hand,
-    /// Pose of the hand, metres, in the frame whose z axis is the arm's.
+    /// Pose of the hand in the patch frame, whose z axis is the arm's axis; metres.
     pub patch_from_hand: Pose,
-    /// Height above first contact of the open hand, metres; negative while the hand presses.
+    /// Height of the hand above first contact of the open hand, metres; negative while the hand presses.
     pub height: f64,
     /// Closing of the fingers, 0 to 1.
     pub closed: f64,
@@ -80,10 +80,10 @@ impl HandState {
 impl HumanTouch {
     /// Draws a touch of a kind on an arm whose skin is `surface` metres from its axis.
     ///
-    /// Every parameter is uniform in its range, and independent of all others.
+    /// Every parameter is drawn uniformly from its range, independently of the others.
     ///
     /// # Errors
-    /// If [`TouchRanges::check`] refuses a range, or `surface` is not between 5 and 500 mm.
+    /// If a range is invalid (`TouchRanges::check`), or `surface` is not between 5 and 500 mm.
     pub fn draw(kind: TouchKind, ranges: &TouchRanges, surface: f64, seed: &Seed) -> Result<Self> {
         ranges
             .check()
@@ -134,7 +134,7 @@ impl HumanTouch {
                 course.wait(hold);
             }
             TouchKind::Shove => {
-                // First the hand is laid on, then it pushes.
+                // The hand is first laid on the skin and then pushes.
                 course.press(0.4 * depth, rise);
                 slide(&mut course, seconds, travel, depth);
                 course.wait(hold);
@@ -175,16 +175,16 @@ impl HumanTouch {
         })
     }
 
-    /// Returns the time between the start and the end of the touch, seconds; at both the hand is in the air.
+    /// Returns the time between the start and the end of the touch, seconds. The hand is in the air at both times.
     pub fn duration(&self) -> f64 {
         self.course.duration()
     }
 
-    /// Returns the hand at a time in seconds; constant, in the air, before the start and after the end.
+    /// Returns the state of the hand at a time in seconds; constant, in the air, before the start and after the end.
     pub fn at(&self, time: f64) -> HandState {
         let state = self.course.at(time);
         let (sin, cos) = self.direction.sin_cos();
-        // The path is centred on the place: half of it lies before.
+        // The path is centred on the touched place: half of it lies before the place.
         let slid = state.slid - 0.5 * self.travel;
         let along = self.along + slid * cos;
         let around = self.around + slid * sin / self.surface;

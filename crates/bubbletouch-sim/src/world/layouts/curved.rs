@@ -1,4 +1,4 @@
-//! Layouts around the z axis of the patch frame, for forearms, fingers and elbows.
+//! Curved layouts around the z axis of the patch frame, for forearms, fingers and elbows.
 
 use super::layout::Layout;
 use super::limits::{check_angle, check_count};
@@ -10,13 +10,13 @@ use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 impl Layout {
-    /// Creates a grid bent around a cylinder: rings of taxels around the z axis, ascending, each from its right to its left end. Axes
+    /// Creates a grid bent around a cylinder. Rings of taxels surround the z axis, in ascending order; each is numbered from its right to its left end. Axes
     /// point away from the z axis.
     ///
     /// - `radius`: radius to the rest centres, metres.
     /// - `length`: distance between the first and the last ring, metres, not negative; the middle is at z = 0.
-    /// - `arc`: angle, radians, above 0 to 2π, with its middle at +x. Both ends have taxels. If the remaining gap is less than half a
-    ///   pitch, the ring is closed.
+    /// - `arc`: angle, radians, above 0 to 2π, with its middle at +x. There is a taxel at either end. If the remaining gap is less than half a pitch, the ring
+    ///   is closed.
     /// - `pitch`: distance along the surface, metres, adjusted to whole numbers of rings and columns. A length or an arc
     ///   shorter than 0.75 pitches has one ring or column, in its middle.
     ///
@@ -26,11 +26,10 @@ impl Layout {
         Ok(Self::from(Extrusion::cylinder(radius, length, arc, pitch)?))
     }
 
-    /// Creates a rectangular grid bent around a [`cylinder`](Self::cylinder) of this radius (to the rest centres, metres). Rows become
-    /// rings; columns run along z.
+    /// Creates a rectangular grid bent around a cylinder of this radius (to the rest centres, metres). Rows become rings; columns run along z.
     ///
     /// # Errors
-    /// If [`cylinder`](Self::cylinder) fails.
+    /// If `cylinder` fails for these arguments.
     pub fn bent_grid(grid: &Grid, radius: f64) -> Result<Self> {
         let side = |n: usize| (n - 1) as f64 * grid.pitch;
         let arc = side(grid.nx) / radius;

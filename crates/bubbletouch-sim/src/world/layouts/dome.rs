@@ -1,4 +1,4 @@
-//! Layouts on a part of a sphere: rings of taxels at about equal distances.
+//! Layouts on a part of a sphere: rings of taxels at approximately equal distances.
 
 use super::limits::{check_angle, check_count};
 use crate::error::Result;
@@ -6,7 +6,7 @@ use crate::text::in_range::positive;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Lune of a sphere around the origin, from its pole at +z, divided into rings of taxels whose axes point away from the centre.
+/// Lune (slice) of a sphere around the origin, from its pole at +z, divided into rings of taxels whose axes point away from the centre.
 ///
 /// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: rings ascend in polar angle, none is
 /// empty; `directions` have length one.
@@ -14,29 +14,29 @@ use std::f64::consts::{PI, TAU};
 pub struct Dome {
     radius: f64,
     rings: Vec<DomeRing>,
-    /// Cosine and sine of each taxel's angle from +x towards +y, shape (n_taxels,).
+    /// Cosine and sine of each taxel's angle around the pole, from +x towards +y, shape (n_taxels,).
     directions: Vec<DVec2>,
 }
 
-/// Ring of taxels at one angle from the pole.
+/// Ring of taxels at one polar angle of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DomeRing {
-    /// Cosine of the angle from the pole.
+    /// Cosine of the ring's angle from the pole.
     pub cos: f64,
-    /// Sine of the angle from the pole.
+    /// Sine of the ring's angle from the pole.
     pub sin: f64,
-    /// Number of the first taxel.
+    /// Index of the ring's first taxel.
     pub first: usize,
-    /// Number of taxels, at least 1.
+    /// Number of taxels in the ring, at least 1.
     pub n: usize,
     /// Angle of the first taxel from +x towards +y, radians.
     pub start: f64,
-    /// Angle between adjacent taxels, radians.
+    /// Angle between adjacent taxels of the ring, radians.
     pub step: f64,
 }
 
 impl Dome {
-    /// Returns rest centres and axes, ring by ring.
+    /// Returns rest centres (metres) and unit axes of all taxels, ring by ring.
     pub(crate) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let axes = self.axes().map(DVec3::normalize);
         axes.map(|axis| (self.radius * axis, axis))
@@ -44,8 +44,8 @@ impl Dome {
 
     /// Creates a lune: `polar` radians from the pole (above 0 to π), `arc` radians wide (above 0 to 2π), with its middle at +x.
     ///
-    /// Rings are about `pitch` apart, as are the taxels of a ring, adjusted to whole numbers. Half a step is left at every edge, so that taxels
-    /// of an adjacent lune or cylinder continue at equal distances.
+    /// Rings, and the taxels of a ring, are about `pitch` apart, adjusted to whole numbers. Half a step is left at every edge, so that taxels of an adjacent
+    /// lune or cylinder continue at equal distances.
     ///
     /// # Errors
     /// If an argument is out of its range, or the layout has too many taxels.
@@ -87,7 +87,7 @@ impl Dome {
         self.radius
     }
 
-    /// Returns the rings, from the pole.
+    /// Returns the rings of taxels, beginning at the pole.
     pub fn rings(&self) -> &[DomeRing] {
         &self.rings
     }
@@ -97,12 +97,12 @@ impl Dome {
         &self.directions
     }
 
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of the lune.
     pub fn n_taxels(&self) -> usize {
         self.directions.len()
     }
 
-    /// Returns the unit axes of all taxels.
+    /// Returns the unit axes of all taxels, ring by ring.
     pub fn axes(&self) -> impl Iterator<Item = DVec3> + Clone {
         self.rings.iter().flat_map(|ring| {
             let directions = &self.directions[ring.first..ring.first + ring.n];

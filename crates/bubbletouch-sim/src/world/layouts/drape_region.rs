@@ -1,29 +1,29 @@
-//! Region of a mesh that a draped layout covers, and test for places that can carry a taxel.
+//! Region of a mesh that a draped layout covers, and test for positions that can carry a taxel.
 
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use crate::mesh::{Bvh, TriangleMesh};
 use glam::DVec3;
 
-/// Distance of a ray's start from the surface, relative to the mesh's size. Larger: walls nearer than this do not stop a ray; smaller: the triangle
-/// of the taxel stops the ray.
+/// Distance of a ray's start from the surface, relative to the mesh's size. If larger, nearer walls do not stop a ray; if smaller, the taxel's own triangle
+/// stops the ray.
 const AHEAD: f64 = 1e-6;
-/// Lateral offset of a ray, relative to the mesh's size, so that it does not pass through an edge by symmetry.
+/// Lateral offset of a ray, relative to the mesh's size, so that rays through symmetric meshes do not hit edges.
 const ASIDE: f64 = 1e-8;
 
-/// Region of a surface. A place belongs to the region if all given conditions hold.
+/// Region of a mesh's surface. A point belongs to the region if all given conditions hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DrapeRegion {
-    /// Box that contains the place; metres, in the mesh's frame.
+    /// Box that contains the region; metres, in the mesh's frame.
     pub bounds: Option<Aabb>,
-    /// Plane, given by a point (metres) and a normal of any length; the place is on the side to which the normal points.
+    /// Plane that bounds the region, given by a point (metres) and a normal of any length; the region is on the side to which the normal points.
     pub beyond: Option<(DVec3, DVec3)>,
-    /// Numbers of triangles, one of which must contain the place.
+    /// Indices of the triangles that make up the region.
     pub triangles: Option<Vec<usize>>,
 }
 
 impl DrapeRegion {
-    /// Checks the region for a mesh.
+    /// Checks the region against a mesh.
     ///
     /// # Errors
     /// If a number is not finite, a box is empty, a normal is zero, or a triangle does not exist in the mesh.
@@ -57,7 +57,7 @@ impl DrapeRegion {
         mask
     }
 
-    /// Returns whether a place is in the box and beyond the plane.
+    /// Returns whether a point is in the box and beyond the plane.
     pub(crate) fn contains(&self, place: DVec3) -> bool {
         let is_in_box =
             |bounds: Aabb| place.cmpge(bounds.min).all() && place.cmple(bounds.max).all();
@@ -66,7 +66,7 @@ impl DrapeRegion {
     }
 }
 
-/// Ray casting from the surface of a mesh.
+/// Ray casting from points on the surface of a mesh.
 pub(crate) struct Rays {
     bvh: Bvh,
     /// Diagonal of the mesh's bounding box, metres.
@@ -80,7 +80,7 @@ impl Rays {
         Self { bvh, size }
     }
 
-    /// Returns whether a ray from a place of the surface along a unit direction meets no triangle.
+    /// Returns whether a ray from a point on the surface along a unit direction meets no triangle.
     pub fn is_free(&self, place: DVec3, direction: DVec3) -> bool {
         let (x, y) = direction.any_orthonormal_pair();
         let origin = place + ASIDE * self.size * (0.8 * x + 0.6 * y);

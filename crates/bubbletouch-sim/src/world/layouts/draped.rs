@@ -1,4 +1,4 @@
-//! Layout draped over a triangle mesh: taxels keep a minimum distance, and every place has a taxel nearby.
+//! Layout draped over a triangle mesh: taxels keep a minimum distance, and every point of the surface has a taxel nearby.
 
 use super::drape_region::{DrapeRegion, Rays};
 use crate::error::{Error, Result};
@@ -10,41 +10,41 @@ use glam::DVec3;
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, HashMap};
 
-/// Smallest distance between taxels, in pitches. Random places are added until no further place has this distance from all others. This process yields
-/// about 0.7 / distance² taxels per square pitch: at 0.83 as many as on a grid of the pitch.
+/// Smallest distance between taxels, in pitches. Random points are added until no further point keeps this distance from all others. This process yields about
+/// 0.7 / distance² taxels per square pitch: at 0.83 as many as on a grid of this pitch.
 const LEAST: f64 = 0.83;
-/// Longest edge of a piece of surface, in pitches. Smaller: taxels are packed more densely, and more memory is used; larger: the
-/// surface between two pieces may be farther from a taxel than a pitch (0.83 + 2/3 of this).
+/// Longest edge of a piece of surface, in pitches. If smaller, taxels are packed more densely and more memory is used. If larger, the surface between two
+/// pieces may be farther from a taxel than a pitch (0.83 + 2/3 of this constant).
 const PIECE: f64 = 0.25;
-/// Largest number of pieces: some 100,000 taxels, in 2 GB. The bound also covers long triangles without area.
+/// Maximum number of surface pieces: enough for some 100,000 taxels, in 2 GB. The bound also covers long triangles without area.
 const MAX_PIECES: usize = 1 << 24;
-/// Cosine between normals below which two pieces belong to opposite sides of a thin sheet; their taxels may then be close together.
+/// Cosine between normals below which two pieces belong to opposite sides of a thin wall; their taxels may then be close together.
 const OPPOSED: f64 = -0.5;
 
 impl Layout {
-    /// Distributes taxels over the outer surface of a whole mesh: [`draped_on`](Self::draped_on) without a region.
+    /// Distributes taxels over the outer surface of a whole mesh.
     ///
     /// # Errors
-    /// If [`draped_on`](Self::draped_on) fails.
+    /// If [`draped_on`](Self::draped_on), which also accepts a region, fails.
     pub fn draped(mesh: &TriangleMesh, pitch: f64, seed: &Seed) -> Result<Self> {
         Self::draped_on(mesh, pitch, &DrapeRegion::default(), seed)
     }
 
-    /// Distributes taxels over a region of a mesh's outer surface, as many as on a grid of this pitch (metres), ordered by triangle.
+    /// Distributes taxels over a region of a mesh's outer surface, as many as on a grid of this pitch (metres). Taxels are ordered by triangle.
     ///
-    /// The outer surface consists of the places from which a ray along the axis does not meet the mesh again. Other
-    /// places, such as the walls of a cavity, carry no taxel; [`n_left_out`](Self::n_left_out) counts the taxels omitted there.
+    /// The outer surface consists of the points from which a ray along the axis does not meet the mesh again. Other points, such as the walls of a cavity,
+    /// carry no taxel; [`n_left_out`](Self::n_left_out) counts the taxels omitted there.
     ///
-    /// Each taxel is at least 0.83 pitches from the others, except those on the back of a thin sheet. Every place of the outer surface
-    /// is within a pitch of a taxel. Random places are accepted if they are far enough from all accepted ones (dart
-    /// throwing); equal seeds give equal taxels. The run time is about 0.3 ms per taxel.
+    /// Each taxel is at least 0.83 pitches from the others, except taxels on the back of a thin wall. Every point of the outer surface is within a pitch of a
+    /// taxel. Random points are accepted if they are far enough from all accepted ones (dart throwing); equal seeds give equal taxels. The run time is about
+    /// 0.3 ms per taxel.
     ///
     /// Axes are the mean normals of the surface within half a pitch. The averaging smooths the facets of a scan and keeps the
     /// sides of a box flat. If a ray along a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
     ///
     /// # Errors
-    /// If the pitch is not positive, the surface has no area, an open mesh has no [known outside](TriangleMesh::turned_outwards), or the
-    /// region contains no place of the outer surface. Also if the pitch is so fine that more than some 100,000 taxels would be needed.
+    /// If the pitch is not positive, the surface has no area, or the outside of an open mesh is [not known](TriangleMesh::turned_outwards). Also if the region
+    /// contains no point of the outer surface, or the pitch is so fine that more than some 100,000 taxels would be needed.
     pub fn draped_on(
         mesh: &TriangleMesh,
         pitch: f64,
@@ -77,7 +77,7 @@ impl Layout {
         let mask = region.mask(mesh);
         order
             .retain(|&index| mask[pieces[index].triangle] && region.contains(pieces[index].middle));
-        // Taxels on the outer surface, and places inside the mesh that would carry one.
+        // Accepted taxels on the outer surface, and rejected points inside the mesh.
         let (mut taxels, mut inner) = (Taken::new(LEAST * pitch), Taken::new(LEAST * pitch));
         let mut n_left_out = 0;
         for &index in &order {
@@ -114,14 +114,14 @@ impl Layout {
     }
 }
 
-/// Small triangle of the surface.
+/// Small triangle of the surface, a candidate for a taxel.
 struct SurfaceTriangle {
-    /// Number of the mesh's triangle that contains the piece.
+    /// Index of the mesh's triangle that contains this piece.
     triangle: usize,
     middle: DVec3,
-    /// Unit normal.
+    /// Unit normal of the triangle.
     normal: DVec3,
-    /// Area, m².
+    /// Area of the triangle, m².
     area: f64,
 }
 
@@ -160,8 +160,8 @@ fn subdivide(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<SurfaceTriang
     Some(pieces)
 }
 
-/// Returns the mean normal of the surface around each taxel, of length one, in the order of their pieces. Pieces that face away from the
-/// taxel's own piece are ignored.
+/// Returns the mean unit normal of the surface around each taxel, in the order of the taxels' pieces. Pieces that face away from the taxel's own piece are
+/// ignored.
 fn mean_normals(pieces: &[SurfaceTriangle], taxels: &Taken, within: f64) -> BTreeMap<usize, DVec3> {
     let mut sums: BTreeMap<usize, DVec3> = BTreeMap::new();
     for piece in pieces {
@@ -177,9 +177,9 @@ fn mean_normals(pieces: &[SurfaceTriangle], taxels: &Taken, within: f64) -> BTre
     sums
 }
 
-/// Pieces that have become taxels, stored by cubic cells of space.
+/// Surface pieces that have become taxels, stored by cubic cells of space.
 struct Taken {
-    /// Side of a cell, metres: twice a distance, so that a ball of this radius meets at most eight cells.
+    /// Side of a cell, metres: twice the search distance, so that a ball with this distance as radius meets at most eight cells.
     side: f64,
     cubes: HashMap<[i64; 3], Vec<(usize, DVec3)>>,
 }
@@ -198,7 +198,7 @@ impl Taken {
         self.cubes.entry(cube).or_default().push((piece, place));
     }
 
-    /// Returns the pieces nearer to a place than `within` metres.
+    /// Returns the taxels' pieces nearer to a point than `within` metres.
     fn near(&self, place: DVec3, within: f64) -> impl Iterator<Item = usize> {
         let (low, high) = (self.cube(place - within), self.cube(place + within));
         let columns = (low[0]..=high[0]).flat_map(move |x| (low[1]..=high[1]).map(move |y| [x, y]));

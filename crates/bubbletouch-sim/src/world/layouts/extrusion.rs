@@ -11,7 +11,7 @@ use crate::world::Grid;
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// Row of taxels (in the plane of u and v) repeated along w.
+/// Row of taxels (in the plane of u and v) that is repeated along w.
 ///
 /// Taxel `row · n_columns + column` rests at `places[column]` in the plane and at `rows[row]` along w; its axis is
 /// `axes[column]`, in the plane. Invariant: as many axes as places, not empty; all finite; axes of length one; rows ascend.
@@ -24,7 +24,7 @@ pub struct Extrusion {
 }
 
 impl Extrusion {
-    /// Returns rest centres and axes, row by row.
+    /// Returns rest centres (metres) and unit axes of all taxels, row by row.
     pub(crate) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let patch_from_uvw = self.uvw_from_patch.transpose();
         self.rows.iter().flat_map(move |&w| {
@@ -36,10 +36,10 @@ impl Extrusion {
         })
     }
 
-    /// Creates the grid of [`Layout::grid`](crate::world::Layout::grid): u, v, w are the patch's x, z, y.
+    /// Creates an extrusion with the taxels of a flat grid; u, v, w are the patch's x, z, y.
     ///
     /// # Errors
-    /// If [`Grid::check`] refuses the grid.
+    /// If the grid is invalid (`Grid::check`).
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
         check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
@@ -53,11 +53,11 @@ impl Extrusion {
         })
     }
 
-    /// Creates a grid bent around a cylinder, with the arguments and taxels of [`Layout::cylinder`](crate::world::Layout::cylinder). u, v, w are the
-    /// patch's x, y, z.
+    /// Creates a grid bent around a cylinder, with the arguments and taxels of [`Layout::cylinder`](crate::world::Layout::cylinder). The directions u, v, w are
+    /// the patch's x, y, z.
     ///
     /// # Errors
-    /// If [`Layout::cylinder`](crate::world::Layout::cylinder) fails.
+    /// If an argument is out of its range, or the layout has too many taxels.
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("cylinder radius", radius, "m")?;
@@ -89,12 +89,12 @@ impl Extrusion {
         })
     }
 
-    /// Returns the rest centres in the plane of u and v, metres, shape (n_columns,).
+    /// Returns the rest centres of one row in the plane of u and v, metres, shape (n_columns,).
     pub fn places(&self) -> &[DVec2] {
         &self.places
     }
 
-    /// Returns the axes, unit, away from the substrate, in the plane of u and v, shape (n_columns,).
+    /// Returns the unit axes of one row, pointing away from the substrate, in the plane of u and v, shape (n_columns,).
     pub fn axes(&self) -> &[DVec2] {
         &self.axes
     }
@@ -109,7 +109,7 @@ impl Extrusion {
         self.uvw_from_patch
     }
 
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of all rows.
     pub fn n_taxels(&self) -> usize {
         self.places.len() * self.rows.len()
     }

@@ -21,7 +21,7 @@ impl Layout {
         check_count("hexagonal layout", nx as f64 * ny as f64)?;
         let middle = |n: usize| 0.5 * (n as f64 - 1.0);
         let taxels = (0..ny).flat_map(|row| {
-            // A single row is not shifted.
+            // A single row of taxels is not shifted.
             let stagger = if ny == 1 { 0.0 } else { 0.25 };
             let shift = if row % 2 == 0 { -stagger } else { stagger };
             let y = (row as f64 - middle(ny)) * ROWS * pitch;
@@ -33,15 +33,15 @@ impl Layout {
         Ok(Self::of_taxels(taxels))
     }
 
-    /// Creates the part of a hexagonal lattice within `radius` metres of the origin, row by row. The nearest neighbours of each
-    /// taxel are exactly `pitch` metres away. A radius below the pitch yields one taxel, at the origin.
+    /// Creates the part of a hexagonal lattice within `radius` metres of the origin, row by row. The nearest neighbours of each taxel are exactly `pitch`
+    /// metres away. A radius below the pitch yields a single taxel at the origin.
     ///
     /// # Errors
     /// If a length is not positive, or the disc has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
     pub fn disc(radius: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("disc radius", radius, "m")?;
-        // Rounding must not exclude a place on the rim.
+        // Rounding must not exclude a point on the rim.
         let reach = radius / pitch * (1.0 + 1e-9);
         check_count(
             "disc layout",
@@ -62,8 +62,7 @@ impl Layout {
         Ok(Self::of_taxels(taxels))
     }
 
-    /// Creates rings of taxels around the origin, the first at the `inner` and the last at the `outer` radius (metres). Taxels are numbered ring by ring,
-    /// from +x towards +y.
+    /// Creates rings of taxels around the origin, from the `inner` to the `outer` radius (metres). Taxels are numbered ring by ring, from +x towards +y.
     ///
     /// The pitch is adjusted to whole numbers of rings and of taxels per ring: rings are between 0.75 and 1.5
     /// pitches apart. An annulus narrower than 0.75 pitches is a single ring in the middle.
@@ -119,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_disc_holds_every_place_of_its_lattice_within_the_radius() {
-        // In a hexagonal lattice a place has 6 neighbours at 1, 6 at √3, 6 at 2 and 12 at √7 pitches.
+        // In a hexagonal lattice a point has 6 neighbours at 1, 6 at √3, 6 at 2 and 12 at √7 pitches.
         for (radius, n) in [(0.5, 1), (1.0, 7), (1.8, 13), (2.0, 19), (2.7, 31)] {
             assert_eq!(Layout::disc(radius, 1.0).unwrap().n_taxels(), n, "{radius}");
         }

@@ -7,11 +7,11 @@ use crate::world::{Dome, Extrusion, Grid};
 use glam::{DMat3, DVec3};
 use std::sync::OnceLock;
 
-/// Largest deviation of an axis's length from one. Two written digits round to less. Larger: vectors are accepted that are not
-/// unit vectors; smaller: typical files are refused.
+/// Largest deviation of an axis's length from one; two written digits cause less. If larger, vectors are accepted that are not unit vectors; if smaller,
+/// typical files are refused.
 const MAX_LENGTH_ERROR: f64 = 0.01;
 
-/// Largest deviation of a unit vector's length from one by rounding of its coordinates.
+/// Largest deviation of a unit vector's length from one due to rounding of its coordinates.
 const UNIT_ROUNDING: f64 = 1e-9;
 
 /// Rest centres and axes of taxels, in the patch frame.
@@ -35,16 +35,16 @@ pub struct Layout {
     n_left_out: usize,
 }
 
-/// Rule by which taxels are arranged.
+/// Rule by which the taxels of a layout are arranged.
 #[derive(Clone, Debug)]
 pub(crate) enum Rule {
-    /// Rows and columns.
+    /// Rows and columns in a plane.
     Grid(Grid),
     /// One row repeated along a line.
     Rows(Extrusion),
     /// Rings on a sphere.
     Dome(Dome),
-    /// No rule: arbitrary places.
+    /// No rule: arbitrary positions and axes.
     None,
 }
 
@@ -62,11 +62,11 @@ impl PartialEq for Layout {
 }
 
 impl Layout {
-    /// Creates a layout of arbitrary places (metres) and axes (unit, away from the substrate). Axes are normalised, because files contain few digits.
+    /// Creates a layout from arbitrary rest centres (metres) and axes (unit, away from the substrate). Axes are normalised, because files contain few digits.
     ///
     /// # Errors
-    /// If the two lists differ in length, or a place or an axis is invalid; the error contains the first such taxel (from 1). An axis is
-    /// invalid if its length differs from one by more than 1 %.
+    /// If the two lists differ in length, or a centre or an axis is invalid; the error contains the first such taxel (from 1). An axis is invalid if its length
+    /// differs from one by more than 1 %.
     pub fn new(centers: Vec<DVec3>, mut axes: Vec<DVec3>) -> Result<Self> {
         if centers.len() != axes.len() {
             return Err(Error::input(
@@ -93,7 +93,7 @@ impl Layout {
                     "a vector of length one, within 1 %",
                 ));
             }
-            // Axes that are unit vectors to rounding keep their bits.
+            // Axes that are already unit vectors, up to rounding, remain bitwise unchanged.
             if (length - 1.0).abs() > UNIT_ROUNDING {
                 *axis = axis.normalize();
             }
@@ -101,17 +101,17 @@ impl Layout {
         Ok(Self::of_places(Places { centers, axes }))
     }
 
-    /// Creates a grid in the plane z = 0, row by row (patch y, ascending). [`as_grid`](Self::as_grid) returns this grid.
+    /// Creates a grid in the plane z = 0, row by row (patch y, ascending), which [`as_grid`](Self::as_grid) returns.
     ///
     /// # Errors
-    /// If [`Grid::check`] refuses the grid.
+    /// If the grid is invalid (`Grid::check`).
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
         check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
         Ok(Self::of_rule(Rule::Grid(*grid)))
     }
 
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of the layout.
     pub fn n_taxels(&self) -> usize {
         match &self.rule {
             Rule::Grid(grid) => grid.n_taxels(),
@@ -121,7 +121,7 @@ impl Layout {
         }
     }
 
-    /// Returns the number of taxels omitted by a [draped](Self::draped_on) layout because their axes would meet the mesh again; 0 for other layouts.
+    /// Returns the number of taxels that a draped layout omitted because their axes would meet the mesh again; 0 for other layouts.
     pub fn n_left_out(&self) -> usize {
         self.n_left_out
     }
@@ -130,12 +130,12 @@ impl Layout {
         Self { n_left_out, ..self }
     }
 
-    /// Returns the rest centres, metres, shape (n_taxels,).
+    /// Returns the rest centres of the taxels, metres, shape (n_taxels,).
     pub fn centers(&self) -> &[DVec3] {
         &self.places().centers
     }
 
-    /// Returns the axes, unit, pointing away from the substrate, shape (n_taxels,).
+    /// Returns the unit axes of the taxels, pointing away from the substrate, shape (n_taxels,).
     pub fn axes(&self) -> &[DVec3] {
         &self.places().axes
     }
@@ -154,7 +154,7 @@ impl Layout {
         &self.rule
     }
 
-    /// Returns the frame of one taxel, a rotation: columns x, y (perpendicular to its axis) and z (its axis) in the patch frame.
+    /// Returns the rotation from one taxel's frame to the patch frame: the columns are x and y (perpendicular to the taxel's axis) and z (the axis).
     ///
     /// If the axis points above the patch's xy plane, the frame is the patch's, rotated by the smallest rotation that takes the patch's z to the axis.
     /// Otherwise the frame consists of x and −y of the patch, rotated by the smallest rotation from −z to the axis. The taxels of a flat skin therefore
@@ -169,7 +169,7 @@ impl Layout {
         DMat3::from_cols(x, y, axis)
     }
 
-    /// Returns the grid from which the layout was made; `None` for other layouts.
+    /// Returns the grid from which the layout was created; `None` for other layouts.
     pub fn as_grid(&self) -> Option<&Grid> {
         match &self.rule {
             Rule::Grid(grid) => Some(grid),
@@ -177,7 +177,7 @@ impl Layout {
         }
     }
 
-    /// Returns the layout moved in the patch frame; the result is no longer a grid.
+    /// Returns the layout moved by a pose in the patch frame; the result is no longer a grid.
     #[must_use]
     pub fn moved(&self, pose: &Pose) -> Self {
         let taxels = self.centers().iter().zip(self.axes());
@@ -188,7 +188,7 @@ impl Layout {
         moved.with_left_out(self.n_left_out)
     }
 
-    /// Creates a layout from taxels whose axes all have length one.
+    /// Creates a layout from taxels whose axes are all unit vectors.
     pub(crate) fn of_taxels(taxels: impl IntoIterator<Item = (DVec3, DVec3)>) -> Self {
         Self::of_places(taxels.into_iter().collect())
     }

@@ -2,10 +2,10 @@
 
 use crate::error::{Error, Result};
 
-/// Largest number of taxels of a layout, each about a hundred bytes. More indicate a pitch in the wrong unit.
+/// Maximum number of taxels of a layout, each of about a hundred bytes. A larger number indicates a pitch in the wrong unit.
 pub const MAX_TAXELS: usize = 1 << 22;
 
-/// Returns an error if a layout has no taxels or more than [`MAX_TAXELS`]; `about` is the expected number.
+/// Returns an error if a layout has no taxels or more than [`MAX_TAXELS`]; `about` is the expected number of taxels.
 pub(super) fn check_count(place: &str, about: f64) -> Result<()> {
     if about >= 1.0 && about <= MAX_TAXELS as f64 {
         return Ok(());

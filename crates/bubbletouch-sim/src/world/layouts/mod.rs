@@ -1,4 +1,4 @@
-//! Layouts: the places and axes of the taxels of a patch.
+//! Layouts: the positions and axes of the taxels of a patch.
 //!
 //! | file | layout |
 //! |---|---|

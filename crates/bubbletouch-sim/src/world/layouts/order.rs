@@ -1,14 +1,14 @@
-//! Reordering of a layout's taxels so that neighbours have near numbers.
+//! Reordering of a layout's taxels so that neighbours have consecutive numbers.
 
 use crate::world::Layout;
 use glam::DVec3;
 
-/// Taxels in the smallest group of neighbours: the tiles of a body's patch.
+/// Number of taxels in the smallest group of neighbours, a tile of a body's patch.
 const TILE: usize = 8;
 
 impl Layout {
-    /// Returns the layout in an order in which each aligned group of 8, 64, 512 and so on consists of neighbours, and each taxel's number in
-    /// this layout. The order is deterministic.
+    /// Returns the reordered layout, and each taxel's old index. Each aligned group of 8, 64, 512 and so on consists of neighbouring taxels. The order is
+    /// deterministic.
     pub fn with_neighbours_together(&self) -> (Self, Vec<usize>) {
         let mut order: Vec<usize> = (0..self.n_taxels()).collect();
         halve(&mut order, self.centers());
@@ -17,7 +17,7 @@ impl Layout {
     }
 }
 
-/// Splits taxels across the longest side of their bounding box, at a multiple of the largest group, until a tile remains.
+/// Splits taxels across the longest side of their bounding box, at a multiple of the largest group size, until a tile remains.
 fn halve(order: &mut [usize], centers: &[DVec3]) {
     if order.len() <= TILE {
         return;
@@ -31,7 +31,7 @@ fn halve(order: &mut [usize], centers: &[DVec3]) {
     let low = all().fold(DVec3::INFINITY, DVec3::min);
     let high = all().fold(DVec3::NEG_INFINITY, DVec3::max);
     let side = (high - low).max_position();
-    // Ties are broken by number, so that the order depends on the taxels only.
+    // Ties are broken by index, so that the order depends on the taxels only.
     order.select_nth_unstable_by(half, |&a, &b| {
         let order = centers[a][side].total_cmp(&centers[b][side]);
         order.then(a.cmp(&b))

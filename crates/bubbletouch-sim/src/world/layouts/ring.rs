@@ -6,20 +6,20 @@ use std::f64::consts::TAU;
 /// Circle around the z axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ring {
-    /// Radius, metres, not negative.
+    /// Radius of the ring, metres, not negative.
     pub radius: f64,
-    /// Height z, metres.
+    /// Height z of the ring, metres.
     pub height: f64,
 }
 
 impl Ring {
-    /// Returns places on the ring, evenly spaced by about `pitch` metres, the first at +x; at least one.
+    /// Returns points on the ring, evenly spaced by about `pitch` metres, the first at +x; at least one.
     pub fn places(self, pitch: f64) -> impl Iterator<Item = DVec3> {
         let n = n_steps(TAU * self.radius, pitch).max(1);
         (0..n).map(move |k| self.place(TAU * k as f64 / n as f64))
     }
 
-    /// Returns the place at an angle from +x towards +y, radians.
+    /// Returns the point of the ring at an angle from +x towards +y, radians.
     pub fn place(self, angle: f64) -> DVec3 {
         let (sin, cos) = angle.sin_cos();
         DVec3::new(self.radius * cos, self.radius * sin, self.height)
@@ -42,7 +42,7 @@ pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
     })
 }
 
-/// Returns for each taxel of a layout the distance to its nearest neighbour.
+/// Returns the distance from each taxel of a layout to its nearest neighbour, metres.
 #[cfg(test)]
 pub(super) fn nearest_distances(centers: &[DVec3]) -> Vec<f64> {
     let nearest = |i: usize| {

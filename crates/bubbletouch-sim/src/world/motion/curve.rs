@@ -1,53 +1,52 @@
-//! One number over time: a cubic between adjacent way-points.
+//! One number over time: a cubic polynomial between adjacent waypoints.
 
 use super::slopes::{clamped_spline, monotone};
 use serde::{Deserialize, Serialize};
 
-/// Interpolation between way-points.
+/// Interpolation between waypoints of a trajectory.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Interpolation {
-    /// Piecewise linear: constant velocity, with a jump of the velocity at each way-point.
+    /// Piecewise linear: constant velocity, with a jump of the velocity at each waypoint.
     Linear,
-    /// Cubic spline with continuous acceleration and zero velocity at both ends; it may overshoot its way-points.
+    /// Cubic spline with continuous acceleration and zero velocity at its first and last waypoint; it may overshoot its waypoints.
     #[default]
     Cubic,
-    /// Cubics with continuous velocity that never leave the range of their two way-points. The velocity is zero at both ends and at
-    /// reversals.
+    /// Cubics with continuous velocity that never leave the range of their two waypoints. The velocity is zero at the first and last waypoint and at reversals.
     Monotone,
 }
 
-/// One number over time. The owner stores the times of the way-points, which several curves share.
+/// One number as a function of time. The owner stores the times of the waypoints, which several curves share.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve {
-    /// Coefficients c of each piece: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, with s in seconds after the piece's first way-point.
+    /// Coefficients c of each piece: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, with s in seconds after the piece's first waypoint.
     pieces: Vec<[f64; 4]>,
-    /// Value at the last way-point.
+    /// Value of the curve at the last waypoint.
     last: f64,
 }
 
-/// Value at one time of a curve.
+/// Value of a curve, with the time at which it is taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Taken {
     pub value: f64,
-    /// Time, seconds, on the scale of the way-points.
+    /// Time at which the value is taken, seconds, with the waypoints' origin of time.
     pub time: f64,
-    /// Index of the preceding way-point.
+    /// Index of the preceding waypoint.
     pub piece: usize,
 }
 
-/// Extremes of a curve over its whole time.
+/// Extreme values and velocity of a curve over its whole time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extremes {
     pub lowest: Taken,
     pub highest: Taken,
-    /// Velocity of the largest magnitude, with its sign.
+    /// Velocity with the largest magnitude, signed.
     pub fastest: Taken,
 }
 
 impl Curve {
-    /// Creates the curve through `values` at `times`, at least one each, times ascending. Returns `None` if a coefficient is not finite, because
-    /// way-points are too far apart in value or too close in time.
+    /// Creates the curve through `values` at `times` (at least one each, times ascending). Returns `None` if a coefficient is not finite, because waypoints are
+    /// too far apart in value or too close in time.
     pub fn through(times: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
         let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
         let rises = values.windows(2).map(|x| x[1] - x[0]);
@@ -73,7 +72,7 @@ impl Curve {
         })
     }
 
-    /// Returns the value at a moment.
+    /// Returns the value of the curve at a moment.
     pub fn value(&self, at: Moment) -> f64 {
         match at {
             Moment::In { piece, elapsed } => value(&self.pieces[piece], elapsed),
@@ -82,7 +81,7 @@ impl Curve {
         }
     }
 
-    /// Returns the velocity, per second; 0 outside the way-points.
+    /// Returns the velocity of the curve, per second; 0 before the first and after the last waypoint.
     pub fn velocity(&self, at: Moment) -> f64 {
         match at {
             Moment::In { piece, elapsed } => velocity(&self.pieces[piece], elapsed),
@@ -90,7 +89,7 @@ impl Curve {
         }
     }
 
-    /// Returns the extremes in closed form: at way-points, at zeros of the velocity, and for the velocity at zeros of the
+    /// Returns the extremes of the curve in closed form. They occur at waypoints and at zeros of the velocity; extremes of the velocity also at zeros of the
     /// acceleration.
     pub fn extremes(&self, times: &[f64]) -> Extremes {
         let end = Taken {
@@ -148,19 +147,19 @@ impl Extremes {
     }
 }
 
-/// Time relative to way-points.
+/// Time relative to the waypoints of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moment {
-    /// Before the first way-point.
+    /// Before the first waypoint.
     Before,
-    /// Between two way-points, seconds after the first of them.
+    /// Between two waypoints, `elapsed` seconds after the first of them.
     In { piece: usize, elapsed: f64 },
-    /// At or after the last way-point.
+    /// At or after the last waypoint.
     After,
 }
 
 impl Moment {
-    /// Locates a time in seconds among the way-points; NaN counts as before the first.
+    /// Locates a time in seconds among the waypoints; NaN counts as before the first waypoint.
     pub fn new(time: f64, times: &[f64]) -> Self {
         let passed = times.partition_point(|&way_point| way_point <= time);
         match passed {
@@ -182,7 +181,7 @@ fn velocity(c: &[f64; 4], s: f64) -> f64 {
     c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])
 }
 
-/// Returns the real roots of `a s² + b s + c`, without cancellation; NaN for missing roots.
+/// Returns the two real roots of `a s² + b s + c`, computed without cancellation; NaN for missing roots.
 fn quadratic_roots(a: f64, b: f64, c: f64) -> [f64; 2] {
     let q = -0.5 * (b + (b * b - 4.0 * a * c).sqrt().copysign(b));
     [q / a, c / q]
@@ -204,7 +203,7 @@ mod tests {
         Curve::through(&TIMES, &VALUES, interpolation).expect("tame numbers")
     }
 
-    /// Returns value, velocity and acceleration on both sides of each inner way-point.
+    /// Returns value, velocity and acceleration on either side of an inner waypoint.
     fn sides(curve: &Curve, piece: usize) -> [[f64; 3]; 2] {
         let h = TIMES[piece + 1] - TIMES[piece];
         [(piece, h), (piece + 1, 0.0)].map(|(piece, s)| {

@@ -6,15 +6,15 @@ use crate::error::{Error, Result};
 use crate::world::Robot;
 use crate::world::robot::{Dimension, Limits};
 
-/// Tolerance of limits, rad, m, or these per second. Files write limits with six digits, so a quarter turn may be 3e-7
-/// beyond 1.570796. Larger: visible violations would be accepted; smaller: rounded limits would be refused.
+/// Tolerance of joint limits: rad or m, or these per second. Files write limits with six digits, so a quarter turn may be 3e-7 beyond 1.570796. If larger,
+/// visible violations are accepted; if smaller, rounded limits are refused.
 const SLACK: f64 = 1e-6;
 
-/// Checks every joint of one coordinate that has limits; `curves` are the robot's positions. Returns a note for each joint
-/// that mimics another one and leaves its own limits: such a joint follows its `<mimic>`.
+/// Checks all joints driven by one coordinate that have limits; `curves` are the robot's positions. Returns a note for each mimicking joint that leaves its own
+/// limits: such a joint follows its `<mimic>`.
 ///
 /// # Errors
-/// If a joint that mimics none leaves its limits; the error contains the first such joint and its largest violation.
+/// If a joint that mimics no other joint leaves its limits; the error contains the first such joint and its largest violation.
 pub(super) fn check_limits(
     robot: &Robot,
     curves: &[Curve],
@@ -47,7 +47,7 @@ pub(super) fn check_limits(
     Ok(notes)
 }
 
-/// Returns the largest violation of the first limit that a joint violates, with its motion there and the allowed range.
+/// Returns the largest violation of the first limit that a joint violates, with the joint's motion at this time and the allowed range.
 fn first_beyond(
     extremes: &Extremes,
     limits: &Limits,
@@ -80,7 +80,7 @@ fn first_beyond(
 }
 
 impl Extremes {
-    /// Returns the extremes of a joint at `multiplier · x + offset`.
+    /// Returns the extremes of a joint whose position is `multiplier · x + offset`.
     fn driven(self, multiplier: f64, offset: f64) -> Self {
         let moved = |taken: Taken| Taken {
             value: multiplier * taken.value + offset,
@@ -101,7 +101,7 @@ impl Extremes {
     }
 }
 
-/// Describes the time and the adjacent way-points.
+/// Describes the time of a value and the adjacent waypoints.
 fn when(taken: &Taken, way_points: &WayPoints) -> String {
     let (times, origin) = (&way_points.times, &way_points.origin);
     let time = format!("{:.4} s", taken.time);

@@ -1,4 +1,4 @@
-//! Positions of a robot over time.
+//! Trajectory of a robot's joint positions.
 
 use super::Interpolation;
 use super::curve::{Curve, Moment};
@@ -10,26 +10,26 @@ use crate::world::Robot;
 use ndarray::Array2;
 use std::io::Read;
 
-/// Positions of a robot over time, through way-points; constant before the first and after the last.
+/// Positions of a robot over time, interpolated through waypoints; constant before the first and after the last waypoint.
 ///
-/// Invariant: a joint that mimics none never violates its limits of position and velocity by more than 1e-6 rad, m, or these per
+/// Invariant: a joint that mimics no other joint never violates its limits of position and velocity by more than 1e-6 rad or m, or these per second. A
+/// mimicking joint follows its `<mimic>`; if it leaves its own limits, the trajectory has a [note](Self::notes).
 /// second. A joint that mimics another follows its `<mimic>`; if it leaves its own limits, there is a [note](Self::notes).
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTrajectory {
     times: Vec<f64>,
-    /// One curve per position.
+    /// Curves of the positions, one per position of the robot.
     curves: Vec<Curve>,
     notes: Vec<String>,
 }
 
 impl JointTrajectory {
-    /// Creates the trajectory through `positions` (row: way-point, column: position of the robot; rad and m) at `times` (seconds, strictly
-    /// ascending).
+    /// Creates the trajectory through `positions` (row: waypoint, column: position of the robot; rad and m) at `times` (seconds, strictly ascending).
     ///
-    /// Limits are checked along the whole curve in closed form, including between way-points.
+    /// Limits are checked along the whole curve in closed form, including between waypoints.
     ///
     /// # Errors
-    /// If a joint leaves its limits; the error contains joint, time, value and limit. Also if a way-point is not finite or out of order.
+    /// If a joint leaves its limits; the error contains joint, time, value and limit. Also if a waypoint is not finite or out of order.
     pub fn new(
         robot: &Robot,
         times: Vec<f64>,
@@ -51,13 +51,12 @@ impl JointTrajectory {
         Self::through(robot, &way_points.checked()?, interpolation)
     }
 
-    /// Reads a trajectory from CSV: a column `time_s` and one column for each moving [coordinate](Robot::coordinates) of the robot, in any order.
-    /// A coordinate without a column stays at its [rest position](Robot::rest_positions). A column of angles has
-    /// the coordinate's name, optionally with `_rad`, for radians, or `_deg` for degrees. A column of lengths has `_m` for metres or `_mm` for
-    /// millimetres.
+    /// Reads a trajectory from CSV: a column `time_s` and one column for each moving [coordinate](Robot::coordinates) of the robot, in any order. A coordinate
+    /// without a column stays at its rest position. A column of angles has the coordinate's name, optionally with `_rad`, for radians, or `_deg` for degrees. A
+    /// column of lengths has `_m` for metres or `_mm` for millimetres.
     ///
     /// # Errors
-    /// If the table is invalid; the message begins with `place`, the file's name, and contains the line.
+    /// If the table is invalid. The message begins with `place`, the file's name, and contains the line.
     pub fn read_csv(
         robot: &Robot,
         place: &str,
@@ -132,17 +131,17 @@ impl JointTrajectory {
         })
     }
 
-    /// Returns notes on joints that mimic others beyond their own limits.
+    /// Returns notes on mimicking joints that leave their own limits.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// Returns the times of the way-points, seconds.
+    /// Returns the times of the waypoints, seconds.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Returns the time of the last way-point, seconds.
+    /// Returns the time of the last waypoint, seconds.
     pub fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
@@ -154,7 +153,7 @@ impl JointTrajectory {
         positions
     }
 
-    /// Writes the robot's positions at a time in seconds into a slice, without allocation; rad and m.
+    /// Writes the robot's positions at a time in seconds into a slice, rad and m, without allocation.
     ///
     /// # Panics
     /// If the length of the slice differs from the number of positions.
@@ -166,7 +165,8 @@ impl JointTrajectory {
         }
     }
 
-    /// Returns the velocities of the positions, rad/s and m/s; zero outside the way-points. At a jump, the velocity after the jump.
+    /// Returns the velocities of the positions, rad/s and m/s; zero before the first and after the last waypoint. At a jump, the velocity after the jump is
+    /// returned.
     pub fn velocities_at(&self, time: f64) -> Vec<f64> {
         let at = Moment::new(time, &self.times);
         self.curves.iter().map(|curve| curve.velocity(at)).collect()

@@ -1,12 +1,12 @@
-//! Motion: way-points in time → poses and joint positions at any time.
+//! Motion: trajectories through waypoints, as poses and joint positions at any time.
 //!
-//! Between way-points each number is a cubic polynomial of time; before the first and after the last the values are constant.
+//! Between waypoints each number is a cubic polynomial of time; before the first and after the last waypoint the values are constant.
 //!
-//! | interpolation | between way-points | continuous |
+//! | interpolation | between waypoints | continuous |
 //! |---|---|---|
 //! | linear | straight; rotations by slerp | position |
 //! | cubic | clamped spline: velocity zero at both ends | acceleration (rotations: angular velocity) |
-//! | monotone | never beyond its two way-points \[FC\] | velocity |
+//! | monotone | never beyond its two waypoints \[FC\] | velocity |
 
 mod curve;
 mod joint_limits;
@@ -31,7 +31,7 @@ pub enum Motion {
     Fixed(Pose),
     /// Piecewise-constant velocities.
     Plan(VelocityPlan),
-    /// Way-points.
+    /// Interpolation between waypoints.
     WayPoints(PoseTrajectory),
 }
 

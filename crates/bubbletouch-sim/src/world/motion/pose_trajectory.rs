@@ -16,12 +16,12 @@ const POSITION: [&str; 3] = ["x", "y", "z"];
 const QUATERNION: [&str; 4] = ["qx", "qy", "qz", "qw"];
 const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
 
-/// Pose of a body over time, through way-points; constant before the first and after the last.
+/// Pose of a body over time, interpolated through waypoints; constant before the first and after the last waypoint.
 ///
-/// The position's three numbers are interpolated as in a [`JointTrajectory`](super::JointTrajectory). Rotations take the shorter
-/// path between neighbours. Linear interpolation uses slerp, the others use Hermite curves of quaternions \[KKS\]. The angular velocity of these
-/// curves is continuous and zero at both ends (for squad only with equidistant times). If monotone, a turn about one axis never leaves the range of its
-/// two way-points.
+/// The coordinates of the position are interpolated as in a [`JointTrajectory`](super::JointTrajectory). Rotations take the shorter path between adjacent
+/// waypoints. Linear interpolation uses slerp; the other interpolations use Hermite curves of quaternions \[KKS\]. The angular velocity of these curves is
+/// continuous and zero at the first and last waypoint (for squad only with equidistant times). With monotone interpolation, a turn about one axis never leaves
+/// the range of its two waypoints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTrajectory {
     times: Vec<f64>,
@@ -33,7 +33,7 @@ impl PoseTrajectory {
     /// Creates the trajectory through `poses` (`world_from_body`, one per time) at `times` (seconds, strictly ascending).
     ///
     /// # Errors
-    /// If a way-point is not finite or out of order, or its quaternion has not length 1 (within 0.001); the error names the way-point.
+    /// If a waypoint is not finite or out of order, or its quaternion is not a unit quaternion (within 0.001). The error names the waypoint.
     pub fn new(times: Vec<f64>, poses: &[Pose], interpolation: Interpolation) -> Result<Self> {
         let numbers = poses.iter().flat_map(|pose| {
             let [x, y, z] = pose.translation.to_array();
@@ -49,12 +49,11 @@ impl PoseTrajectory {
         Self::through(&way_points.checked()?, interpolation)
     }
 
-    /// Reads a trajectory from CSV. Columns: `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and a rotation. The rotation is either
-    /// `qx`, `qy`, `qz`, `qw`, or `roll`, `pitch`, `yaw` in radians (`_rad`) or with `_deg`. Roll, pitch and yaw turn about the fixed axes x, y, z in
-    /// this order.
+    /// Reads a trajectory from CSV. The columns are `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and a rotation. The rotation is either `qx`, `qy`,
+    /// `qz`, `qw`, or `roll`, `pitch`, `yaw` in radians (`_rad`) or with `_deg`. Roll, pitch and yaw turn about the fixed axes x, y, z in this order.
     ///
     /// # Errors
-    /// If the table is invalid; the message begins with `place`, the file's name, and contains the line.
+    /// If the table is invalid. The message begins with `place`, the file's name, and contains the line.
     pub fn read_csv(place: &str, source: impl Read, interpolation: Interpolation) -> Result<Self> {
         let mut table = Table::read(place, source)?;
         let mut columns = claim_all(&mut table, &POSITION, Dimension::Length.units())?;
@@ -106,13 +105,13 @@ impl PoseTrajectory {
         Pose::new(self.rotation.rotation(at), translation)
     }
 
-    /// Returns the time of the last way-point, seconds.
+    /// Returns the time of the last waypoint, seconds.
     pub fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
 }
 
-/// Claims all of these columns, or none of them.
+/// Claims all of the named columns, or none of them.
 fn claim_all(table: &mut Table, names: &[&str], units: Units) -> Result<Vec<Column>> {
     let mut columns = Vec::new();
     let mut missing = None;
@@ -131,7 +130,7 @@ fn claim_all(table: &mut Table, names: &[&str], units: Units) -> Result<Vec<Colu
     }
 }
 
-/// Returns the unit quaternion of each way-point.
+/// Returns the unit quaternion of each waypoint.
 fn rotations(way_points: &WayPoints) -> Result<Vec<DQuat>> {
     let rows = way_points.values.rows().into_iter().enumerate();
     rows.map(|(index, row)| {

@@ -1,14 +1,14 @@
-//! Rotation over time, through way-points.
+//! Rotation over time, interpolated through waypoints.
 
 use super::curve::{Interpolation, Moment};
 use super::slopes::monotone_slope;
 use glam::{DQuat, DVec3};
 
-/// Rotation over time. Between two way-points, with s from 0 to 1,
+/// Rotation as a function of time. Between two waypoints, with s from 0 to 1,
 ///
 /// `R(s) = R₀ exp(ω₁ b₁(s)) exp(ω₂ b₂(s)) exp(ω₃ b₃(s))`, `b = (1 − (1−s)³, 3s² − 2s³, s³)`
 ///
-/// \[KKS\]: a cubic for rotations, whose angular velocity is 3 ω₁ / h at the start and 3 ω₃ / h at the end. With three equal ω
+/// \[KKS\]: a cubic for rotations, whose angular velocity is 3 ω₁ / h at the start and 3 ω₃ / h at the end. If ω₁, ω₂ and ω₃ are equal, the curve is slerp.
 /// the curve is slerp.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RotationCurve {
@@ -19,15 +19,15 @@ pub(super) struct RotationCurve {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CurveSegment {
     start: DQuat,
-    /// ω₁, ω₂, ω₃: rotation vectors in the body's frame, radians.
+    /// Rotation vectors ω₁, ω₂, ω₃ in the body's frame, radians.
     turns: [DVec3; 3],
-    /// Duration h, seconds.
+    /// Duration h of the piece, seconds.
     duration: f64,
 }
 
 impl RotationCurve {
-    /// Creates the curve through unit quaternions at ascending times, at least one, along the shorter path between neighbours. Returns `None` if times are
-    /// so close that a velocity is not finite.
+    /// Creates the curve through unit quaternions at ascending times (at least one), along the shorter path between adjacent quaternions. Returns `None` if
+    /// times are so close that a velocity is not finite.
     pub fn through(times: &[f64], at: &[DQuat], interpolation: Interpolation) -> Option<Self> {
         let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
         let turns = at
@@ -65,7 +65,7 @@ impl RotationCurve {
         })
     }
 
-    /// Returns the unit quaternion at a moment.
+    /// Returns the rotation at a moment, as a unit quaternion.
     pub fn rotation(&self, at: Moment) -> DQuat {
         match at {
             Moment::Before => self.segments.first().map_or(self.last, |piece| piece.start),
@@ -87,8 +87,8 @@ impl RotationCurve {
     }
 }
 
-/// Returns the angular velocity at each way-point in the body's frame, rad/s. The ends have zero velocity, the others that of the parabola through
-/// three way-points, so that a uniform rotation stays uniform.
+/// Returns the angular velocity at each waypoint in the body's frame, rad/s. The velocity is zero at the first and last waypoint. Elsewhere it is the velocity
+/// of the parabola through three waypoints, so that a uniform rotation stays uniform.
 fn body_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     let mut velocities = vec![DVec3::ZERO; steps.len() + 1];
     for i in 1..steps.len() {
@@ -99,10 +99,10 @@ fn body_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     velocities
 }
 
-/// Returns angular velocities at the way-points, in the body's frame, rad/s, for which a turn about one axis stays between its way-points.
-/// The velocity is zero at the ends and at reversals. Elsewhere its direction bisects the turns on both sides, and its magnitude is the
-/// [`monotone_slope`] of their components along this direction. With ω₁ = v h / 3 the end of the first control turn is then no farther from
-/// either way-point than these are from each other; likewise for ω₃.
+/// Returns angular velocities at the waypoints, in the body's frame, rad/s, for which a turn about one axis stays between its waypoints. The velocity is zero
+/// at the first and last waypoint and at reversals. Elsewhere its direction bisects the turns before and after the waypoint, and its magnitude is the
+/// [`monotone_slope`] of their components along this direction. With ω₁ = v h / 3 the end of the first control turn is then no farther from either waypoint
+/// than the waypoints are from each other. For ω₃ the bound is symmetric.
 fn monotone_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     let mut velocities = vec![DVec3::ZERO; steps.len() + 1];
     for i in 1..steps.len() {

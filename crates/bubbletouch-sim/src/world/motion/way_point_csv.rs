@@ -1,4 +1,4 @@
-//! Way-points as CSV: a header and one row of numbers per way-point; column names contain the units.
+//! Waypoints as CSV: a header and one row of numbers per waypoint; column names contain the units.
 
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
@@ -7,28 +7,28 @@ use crate::text::spelling::nearest_names;
 use ndarray::Array2;
 use std::io::Read;
 
-/// Name of the column of times.
+/// Name of the column with the waypoints' times.
 const TIME: &str = "time_s";
 
-/// Table whose columns are claimed one by one.
+/// Table of waypoints whose columns are claimed one by one.
 pub(super) struct Table {
-    /// Numbers of the file, one row per way-point.
+    /// Numbers of the file, one row per waypoint.
     numbers: NumberTable,
     claimed: Vec<bool>,
 }
 
-/// Claimed column, and the factor that converts its numbers to SI units.
+/// Column that was claimed, and the factor that converts its numbers to SI units.
 #[derive(Clone, Copy)]
 pub(super) struct Column {
     index: usize,
     scale: f64,
 }
 
-/// Suffixes of column names, and the size of each unit in SI; see [`Dimension::units`](crate::world::Dimension::units).
+/// Suffixes of column names, and the size of each unit in SI units, as returned by `Dimension::units`.
 pub(super) type Units = &'static [(&'static str, f64)];
 
 impl Table {
-    /// Reads the whole table; errors begin with `place`, the file's name, and contain the line.
+    /// Reads the whole table. Errors begin with `place`, the file's name, and contain the line.
     pub fn read(place: &str, source: impl Read) -> Result<Self> {
         let allowed = format!("a header with {TIME}, then way-points");
         let numbers = NumberTable::read(place, source, &allowed)?;
@@ -38,8 +38,8 @@ impl Table {
         })
     }
 
-    /// Claims the column `name`, optionally with the suffix of a unit. `reserved` lists names that are not split into name and unit. Returns
-    /// an error if two columns match.
+    /// Claims the column `name`, optionally with the suffix of a unit. Names in `reserved` are not split into name and unit. Returns an error if two columns
+    /// match.
     pub fn claim(
         &mut self,
         name: &str,
@@ -72,13 +72,13 @@ impl Table {
         self.claimed.len()
     }
 
-    /// Creates an error in the header.
+    /// Creates an error about the header.
     pub fn refuse_header(&self, given: impl ToString, allowed: impl ToString) -> Error {
         self.numbers.refuse_header(given, allowed)
     }
 
-    /// Returns the way-points of the claimed columns in this order. Returns an error if the column of times is missing, a column was not claimed
-    /// (`known` are the possible names), or times do not ascend.
+    /// Returns the waypoints with the claimed columns in this order. Returns an error if the column of times is missing, a column was not claimed (`known` are
+    /// the possible names), or times do not ascend.
     pub fn way_points<'n>(
         mut self,
         columns: &[Column],

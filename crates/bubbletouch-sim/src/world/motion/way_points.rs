@@ -1,30 +1,30 @@
-//! Way-points as given: rows of numbers at ascending times, with their origin for error messages.
+//! Waypoints before interpolation: rows of numbers at ascending times, with their origin for error messages.
 
 use crate::error::{Error, Result};
 use ndarray::Array2;
 
-/// Rows of numbers over time. Invariant after [`checked`](Self::checked): at least one row, all finite, times ascending.
+/// Rows of numbers at given times. Invariant after `checked`: at least one row, all numbers finite, times ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct WayPoints {
-    /// Times, seconds.
+    /// Times of the waypoints, seconds.
     pub times: Vec<f64>,
-    /// Values, one row per way-point.
+    /// Values, one row per waypoint.
     pub values: Array2<f64>,
-    /// Origin of the way-points.
+    /// Origin of the waypoints, for error messages.
     pub origin: Origin,
 }
 
-/// Origin of way-points.
+/// Origin of waypoints, for error messages.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Origin {
-    /// Argument with this name.
+    /// Function argument with this name.
     Argument(&'static str),
-    /// File, and the line of each way-point.
+    /// File, and the line number of each waypoint.
     File { place: String, lines: Vec<u64> },
 }
 
 impl Origin {
-    /// Returns the name of the file or argument.
+    /// Returns the name of the file or argument that contains the waypoints.
     pub fn place(&self) -> &str {
         match self {
             Self::Argument(name) => name,
@@ -32,7 +32,7 @@ impl Origin {
         }
     }
 
-    /// Returns the name of one way-point, by its index.
+    /// Returns the name of one waypoint in messages, by its index.
     pub fn way_point(&self, index: usize) -> String {
         match self {
             Self::Argument(_) => format!("way-point {}", index + 1),
@@ -42,7 +42,7 @@ impl Origin {
 }
 
 impl WayPoints {
-    /// Returns the way-points, or an error that names the first invalid one.
+    /// Returns the checked waypoints, or an error that names the first invalid one.
     pub fn checked(self) -> Result<Self> {
         let n = self.times.len();
         if n == 0 {
@@ -75,7 +75,7 @@ impl WayPoints {
         Ok(self)
     }
 
-    /// Returns the place of one way-point in its origin.
+    /// Returns the location of one waypoint in its file or argument.
     pub fn at(&self, index: usize) -> String {
         format!("{}, {}", self.origin.place(), self.origin.way_point(index))
     }

@@ -1,4 +1,4 @@
-//! Basins of the support function: regions of down directions that lead downhill to one minimum.
+//! Basins of the support function: regions of down directions from which descent leads to one minimum.
 //!
 //! 1. On a mesh of directions, each direction flows to its lowest neighbour, which defines basins.
 //! 2. Basins with a low barrier between them are merged, first by the barrier along the mesh. Each minimum is then refined, and the barrier
@@ -11,14 +11,14 @@ use glam::{DQuat, DVec3};
 
 /// Spacing of the heights computed along a path, radians: a quarter of the mesh's spacing.
 const PATH_SPACING: f64 = 0.01;
-/// Largest number of times that a path between two minima is halved to follow a bent valley; 4 follows a quarter circle.
+/// Maximum number of times that a path between two minima is halved to follow a bent valley; 4 suffices for a quarter circle.
 const VALLEY_HALVINGS: usize = 4;
-/// Angle below which two minima are equal, radians: half the spacing of the mesh.
+/// Angle below which two minima count as equal, radians: half the spacing of the mesh.
 const SAME_DIRECTION: f64 = 0.02;
 
 /// Minimum of the support function, and the fraction of directions that lead to it.
 pub(crate) struct Basin {
-    /// Direction of down at the minimum, unit vector.
+    /// Down direction at the minimum, unit vector.
     pub lowest: DVec3,
     /// Fraction of all directions, 0 to 1; accurate to about 0.01.
     pub share: f64,
@@ -38,13 +38,13 @@ pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
     merging.basins(support, &label)
 }
 
-/// Lowest path from one basin to another, by their labels, with its highest point.
+/// Lowest path from one basin to another, given by the basins' labels, with the height of its highest point.
 struct Pass {
     labels: (usize, usize),
     height: f64,
 }
 
-/// Returns for each direction of the mesh its label: the direction reached by repeatedly moving to the lowest neighbour.
+/// Returns the label of each direction of the mesh: the direction reached by repeatedly moving to the lowest neighbour.
 fn downhill_labels(support: &Support) -> Vec<usize> {
     let heights = &support.heights;
     // Between equal heights the smaller index counts as lower, so that flat regions have an end.
@@ -64,13 +64,13 @@ fn downhill_labels(support: &Support) -> Vec<usize> {
     label
 }
 
-/// Returns each side of each triangle; every edge of the mesh occurs twice, once in either direction.
+/// Returns each side of each triangle, so that every edge of the mesh occurs twice, once in either direction.
 fn edges(support: &Support) -> impl Iterator<Item = (usize, usize)> + '_ {
     let sides = |&[a, b, c]: &[usize; 3]| [(a, b), (b, c), (c, a)];
     support.triangles.iter().flat_map(sides)
 }
 
-/// Returns the lowest mesh edge between each two neighbouring labels.
+/// Returns the lowest mesh edge between each pair of neighbouring labels.
 fn mesh_passes(support: &Support, label: &[usize]) -> Vec<Pass> {
     let between = edges(support).filter(|&(a, b)| label[a] < label[b]);
     let pass = |(a, b): (usize, usize)| Pass {
@@ -90,11 +90,11 @@ fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
     passes
 }
 
-/// Basins during merging (union-find).
+/// Set of basins while they are merged (union-find).
 struct Merging {
-    /// For each label another label of its basin; a root refers to itself.
+    /// Another label of the basin of each label; a root refers to itself.
     parent: Vec<usize>,
-    /// For each root its lowest direction and height.
+    /// Lowest direction and its height, for each root.
     minimum: Vec<(DVec3, f64)>,
 }
 
@@ -116,8 +116,7 @@ impl Merging {
         label
     }
 
-    /// Merges basins, lowest pass first: two basins become one if the pass is less than `barrier` above the higher of
-    /// their minima.
+    /// Merges basins, lowest pass first. Two basins are merged if the pass between them is less than `barrier` above the higher of their minima.
     fn merge(&mut self, passes: &[Pass], barrier: f64) {
         let mut by_height: Vec<&Pass> = passes.iter().collect();
         by_height.sort_by(|a, b| a.height.total_cmp(&b.height));
@@ -129,7 +128,7 @@ impl Merging {
         }
     }
 
-    /// Merges two roots; the lower minimum is kept.
+    /// Merges the basins of two roots; the lower minimum is kept.
     fn join(&mut self, a: usize, b: usize) {
         let (keep, drop) = if self.minimum[a].1 <= self.minimum[b].1 {
             (a, b)
@@ -139,13 +138,13 @@ impl Merging {
         self.parent[drop] = keep;
     }
 
-    /// Returns the higher of two roots' minima.
+    /// Returns the height of the higher of two roots' minima.
     fn floor(&self, a: usize, b: usize) -> f64 {
         self.minimum[a].1.max(self.minimum[b].1)
     }
 
-    /// Moves each minimum from its mesh direction to the true local minimum. If a minimum ends among another basin's directions,
-    /// it got there without a rise, and the two basins are merged.
+    /// Moves each minimum from its mesh direction to the true local minimum. If a minimum ends among another basin's directions, it got there without a rise,
+    /// and the two basins are merged.
     fn descend_minima(&mut self, support: &Support, label: &[usize]) {
         let mut roots: Vec<_> = label.iter().map(|&label| self.root(label)).collect();
         roots.sort_unstable();
@@ -161,7 +160,7 @@ impl Merging {
         }
     }
 
-    /// Returns the passes between the remaining basins: along the mesh, or along a smooth path if this is lower.
+    /// Returns the passes between the remaining basins: along the mesh, or along a smooth path if this path is lower.
     fn smooth_passes(
         &mut self,
         support: &Support,
@@ -190,7 +189,7 @@ impl Merging {
         left
     }
 
-    /// Returns the remaining basins with their fractions of the mesh.
+    /// Returns the remaining basins, each with its fraction of the mesh.
     fn basins(mut self, support: &Support, label: &[usize]) -> Vec<Basin> {
         let mut area = vec![0.0; label.len()];
         for corners in &support.triangles {
@@ -211,7 +210,7 @@ impl Merging {
     }
 }
 
-/// Returns the highest point of a path between two minima. The path is the great circle if it stays below `enough`. Otherwise it passes through
+/// Returns the height of the highest point of a path between two minima. The path is the great circle if it stays below `enough`. Otherwise it passes through
 /// the minimum below its middle, which bends the path into the curved valley of a lying cone.
 fn valley_pass(support: &Support, ends: (DVec3, DVec3), enough: f64, halvings: usize) -> f64 {
     let (from, to) = ends;

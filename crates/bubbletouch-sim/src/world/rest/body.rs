@@ -5,11 +5,11 @@ use crate::geometry::{Aabb, Pose};
 use crate::objects::{Model, Sphere};
 use glam::{DQuat, DVec3};
 
-/// Volume relative to area^(3/2) below which a mesh counts as hollow: a ball has 0.094, a sheet of 100 × 100 × 0.1 mm 0.0004.
+/// Volume relative to area^(3/2) below which a mesh counts as hollow. A ball has 0.094, a plate of 100 × 100 × 0.1 mm 0.0004.
 const HOLLOW: f64 = 1e-4;
 
 impl Model {
-    /// Returns the bounding box after a rotation about the object's origin, metres.
+    /// Returns the bounding box of the object after a rotation about its origin, metres.
     pub(crate) fn turned_bounds(&self, rotation: DQuat) -> Aabb {
         match self {
             Self::Spheres(union) => union.moved(&Pose::from_rotation(rotation)).bounds(),
@@ -29,8 +29,8 @@ impl Model {
         }
     }
 
-    /// Returns the centre of mass of the homogeneous solid, in the object's frame, metres. A mesh without volume, such as a sheet, is treated as
-    /// a surface of constant density.
+    /// Returns the centre of mass of the homogeneous solid, in the object's frame, metres. A mesh without volume, such as a single surface, is treated as a
+    /// surface of constant density.
     pub fn center_of_mass(&self) -> DVec3 {
         let mesh = match self {
             Self::Spheres(union) => return mass::center_of_mass(union),

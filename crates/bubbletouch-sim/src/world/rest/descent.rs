@@ -1,8 +1,7 @@
 //! Descent from a direction to the nearest local minimum of the support function.
 //!
-//! The function is the maximum of smooth pieces, one per sphere, with creases where two spheres touch the table. Each step
-//! exactly minimises the maximum of the linearised pieces inside a trust region. At a face of three contacts this
-//! converges like Newton's method.
+//! The function is the maximum of smooth pieces, one per sphere, with creases where two spheres touch the table. Each step exactly minimises the maximum of the
+//! linearised pieces inside a trust region. At a face with three contacts the iteration converges like Newton's method.
 
 use super::support::Support;
 use crate::objects::Sphere;
@@ -12,12 +11,12 @@ use glam::{DMat3, DVec3};
 const FIRST_REACH: f64 = 0.04;
 /// Radius of the trust region below which the descent ends, radians.
 const LAST_REACH: f64 = 1e-9;
-/// Predicted gain that counts as rounding, relative to the farthest point's distance.
+/// Predicted decrease that counts as rounding, relative to the farthest point's distance.
 const LEAST_GAIN: f64 = 1e-14;
-/// Largest number of steps; 20 to 60 are usual.
+/// Maximum number of steps; 20 to 60 are usual.
 const MAX_STEPS: usize = 200;
 
-/// Returns the local minimum reached from `start`; unit vectors. The height never increases during the descent.
+/// Returns the local minimum of the height reached from `start`; both are unit vectors. The height never increases during the descent.
 pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     let mut down = start;
     let mut height = support.height(down);
@@ -27,7 +26,7 @@ pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     let mut gathered = (down, 4.0 * reach);
     let mut spheres = support.candidates_near(gathered.0, gathered.1);
     for _ in 0..MAX_STEPS {
-        // The corners of the walls are two radii away.
+        // The corners of the walls are two trust-region radii away.
         if down.distance(gathered.0) + 2.0 * reach > gathered.1 {
             gathered = (down, 4.0 * reach);
             spheres = support.candidates_near(gathered.0, gathered.1);
@@ -55,7 +54,7 @@ pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     down
 }
 
-/// Linearised sphere: z ≥ `value` + `slope` · t in the tangent plane.
+/// Linear lower bound of the height due to one sphere: z ≥ `value` + `slope` · t in the tangent plane.
 #[derive(Clone, Copy)]
 struct LinearBound {
     value: f64,
@@ -68,8 +67,7 @@ impl LinearBound {
     }
 }
 
-/// Returns the tangent step that minimises the linearised height inside the walls, and this height. Spheres below `lowest` are
-/// ignored.
+/// Returns the tangent step that minimises the linearised height inside the walls, and this height. Spheres below `lowest` are ignored.
 fn linear_step(
     spheres: &[Sphere],
     down: DVec3,
@@ -87,7 +85,7 @@ fn linear_step(
     (t[0] * u + t[1] * v, z)
 }
 
-/// Returns three pieces, steeper than any sphere, that exceed `height` outside a triangle of inradius `reach` and stay below
+/// Returns three linear pieces that bound the step. They are steeper than any sphere, exceed `height` outside a triangle of inradius `reach`, and stay below
 /// every possible minimum well inside it.
 fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
     let steep = 4.0 * radius;
@@ -102,8 +100,8 @@ fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
 
 /// Returns min over t of the maximum of `pieces` and `walls`: a linear program in three variables, by the dual simplex method.
 ///
-/// The basis has three pieces whose slopes have 0 as their mean with `weights` ≥ 0. The common point of the three pieces is the
-/// minimum of their maximum. The piece that is highest there enters the basis, and the one whose weight reaches zero first leaves.
+/// The basis contains three pieces whose slopes have the weighted mean 0 with `weights` ≥ 0. The common point of the three pieces is the minimum of their
+/// maximum. The piece that is highest there enters the basis, and the piece whose weight reaches zero first leaves.
 fn lowest_maximum(pieces: &[LinearBound], walls: [LinearBound; 3]) -> ([f64; 2], f64) {
     let mut basis = walls;
     let mut weights = [1.0 / 3.0; 3];

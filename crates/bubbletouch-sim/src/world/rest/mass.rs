@@ -3,8 +3,8 @@
 use crate::objects::SphereUnion;
 use glam::DVec3;
 
-/// Cells along the longest side. Larger: more accurate, with cubic run time; 48 cells give about 0.2 % of the longest side
-/// in about 2 ms.
+/// Number of cells along the longest side. A larger value is more accurate, with cubic run time; 48 cells give an error of about 0.2 % of the longest side in
+/// about 2 ms.
 const CELLS: f64 = 48.0;
 
 const EMPTY: u8 = 0;
@@ -22,7 +22,7 @@ pub fn center_of_mass(spheres: &SphereUnion) -> DVec3 {
     cells.centroid()
 }
 
-/// Cubes over the union's box, surrounded by one layer of empty ones.
+/// Cubes over the union's bounding box, surrounded by one layer of empty cubes.
 struct Cells {
     origin: DVec3,
     side: f64,
@@ -50,7 +50,7 @@ impl Cells {
         (z * self.size[1] + y) * self.size[0] + x
     }
 
-    /// Returns the centre of cell `place` along one axis, in the union's frame.
+    /// Returns the centre of the cell with index `place` along one axis, in the union's frame, metres.
     fn center(&self, axis: usize, place: usize) -> f64 {
         self.origin[axis] + (place as f64 + 0.5) * self.side
     }
@@ -107,7 +107,7 @@ impl Cells {
         }
     }
 
-    /// Returns the mean centre of all cells that are not outside.
+    /// Returns the mean centre of all cells that are not outside the union, metres.
     fn centroid(&self) -> DVec3 {
         let mut sum = DVec3::ZERO;
         let mut count = 0.0;

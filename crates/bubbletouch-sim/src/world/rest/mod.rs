@@ -1,4 +1,4 @@
-//! Rest: an object → its resting poses on a table.
+//! Resting poses of an object on a table.
 //!
 //! | stage | input → output |
 //! |---|---|

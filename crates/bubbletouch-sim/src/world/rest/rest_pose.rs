@@ -1,10 +1,9 @@
 //! Resting poses of an object on a table, computed exactly from its spheres or corners.
 //!
-//! Let d be the direction of down in the object's frame. The centre of mass is at the height h(d) = max_j (c_j · d + r_j) above the table,
-//! with c_j relative to it. An object that is tipped slowly moves downhill on h over the sphere of directions, and rests in the
-//! local minima. The probability of a minimum is the fraction of directions that lead to it: the object is put
-//! down slowly in a random orientation (quasi-static toppling; Goldberg, Mirtich, Zhuang, Craig, Carlisle, Canny, *Part pose
-//! statistics*, 1999).
+//! Let d be the direction of down in the object's frame. The centre of mass is at the height h(d) = max_j (c_j · d + r_j) above the table, with c_j relative to
+//! it. An object that is tipped slowly moves downhill on h over the sphere of directions, and rests in the local minima. The probability of a minimum is the
+//! fraction of directions that lead to it, because the object is put down slowly in a random orientation. (Quasi-static toppling: Goldberg, Mirtich, Zhuang,
+//! Craig, Carlisle, Canny, *Part pose statistics*, 1999.)
 
 use super::basins::basins;
 use super::support::Support;
@@ -12,20 +11,20 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::{DQuat, DVec3};
 
-/// Smallest barrier between two poses, relative to the farthest point's distance. Smaller: bumps of spheres on a round
-/// side become poses; larger: stable poses are merged (1 % keeps all that withstand ± 8°).
+/// Smallest barrier between two poses, relative to the farthest point's distance. If smaller, bumps of spheres on a round side become poses; if larger, stable
+/// poses are merged (1 % keeps all poses that withstand ± 8°).
 const BARRIER: f64 = 0.01;
-/// Smallest probability of a pose. Smaller: more poses that rarely occur.
+/// Smallest probability of a pose. If smaller, poses are included that rarely occur.
 const LEAST_PROBABILITY: f64 = 0.02;
 
-/// Pose in which an object rests on the table.
+/// Pose in which an object rests on the table, with its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestPose {
-    /// The object rests on z = 0, z up, with its bounding box centred at x = y = 0.
+    /// Pose of the object on the table: it rests on z = 0 with its bounding box centred at x = y = 0.
     pub table_from_object: Pose,
     /// Height z of the object's top, metres.
     pub height: f64,
-    /// Probability among the object's poses, above 0; the probabilities sum to 1.
+    /// Probability of this pose among the object's poses, above 0; the probabilities sum to 1.
     pub probability: f64,
 }
 
@@ -43,7 +42,7 @@ pub fn stable_poses(object: &Model) -> Vec<RestPose> {
     stable_poses_about(object, object.center_of_mass())
 }
 
-/// Returns the [`stable_poses`] for a given centre of mass, metres, in the object's frame.
+/// Returns the stable resting poses for a given centre of mass, metres, in the object's frame.
 pub fn stable_poses_about(object: &Model, center_of_mass: DVec3) -> Vec<RestPose> {
     let support = Support::about(center_of_mass, &object.extremes());
     let mut poses: Vec<_> = basins(&support, BARRIER * support.radius())
@@ -60,7 +59,7 @@ pub fn stable_poses_about(object: &Model, center_of_mass: DVec3) -> Vec<RestPose
     poses
 }
 
-/// Returns the pose with `down` (unit, object frame) pointing at the table, by the smallest rotation from upright or upside-down.
+/// Returns the pose in which `down` (unit vector in the object's frame) points at the table, reached by the smallest rotation from upright or upside-down.
 fn resting(object: &Model, down: DVec3, probability: f64) -> RestPose {
     let upside_down = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
     let rotation = if down.z <= 0.0 {

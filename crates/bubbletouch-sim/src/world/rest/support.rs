@@ -7,22 +7,22 @@
 use crate::objects::Sphere;
 use glam::DVec3;
 
-/// Subdivisions of the mesh of directions: 10,242 directions, 2.1° apart. One less halves the time and merges basins narrower than 8°;
-/// one more takes four times as long.
+/// Number of subdivisions of the mesh of directions: 10,242 directions, 2.1° apart. One less halves the time and merges basins narrower than 8°; one more takes
+/// four times as long.
 const LEVELS: usize = 5;
 
-/// Support function of a union about a point, with a mesh of directions for searches.
+/// Support function of a union of spheres about a point, with a mesh of directions for searches.
 pub(crate) struct Support {
     spheres: Vec<Sphere>,
     /// Unit vectors of the mesh of directions.
     pub directions: Vec<DVec3>,
     /// Height h at each direction, metres.
     pub heights: Vec<f64>,
-    /// Corners of the finest triangles; triangle t of a level contains 4t … 4t + 3 of the next.
+    /// Triangles of the finest level, as indices of directions; triangle t of a level contains 4t … 4t + 3 of the next.
     pub triangles: Vec<[usize; 3]>,
     /// Triangles of every level except the finest.
     coarse: Vec<Vec<[usize; 3]>>,
-    /// For each triangle of the last coarse level, the spheres that can be highest inside it.
+    /// Spheres that can be highest inside each triangle of the last coarse level.
     candidates: Vec<Vec<u32>>,
 }
 
@@ -48,13 +48,13 @@ impl Support {
         support
     }
 
-    /// Returns the distance of the union's farthest point, metres.
+    /// Returns the distance of the union's farthest point from the centre of mass, metres.
     pub fn radius(&self) -> f64 {
         let reach = |s: &Sphere| s.center.length() + s.radius;
         self.spheres.iter().map(reach).fold(0.0, f64::max)
     }
 
-    /// Returns h(d), metres; `down` is a unit vector.
+    /// Returns the height h(d) of the centre of mass above the table, metres; `down` is a unit vector.
     pub fn height(&self, down: DVec3) -> f64 {
         self.highest(self.cell_of(down), down)
     }
@@ -156,10 +156,10 @@ impl Support {
     }
 }
 
-/// Returns the candidates that are not dominated, over a whole triangle of directions, by one sphere c* that is highest at a corner.
+/// Returns the candidates that no other sphere dominates over a whole triangle of directions. The dominating sphere c* is one that is highest at a corner.
 ///
-/// Inside the triangle, d = v / |v| with v = Σ αᵢ vᵢ over the corners, αᵢ ≥ 0, Σ αᵢ = 1, and |v| from ϱ (the plane's distance) to 1. So
-/// (c − c*)·d + r − r* ≤ 0 everywhere if (c − c*)·vᵢ + max((r − r*) ϱ, r − r*) ≤ 0 at all three corners.
+/// Inside the triangle, d = v / |v| with v = Σ αᵢ vᵢ over the corners, αᵢ ≥ 0, Σ αᵢ = 1, and |v| from ϱ (the plane's distance) to 1. So (c − c*)·d + r − r* ≤ 0
+/// everywhere if (c − c*)·vᵢ + max((r − r*) ϱ, r − r*) ≤ 0 at all three corners.
 fn not_dominated(spheres: &[Sphere], candidates: &[u32], corners: [DVec3; 3]) -> Vec<u32> {
     let values: Vec<_> = candidates
         .iter()
@@ -189,7 +189,7 @@ fn not_dominated(spheres: &[Sphere], candidates: &[u32], corners: [DVec3; 3]) ->
         .collect()
 }
 
-/// Returns unit directions and the triangles of each level, from 20 to the finest.
+/// Returns the unit directions of a subdivided icosahedron, and the triangles of each level, from 20 to the finest.
 fn subdivided_icosahedron() -> (Vec<DVec3>, Vec<Vec<[usize; 3]>>) {
     let golden = 0.5 * (1.0 + 5f64.sqrt());
     let mut directions = Vec::new();
@@ -205,7 +205,7 @@ fn subdivided_icosahedron() -> (Vec<DVec3>, Vec<Vec<[usize; 3]>>) {
     }
     let mut levels = vec![icosahedron_faces(&directions)];
     for level in 0..LEVELS {
-        // For each corner, the later corners joined to it by an edge, and the middle of this edge.
+        // Later corners joined to each corner by an edge, and the middle of this edge.
         let mut middles: Vec<Vec<(usize, usize)>> = vec![Vec::new(); directions.len()];
         let mut finer = Vec::with_capacity(4 * levels[level].len());
         for &[a, b, c] in &levels[level] {
@@ -225,7 +225,7 @@ fn subdivided_icosahedron() -> (Vec<DVec3>, Vec<Vec<[usize; 3]>>) {
     (directions, levels)
 }
 
-/// Returns the 20 triples of mutually nearest corners, counter-clockwise as seen from outside.
+/// Returns the icosahedron's 20 faces, as triples of mutually nearest corners, counter-clockwise as seen from outside.
 fn icosahedron_faces(corners: &[DVec3]) -> Vec<[usize; 3]> {
     // Neighbours are 63° apart, all other pairs at least 117°.
     let near = |a: usize, b: usize| corners[a].dot(corners[b]) > 0.0;

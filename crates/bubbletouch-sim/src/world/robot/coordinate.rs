@@ -1,8 +1,8 @@
-//! Coordinates of joints: dimensions, order and names of a robot's positions.
+//! Coordinates of joints: dimensions, order and names of a robot's joint positions.
 
 use std::f64::consts::PI;
 
-/// Physical dimension of a coordinate.
+/// Physical dimension of a joint coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
     /// Angle, radians.
@@ -12,7 +12,7 @@ pub enum Dimension {
 }
 
 impl Dimension {
-    /// Returns the SI unit.
+    /// Returns the SI unit of the dimension.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Angle => "rad",
@@ -20,7 +20,7 @@ impl Dimension {
         }
     }
 
-    /// Returns suffixes of column names and the sizes of their units in SI; the first suffix is empty.
+    /// Returns the suffixes of column names with this dimension, and the size of each unit in SI units; the first suffix is empty.
     pub fn units(self) -> &'static [(&'static str, f64)] {
         match self {
             Self::Angle => &[("", 1.0), ("_rad", 1.0), ("_deg", PI / 180.0)],
@@ -29,14 +29,13 @@ impl Dimension {
     }
 }
 
-/// One number of a robot's positions.
+/// One coordinate of a robot's joint positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
-    /// Name of the joint. For joints of several coordinates `.x`, `.y`, `.z`, `.theta`, `.roll`, `.pitch` or `.yaw` is
-    /// appended.
+    /// Name of the coordinate: the name of the joint. For joints with several coordinates, `.x`, `.y`, `.z`, `.theta`, `.roll`, `.pitch` or `.yaw` is appended.
     pub name: String,
-    /// Index of the joint.
+    /// Index of the joint that has this coordinate.
     pub joint: usize,
-    /// Physical dimension.
+    /// Physical dimension of the coordinate.
     pub dimension: Dimension,
 }

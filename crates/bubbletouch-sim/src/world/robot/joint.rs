@@ -7,32 +7,32 @@ use glam::{DQuat, DVec3};
 /// Joint between two links of a [`Robot`](super::Robot).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Name, unique among the robot's joints.
+    /// Name of the joint, unique in its robot.
     pub name: String,
-    /// Kind of motion.
+    /// Kind of motion that the joint allows.
     pub kind: JointKind,
     /// Index of the parent link.
     pub parent: usize,
     /// Index of the child link, which the joint moves.
     pub child: usize,
-    /// `parent_from_joint`: pose of the child link at zero coordinates.
+    /// Pose `parent_from_joint` of the child link at zero coordinates.
     pub origin: Pose,
-    /// Axis, unit vector in the joint's frame; unused by fixed and floating joints.
+    /// Axis of the joint, unit vector in the joint's frame; unused by fixed and floating joints.
     pub axis: DVec3,
-    /// Limits of position and velocity; `None` for joints with no coordinate or several, and joints without a `<limit>`.
+    /// Limits of position and velocity; `None` for joints without a `<limit>`, without coordinates, or with several coordinates.
     pub limits: Option<Limits>,
-    /// Joint that this one follows, if any.
+    /// Relation to the joint that this one mimics, if any.
     pub mimic: Option<Mimic>,
 }
 
-/// The six kinds of joints in URDF \[URDF\].
+/// Kinds of joints in URDF \[URDF\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// Hinge with limits.
     Revolute,
     /// Hinge without limits.
     Continuous,
-    /// Slide.
+    /// Linear slide with limits.
     Prismatic,
     /// Rigid connection without motion.
     Fixed,
@@ -58,16 +58,16 @@ pub struct Limits {
 /// Relation of a joint to another one: `position = multiplier · position of the other + offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mimic {
-    /// Index of the other joint, which may itself follow one.
+    /// Index of the other joint, which may itself mimic a joint.
     pub joint: usize,
-    /// Factor of the other joint's position; dimensionless, rad/m or m/rad.
+    /// Factor applied to the other joint's position; dimensionless, rad/m or m/rad.
     pub multiplier: f64,
     /// Offset added to the multiplied position of the other joint, rad or m.
     pub offset: f64,
 }
 
 impl JointKind {
-    /// Names of the kinds in URDF.
+    /// Names of the joint kinds in URDF.
     pub(super) const ALL: [(&'static str, Self); 6] = [
         ("revolute", Self::Revolute),
         ("continuous", Self::Continuous),
@@ -77,7 +77,7 @@ impl JointKind {
         ("planar", Self::Planar),
     ];
 
-    /// Returns the suffix and the dimension of each coordinate; the suffix is appended to the joint's name.
+    /// Returns the suffix and the dimension of each coordinate of this joint kind; the suffix is appended to the joint's name.
     pub fn coordinates(self) -> &'static [(&'static str, Dimension)] {
         use Dimension::{Angle, Length};
         match self {
@@ -103,7 +103,7 @@ impl JointKind {
 }
 
 impl Joint {
-    /// Returns `parent_from_child` at these coordinates, as many as the kind has.
+    /// Returns `parent_from_child` at the given coordinates, as many as the joint's kind has.
     pub(super) fn pose(&self, coordinates: &[f64]) -> Pose {
         let motion = match (self.kind, coordinates) {
             (JointKind::Revolute | JointKind::Continuous, &[angle]) => {
@@ -125,11 +125,11 @@ impl Joint {
     }
 }
 
-/// Returns the x and y directions of the plane perpendicular to a unit axis, right-handed about it. URDF leaves these directions open.
-/// For an axis along +z they are those of the joint's frame, as in other tools. For other axes with z ≥ 0 they are rotated from +z by the
-/// smallest rotation; for z < 0 they are rotated from −z, with y reversed.
+/// Returns the x and y directions of the plane perpendicular to a unit axis, right-handed about it. URDF does not define these directions. For an axis along +z
+/// they are the directions of the joint's frame, as in other tools. For other axes with z ≥ 0 they are rotated from +z by the smallest rotation; for z < 0 they
+/// are rotated from −z, with y reversed.
 fn plane_across(axis: DVec3) -> (DVec3, DVec3) {
-    // [Duff et al., Building an orthonormal basis, revisited, 2017]: accurate for all axes.
+    // The construction is accurate for all axes \[Duff et al., Building an orthonormal basis, revisited, 2017\].
     let sign = if axis.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (sign + axis.z);
     let b = axis.x * axis.y * a;

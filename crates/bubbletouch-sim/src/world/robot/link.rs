@@ -9,20 +9,20 @@ use serde::{Deserialize, Serialize};
 /// Rigid body of a [`Robot`](super::Robot).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
-    /// Name, unique among the robot's links.
+    /// Name of the link, unique in its robot.
     pub name: String,
-    /// Visual and collision shapes, in the order of the file, without unreadable ones.
+    /// Visual and collision shapes of the link, in the order of the file; unreadable shapes are omitted.
     pub shapes: Vec<LinkShape>,
 }
 
-/// Shape on a link.
+/// Shape that a link has, for drawing or collisions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkShape {
     /// Purpose of the shape.
     pub role: ShapeRole,
     /// Form and size of the shape.
     pub geometry: LinkGeometry,
-    /// Pose `link_from_shape`.
+    /// Pose `link_from_shape` of the shape on the link.
     pub origin: Pose,
 }
 
@@ -30,38 +30,38 @@ pub struct LinkShape {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShapeRole {
-    /// Drawn in visualisations.
+    /// Shape for visualisation.
     Visual,
-    /// Used for collisions.
+    /// Shape for collisions.
     Collision,
 }
 
-/// Geometry of a shape, centred on its own origin; axes along z; lengths in metres, zero or positive. A shape with a length of zero
-/// has no volume, and no skin can cover it.
+/// Geometry of a shape, centred on its own origin, with axes along z; lengths in metres, zero or positive. A shape with a length of zero has no volume, and no
+/// skin can cover it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LinkGeometry {
-    /// Box.
+    /// Box with edges along the axes.
     Box {
-        /// Edge lengths of the box.
+        /// Edge lengths of the box, metres.
         size: DVec3,
     },
     /// Cylinder with flat ends.
     Cylinder {
-        /// Radius of the cylinder.
+        /// Radius of the cylinder, metres.
         radius: f64,
-        /// Length of the cylinder, between its ends.
+        /// Length of the cylinder, between its ends, metres.
         length: f64,
     },
     /// Cylinder with hemispheres on its ends (URDF 1.2).
     Capsule {
-        /// Radius of the cylinder and of the hemispheres.
+        /// Radius of the cylinder and of the hemispheres, metres.
         radius: f64,
-        /// Length of the cylinder, without the hemispheres.
+        /// Length of the cylinder, without the hemispheres, metres.
         length: f64,
     },
-    /// Sphere.
+    /// Sphere around the origin.
     Sphere {
-        /// Radius of the sphere.
+        /// Radius of the sphere, metres.
         radius: f64,
     },
     /// Triangle mesh in a separate file.
@@ -74,7 +74,7 @@ pub enum LinkGeometry {
 }
 
 impl LinkGeometry {
-    /// Returns whether the shape encloses a volume; assumed true for a mesh.
+    /// Returns whether the shape encloses a volume; always true for a mesh.
     pub fn has_volume(&self) -> bool {
         match self {
             Self::Box { size } => size.min_element() > 0.0,
@@ -87,7 +87,7 @@ impl LinkGeometry {
 }
 
 impl Link {
-    /// Returns the collision shapes with a volume, which skin can cover.
+    /// Returns the link's collision shapes with a volume, which skin can cover.
     pub(crate) fn solids(&self) -> impl Iterator<Item = &LinkShape> {
         let is_solid =
             |shape: &&LinkShape| shape.role == ShapeRole::Collision && shape.geometry.has_volume();
@@ -106,7 +106,7 @@ pub(super) fn read_link(element: &Element) -> Result<Link> {
         .map(|it| (it, ShapeRole::Collision));
     let mut written: Vec<_> = visual.chain(collision).collect();
     written.sort_by_key(|(shape, _)| shape.node.range().start);
-    // Shapes do not determine poses of links, so unreadable ones are omitted.
+    // Shapes do not determine poses of links, so unreadable shapes are omitted.
     let shapes = written.iter().filter_map(|(shape, role)| {
         let read = read_shape(shape, *role).map(Some);
         shape.or_note(read, None, "this shape is left out")

@@ -1,24 +1,24 @@
-//! Driving position of each joint, through chains of joints that follow each other.
+//! Position that drives each joint, found through chains of mimicking joints.
 
 use super::xml::Element;
 use super::{Joint, Mimic};
 use crate::error::{Error, Result};
 
-/// Source of a joint's coordinates: its own positions, or `multiplier · position + offset` of the joint at the end of the chain that it follows.
+/// Source of a joint's coordinates: its own positions, or `multiplier · position + offset` of the joint at the end of its mimic chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drive {
-    /// Index of the first position of the joint at the end of the chain; unused if the multiplier is 0.
+    /// Index of the first position of the joint at the end of the mimic chain; unused if the multiplier is 0.
     pub position: usize,
-    /// Multiplier of the whole chain; 1 for the end itself, 0 if the end is a fixed joint.
+    /// Multiplier of the whole mimic chain; 1 for a joint that mimics none, 0 if the end is a fixed joint.
     pub multiplier: f64,
-    /// Offset of the whole chain; 0 for the end itself.
+    /// Offset of the whole mimic chain; 0 for a joint that mimics none.
     pub offset: f64,
 }
 
-/// Returns the drive of each joint. A joint that mimics a fixed one stays at its offset.
+/// Returns the drive (source of its coordinates) of each joint. A joint that mimics a fixed one stays at its offset.
 ///
 /// # Errors
-/// If a chain ends in itself or its numbers are too large. The error contains the line of a joint of the chain.
+/// If a mimic chain is a cycle or its numbers are too large. The error contains the line of a joint of the chain.
 ///
 /// # Panics
 /// If a joint mimics a joint of several coordinates.

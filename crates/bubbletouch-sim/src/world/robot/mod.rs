@@ -1,4 +1,4 @@
-//! Robots: links and joints, read from URDF \[URDF\] or one floating link → poses of all links.
+//! Robots: links and joints, read from URDF \[URDF\] or as one floating link; computes poses of all links.
 //!
 //! A robot is a tree of rigid links. Joint j connects its parent link to its child link:
 //!
@@ -12,11 +12,10 @@
 //! | planar | x, y, m; theta, rad | shift in the plane across the axis, then turn about it |
 //! | floating | x, y, z, m; roll, pitch, yaw, rad | shift, then turn: `Rz(yaw) Ry(pitch) Rx(roll)` |
 //!
-//! Links, joints and their origins determine poses and must be valid. A joint whose axis or type cannot be read is fixed. Limits,
-//! shapes and `<mimic>` that cannot be read are omitted. Each of these cases is reported in a [note](Robot::notes).
+//! Links, joints and their origins determine poses and must be valid. A joint whose axis or type cannot be read is fixed. Limits, shapes and `<mimic>` that
+//! cannot be read are omitted. Each of these cases is reported in a note (`Robot::notes`).
 //!
-//! The **positions** of a robot are the coordinates of its joints in the order of its file, without fixed joints and without
-//! joints that mimic another.
+//! The **positions** of a robot are the coordinates of its joints in the order of its file, without fixed and mimicking joints.
 
 mod coordinate;
 mod joint;

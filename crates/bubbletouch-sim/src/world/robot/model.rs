@@ -36,14 +36,14 @@ pub struct Robot {
     links: Vec<Link>,
     joints: Vec<Joint>,
     tree: Tree,
-    /// One drive per joint.
+    /// Sources of the joints' coordinates, one per joint.
     drives: Vec<Drive>,
     coordinates: Vec<Coordinate>,
     pub(super) notes: Vec<String>,
 }
 
 impl Robot {
-    /// Creates a robot of one link without joints; only its base moves.
+    /// Creates a robot that is one link without joints, so that only its base moves.
     pub fn floating(name: &str) -> Self {
         let link = Link {
             name: name.to_owned(),
@@ -120,22 +120,22 @@ impl Robot {
         &self.joints
     }
 
-    /// Returns the index of the base, the link that no joint moves.
+    /// Returns the index of the base link, which no joint moves.
     pub fn base(&self) -> usize {
         self.tree.root
     }
 
-    /// Returns the coordinate of each position, in order.
+    /// Returns the coordinate of each joint position, in order.
     pub fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
     }
 
-    /// Returns the number of positions.
+    /// Returns the number of joint positions.
     pub fn n_positions(&self) -> usize {
         self.coordinates.len()
     }
 
-    /// Returns the default positions: 0, or the limit nearest to 0 if the joint's range excludes 0; rad and m.
+    /// Returns the default joint positions, rad and m: 0, or the limit nearest to 0 if the joint's range excludes 0.
     pub fn rest_positions(&self) -> Vec<f64> {
         let rest = |coordinate: &Coordinate| {
             let limits = self.joints[coordinate.joint].limits;
@@ -162,11 +162,10 @@ impl Robot {
         known(format!("joint of robot `{}`", self.name), name, names)
     }
 
-    /// Returns `world_from_link` of every link, in order; `world_from_base` is the pose of the base. See
-    /// [`forward_into`](Self::forward_into).
+    /// Returns `world_from_link` of every link, in order; `world_from_base` is the pose of the base.
     ///
     /// # Errors
-    /// If [`forward_into`](Self::forward_into) fails.
+    /// If the number of positions differs from the robot's, or a position is not finite.
     pub fn forward(&self, world_from_base: &Pose, positions: &[f64]) -> Result<Vec<Pose>> {
         let mut world_from_link = vec![Pose::IDENTITY; self.links.len()];
         self.forward_into(world_from_base, positions, &mut world_from_link)?;
@@ -175,7 +174,7 @@ impl Robot {
 
     /// Writes `world_from_link` of every link into a slice of one pose per link, without allocation.
     ///
-    /// Limits are not checked here: see [`JointTrajectory`](crate::world::JointTrajectory).
+    /// Limits are not checked here, but in a [`JointTrajectory`](crate::world::JointTrajectory).
     ///
     /// # Errors
     /// If the number of positions or poses differs from the robot's, or a position is not finite.
@@ -205,8 +204,8 @@ impl Robot {
         Ok(())
     }
 
-    /// Returns the position that moves a joint of one coordinate, as `(position, multiplier, offset)`. Returns `None` for other joints and for joints
-    /// that mimic a fixed joint, which no position moves. A joint that mimics none has multiplier 1 and offset 0.
+    /// Returns the position that moves a joint of one coordinate, as `(position, multiplier, offset)`. Returns `None` for other joints and for joints that
+    /// mimic a fixed joint, which no position moves. A joint that mimics none has multiplier 1 and offset 0.
     pub fn drive_of(&self, joint: usize) -> Option<(usize, f64, f64)> {
         let drive = self.drives[joint];
         let is_one = self.joints[joint].kind.has_one_coordinate() && drive.multiplier != 0.0;

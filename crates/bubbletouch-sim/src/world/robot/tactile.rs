@@ -1,4 +1,4 @@
-//! Tactile sensors of a URDF file: `<sensor>` with `<tactile>`. The sensors are not read; each is reported in a note.
+//! Tactile sensors of a URDF file (`<sensor>` with `<tactile>`). The sensors are not read; each one is reported in a note.
 
 use super::xml::Element;
 use roxmltree::Node;
@@ -33,7 +33,7 @@ pub(super) fn note_tactile_sensors(robot: Element) {
     }
 }
 
-/// Returns the link named by `<parent link="…"/>` of a sensor.
+/// Returns the name of the link in `<parent link="…"/>` of a sensor.
 fn parent_link<'a>(sensor: Node<'a, 'a>) -> Option<&'a str> {
     let mut children = sensor.children();
     let parent = children.find(|node| node.tag_name().name() == "parent")?;

@@ -1,4 +1,4 @@
-//! Text of a URDF file: bytes → text → XML that a strict parser accepts, with unchanged line numbers.
+//! Text of a URDF file: decodes bytes, and repairs the text for a strict XML parser without changing line numbers.
 //!
 //! Many public files are not well-formed XML, although other tools accept them. Examples are comments or spaces before `<?xml`, `--` inside
 //! a comment, undeclared namespace prefixes, and NUL bytes at the end.
@@ -33,8 +33,8 @@ pub(super) fn decoded(place: &str, bytes: &[u8]) -> (String, Option<String>) {
     }
 }
 
-/// Returns the text with spaces in place of comments and of an XML declaration that is not at the beginning. Undeclared namespace prefixes
-/// get a declaration. Line numbers are unchanged.
+/// Returns the text with spaces in place of comments and of an XML declaration that is not at the beginning. Undeclared namespace prefixes are declared. Line
+/// numbers are unchanged.
 pub(super) fn repaired(place: &str, text: &str, lines: &Lines) -> String {
     let text = text.trim_start_matches('\u{feff}').trim_end_matches('\0');
     let mut repaired = without(text, "<!--", "-->");
@@ -65,7 +65,7 @@ pub(super) fn repaired(place: &str, text: &str, lines: &Lines) -> String {
     repaired
 }
 
-/// Parses XML; document type declarations are ignored.
+/// Parses the XML text; document type declarations are ignored.
 pub(super) fn parsed(text: &str) -> Result<Document<'_>, Error> {
     let options = ParsingOptions {
         allow_dtd: true,
@@ -74,7 +74,7 @@ pub(super) fn parsed(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, options)
 }
 
-/// Returns a test whether a `<?xml` is a declaration (not another instruction, such as `<?xml-model`) after the beginning of the text.
+/// Returns a predicate: whether a `<?xml` after the beginning of the text is a declaration, and not another instruction such as `<?xml-model`.
 fn is_late_declaration(text: &str) -> impl Fn((usize, &str)) -> bool + '_ {
     move |(start, found)| {
         let after = text[start + found.len()..].chars().next();
@@ -102,7 +102,7 @@ fn without(text: &str, open: &str, close: &str) -> String {
     kept + rest
 }
 
-/// Returns the position after the name of the first element.
+/// Returns the byte position after the name of the first element.
 fn root_name_end(text: &str) -> Option<usize> {
     let is_name = |start: usize| {
         let after = text[start + 1..].chars().next();

@@ -4,7 +4,7 @@ use super::xml::Element;
 use super::{Joint, Link};
 use crate::error::{Error, Result};
 
-/// Root of a robot's tree, and an order of its joints from the root outwards.
+/// Root of a robot's tree, and the joints ordered from the root outwards.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tree {
     /// Index of the link that no joint moves.
@@ -68,7 +68,7 @@ fn moved_by(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Ve
     Ok(moved_by)
 }
 
-/// Returns the joints reached from the root, parents first; children of one link in the order of the file.
+/// Returns the joints reached from the root, parents first; children of one link keep the order of the file.
 fn outward(root: usize, n_links: usize, joints: &[Joint]) -> Vec<usize> {
     let mut carried: Vec<Vec<usize>> = vec![Vec::new(); n_links];
     for (index, joint) in joints.iter().enumerate() {
@@ -83,7 +83,7 @@ fn outward(root: usize, n_links: usize, joints: &[Joint]) -> Vec<usize> {
     order
 }
 
-/// Returns the error for a cycle of links, starting from a link that leads into the cycle.
+/// Returns the error for a cycle of links, found from a link that leads into the cycle.
 fn circle(
     start: usize,
     links: &[Link],

@@ -1,4 +1,4 @@
-//! URDF \[URDF\]: the text of a robot → its links and joints; each error contains its line.
+//! URDF reader \[URDF\]: converts the text of a robot file to links and joints; each error contains its line.
 //!
 //! The reader uses the elements that move links and the shapes that skin can cover. Inertia, colours, transmissions and elements of other tools are
 //! ignored. Faults that do not affect poses of links are omitted with a note.
@@ -19,7 +19,7 @@ use std::collections::HashMap;
 /// Part of the namespace address of xacro elements, in all versions.
 const XACRO: &str = "xacro";
 
-/// Consequence of an unreadable limit, as text of a note.
+/// Consequence of an unreadable limit, in the words of a note.
 const UNLIMITED: &str = "it does not limit the joint";
 const FIXED: &str = "the joint is fixed";
 const ALONE: &str = "the joint mimics none";
@@ -33,7 +33,7 @@ pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
         node: document.root_element(),
         lines: &lines,
     };
-    // Missing parts may be those that xacro would have created.
+    // Missing parts may be parts that xacro would have created.
     let not_expanded = not_expanded(root);
     let (name, links, joints, tree, drives) =
         read_parts(root).map_err(|error| match &not_expanded {
@@ -170,14 +170,14 @@ fn drop_mimics_of_several(joints: &mut [Joint], elements: &[Element]) {
     }
 }
 
-/// Links that a joint can connect.
+/// Links that a joint can connect, by their names.
 struct Ends<'a> {
     links: &'a [Link],
     link_of: &'a HashMap<&'a str, usize>,
 }
 
 impl Ends<'_> {
-    /// Returns the index of the link named by `<parent>` or `<child>`.
+    /// Returns the index of the link named by a joint's `<parent>` or `<child>`.
     fn read(&self, joint: Element, name: &str, tag: &'static str) -> Result<usize> {
         let end = joint.needed_child(tag)?;
         let wanted = end.text("link")?;
@@ -202,7 +202,7 @@ fn read_kind(element: &Element, joint: &str) -> Result<JointKind> {
     })
 }
 
-/// Returns the unit axis; x if none is written.
+/// Returns the unit axis of a joint; x if the file does not contain an axis.
 fn read_axis(element: Element, joint: &str) -> Result<DVec3> {
     let Some(axis) = element.child("axis")? else {
         return Ok(DVec3::X);
@@ -317,7 +317,7 @@ fn in_order<'n>(index_of: &HashMap<&'n str, usize>) -> Vec<&'n str> {
     names.into_iter().map(|(_, name)| name).collect()
 }
 
-/// Maps names to indices; the error shows the second of two equal names.
+/// Maps the names of elements to indices; the error shows the second of two equal names.
 fn index_of_each<'n>(
     what: &str,
     names: impl Iterator<Item = &'n str>,
@@ -336,7 +336,7 @@ fn index_of_each<'n>(
     Ok(index_of)
 }
 
-/// Returns the first element of xacro, or with an xacro expression in an attribute; the elements that it generates are missing.
+/// Returns the first element of xacro, or the first with an xacro expression in an attribute; the elements that it would generate are missing.
 fn not_expanded(root: Element) -> Option<Element> {
     let is_xacro = |node: &Node| {
         let space = node.tag_name().namespace();
@@ -366,7 +366,7 @@ fn unreadable(place: &str, text: &str, error: &roxmltree::Error) -> Error {
         return Error::input(place, "an empty file", "URDF: a <robot>");
     }
     let said = error.to_string();
-    // The reader appends its own position; ours precedes the message.
+    // The XML reader appends its own position; here the position precedes the message.
     let given = said
         .rsplit_once(" at ")
         .map_or(said.as_str(), |(given, _)| given);

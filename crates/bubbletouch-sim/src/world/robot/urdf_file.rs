@@ -1,4 +1,4 @@
-//! Readers of robots: from a file, its bytes, or its text.
+//! Readers of URDF robots from a file, its bytes, or its text.
 
 use super::Robot;
 use super::text::decoded;
@@ -7,8 +7,7 @@ use crate::error::{Error, Result};
 use std::path::Path;
 
 impl Robot {
-    /// Reads a robot from the text of a URDF file. Faults that do not affect the poses of links are omitted with a
-    /// [note](Self::notes).
+    /// Reads a robot from the text of a URDF file. Faults that do not affect the poses of links are omitted with a [note](Self::notes).
     ///
     /// # Errors
     /// If a part that determines poses of links is invalid. The message begins with `place`, the file's name, and contains the line.
@@ -19,7 +18,7 @@ impl Robot {
     /// Reads a robot from a URDF file in UTF-8, UTF-16 with a byte order mark, or Latin-1. Mesh files are not opened.
     ///
     /// # Errors
-    /// If the file cannot be read, or [`from_urdf`](Self::from_urdf) fails.
+    /// If the file cannot be read or its text is invalid.
     pub fn read_urdf(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
         let bytes = crate::files::read(path)
@@ -30,7 +29,7 @@ impl Robot {
     /// Reads a robot from the bytes of a URDF file; `place` is the file's name in messages.
     ///
     /// # Errors
-    /// If [`from_urdf`](Self::from_urdf) fails.
+    /// If the bytes cannot be decoded or the text is invalid.
     pub fn from_urdf_bytes(place: &str, bytes: &[u8]) -> Result<Self> {
         let (text, note) = decoded(place, bytes);
         let mut robot = read_urdf(place, &text)?;

@@ -1,4 +1,4 @@
-//! XML elements with their lines: typed access to their parts, and error messages.
+//! XML elements with their line numbers: typed access to their parts, and error messages.
 
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
@@ -8,7 +8,7 @@ use roxmltree::Node;
 use std::cell::RefCell;
 use std::str::FromStr;
 
-/// Starts of the lines of a file, and notes collected while it is read.
+/// Line starts of a file, and notes collected while the file is read.
 pub(super) struct Lines<'a> {
     place: &'a str,
     starts: Vec<usize>,
@@ -16,7 +16,7 @@ pub(super) struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// Creates the table of lines; `place` is the file's name.
+    /// Creates the table of line starts; `place` is the file's name.
     pub fn new(place: &'a str, text: &str) -> Self {
         let ends = text.match_indices('\n').map(|(end, _)| end + 1);
         Self {
@@ -26,12 +26,12 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Adds a note, a sentence that begins with the file's name.
+    /// Adds a note (a sentence), preceded by the file's name.
     pub fn note(&self, note: String) {
         self.notes.borrow_mut().push(note);
     }
 
-    /// Returns the notes so far, in the order in which they were added.
+    /// Returns the notes added so far, in their order.
     pub fn into_notes(self) -> Vec<String> {
         self.notes.into_inner()
     }
@@ -41,7 +41,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Element of a file.
+/// Element of an XML file.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
     pub node: Node<'a, 'a>,
@@ -49,12 +49,12 @@ pub(super) struct Element<'a> {
 }
 
 impl<'a> Element<'a> {
-    /// Returns the line of the element, from 1.
+    /// Returns the line number of the element, from 1.
     pub fn line(&self) -> usize {
         self.lines.line(self.node.range().start)
     }
 
-    /// Returns an error at this element's line.
+    /// Returns an error that contains this element's line.
     pub fn refuse(&self, given: impl ToString, allowed: impl ToString) -> Error {
         let place = format!("{}, line {}", self.lines.place, self.line());
         Error::input(place, given, allowed)
@@ -92,7 +92,7 @@ impl<'a> Element<'a> {
             .ok_or_else(|| self.refuse(format!("{} without <{tag}>", self.called()), "exactly one"))
     }
 
-    /// Returns a required attribute.
+    /// Returns the value of a required attribute.
     pub fn text(&self, attribute: &str) -> Result<&'a str> {
         self.node.attribute(attribute).ok_or_else(|| {
             let given = format!("{} without `{attribute}`", self.called());
@@ -100,7 +100,7 @@ impl<'a> Element<'a> {
         })
     }
 
-    /// Returns the attribute `name`, not empty.
+    /// Returns the attribute `name`, which must not be empty.
     pub fn name(&self) -> Result<&'a str> {
         let name = self.text("name")?;
         if name.trim().is_empty() {
@@ -109,7 +109,7 @@ impl<'a> Element<'a> {
         Ok(name)
     }
 
-    /// Returns the N finite numbers of an attribute, if it exists.
+    /// Returns the N finite numbers of an attribute, if the attribute exists.
     pub fn numbers<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>> {
         let Some(text) = self.node.attribute(attribute) else {
             return Ok(None);
@@ -135,13 +135,13 @@ impl<'a> Element<'a> {
         Ok(self.numbers(attribute)?.expect("the attribute is there"))
     }
 
-    /// Returns one finite number of an attribute, if it exists.
+    /// Returns one finite number of an attribute, if the attribute exists.
     pub fn number(&self, attribute: &str) -> Result<Option<f64>> {
         Ok(self.numbers::<1>(attribute)?.map(|[number]| number))
     }
 
-    /// Returns the pose of the child `<origin>`; the identity if there is none. `rpy` rotates about the fixed axes x, y, z in this order; `quat_xyzw`
-    /// (URDF 1.1) replaces it.
+    /// Returns the pose of the child `<origin>`; the identity if there is none. The attribute `rpy` rotates about the fixed axes x, y, z in this order;
+    /// `quat_xyzw` (URDF 1.1) replaces it.
     pub fn origin(self) -> Result<Pose> {
         let Some(origin) = self.child("origin")? else {
             return Ok(Pose::IDENTITY);
@@ -164,7 +164,7 @@ impl<'a> Element<'a> {
         Ok(Pose::new(rotation, DVec3::from(xyz)))
     }
 
-    /// Returns an error for child elements that are misspelt known ones. Unknown elements are ignored: every simulator adds its own.
+    /// Returns an error for child elements whose tag is a misspelling of a known one. Unknown elements are ignored, because every simulator adds its own.
     pub fn check_tags(&self, known: &[&str]) -> Result<()> {
         for node in self.node.children().filter(is_own) {
             let tag = node.tag_name().name();
@@ -178,7 +178,7 @@ impl<'a> Element<'a> {
         Ok(())
     }
 
-    /// Returns an error for attributes that are misspelt known ones.
+    /// Returns an error for attributes whose name is a misspelling of a known one.
     pub fn check_attributes(&self, known: &[&str]) -> Result<()> {
         for attribute in self.node.attributes() {
             let name = attribute.name();
@@ -192,7 +192,7 @@ impl<'a> Element<'a> {
         Ok(())
     }
 
-    /// Returns the tag, and the name if there is one.
+    /// Returns the tag of the element, and its name if it has one, for messages.
     pub fn called(&self) -> String {
         let tag = self.node.tag_name().name();
         match self.node.attribute("name") {
@@ -202,7 +202,7 @@ impl<'a> Element<'a> {
     }
 }
 
-/// Returns whether a node is an element of URDF; elements in another namespace than the root's belong to other tools.
+/// Returns whether a node is an element of URDF. Elements in another namespace than the root's belong to other tools.
 fn is_own(node: &Node) -> bool {
     let root = node.document().root_element();
     node.is_element() && node.tag_name().namespace() == root.tag_name().namespace()
@@ -213,7 +213,7 @@ fn finite(word: &str) -> Option<f64> {
     number.is_finite().then_some(number)
 }
 
-/// Returns the beginning of a long text.
+/// Returns the beginning of a long text, for messages.
 fn shortened(text: &str) -> String {
     const LETTERS: usize = 60;
     let mut short: String = text.chars().take(LETTERS).collect();

@@ -1,4 +1,4 @@
-//! Robots and bodies in time: smooth between way-points, and within limits at all times.
+//! Robots and bodies in time: smooth between waypoints, and within limits at all times.
 
 use crate::counting::allocations;
 use bubbletouch_sim::geometry::Pose;
@@ -16,7 +16,7 @@ const INTERPOLATIONS: [Interpolation; 3] = [
     Interpolation::Monotone,
 ];
 
-/// The way-points of robots/splines.py.
+/// The waypoints of robots/splines.py.
 const TIMES: [f64; 5] = [0.0, 0.5, 1.7, 2.0, 4.0];
 const VALUES: [f64; 5] = [0.0, 1.0, 1.2, -0.7, 0.4];
 
@@ -103,7 +103,7 @@ fn the_ends_hold_and_way_points_are_passed_exactly() {
 fn a_limit_passed_between_legal_way_points_is_found() {
     let robot = robot(r#"lower="-1" upper="1.05" velocity="90""#);
     let values = [0.0, 1.0, 1.0, 0.0];
-    // All way-points are legal, and so are straight lines between them.
+    // All waypoints are legal, and so are straight lines between them.
     for kind in [Interpolation::Linear, Interpolation::Monotone] {
         hinge(&robot, &values, kind).expect("nothing leaves the way-points");
     }

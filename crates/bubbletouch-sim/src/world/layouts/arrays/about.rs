@@ -1,12 +1,12 @@
-//! Description of an array layout.
+//! Description of an array layout, with the functions that create and project its taxels.
 
 use crate::error::Result;
 use crate::world::{Grid, Layout};
 use glam::{DVec2, DVec3};
 
-/// Description of an array layout.
+/// Description of an array layout, with the functions that create and project its taxels.
 pub struct LayoutAbout {
-    /// Name of the layout in texts.
+    /// Display name of the layout.
     pub words: &'static str,
     /// Function that creates the taxels on the area of a square grid; the second argument is the radius of curvature, metres.
     pub taxels: fn(&Grid, f64) -> Result<Layout>,
@@ -14,24 +14,24 @@ pub struct LayoutAbout {
     pub sides: fn(&Grid) -> Option<(usize, usize)>,
     /// Curvature; `None` for a flat layout.
     pub curved: Option<Curved>,
-    /// Distance between neighbours in pitches, if it differs from the pitch.
+    /// Distance between neighbouring taxels, in pitches, if it differs from the pitch.
     pub neighbour_pitches: Option<f64>,
     /// Whether the taxels lie in straight rows and columns, one pitch apart along the surface.
     pub is_image: bool,
-    /// Function from a taxel's centre and the radius of curvature to its place on a plane, metres.
+    /// Function from a taxel's centre and the radius of curvature to the taxel's position on a plane, metres.
     pub place_on_plane: fn(DVec3, f64) -> DVec2,
 }
 
-/// Curvature of a layout.
+/// Curvature limits of a curved layout.
 pub struct Curved {
-    /// Smallest radius, metres, for a square array of this side, metres.
+    /// Function that returns the smallest radius of curvature, metres, for a square array with the given side, metres.
     pub least_radius: fn(f64) -> f64,
-    /// Description of the covered part at the smallest radius.
+    /// Words that describe the covered part at the smallest radius, such as half a turn.
     pub half: &'static str,
 }
 
 impl LayoutAbout {
-    /// Describes a flat layout without rows.
+    /// Describes a flat layout without rows of taxels.
     pub const fn new(words: &'static str, taxels: fn(&Grid, f64) -> Result<Layout>) -> Self {
         Self {
             words,
@@ -45,7 +45,7 @@ impl LayoutAbout {
     }
 }
 
-/// Declares the layouts: the name of each, the file that describes it, and its documentation.
+/// Declares the array layouts from a list: the name of each, the file that describes it, and its documentation.
 macro_rules! array_layouts {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(mod $file;)*
@@ -57,7 +57,7 @@ macro_rules! array_layouts {
             $(#[doc = $doc] $name,)*
         }
 
-        /// The first layout of the list.
+        /// The default is the first layout of the list.
         impl Default for ArrayLayout {
             fn default() -> Self {
                 Self::ALL[0]
@@ -65,7 +65,7 @@ macro_rules! array_layouts {
         }
 
         impl ArrayLayout {
-            /// All layouts.
+            /// All array layouts, in the order of the list.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
             /// Returns the description of the layout.

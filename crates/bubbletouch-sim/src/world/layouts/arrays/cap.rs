@@ -1,4 +1,4 @@
-//! Rings of taxels on a sphere, around its pole.
+//! Spherical cap: rings of taxels on a sphere, around its pole.
 
 use super::about::{Curved, LayoutAbout};
 use crate::error::Result;
@@ -25,7 +25,7 @@ fn taxels(grid: &Grid, radius: f64) -> Result<Layout> {
     Ok(cap.moved(&Pose::from_translation(-radius * DVec3::Z)))
 }
 
-/// Returns the azimuthal equidistant projection: distances from the middle are those along the surface, directions are kept.
+/// Returns the azimuthal equidistant projection of a taxel's centre: distances and directions from the middle are preserved.
 fn place_on_plane(center: DVec3, radius: f64) -> DVec2 {
     let away = center.truncate();
     let angle = away.length().atan2(center.z + radius);

@@ -1,4 +1,4 @@
-//! A grid of taxels bent around a cylinder.
+//! Cylinder: a grid of taxels bent around a cylinder.
 
 use super::about::{Curved, LayoutAbout};
 use crate::geometry::Pose;
@@ -18,7 +18,7 @@ pub const ABOUT: LayoutAbout = LayoutAbout {
     })
 };
 
-/// Returns the pose that moves the middle of a cylinder around z, at +x, to the origin, with the axis along z and the rings along y.
+/// Returns the pose that moves a cylinder around z, so that its middle at +x reaches the origin, with the cylinder's axis along z and the rings along y.
 fn up(radius: f64) -> Pose {
     let rotation = DMat3::from_cols(DVec3::Z, DVec3::X, DVec3::Y);
     Pose {

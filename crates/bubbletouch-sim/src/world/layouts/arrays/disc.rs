@@ -1,4 +1,4 @@
-//! A hexagonal lattice of taxels in a circle.
+//! Disc: a hexagonal lattice of taxels inside a circle.
 
 use super::about::LayoutAbout;
 use super::lattice::NEIGHBOUR;

@@ -1,4 +1,4 @@
-//! Rows and columns of taxels.
+//! Grid: rows and columns of taxels.
 
 use super::about::LayoutAbout;
 use crate::world::Layout;

@@ -1,4 +1,4 @@
-//! Staggered rows of taxels.
+//! Hexagonal lattice: staggered rows of taxels.
 
 use super::about::LayoutAbout;
 use super::lattice::{NEIGHBOUR, sides};

@@ -1,10 +1,10 @@
-//! Comparable arrays of taxels; each layout is one file and one line below.
+//! Arrays of equal area and taxel density, for comparing layouts.
 //!
-//! An array has one taxel per square of a pitch, and its taxels cover the area of a square grid, n × n pitches. The number of taxels is within a few
+//! An array has one taxel per square of side pitch, and its taxels cover the area of a square grid, n × n pitches. The number of taxels is within a few
 //! per cent of n². In the patch frame the middle is at the origin, with its axis along +z.
 //!
-//! The pitch of an array is the side of a square with the area per taxel, in every layout. In a hexagonal lattice of this density the six
-//! neighbours of a taxel are [farther away](ArrayLayout::neighbour_distance): 2.149 mm at a pitch of 2 mm.
+//! In every layout, the pitch is the side of a square whose area is the mean area per taxel. In a hexagonal lattice of this density the six neighbours of a
+//! taxel are farther away than the pitch: 2.149 mm at a pitch of 2 mm.
 
 #[macro_use]
 mod about;
@@ -16,7 +16,7 @@ use about::LayoutAbout;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-// The rest of the program uses only a layout's line here and the file that the line names.
+// The rest of the program refers to a layout only by its line here and the file that the line names.
 array_layouts! {
     Grid grid "Rows and columns.";
     Hexagonal hexagonal "Staggered rows: each taxel has six neighbours, 1.0746 pitches away.";
@@ -36,27 +36,27 @@ impl ArrayLayout {
         self.about().is_image
     }
 
-    /// Returns the distance between neighbours, metres, if it differs from the pitch: √(2/√3) pitches in a hexagonal lattice. Returns `None`
-    /// for other layouts, whose neighbours are about a pitch apart.
+    /// Returns the distance between neighbouring taxels, metres, if it differs from the pitch: √(2/√3) pitches in a hexagonal lattice. Returns `None` for other
+    /// layouts, whose neighbours are about a pitch apart.
     pub fn neighbour_distance(self, pitch: f64) -> Option<f64> {
         self.about().neighbour_pitches.map(|n| n * pitch)
     }
 
-    /// Returns the name of the layout for texts.
+    /// Returns the display name of the layout.
     pub fn words(self) -> &'static str {
         self.about().words
     }
 
-    /// Returns the place of a taxel on a plane, metres: in a flat layout its x and y. `radius` is the radius of curvature.
+    /// Returns the position of a taxel on a plane, metres: x and y in a flat layout, a projection otherwise. `radius` is the radius of curvature, metres.
     pub fn place_on_plane(self, center: DVec3, radius: f64) -> DVec2 {
         (self.about().place_on_plane)(center, radius)
     }
 
-    /// Returns the taxels of the layout for the area of a square grid (nx = ny). `radius` is the radius of curvature to the rest centres, metres; flat
-    /// layouts ignore it.
+    /// Creates the taxels of the layout for the area of a square grid (nx = ny). `radius` is the radius of curvature to the rest centres, metres; flat layouts
+    /// ignore it.
     ///
     /// # Errors
-    /// If the grid is not square, or the layout does not fit around the radius. A cylinder covers at most half a turn, a cap at most half a sphere.
+    /// If the grid is not square, or the layout does not fit around the radius. A cylinder covers at most half a turn, and a cap at most half a sphere.
     pub fn taxels(self, grid: &Grid, radius: f64) -> Result<Layout> {
         grid.check()?;
         let about = self.about();
