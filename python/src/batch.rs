@@ -29,7 +29,7 @@ pub fn n_threads(asked: Option<i64>) -> PyResult<Option<usize>> {
     }
 }
 
-/// SignalWorkspace memory reused by successive calls.
+/// Scratch memory reused by successive calls.
 pub struct Spare<S>(Mutex<Vec<S>>);
 
 impl<S> Spare<S> {

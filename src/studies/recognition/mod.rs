@@ -1,6 +1,6 @@
 //! Recognition studies: studies that recognise objects by touch.
 //!
-//! Data flow in one direction: each stage is a folder, and a stage imports only from stages above it in this table.
+//! Data flow: each stage is a folder, and a stage imports only from stages above it in this table.
 //!
 //! | stage | in → out |
 //! |---|---|

@@ -28,9 +28,9 @@ pub(super) struct PatchState {
     pub n_evaluated: usize,
     /// Number of spheres of objects near the patch that were excluded before.
     pub n_rejected: usize,
-    /// SignalWorkspace memory of a search: for each cluster of an object a bound, below zero if one of its spheres may touch.
+    /// Scratch memory of a search: for each cluster of an object a bound, below zero if one of its spheres may touch.
     pub gaps: Vec<f64>,
-    /// SignalWorkspace memory for a sphere: the bundles under it, by their first columns.
+    /// Scratch memory for a sphere: the bundles under it, by their first columns.
     pub under: Vec<(u32, SphereOverBundle)>,
 }
 

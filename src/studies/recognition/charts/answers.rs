@@ -10,10 +10,10 @@ use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::tables::CELLS;
 use crate::table::{Table, Value, short_number};
 
-/// Largest number of values listed in a sentence, and of conditions with a sentence.
+/// Maximum number of values listed in a sentence, and of conditions described by a sentence.
 const MAX_LISTED: usize = 8;
 
-/// Returns the answers: the best configuration in each condition, the cheapest one within its interval, the effect of each setting, and remarks on omissions.
+/// Returns the findings as sentences: the best configuration in each condition, the cheapest one within its interval, the effect of each setting, and remarks.
 pub fn answers(tables: &[Table]) -> Vec<String> {
     let Some(configurations) = filled(tables, CELLS) else {
         return vec!["No configuration has been computed.".to_owned()];
@@ -26,7 +26,7 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
     sentences
 }
 
-/// Returns the text at the end of a run: configurations, answers, comparison with published accuracies, and the most frequent confusions.
+/// Returns the terminal text at the end of a run: configurations, findings, comparison with published accuracies, and the most frequent confusions.
 pub fn words(tables: &[Table], width: usize) -> String {
     let shown = [
         CELLS,
@@ -47,7 +47,7 @@ pub fn words(tables: &[Table], width: usize) -> String {
         })
 }
 
-/// Returns a note on the number of touches that touched nothing; `None` if all touched something.
+/// Returns a note on the number of touches that deflected no taxel; `None` if every touch deflected one.
 fn missed(tables: &[Table]) -> Option<String> {
     let limits = filled(tables, LIMITS_FILE)?;
     let row = (0..limits.n_rows).find(|&row| limits.word("limit", row) == MISSED_TOUCHES)?;
@@ -57,7 +57,7 @@ fn missed(tables: &[Table]) -> Option<String> {
     (count > 0.0).then(|| format!("{count} of {of} {MISSED_TOUCHES} ({share} %): {meaning}."))
 }
 
-/// Returns the best configuration of each condition; of the first conditions if there are many.
+/// Returns sentences on the best configuration of each condition; only of the first conditions if there are many.
 fn bests(configurations: &Table) -> Option<Vec<String>> {
     let (accuracy, _) = configurations.column("accuracy")?;
     let (measurements, _) = configurations.column("measurements_per_decision")?;
@@ -77,7 +77,7 @@ fn bests(configurations: &Table) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Returns the best configuration of a condition, and the one with the fewest measurements within its interval.
+/// Returns sentences on the best configuration of a condition, and on the one with the fewest measurements within its interval.
 fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     let best = *offers.front(choices).last()?;
     let accuracy = |offer: &Candidate| offers.table.bounded(offers.value, offer.row);
@@ -110,7 +110,7 @@ fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Returns the mean accuracy at each value of each setting, over the combinations of other settings that have all of these values.
+/// Returns sentences on the effect of each setting: the mean accuracy at each of its values, over those combinations of other settings that have all values.
 fn effects(configurations: &Table) -> Option<Vec<String>> {
     let rows: Vec<usize> = (0..configurations.n_rows).collect();
     let swept = Swept::new(configurations, &rows);

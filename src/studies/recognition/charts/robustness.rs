@@ -1,12 +1,12 @@
 //! Robustness: the value of a condition at which half of the accuracy above chance is lost.
 //!
-//! The value is computed for each design (all other columns equal) and each numeric condition with at least three values. Let a₀ be the highest mean
-//! accuracy along the condition. From there, towards larger or smaller values, the result is the first value at which the accuracy is
-//! chance + (a₀ − chance) / 2. Between two values the accuracy is interpolated linearly over the scale of the condition.
+//! The value is computed for each design (configurations whose other columns are equal) and for each numeric condition with at least three values. Let a₀ be
+//! the highest mean accuracy along the condition. From there, towards larger or smaller values, the result is the first value at which the accuracy is chance +
+//! (a₀ − chance) / 2. Between two values the accuracy is interpolated linearly over the scale of the condition.
 //!
-//! The interval comes from simulation: each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the value is computed
-//! again. The interval contains the middle 95 % of the results. n is the number of rows whose Wilson interval is as wide as the interval in `summary.csv`, so
-//! that folds and held-out groups count as in that table.
+//! The interval is simulated: each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the value is computed again. The
+//! interval contains the middle 95 % of the results. The number n is chosen so that a Wilson interval of n rows is as wide as the interval in `summary.csv`.
+//! Folds and held-out groups therefore count as in that table.
 
 use crate::error::{Error, Result};
 use crate::random::Seed;
@@ -29,83 +29,83 @@ pub(super) const ROBUSTNESS: File<Robustness> = File::new(
 row! {
 /// Robustness of a design to a condition: a row of `robustness.csv`.
 pub struct Robustness {
-    /// Number of the design's most accurate configuration along the condition: a row of `summary.csv`.
+    /// Number of the design's most accurate configuration along the condition; refers to a row of `summary.csv`.
     configuration: usize => Subject: Linear;
-    /// Design: the settings that differ between the designs.
+    /// Settings that distinguish this design from the other designs.
     design: String => Subject;
-    /// Column of the condition.
+    /// Column name of the condition, for example `noise_std`.
     condition: String => Subject;
-    /// Direction from the highest accuracy: to larger or to smaller values.
+    /// Direction in which the condition is followed from its most accurate value: to larger or to smaller values.
     direction: Direction => Subject "towards";
-    /// Value of the condition with the highest accuracy.
+    /// Value of the condition at which the accuracy is highest, in the unit of the condition.
     clean_at: f64 => Note "most accurate at": Linear;
-    /// Highest mean accuracy along the condition.
+    /// Highest mean accuracy along the condition, 0 to 1.
     clean_accuracy: f64 => Note "accuracy there": Share;
-    /// Chance level: one divided by the number of objects.
+    /// Chance level, 0 to 1: one divided by the number of objects.
     chance: f64 => Note: Share;
-    /// Accuracy half-way to chance, `chance + (clean_accuracy − chance) / 2`.
+    /// Accuracy half-way from the highest accuracy to chance, `chance + (clean_accuracy − chance) / 2`.
     half_accuracy: f64 => Note "half-way to chance": Share;
-    /// Whether the accuracy falls to `half_accuracy`.
+    /// Whether the accuracy falls to `half_accuracy`, or the reason why it does not.
     status: HalfStatus => Outcome "half-way is";
-    /// Value at which the accuracy falls to `half_accuracy`; empty if it does not.
+    /// Value of the condition at which the accuracy falls to `half_accuracy`; empty if the accuracy stays above.
     half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
     /// Lower end of the 95 % interval of `half_accuracy_at`; empty if it lies beyond the last value.
     half_accuracy_at_low: Option<f64> => Note "95 % interval of the place, lower end": Linear;
     /// Upper end of the 95 % interval of `half_accuracy_at`; empty if it lies beyond the last value.
     half_accuracy_at_high: Option<f64> => Note "95 % interval of the place, upper end": Linear;
-    /// Last value of the condition in this direction.
+    /// Last value of the condition in this direction, in the unit of the condition.
     end: f64 => Note "last value": Linear;
-    /// Mean accuracy at the last value.
+    /// Mean accuracy at the last value of the condition, 0 to 1.
     accuracy_at_end: f64 => Note "accuracy at the last value": Share;
 } }
 
-/// A direction along an axis.
+/// Direction along the values of a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
-    /// To larger values.
+    /// Towards larger values of the condition.
     Larger,
-    /// To smaller values.
+    /// Towards smaller values of the condition.
     Smaller,
 }
 
-/// Whether the accuracy falls half-way to chance, or why not.
+/// Whether the accuracy falls half-way to chance within the swept values, or the reason why it does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HalfStatus {
-    /// The accuracy falls to half-way.
+    /// The accuracy falls half-way to chance within the swept values.
     Found,
-    /// The accuracy stays above half-way up to the last value.
+    /// The accuracy stays above half-way up to the last swept value.
     BeyondTheLastValue,
     /// The highest accuracy is not above chance.
     AllAtChance,
 }
 
-/// Number of random draws for an interval. With more draws, intervals vary less and reports of many configurations take longer. With 1,000, the standard error
-/// of an end is about a tenth of the interval's half width.
+/// Number of random draws for an interval. If larger, intervals vary less but reports of many configurations take longer. With 1,000 draws, the standard error
+/// of an interval's end is about a tenth of its half width.
 const N_DRAWS: usize = 1000;
 
-/// Smallest number of values of a condition. With two values, the result would only reflect the straight line between them.
+/// Minimum number of values of a condition. With two values, the result would only reflect the straight line between them.
 const MIN_VALUES: usize = 3;
 
-/// Length of the range from zero to the smallest positive value of a logarithmic axis, decades. If it is larger, this range takes most of the axis; if
-/// smaller, zero and that value hardly differ.
+/// Length of the range from zero to the smallest positive value on a logarithmic axis, in decades. If larger, this range takes most of the axis; if smaller,
+/// zero and that value are hardly distinguishable.
 const ZERO_DECADES: f64 = 0.5;
 
-/// Ratio of the largest to the smallest positive value from which an axis is logarithmic, as in charts.
+/// Ratio of the largest to the smallest positive value above which an axis is logarithmic, as in charts.
 const LOG_RATIO: f64 = 16.0;
 
-/// Mean accuracies along a condition, values ascending.
+/// Mean accuracies of a design along a condition, by ascending value.
 struct Curve {
     values: Vec<f64>,
     accuracy: Vec<f64>,
-    /// Number of independent test rows of each mean accuracy.
+    /// Number of independent test rows behind each mean accuracy.
     n_test: Vec<f64>,
     chance: f64,
 }
 
 impl Curve {
-    /// Returns the index of the highest accuracy, in a tie the first.
+    /// Returns the index of the highest accuracy; the first index in a tie.
     fn best(&self) -> usize {
         let accuracy = &self.accuracy;
         let backwards = (0..accuracy.len()).rev();
@@ -118,7 +118,7 @@ impl Curve {
         self.chance + 0.5 * (accuracy - self.chance)
     }
 
-    /// Returns the indices from the highest accuracy to the end of the axis.
+    /// Returns the indices from the highest accuracy to the end of the axis in a direction.
     fn outwards(&self, direction: Direction) -> Vec<usize> {
         match direction {
             Direction::Smaller => (0..=self.best()).rev().collect(),
@@ -126,7 +126,7 @@ impl Curve {
         }
     }
 
-    /// Returns the smallest positive value, and whether the axis is logarithmic above it.
+    /// Returns the smallest positive value of the condition, and whether the axis is logarithmic above it.
     fn scale(&self) -> (f64, bool) {
         let positive = self.values.iter().copied().filter(|&value| value > 0.0);
         let start = positive.fold(f64::INFINITY, f64::min);
@@ -134,7 +134,7 @@ impl Curve {
         (start, self.values[0] >= 0.0 && last / start >= LOG_RATIO)
     }
 
-    /// Returns the position of a value along the axis.
+    /// Returns the position of a value along the axis of the condition.
     fn place(&self, value: f64) -> f64 {
         match self.scale() {
             (_, false) => value,
@@ -143,7 +143,7 @@ impl Curve {
         }
     }
 
-    /// Returns the value at a position; the inverse of [`place`](Self::place).
+    /// Returns the value at a position along the axis; the inverse of [`place`](Self::place).
     fn value(&self, place: f64) -> f64 {
         match self.scale() {
             (_, false) => place,
@@ -152,7 +152,7 @@ impl Curve {
         }
     }
 
-    /// Returns the value at which half of the accuracy above chance is lost, and both ends of its interval; `None` beyond the last value.
+    /// Returns the value at which half of the accuracy above chance is lost, with both ends of its interval; `None` for a value beyond the last one.
     fn half(&self, direction: Direction, seed: &Seed) -> [Option<f64>; 3] {
         let places: Vec<f64> = self.values.iter().map(|&value| self.place(value)).collect();
         let outwards = self.outwards(direction);
@@ -194,7 +194,7 @@ impl Curve {
     }
 }
 
-/// Returns the number of rows, at least 1, whose 95 % Wilson interval around `accuracy` has this width.
+/// Returns the number of rows, at least 1, whose 95 % Wilson interval around `accuracy` has the given width.
 fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
     // With a = z² / n and q = p (1 − p): width² (1 + a)² = 4 a q + a².
     const Z: f64 = 1.959_963_984_540_054;
@@ -207,7 +207,7 @@ fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
     (Z * Z / a).max(1.0)
 }
 
-/// Returns the table of robustness, or `None` if no numeric condition has enough values. `summary` has a row for each configuration.
+/// Returns the robustness table, or `None` if no numeric condition has enough values. `summary` has one row per configuration.
 ///
 /// # Errors
 /// If an accuracy of the summary is not between 0 and 1, or a row cannot be written to a file.
@@ -226,7 +226,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
         let Some((column, Data::Numbers(values))) = summary.column(condition) else {
             continue;
         };
-        // Named numbers, such as 0 bits for no converter, have no position between other values.
+        // Named numbers, such as 0 bits for "no converter", have no position between other values.
         let is_named = |value: f64| column.word(&short_number(value)) != short_number(value);
         let others = [Role::Choice, Role::Condition].map(|role| summary.of_role(role));
         let mut others = others.concat();
@@ -261,7 +261,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
     }
 }
 
-/// Returns one row for each side of the highest accuracy that has values. `along` lists rows of the summary by ascending values of the condition.
+/// Returns one row for each direction from the highest accuracy that has values. `along` lists rows of the summary by ascending values of the condition.
 fn both_sides(
     summary: &Table,
     n_objects: &ObjectCounts,
@@ -327,7 +327,7 @@ fn both_sides(
     sides.into_iter().flatten().collect()
 }
 
-/// Numbers of objects of configurations, derived from their confusion matrices.
+/// Numbers of objects of the configurations, derived from their confusion matrices.
 pub(super) struct ObjectCounts {
     of_cells: HashMap<u64, usize>,
     of_all: usize,
@@ -355,7 +355,7 @@ impl ObjectCounts {
     }
 }
 
-/// Returns a sentence for each condition: the value at which the most robust design has lost half of its accuracy above chance.
+/// Returns one sentence per condition: the value at which the most robust design has lost half of its accuracy above chance.
 pub(super) fn robustness_words(tables: &[Table]) -> Vec<String> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     match (of("summary.csv"), of(ROBUSTNESS.name())) {

@@ -1,4 +1,4 @@
-//! Page sections of a recognition study that other kinds lack: sample touches, settings, and counts of reached limits.
+//! Page sections that only recognition studies have: sample touches, settings, and counts of reached limits.
 
 use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
@@ -10,7 +10,7 @@ use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::CELLS;
 use crate::table::{Table, short_number};
 
-/// Returns the sections of sample touches, settings and limits.
+/// Returns the page sections for sample touches, settings and reached limits.
 ///
 /// # Errors
 /// If a sample touch cannot be drawn.
@@ -27,7 +27,7 @@ pub fn sections(
     ])
 }
 
-/// Returns the study's description, followed by every setting with its values.
+/// Returns the study's description as HTML, followed by every setting with its values.
 fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     let settings = settings.iter();
     let mut html: String = settings
@@ -49,7 +49,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     format!("<dl>{html}</dl>")
 }
 
-/// Returns the reached limits of the model and of the solver.
+/// Returns the reached limits of the model and of the solver as HTML.
 fn limits_html(tables: &[Table]) -> String {
     let Some(table) = filled(tables, LIMITS_FILE) else {
         return String::new();

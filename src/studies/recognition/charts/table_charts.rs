@@ -1,8 +1,8 @@
 //! Charts of a recognition study.
 //!
-//! Every setting that varies has a role in a chart, so no chart mixes configurations that differ in a setting it does not show. The x axis shows the numeric
-//! setting with most values. Lines and panels show the other settings with most values, in a tie texts before numbers. Each combination of the remaining
-//! settings has its own chart.
+//! Every varying setting has a role in a chart, so no chart mixes configurations that differ in a setting it does not show. The x axis shows the numeric
+//! setting with the most values. Lines and panels show the settings with the next most values; in a tie, texts come before numbers. Each combination of the
+//! remaining settings has its own chart.
 
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
@@ -13,11 +13,11 @@ use crate::studies::recognition::charts::tables::{
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
 use std::cmp::Reverse;
 
-/// Number of classifiers from which a study counts as a comparison of classifiers.
+/// Minimum number of classifiers for which a study counts as a comparison of classifiers.
 const MANY_CLASSIFIERS: usize = 3;
 
-/// Returns the charts: accuracy by the settings that vary, accuracy against time if classifiers are compared or the study requests it, and the confusions of
-/// the best configuration.
+/// Returns the charts of a study: accuracy by each varying setting, accuracy against time, and the confusions of the best configuration. Accuracy against time
+/// is included if classifiers are compared or the study requests it.
 pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     let Some(configurations) = filled(tables, CELLS) else {
         return Vec::new();
@@ -51,7 +51,7 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     charts
 }
 
-/// Returns a line at chance level; if configurations differ in their number of objects, at the level of each configuration.
+/// Returns the horizontal line of the chance level; if configurations differ in their number of objects, one level per configuration.
 fn chance(configurations: &Table, confusion: Option<&Table>) -> Option<Rule> {
     if configurations.numbers(CHANCE).is_some() {
         return Some(Rule {
@@ -69,13 +69,13 @@ fn chance(configurations: &Table, confusion: Option<&Table>) -> Option<Rule> {
     Some(Rule::at(Along::Y, 1.0 / n_objects as f64, words))
 }
 
-/// Returns the charts of accuracy that together show every configuration. Settings of the signal that change one at a time have their own charts, along x.
+/// Returns the accuracy charts that together show every configuration. Signal settings that vary one at a time have their own charts, with the setting along x.
 fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..configurations.n_rows).collect();
     let signal = Swept::new(configurations, &all).one_at_a_time;
     if signal.is_empty() {
         let mut charts = charts_along(configurations, chart, None, &all);
-        // A setting that only some classifiers have also gets its own chart, over the rows that have it.
+        // A setting that only some classifiers have also has its own chart, over the rows that have it.
         for setting in &Swept::new(configurations, &all).free {
             let has_it = |row: &usize| setting.data.value(*row).is_some();
             let rows: Vec<usize> = all.iter().copied().filter(has_it).collect();
@@ -107,8 +107,8 @@ fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> 
     signal.iter().flat_map(charts_of).collect()
 }
 
-/// Returns the charts of rows along a given setting, or along the main one. If lines and panels are in use and no setting remains, a second chart exchanges
-/// the two. Both effects can then be read from lines within one panel.
+/// Returns the charts with a given setting, or the main one, along x. If lines and panels are in use and no setting remains, a second chart exchanges the two.
+/// Both effects can then be read from lines within one panel.
 fn charts_along(
     configurations: &Table,
     chart: &ChartSpec,
@@ -178,7 +178,7 @@ fn title(
     title
 }
 
-/// Returns the name of a column for use in file names.
+/// Returns the form of a column name that is used in file names.
 fn word(column: &str) -> &str {
     match column {
         "pitch_mm" | "size_mm" | "smoothing_mm" => column.trim_end_matches("_mm"),
@@ -187,7 +187,7 @@ fn word(column: &str) -> &str {
     }
 }
 
-/// Returns a suffix of a file name: `_noise_10_ensemble_sbhe`, with letters, digits, points and underscores only.
+/// Returns a suffix of a file name, such as `_noise_10_ensemble_sbhe`; it contains only letters, digits, points and underscores.
 fn name_ending(fixed: &[Setting], row: usize) -> String {
     let plain = |letter: char| match letter {
         '.' | '-' => letter,
@@ -205,8 +205,8 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
     parts.collect()
 }
 
-/// Returns charts of accuracy against the times to train and to decide. There is one panel for each value of the first condition, and one colour for each
-/// classifier. With one classifier, colours show the values of the first other choice that varies.
+/// Returns charts of accuracy against training time and prediction time. There is one panel for each value of the first condition, and one colour for each
+/// classifier. With one classifier, colours show the values of the first other varying setting.
 fn time_charts(configurations: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
     let all: Vec<usize> = (0..configurations.n_rows).collect();
     let free = Swept::new(configurations, &all).free;

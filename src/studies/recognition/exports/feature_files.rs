@@ -1,4 +1,4 @@
-//! Training data of one configuration as files, so that any program can train on exactly the same rows.
+//! Training data of one configuration as files, so that other programs can train on exactly the same rows.
 //!
 //! | file | content |
 //! |---|---|
@@ -45,16 +45,16 @@ pub const FEATURE_FILES: [&str; 7] = [
     "configuration.toml",
 ];
 
-/// Labelled measurements, with the rows on which one trial trains and tests.
+/// Labelled measurements, with the training and test rows of one trial.
 #[derive(Clone, Debug)]
 pub struct FeatureSet {
     /// Measurements before scaling, shape (n_touches, m), with the object number of every touch.
     pub data: Dataset,
     /// Training and test rows of the trial.
     pub split: Split,
-    /// Group of every row, if the split does not divide groups.
+    /// Group number of every row; `None` if the split may divide groups.
     pub groups: Option<Array1<usize>>,
-    /// Label of each class in the file.
+    /// Label of each class as written in the file.
     pub classes: Vec<KeyValue>,
 }
 
@@ -77,7 +77,7 @@ struct Settings<'a> {
 }
 
 impl StudyPart {
-    /// Computes the measurements of one configuration in one trial, exactly as a run passes them to its classifier.
+    /// Computes the measurements of one configuration in one trial, exactly as the classifier receives them in a run.
     ///
     /// # Errors
     /// If the study does not have the configuration or the trial, or a signal step or projection is invalid.
@@ -91,7 +91,7 @@ impl StudyPart {
         let inputs = sweep.trial(plan, trial)?;
         let family = FamilyInputs::new(plan, sweep, std::slice::from_ref(configuration));
         let split = inputs.split(&family)?;
-        // As in a run, nested measurements are the first of the largest m.
+        // As in a run, nested measurements are the first m of the largest set.
         let n_projected = match group.ensemble.is_prefix_nested() {
             true => group.projected()[0],
             false => configuration.measurements,
@@ -128,7 +128,7 @@ impl StudyPart {
         })
     }
 
-    /// Simulates the touches of a group in memory, and reads and measures them in a trial.
+    /// Simulates the touches of a group in memory, and computes their measurements in a trial.
     pub(crate) fn measured(
         &self,
         (group, n_measurements): (&Group, usize),
@@ -147,8 +147,8 @@ impl StudyPart {
         self.measure(group, [&frames, tested], (trial, n_measurements))
     }
 
-    /// Reads and measures the frames of a group in a trial, for training and test touches. Runs and exports share this function: projections and image
-    /// estimators are fitted to the training touches of the whole split, even if a configuration trains on fewer.
+    /// Computes the measurements of a group's training and test touches in a trial. Runs and exports share this function: projections and image estimators are
+    /// fitted to the training touches of the whole split, even if a configuration trains on fewer.
     pub(crate) fn measure(
         &self,
         group: &Group,
@@ -162,7 +162,7 @@ impl StudyPart {
         measure_group(&inputs, touches, tested, (trial, n_measurements))
     }
 
-    /// Writes the measurements of one configuration in one trial into an existing folder that is claimed for [`FEATURE_FILES`].
+    /// Writes the measurements of one configuration in one trial. The folder must exist and be claimed for [`FEATURE_FILES`].
     ///
     /// # Errors
     /// If [`features`](Self::features) fails or a file cannot be written.
@@ -204,9 +204,9 @@ impl StudyPart {
     }
 }
 
-/// Reads a folder written by [`StudyPart::write_features`] or by another program. Only the four arrays are required, each as `.npy`, `.npz` or `.csv`, or all
-/// in `features.npz`. Features may be of any numeric type or bool. Labels are integers, texts, or n × classes of 0 and 1. Rows are integers of any type, or a
-/// mask with a bool for each row of features.
+/// Reads a feature folder written by [`StudyPart::write_features`] or by another program. Only the four arrays are required, each as `.npy`, `.npz` or `.csv`,
+/// or all in `features.npz`. Features may be of any numeric type or bool. Labels are integers, texts, or n × classes of 0 and 1. Rows are integers of any type,
+/// or a mask with a bool for each row of features.
 ///
 /// # Errors
 /// If a file is missing or has another number of dimensions or element type than the table above. If a feature is NaN or infinite (the error gives row and
@@ -232,7 +232,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     })
 }
 
-/// Returns the path of an array in a folder: `.npy`, or else `.npz`, `.csv` or the archive `features.npz`.
+/// Returns the path of an array in a folder: the `.npy` file, or else the `.npz` file, the `.csv` file or the archive `features.npz`.
 fn array_file(folder: &Path, name: &str) -> PathBuf {
     let usual = folder.join(format!("{name}.npy"));
     let others = [
@@ -248,7 +248,7 @@ fn array_file(folder: &Path, name: &str) -> PathBuf {
 }
 
 impl FeatureSet {
-    /// Adds the group of every row from a file: non-negative integers of any type, or texts.
+    /// Reads the group of every row from a file: non-negative integers of any type, or texts.
     ///
     /// # Errors
     /// If the file is missing or has another type, if there is not one group per row, or if a group has rows on both sides of the split.
@@ -281,7 +281,7 @@ impl FeatureSet {
         })
     }
 
-    /// Returns the training rows, or the first `n` of them.
+    /// Returns the training rows, or only the first `n` of them.
     ///
     /// # Errors
     /// If `n` is zero or larger than the number of training rows.
@@ -295,7 +295,7 @@ impl FeatureSet {
         Ok(rows(&self.data, &train[..n])?)
     }
 
-    /// Returns the test rows.
+    /// Returns the test rows of the split.
     ///
     /// # Errors
     /// If there are no test rows.
@@ -304,7 +304,7 @@ impl FeatureSet {
     }
 }
 
-/// Checks that no row is listed twice: a test row must not be a training row, and no row may count twice.
+/// Checks that no row is listed twice: training and test rows must not overlap or repeat.
 fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     let mut named_in = vec![None; n_rows];
     for (file, rows) in [("train.npy", &split.train), ("test.npy", &split.test)] {
@@ -322,7 +322,7 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     Ok(())
 }
 
-/// Returns a configuration, given by its number, and its group.
+/// Returns the configuration with a given number, and its group.
 pub(crate) fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Configuration)> {
     let groups = sweep.groups.iter();
     let mut configurations = groups.flat_map(|group| {

@@ -1,4 +1,4 @@
-//! Touches of a study as files for other programs: NumPy arrays and CSV, written as a stream.
+//! Exported touches of a study: NumPy arrays and CSV files, written as a stream.
 //!
 //! | file | content |
 //! |---|---|
@@ -13,8 +13,8 @@
 //! | `objects.csv` | one row per object: number, name, spheres (0 for a mesh), touches |
 //!
 //! Deflections are the direct result of the press: without noise, smoothing or any sensor error of `[signal]`. Frames as a configuration reads them
-//! ([`ReadFrames`]) include all of these, in metres or, with the step `force`, in newtons; only `frames.npy` differs. With `skin.sensed = "shear"` a
-//! configuration reads three forces: `frames.npy` then has 3 × ny × nx newtons per frame, and there is no `shear.npy`.
+//! ([`ReadFrames`]) include all of these steps. They are in metres or, with the step `force`, in newtons; only `frames.npy` differs. With `skin.sensed =
+//! "shear"` a configuration reads three forces: `frames.npy` then has 3 × ny × nx newtons per frame, and there is no `shear.npy`.
 
 use crate::engine::axis::Axis;
 use crate::engine::progress::Progress;
@@ -45,7 +45,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
-/// Number of frames that are simulated and held in memory before they are written.
+/// Number of frames that are simulated together and kept in memory before they are written.
 const BLOCK: usize = 256;
 
 #[derive(Serialize)]
@@ -72,7 +72,7 @@ struct ObjectRow<'a> {
     n_touches: usize,
 }
 
-/// One touch to be written.
+/// Touch to be written: its frames, pose and depth.
 struct Reading<'a> {
     row: TouchRow<'a>,
     /// The F frames of the touch, concatenated.
@@ -83,11 +83,11 @@ struct Reading<'a> {
     depth: f64,
 }
 
-/// Deepest frame of every touch as a configuration reads it in one trial, before it is measured.
+/// Deepest frame of every touch after the signal chain of a configuration, for one trial and before compression.
 pub struct ReadFrames {
-    /// Index of the configuration's array in the plan.
+    /// Index in the plan of the array that the configuration uses.
     pub array: usize,
-    /// Values, shape (n_touches · F, n_taxels); the deepest frame of a touch is the last of its F frames.
+    /// Frame values, shape (n_touches · F, n_taxels); the deepest frame of a touch is the last of its F frames.
     values: Array2<f64>,
     n_frames: usize,
     /// Whether the values are newtons; otherwise metres.
@@ -95,7 +95,7 @@ pub struct ReadFrames {
 }
 
 impl ReadFrames {
-    /// Simulates and reads all touches, which are all held in memory.
+    /// Simulates all touches and applies the signal chain of a configuration; the frames of all touches are kept in memory.
     ///
     /// # Errors
     /// If the study does not have the configuration or the trial, or a signal step is invalid.
@@ -128,7 +128,7 @@ impl ReadFrames {
     }
 }
 
-/// Names of all files of touches in the folder of an array.
+/// Names of all touch files in the folder of an array.
 pub const TOUCH_FILES: [&str; 9] = [
     FRAMES,
     SHEAR,
@@ -143,8 +143,8 @@ pub const TOUCH_FILES: [&str; 9] = [
 const FRAMES: &str = "frames.npy";
 const SHEAR: &str = "shear.npy";
 
-/// Returns the quantities and units of the arrays of frames as JSON, ordered by channel, by file name. `is_force` is given only for frames as a configuration
-/// reads them, which form a single array.
+/// Returns the quantity and unit of each channel of the frame files as JSON, by file name. `is_force` is given only for frames as a configuration reads them,
+/// which form a single array.
 pub fn touch_units(
     array: &TaxelArray,
     is_force: Option<bool>,
@@ -166,11 +166,11 @@ pub fn touch_units(
     }
 }
 
-/// Files of frames: one for each quantity, or a single file of frames as a configuration reads them.
+/// Open frame files: one for each quantity, or a single file of frames as a configuration reads them.
 struct FrameFiles {
     frames: NpyFile,
     shear: Option<NpyFile>,
-    /// Number of values of a frame, and number of these that go into `frames`.
+    /// Number of values of a frame, and number of these that are written to `frames`.
     n_values: usize,
     n_first: usize,
 }
@@ -198,7 +198,7 @@ impl FrameFiles {
         })
     }
 
-    /// Appends frames, each with all its channels.
+    /// Appends frames with all their channels to the files.
     fn push(&mut self, frames: &[f32]) -> Result<()> {
         for frame in frames.chunks(self.n_values) {
             let (first, across) = frame.split_at(self.n_first);
@@ -217,8 +217,8 @@ impl FrameFiles {
     }
 }
 
-/// Simulates all touches of an array, F frames each, block by block, and writes them into an existing folder. If `read` is given, the deepest frames are
-/// written as they were read. Returns the number of touches.
+/// Simulates all touches of an array, F frames each, block by block, and writes them into an existing folder. If `read` is given, its deepest frames are
+/// written instead of the deflections. Returns the number of touches.
 ///
 /// # Errors
 /// If [`TouchSource::new`] fails or a file cannot be written.
@@ -348,7 +348,7 @@ pub fn write_human_touches(
     Ok(labels.len())
 }
 
-/// Returns the letters of the axes of frames with some channels, and the lengths of the axes of one touch.
+/// Returns the axis letters of frames with some channels, and the axis lengths of one touch.
 fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (String, Vec<usize>) {
     let (ny, nx) = array.shape();
     let axes = [("t", n_frames), ("c", n_channels), ("y", ny), ("x", nx)];
@@ -357,7 +357,7 @@ fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (Stri
     (format!("n {}", letters.join(" ")), shape)
 }
 
-/// Returns the table `[recorded]` for the frames of an array, with paths relative to the folder.
+/// Returns the table `[recorded]` of an equivalent study for the frames of an array, with paths relative to the folder.
 fn recorded(
     array: &TaxelArray,
     n_frames: usize,
@@ -374,7 +374,7 @@ fn recorded(
     }
 }
 
-/// Writes `recorded.toml`: the tables of a study that trains on these files.
+/// Writes `recorded.toml`, the tables of a study that trains on the exported files.
 fn write_recorded(
     folder: &Path,
     recorded: RecordedSpec,
@@ -423,7 +423,7 @@ fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
     file.commit()
 }
 
-/// Presses one touch, given its number, its label and the name of its object.
+/// Simulates one touch, given by its number, its label and the name of its object.
 fn pressed<'a>(
     (press, rests): (&ArrayPress, &[RestPose]),
     (number, label, object): (usize, usize, &'a str),

@@ -1,4 +1,4 @@
-//! Press of an array on one object, and its slide along the object.
+//! Simulation of one touch: an array is pressed on an object and slides along it.
 
 use crate::contact::{Approach, Contact, FrictionState, Workspace, press_to_depth};
 use crate::geometry::Pose;
@@ -8,15 +8,15 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Shears;
 use glam::{DVec2, DVec3};
 
-/// SignalWorkspace memory of a thread for touches.
+/// Scratch memory of a thread for simulating touches.
 #[derive(Debug, Default)]
 pub struct ArrayWorkspace {
     press: Workspace,
-    /// State of the friction of the array in use.
+    /// Friction state of the array's taxels; `None` without friction.
     friction: Option<FrictionState>,
 }
 
-/// Press of an array on one object.
+/// Array that is prepared for touches of one object.
 pub struct ArrayPress<'a> {
     array: &'a TaxelArray,
     object: [Model; 1],
@@ -33,8 +33,8 @@ impl TaxelArray {
 }
 
 impl ArrayPress<'_> {
-    /// Presses to a depth (metres) past first contact and then slides as the array does, or performs the first part of this path. Returns `None` if the path
-    /// misses the object.
+    /// Simulates a press to a depth (metres) past first contact and the array's slide, or the first part of this path. Returns `None` if the path misses the
+    /// object.
     pub fn touch(
         &self,
         pose: Pose,
@@ -64,8 +64,8 @@ impl ArrayPress<'_> {
         pose
     }
 
-    /// Returns the readings of the last touch, ordered by channel: [`n_values`](TaxelArray::n_values) values, deflections in metres, then shear forces in
-    /// newtons.
+    /// Returns the readings of the last touch, ordered by channel: [`n_values`](TaxelArray::n_values) deflections in metres, followed by shear forces in
+    /// newtons if the array reads shear.
     pub fn values<'w>(&self, workspace: &'w ArrayWorkspace) -> impl Iterator<Item = f64> + 'w {
         let forces = workspace.friction.as_ref();
         let forces = forces.map_or(&[][..], FrictionState::force3);

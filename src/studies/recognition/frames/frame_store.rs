@@ -1,16 +1,16 @@
-//! Frames in memory, encoded to save space.
+//! Frames stored in memory in a compressed encoding.
 
 use bubbletouch_sim::frame_coding::decode;
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
-/// Frames of an array, n_touches · F of them with n_values each (deflections in metres, or more channels), and counts from their simulation. Frames are
-/// ordered by object and touch; the deepest frame of a touch is the last. Only touched taxels are stored.
+/// Frames of all touches on an array: n_touches · F frames of n_values values (deflections in metres, or more channels). Frames are ordered by object and
+/// touch; the deepest frame of a touch is the last. Only touched taxels are stored.
 #[derive(Debug)]
 pub struct Frames {
-    /// Counts from the simulation of the frames.
+    /// Counts and processor time of the simulation.
     pub facts: FrameFacts,
-    /// Number of values of a frame.
+    /// Number of values per frame.
     pub n_values: usize,
     encoded: Vec<Box<[u8]>>,
 }
@@ -29,12 +29,12 @@ impl Frames {
         }
     }
 
-    /// Appends encoded frames.
+    /// Appends encoded frames to the store.
     pub(crate) fn put(&mut self, encoded: Vec<Box<[u8]>>) {
         self.encoded.extend(encoded);
     }
 
-    /// Returns the number of frames.
+    /// Returns the number of stored frames.
     pub fn n(&self) -> usize {
         self.encoded.len()
     }
@@ -59,7 +59,7 @@ impl Frames {
     }
 }
 
-/// Counts from the simulation of frames.
+/// Counts and processor time of a simulation of frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameFacts {
     /// Number F of frames per touch.
@@ -68,6 +68,6 @@ pub struct FrameFacts {
     pub n_missed: usize,
     /// Number of touches with at least one taxel at its stroke at the deepest point.
     pub n_saturated: usize,
-    /// Processor time, s, summed over threads.
+    /// Processor time summed over threads, s.
     pub cpu_s: f64,
 }

@@ -13,14 +13,14 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-/// Number of frames of a strip, which is one row of the picture.
+/// Number of frames in a film strip; a strip is one row of the picture.
 const N_FRAMES: usize = 4;
 
-/// Number of touches from which the one with the largest force is shown; with one, a fingertip might represent a flat hand.
+/// Number of touches of a kind among which the one with the largest force is shown. With a single touch, a fingertip might represent a flat hand.
 const N_LOOKED_AT: usize = 10;
 
-/// Returns samples of the kinds that the study lists for its picture, by default of all kinds. Each sample is the strongest of the first touches of its kind.
-/// It is shown at four times, evenly spaced between its first and its last contact, on the study's finest array and without noise.
+/// Returns film strips of the kinds of touch that the study lists for its picture, by default of all kinds. Each strip shows the strongest of the first touches
+/// of its kind at four times, evenly spaced between its first and its last contact. The study's finest array is used, without noise.
 ///
 /// # Errors
 /// If the study has no configurations, lists an unknown kind of touch, or has an invalid skin.

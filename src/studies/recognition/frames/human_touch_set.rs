@@ -1,4 +1,4 @@
-//! Human touches as the set of touches of a study.
+//! Implementation of [`TouchSet`] for human touches.
 
 use crate::contact::Workspace;
 use crate::engine::progress::Progress;

@@ -1,4 +1,4 @@
-//! Human touches of a study, drawn once and recorded on each array.
+//! Human touches of a study: drawn once and recorded on each array.
 
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};
@@ -10,19 +10,19 @@ use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Human touches, ordered by kind.
+/// Human touches of a study, ordered by kind.
 #[derive(Clone, Debug)]
 pub struct HumanTouches {
-    /// Kinds of touch and settings of the recording.
+    /// Kinds of touch, and settings of the recording.
     pub spec: HumanTouchSpec,
-    /// Touches, with the same number for each kind.
+    /// Touches in the order of their kinds, with the same number for each kind.
     pub touches: Vec<RecordedTouch>,
 }
 
-/// A touch and the start of its motion within the recording.
+/// Human touch, and the start of its motion within the recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedTouch {
-    /// The touch.
+    /// Motion of the touching hand.
     pub touch: HumanTouch,
     /// Start of the hand's motion, seconds after the first frame.
     pub onset: f64,
@@ -63,7 +63,7 @@ impl HumanTouches {
     }
 }
 
-/// Records a touch as frames, shape (n_frames, n_taxels), metres. Returns whether the touch missed the skin, and whether it saturated a taxel.
+/// Records a touch as frames, shape (n_frames, n_taxels), metres. Also returns whether the touch missed the skin, and whether it saturated a taxel.
 pub fn record_touch(
     skin: &Patch,
     touch: &RecordedTouch,

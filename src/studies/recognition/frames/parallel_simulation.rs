@@ -7,9 +7,9 @@ use ndarray::{Array2, ArrayViewMut2};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Approximate number of frames per task of a thread. If it is smaller, scheduling costs more; if larger, the threads finish at different times.
+/// Approximate number of frames per task of a thread. If smaller, scheduling takes more time; if larger, the threads finish at different times.
 const BLOCK: usize = 32;
-/// Number of tasks per thread before frames are stored.
+/// Number of tasks per thread between two storage steps.
 const BLOCKS_A_THREAD: usize = 8;
 
 /// Returns the number of touches of F frames in a task.
@@ -23,8 +23,8 @@ fn made_at_once(n_frames: usize) -> usize {
 }
 
 impl Frames {
-    /// Simulates the frames of touches, each thread with its own workspace; the result does not depend on the number of threads. `press` writes a touch into
-    /// its F frames (F × n_values). It returns whether the touch missed, and whether it saturated a taxel at its deepest point.
+    /// Simulates the frames of touches, each thread with its own workspace; the result does not depend on the number of threads. `press` writes a touch into F
+    /// frames (F × n_values). It returns whether the touch missed the object, and whether it saturated a taxel at its deepest point.
     pub fn make<T: Sync, W>(
         &mut self,
         touches: &[T],

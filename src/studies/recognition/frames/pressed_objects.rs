@@ -1,4 +1,4 @@
-//! Touches of pressed objects.
+//! Implementation of [`TouchSet`] for touches of pressed objects.
 
 use crate::contact::saturation_limit;
 use crate::engine::progress::Progress;

@@ -1,4 +1,4 @@
-//! Reading of touches: frames → signal chain → measurements.
+//! Reading of touches: frames pass through the signal chain and are compressed to measurements.
 
 use crate::error::Result;
 use crate::random::Seed;
@@ -11,47 +11,47 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Number of frames that are measured together as one matrix product. A fixed number makes results independent of the number of threads.
+/// Number of frames that are measured together by one matrix product. A fixed number makes results independent of the number of threads.
 const BLOCK: usize = 128;
 
-/// Inputs of the reading of touches: skins and projection.
+/// Skins and projection with which touches are measured.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// Skins of the touches. All have frames of the same shape.
+    /// Skins of the touches; all their frames have the same shape.
     pub skins: &'a [ReadSkin<'a>],
-    /// Measurement matrix of the ensemble.
+    /// Measurement matrix Φ.
     pub projection: &'a Projection,
 }
 
-/// A skin and the frames of its touches.
+/// Skin of a touch: its signal chains, taxels and frames.
 #[derive(Clone, Debug)]
 pub struct ReadSkin<'a> {
-    /// Signal chain of each channel.
+    /// Signal chain of each channel of the skin.
     pub chains: Vec<Chain>,
-    /// Taxels of the skin.
+    /// Taxel parameters of the skin.
     pub taxel: Taxel,
-    /// Approach speed at the time of reading, m/s.
+    /// Approach speed of the press at the time of reading, m/s.
     pub speed: f64,
-    /// Frames of the touches.
+    /// Frames of all touches on this skin.
     pub frames: &'a Frames,
 }
 
-/// A touch, and how it is read.
+/// Touch with its random seed, timing and history, as needed to read it.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchToRead {
-    /// Number of the touch; its first frame in the skin's frames is `number · F`.
+    /// Number of the touch; its first frame in the skin's frames has the number `number · F`.
     pub number: usize,
-    /// Seed of the touch's random numbers, derived from its name.
+    /// Seed of the random numbers of this reading, derived from the touch's name.
     pub seed: Seed,
-    /// Time between the frames, seconds; `None` if the press stops for each frame.
+    /// Time between the frames, s; `None` if the press stops for each frame.
     pub interval: Option<f64>,
-    /// Number of the preceding touch; `None` for a skin without history.
+    /// Number of the preceding touch; `None` if no touch precedes it.
     pub before: Option<usize>,
-    /// Index of the touch's skin in the reading.
+    /// Index in [`Reading::skins`] of the touched skin.
     pub skin: usize,
 }
 
-/// Returns all touches of some classes, named by class and number within the class. Each touch is at rest while it is read, on a skin without history.
+/// Returns all touches of some classes, named by class and number within the class. Each touch is read at rest and has no preceding touch.
 pub fn touches_to_read<'a>(
     classes: impl IntoIterator<Item = (&'a str, usize)>,
     seed: &Seed,
@@ -72,7 +72,7 @@ pub fn touches_to_read<'a>(
     touches
 }
 
-/// Reads touches. Returns the measurements, shape (n_touches · F, m), and the processor time, seconds.
+/// Measures touches. Returns the measurements, shape (n_touches · F, m), and the processor time, s.
 ///
 /// # Errors
 /// If a signal step fails.
@@ -96,12 +96,12 @@ pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>
     Ok((values, cpu_s))
 }
 
-/// SignalWorkspace memory of a thread.
+/// Scratch memory of a thread.
 #[derive(Debug, Default)]
 struct Working {
     /// Frames of a block.
     frames: Vec<f64>,
-    /// Frames of one channel of a touch, after up to two frames of history.
+    /// Frames of one channel of a touch, preceded by up to two frames of history.
     with_history: Vec<f64>,
     /// Deepest frame of the preceding touch.
     deepest: Vec<f64>,
@@ -109,7 +109,7 @@ struct Working {
     scratch: SignalWorkspace,
 }
 
-/// Reads some touches, F frames each.
+/// Measures a block of touches, F frames each.
 fn measure_block(
     reading: Reading,
     touches: &[TouchToRead],
@@ -169,7 +169,7 @@ fn recording<'a>(
     }
 }
 
-/// Applies the signal chain of one channel to a touch's frames, in place.
+/// Applies the signal chain of one channel to the frames of a touch, in place.
 fn read_channel(
     skin: &ReadSkin,
     (touch, channel): (&TouchToRead, usize),
@@ -188,7 +188,7 @@ fn read_channel(
     } = working;
     with_history.clear();
     if touch.before.is_some() {
-        // History: the deepest frame of the preceding touch, then the released skin.
+        // The history consists of the deepest frame of the preceding touch and a frame of the released skin.
         with_history.extend_from_slice(&deepest[taxels.clone()]);
         with_history.resize(2 * n_taxels, 0.0);
     }
@@ -207,7 +207,7 @@ fn read_channel(
     }
 }
 
-/// Returns the rate δ̇ of every taxel: the approach speed (m/s) if the object pushes the taxel and the taxel is not at its stroke; `None` at rest.
+/// Returns the deflection rate δ̇ of every taxel, m/s: the approach speed if the object pushes the taxel and the taxel is not at its stroke. `None` at rest.
 pub fn rates_of<'a>(
     frame: &[f64],
     taxel: &Taxel,

@@ -1,7 +1,7 @@
-//! Recorded frames of a study, read once in place of simulated touches.
+//! Recorded frames of a study; they replace simulated touches and are read once.
 //!
-//! A reading v corresponds to the deflection `stroke · (v − zero) / (full_scale − zero)`. Noise and sensor errors of a study, which are fractions of the full
-//! scale, therefore have the same effect as on a simulated skin. Readings of tangential forces are in newtons.
+//! A reading v corresponds to the deflection `stroke · (v − zero) / (full_scale − zero)`. Noise and sensor errors of a study are fractions of the full scale,
+//! so they have the same effect as on a simulated skin. Readings of tangential forces are in newtons.
 
 use crate::calibration::plateau;
 use crate::contact::saturation_limit;
@@ -31,57 +31,57 @@ use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-/// Fraction of missing readings (NaN) from which a taxel is masked. If it is larger, recordings with an intermittently failing taxel are rejected; if smaller,
-/// a few lost readings mask a taxel.
+/// Fraction of missing readings (NaN) above which a taxel is masked. If larger, recordings with an intermittently failing taxel are rejected; if smaller, a few
+/// missing readings mask a taxel.
 const MASKED: f64 = 0.1;
 
-/// Recorded touches of a skin.
+/// Recorded touches of a real skin.
 #[derive(Clone, Debug)]
 pub struct RecordedFrames {
-    /// Specification of the recording.
+    /// Specification of the recording, from the table `[recorded]`.
     pub spec: RecordedSpec,
-    /// Names of the classes, by label.
+    /// Names of the classes, in the order of their labels.
     names: Vec<String>,
-    /// Names from which the random streams of the classes are derived.
+    /// Names that determine the random streams of the classes.
     streams: Vec<String>,
     /// Number of touches of each class.
     counts: Vec<usize>,
     /// Frames as recorded: of the training touches (or all touches), and of the separate test set.
     readings: [Array2<f64>; 2],
-    /// Index of each touch, ordered by class, among the rows of both sets.
+    /// Row index of each touch in both sets of frames; touches are ordered by class.
     order: Vec<usize>,
-    /// Whether each value of a frame is masked.
+    /// Whether each value of a frame belongs to a masked taxel.
     is_masked: Vec<bool>,
-    /// Reading of each untouched taxel; 0 for a masked taxel.
+    /// Reading of each taxel when it is not touched; 0 for a masked taxel.
     zeros: Vec<f64>,
-    /// Reading of a taxel at its stroke.
+    /// Reading of a taxel whose deflection equals its stroke.
     full_scale: f64,
-    /// Reading from which a taxel counts as saturated.
+    /// Reading above which a taxel counts as saturated.
     saturation: f64,
     /// Number F of frames per touch.
     n_frames: usize,
-    /// Number of taxels; a frame may have several values per taxel.
+    /// Number of taxels; a frame may contain several values per taxel.
     n_taxels: usize,
-    /// Group of each touch, in the same order as `order`.
+    /// Group of each touch, in the order of `order`; `None` without groups.
     groups: Option<Array1<usize>>,
-    /// Side of each touch, if the split is given.
+    /// Side (training or test) of each touch, if the data define the split.
     sides: Option<Vec<Side>>,
-    /// Press depth of each touch, metres.
+    /// Press depth of each touch, metres; `None` if unknown.
     depths: Option<Vec<f64>>,
 }
 
-/// Frames of a file, with their shape.
+/// Frames of one file, with their shape.
 struct FramesOfFile {
     shape: FrameShape,
     readings: Array2<f64>,
     kind: ElementKind,
     place: String,
-    /// Path of the tangential forces, if they have their own file.
+    /// Path of the file of tangential forces, if they have their own file.
     shear_place: Option<String>,
 }
 
 impl RecordedFrames {
-    /// Reads the files, if the frames fit into `ceiling` bytes (`None`: no limit).
+    /// Reads the recorded files, if the frames fit into `ceiling` bytes (`None`: no limit).
     ///
     /// # Errors
     /// If a file cannot be read or does not fit the others, or a reading is infinite, or NaN although its taxel is not masked.
@@ -162,7 +162,7 @@ impl RecordedFrames {
         }
     }
 
-    /// Returns the values of a frame of a touch: deflections in metres, and tangential forces in newtons.
+    /// Returns the values of one frame of a touch: deflections in metres, and tangential forces in newtons.
     fn values(&self, (touch, frame): (usize, usize), stroke: f64) -> Array1<f64> {
         let readings = self.frame(touch, frame);
         let values = readings.iter().zip(&self.is_masked).enumerate();
@@ -179,7 +179,7 @@ impl RecordedFrames {
         values.collect()
     }
 
-    /// Returns the readings of a touch along the axes of its taxels, each with the reading of the untouched taxel; masked taxels are omitted.
+    /// Returns pairs (reading of a touch, reading of the untouched taxel) along the axes of all taxels that are not masked.
     fn pushes(&self, touch: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let frames = (0..self.n_frames).flat_map(move |frame| {
             let readings = self.frame(touch, frame).into_iter().zip(&self.is_masked);
@@ -190,7 +190,7 @@ impl RecordedFrames {
 }
 
 impl RecordedSpec {
-    /// Returns the SHA-256 of each file, by its path.
+    /// Returns the SHA-256 hash of each file, by its path.
     ///
     /// # Errors
     /// If a file cannot be read.
@@ -207,7 +207,7 @@ impl RecordedSpec {
         let n = shape.n_touches;
         let of_shear = shear.as_ref().map_or(0, FrameShape::n_frame_values);
         let n_values = shape.n_frame_values() + of_shear;
-        // Data are in memory twice as f64 if axes are permuted or files are joined.
+        // The data are in memory twice as f64 if axes are permuted or files are joined.
         let bytes = 16.0 * (n * shape.n_frames) as f64 * n_values as f64;
         check_memory(bytes, ceiling, "frames")
             .map_err(|allowed| Error::input(path.display(), format!("{n} touches"), allowed))?;
@@ -230,7 +230,7 @@ impl RecordedSpec {
         })
     }
 
-    /// Returns the classes of all touches, the separate test set last.
+    /// Returns the class labels of all touches, the separate test set last.
     fn class_labels(&self, n: [usize; 2]) -> Result<ClassLabels> {
         let mut values = Vec::new();
         for (name, n) in ["labels", "labels_test"].into_iter().zip(n) {
@@ -266,7 +266,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns the names of the classes, the names of their random streams, and the number of touches of each.
+    /// Returns the names of the classes, the names of their random streams, and the number of touches of each class.
     fn classes(&self, labels: &ClassLabels) -> Result<(Vec<String>, Vec<String>, Vec<usize>)> {
         let n_classes = labels.classes.len();
         let mut counts = vec![0; n_classes];
@@ -388,7 +388,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns the reading of each untouched taxel; 0 for a masked taxel.
+    /// Returns the reading of each taxel when it is not touched; 0 for a masked taxel.
     fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
         let mut zeros = self.zeros(shape)?;
         for (taxel, zero) in zeros.iter_mut().enumerate() {
@@ -405,8 +405,8 @@ impl RecordedSpec {
         Ok(zeros)
     }
 
-    /// Returns the reading of a taxel at its full scale, and the reading from which a taxel counts as saturated. The latter is a given full scale, or a
-    /// largest reading that many frames share. A shared reading does not count if the depths are known, because equal depths may cause it.
+    /// Returns the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. The saturation reading is the given full scale,
+    /// or a largest reading that many frames share. A shared largest reading is ignored if the depths are known, because equal depths may cause it.
     fn full_scale_of(
         &self,
         files: &[&FramesOfFile],
@@ -454,7 +454,7 @@ impl RecordedSpec {
     }
 }
 
-/// Checks that there is one value per touch.
+/// Checks that a file contains one value per touch.
 fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
     let given = format!("{n_given} numbers");
     let allowed = format!("{n}, one a touch of {}", frames.display());
@@ -471,7 +471,7 @@ fn name_of(value: &KeyValue) -> String {
     }
 }
 
-/// Returns, for each value of a frame, whether its taxel is masked because of too many NaN readings.
+/// Returns whether the taxel of each frame value is masked because of too many NaN readings.
 fn masked(files: &[&FramesOfFile], n_taxels: usize) -> Result<Vec<bool>> {
     let n_values = files[0].readings.ncols();
     let n_frames: usize = files.iter().map(|file| file.readings.nrows()).sum();
@@ -561,7 +561,7 @@ impl TouchSet for RecordedFrames {
         frames
     }
 
-    /// Touches are read at the study's speed or frame rate. Each follows a randomly drawn touch, or no touch, as the keys of the study require.
+    /// Touches are read at the study's speed or frame rate. Each touch follows a randomly drawn touch or no touch, depending on the study's keys.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         let streams = self.streams.iter().map(String::as_str);
         let mut touches = touches_to_read(streams.zip(self.counts.iter().copied()), seed);
@@ -585,7 +585,7 @@ impl TouchSet for RecordedFrames {
         depths.filter(|&&depth| depth > limit).count()
     }
 
-    /// Samples are the last frames of the first touch of each class.
+    /// The samples are the last frames of the first touch of each class.
     fn samples(&self, plan: &Plan, _groups: &[Group]) -> Result<Samples> {
         let array = &plan.arrays[0];
         let (configurations, stroke) = (array.picture_cells(), array.taxel().stroke);

@@ -8,40 +8,40 @@ use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Selection of the frames in which nothing touches the skin.
+/// Selection of the recorded frames in which nothing touches the skin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UntouchedFrames {
     /// No untouched frames are known.
     None,
-    /// Frames in a separate file, read at even intervals over the same session, in order.
+    /// Separate file of untouched frames, recorded at even intervals over the same session, in order of time.
     File(PathBuf),
     /// Ranges of frame numbers in the main file.
     Among(Vec<Range<usize>>),
 }
 
-/// Files of a skin's frames and the meaning of its readings.
+/// Paths of a skin's recorded frames, and the meaning of their readings.
 #[derive(Clone, Debug)]
 pub struct RecordedSkinFiles {
     /// Frames in the order of time, shape (n, rows, columns) or (n, F, rows, columns).
     pub frames: PathBuf,
-    /// A letter for each axis of the frames, as in `[recorded]`.
+    /// Letters of the axes of the frames, one per axis, as in `[recorded]`.
     pub order: Option<String>,
-    /// Numbers of rows and columns into which the axis `c` is divided.
+    /// Numbers of rows and columns into which the taxel axis `c` is divided.
     pub grid: Option<[usize; 2]>,
-    /// Frames of the untouched skin.
+    /// Selection of frames in which nothing touches the skin.
     pub untouched: UntouchedFrames,
     /// Total force on the skin in each frame, newtons, shape (n,).
     pub forces: Option<PathBuf>,
     /// Reading of an untouched taxel.
     pub zero: f64,
-    /// Reading at the full scale. Default: the largest of all readings.
+    /// Reading of a taxel at full scale. Default: the largest of all readings.
     pub full_scale: Option<f64>,
-    /// Deflection at the full scale, mm.
+    /// Deflection of a taxel at full scale, mm.
     pub stroke_mm: Option<f64>,
 }
 
 impl RecordedSkinFiles {
-    /// Reads the files.
+    /// Reads the recorded files of the skin.
     ///
     /// # Errors
     /// If a file cannot be read or does not fit the others, if ranges exceed the frames, or if the full scale is not above the zero.
@@ -101,7 +101,7 @@ impl RecordedSkinFiles {
 }
 
 impl RecordedSkinFiles {
-    /// Returns frames as rows, with the numbers of rows and columns of each frame.
+    /// Reads frames as rows; also returns the numbers of rows and columns of each frame.
     fn frames_of(&self, path: &Path) -> Result<(Array2<f64>, (usize, usize))> {
         let spec = RecordedSpec::of_frames(path, self.order.as_deref(), self.grid);
         let shape = spec.shape_of("frames")?;
@@ -115,7 +115,7 @@ impl RecordedSkinFiles {
     }
 }
 
-/// Reads one number per frame.
+/// Reads one number per frame from a file.
 fn numbers_of(path: &Path, n: usize) -> Result<Array1<f64>> {
     let array = FileArray::read(path, "forces")?;
     if array.kind == ElementKind::Text {

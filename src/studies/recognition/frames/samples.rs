@@ -1,4 +1,4 @@
-//! Sample pictures: readings of an array on a few objects, with noise.
+//! Sample pictures: noisy readings of an array for a few objects.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::progress::Silent;
@@ -21,10 +21,10 @@ use ndarray::{Array2, ArrayView1};
 /// Default number of objects in a picture of samples.
 const N_SAMPLES: usize = 4;
 
-/// Returns the samples of a study. The picture shows the first touch of the objects that the study lists, by default of four spread over the list. They are
-/// read with the finest array at the highest noise, without smoothing. In a study of one sensor error at a time, the picture shows the first touch of the
-/// first object, read with each error at its last value. On a skin with memory, each touch follows the touch of the last object. A second picture shows the
-/// first touch of every object at the highest noise.
+/// Returns the sample pictures of a study. The first picture shows the first touch of the objects that the study lists, by default of four spread over the
+/// list. The finest array reads them at the highest noise, without smoothing. In a study of one sensor error at a time, it shows the first touch of the first
+/// object, read with each error at its last value. On a skin with memory, each touch follows the touch of the last object. A second picture shows the first
+/// touch of every object at the highest noise.
 ///
 /// # Errors
 /// If a signal step is invalid.
@@ -82,7 +82,7 @@ pub fn sample_frames(plan: &Plan, groups: &[Group], touched: &[TouchedObject]) -
     Ok(Samples { shown, each })
 }
 
-/// Returns the readings along the taxels' axes of each object's first touch, shape (ny, nx); a skin with memory was touched by one of the objects before.
+/// Returns the normal readings of each object's first touch, shape (ny, nx). If the skin has memory, one of the objects has touched it before.
 fn read(
     plan: &Plan,
     group: &Group,
@@ -122,7 +122,7 @@ fn read(
     Ok(values.outer_iter().map(frame).collect())
 }
 
-/// Returns the signal chain of each channel without smoothing, which would hide the other steps.
+/// Returns the signal chain of each channel without smoothing, because smoothing would hide the other steps.
 fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
     let array = &plan.arrays[group.array];
     let skin = skin(&Seed::new(plan.spec.seed), array);
@@ -133,8 +133,8 @@ fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
     })
 }
 
-/// For a study of one sensor error at a time: returns the first group of an array, then for each error the group with its last value, each with a title. Scan
-/// errors are omitted, because they do not change a touch that is read once.
+/// Returns the groups to show in a study of one sensor error at a time, each with a title: the first group of an array, then the group with the last value of
+/// each error. Scan errors are omitted, because they do not change a touch that is read once.
 fn imperfect_groups<'a>(
     plan: &Plan,
     groups: &'a [Group],
@@ -171,7 +171,7 @@ fn imperfect_groups<'a>(
     chosen
 }
 
-/// Returns the group with the most taxels and, among these, the largest noise.
+/// Returns the group with the largest noise among the groups with the most taxels.
 fn loudest_group<'a>(plan: &Plan, groups: &'a [Group]) -> Option<&'a Group> {
     let n_taxels = |group: &Group| plan.arrays[group.array].n_taxels();
     groups.iter().max_by(|a, b| {
@@ -180,7 +180,7 @@ fn loudest_group<'a>(plan: &Plan, groups: &'a [Group]) -> Option<&'a Group> {
     })
 }
 
-/// Returns the labels of the sample classes: those that the study lists, or four spread over the list.
+/// Returns the labels of the sample classes: the classes that the study lists, or four spread over the list of all classes.
 ///
 /// # Errors
 /// If [`named_samples`] fails.

@@ -1,7 +1,7 @@
-//! Unevenness of shear readings on a flat face of packed spheres.
+//! Unevenness of shear readings on a flat face that is modelled by packed spheres.
 //!
-//! On an exact flat face every taxel reads the same shear. Spheres bulge by up to half the surface error, so their contact normals tilt
-//! and the readings of shear ripple, which a classifier can learn.
+//! On an exactly flat face, every taxel has the same shear reading. Packed spheres bulge by up to half the surface error. Their contact normals are therefore
+//! tilted, and the shear readings ripple; a classifier can learn this ripple.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -16,21 +16,22 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Spread;
 use glam::DVec3;
 
-/// Edges of the box that is pressed, metres: as large as the objects of the built-in sets.
+/// Edge lengths of the pressed box, metres; similar to the objects of the built-in sets.
 const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
 
-/// Mean and standard deviation of shear readings along x over the taxels under a flat face of packed spheres, minus the exact value, newtons.
+/// Mean and standard deviation of the shear error under a flat face of packed spheres, over the taxels. The shear error is the reading along x minus the exact
+/// value, newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearRipple {
-    /// Mean over the taxels, newtons.
+    /// Mean shear error over the taxels, newtons.
     pub mean: f64,
-    /// Standard deviation over the taxels, newtons.
+    /// Standard deviation of the shear error over the taxels, newtons.
     pub std: f64,
 }
 
 impl ShearRipple {
-    /// Presses a box, packed within `surface_error` (metres), on an array that reads shear, to a depth (metres), and slides it as the array does. Returns
-    /// `None` if the array does not read shear, or no taxel lies under the face.
+    /// Simulates a press and slide on a packed box and measures the shear error. The box is packed within `surface_error` (metres) and pressed to a depth
+    /// (metres). Returns `None` if the array does not read shear, or no taxel lies under the face.
     ///
     /// # Errors
     /// If the box cannot be packed within that error.
@@ -71,7 +72,7 @@ impl ShearRipple {
     }
 }
 
-/// Returns the shear reading of each taxel along x, newtons; `None` if nothing is touched.
+/// Returns the shear reading of each taxel along x, newtons; `None` if the press touches nothing.
 fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f64>> {
     let mut workspace = ArrayWorkspace::default();
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.1));
@@ -81,13 +82,13 @@ fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f
     Some(press.values(&workspace).skip(n).take(n).collect())
 }
 
-/// Returns the box as a triangle mesh.
+/// Returns the exact box as a triangle mesh.
 fn exact_box() -> Result<Model> {
     let mesh = TriangleMesh::cuboid("box", BOX)?;
     Ok(MeshModel::new(mesh).into())
 }
 
-/// Prints the ripple of shear readings on standard error, if a study reads shear of packed objects. Returns whether it did.
+/// Prints the shear ripple on standard error if a study reads shear of packed objects. Returns whether it printed a note.
 ///
 /// # Errors
 /// If [`ShearRipple::measure`] fails.

@@ -1,4 +1,4 @@
-//! Simulation of an array's touches, shared by all configurations.
+//! Simulation of all touches on an array; all configurations share the result.
 
 use crate::contact::Contact;
 use crate::engine::progress::Progress;
@@ -22,8 +22,8 @@ pub fn simulate_array(
 
 /// Presses one array on every object, touch by touch; the result does not depend on the number of threads.
 ///
-/// A touch to a depth d is read at `n_frames` ≥ 1 depths, d/F, 2d/F, …, d, or at as many points of its path if it slides. Each frame is simulated as a
-/// separate touch, because a taxel at rest has no memory.
+/// A touch to a depth d is read at `n_frames` ≥ 1 depths d/F, 2d/F, …, d, or at as many points of its path if it slides. Each frame is simulated as a separate
+/// touch, because a taxel at rest has no memory.
 pub(crate) fn press_objects(
     touched: &[TouchedObject],
     (array, n_frames): (&TaxelArray, usize),

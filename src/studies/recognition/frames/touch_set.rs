@@ -17,20 +17,20 @@ use ndarray::Array1;
 
 /// Touches of several classes: objects, kinds of touch, or labels of a recording. The touches are ordered by class.
 pub trait TouchSet: Sync {
-    /// Returns the name of every class, by its label, and its number of touches.
+    /// Returns the name and the number of touches of every class, in the order of the labels.
     fn classes(&self) -> Vec<(&str, usize)>;
 
-    /// Returns the name of every class, by its label.
+    /// Returns the name of every class, in the order of the labels.
     fn class_names(&self) -> Vec<&str> {
         self.classes().into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Returns the label of every touch.
+    /// Returns the class label of every touch.
     fn labels(&self) -> Array1<usize> {
         touch_labels(&self.classes())
     }
 
-    /// Returns the group of every touch, for splits that do not divide groups. By default each touch is its own group.
+    /// Returns the group of every touch, for splits that do not divide groups. By default, each touch is its own group.
     ///
     /// # Errors
     /// If an axis is spread uniformly and has no distance.
@@ -48,46 +48,46 @@ pub trait TouchSet: Sync {
         None
     }
 
-    /// Returns the side of every touch in every split, if the data define a test set.
+    /// Returns the side (training or test) of every touch, if the data define a test set. The sides hold for all splits.
     fn given_sides(&self) -> Option<&[Side]> {
         None
     }
 
-    /// Returns the number of masked taxels and the number of all taxels.
+    /// Returns the number of masked taxels and the total number of taxels.
     fn n_masked(&self) -> (usize, usize) {
         (0, 0)
     }
 
-    /// Computes data that all touches need on all threads; otherwise the first touches would compute them one after the other.
+    /// Computes data that all touches need, on all threads. Without this call, the first touches would compute them one after the other.
     fn prepare(&self) {}
 
     /// Simulates all touches on an array, F frames each; the result does not depend on the number of threads.
     fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames;
 
-    /// Returns how each touch is read in a trial with F frames per touch; `seed` is the source of randomness. Pressed objects are read at a speed (m/s, 0 at
-    /// rest), each touch after another randomly drawn touch.
+    /// Returns how each touch is read in a trial with F frames per touch: its seed, timing and preceding touch. `seed` is the source of randomness. Pressed
+    /// objects are read at a speed (m/s, 0 at rest), each touch after another randomly drawn touch.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
-    /// Returns a few touches for pictures.
+    /// Returns sample touches for pictures.
     ///
     /// # Errors
     /// If a picture cannot be made.
     fn samples(&self, plan: &Plan, groups: &[Group]) -> Result<Samples>;
 
-    /// Returns the number of touches whose depth past first contact exceeds a stroke, given in metres.
+    /// Returns the number of touches whose depth past first contact exceeds a stroke (metres).
     fn n_deeper_than(&self, _stroke: f64) -> usize {
         0
     }
 
-    /// Returns names and values of settings for the report.
+    /// Returns names and values of the touch settings, for the report.
     fn settings(&self) -> Vec<(String, String)>;
 }
 
-/// First touches of a study's objects, for pictures.
+/// Sample touches of a study for pictures.
 #[derive(Clone, Debug)]
 pub struct Samples {
-    /// Touches in the sample picture.
+    /// Touches that the sample picture shows.
     pub shown: Snapshots,
-    /// One touch of each object; `None` for human touches.
+    /// First touch of every object; `None` for human touches.
     pub each: Option<Snapshots>,
 }

@@ -1,4 +1,4 @@
-//! Image features: computed from an estimate of the frame, given the measurements of a trial.
+//! Image features: features of frame images that are estimated from measurements.
 
 use crate::error::Result;
 use crate::random::Seed;
@@ -12,23 +12,23 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Number of frames that are estimated together as one matrix product. A fixed number makes results independent of the number of threads.
+/// Number of frames that are estimated together by one matrix product. A fixed number makes results independent of the number of threads.
 const BLOCK: usize = 64;
 
-/// Estimators of the images of a group's frames, one for each number of measurements.
+/// Image estimators of a group of configurations, one for each number of measurements.
 #[derive(Clone, Debug)]
 pub struct Images {
-    /// Numbers of rows and columns of an image.
+    /// Numbers of rows and columns of the images.
     shape: (usize, usize),
-    /// Mapping from taxels to pixels, if these differ.
+    /// Mapping from taxels to pixels; `None` if taxels are pixels.
     chart: Option<Chart>,
     full_scale: f64,
-    /// Estimators with their number m of measurements.
+    /// Pairs (number of measurements m, image estimator).
     estimates: Vec<(usize, ImageEstimate)>,
 }
 
 impl Images {
-    /// Fits estimators for projections of an array. `full_scale` is the reading of a taxel at its stroke.
+    /// Fits image estimators for the projections of an array. `full_scale` is the reading of a taxel at its stroke.
     ///
     /// # Errors
     /// If an estimator cannot be fitted.
@@ -40,7 +40,7 @@ impl Images {
     ) -> Result<Self> {
         let is_whole = |projection: &Projection| projection.ensemble() == Ensemble::Identity;
         let (chart, n_training) = (array.chart(), readings.training.nrows());
-        // Copies are shifted by rows and columns.
+        // Shifting an image by rows and columns gives additional training images.
         let n_frames = match (&chart, n_training < LEARNED_FRAMES) {
             (Some(_), _) => n_training,
             (None, true) => WITH_COPIES,
@@ -73,8 +73,8 @@ impl Images {
         self.estimates.iter().any(|(m, _)| *m == measurements)
     }
 
-    /// Returns image features of all frames: for each requested kind n_touches × F·k, with k values per frame, followed by the rows of all copies in the same
-    /// order. Each image is estimated once for all kinds.
+    /// Returns the image features of all frames. Each requested kind has shape n_touches × F·k, with k values per frame, followed by the rows of all tilted
+    /// copies in the same order. Each image is estimated once for all kinds.
     ///
     /// # Panics
     /// If there is no estimator for the number of measurements.
@@ -129,7 +129,7 @@ impl Images {
         all
     }
 
-    /// Estimates images from measured frames, shape (n, ny, nx) flattened to rows.
+    /// Estimates images from the measurements of frames; each image (ny × nx) is one row of the result.
     fn images(&self, estimate: &ImageEstimate, measured: ArrayView2<f64>) -> Array2<f64> {
         let frames = estimate.images(measured);
         match &self.chart {
@@ -138,7 +138,7 @@ impl Images {
         }
     }
 
-    /// Returns the tilted images of a touch, shape (F, n).
+    /// Returns the tilted images of a touch, shape (F, ny · nx).
     fn tilted(&self, images: ArrayView2<f64>, slope: (f64, f64), level: f64) -> Array2<f64> {
         let mut tilted = Array2::zeros(images.raw_dim());
         for (image, mut out) in images.outer_iter().zip(tilted.outer_iter_mut()) {
@@ -180,7 +180,7 @@ fn blocks(
     blocks
 }
 
-/// Writes all features of a touch's images (F × n) into one row of each feature array.
+/// Writes all image features of a touch (F × n) into one row of each feature array.
 fn write(
     features: &[ImageFeatures],
     images: ArrayView2<f64>,
@@ -198,7 +198,7 @@ fn write(
     }
 }
 
-/// Returns the expected maximum of noise of standard deviation σ on n taxels, σ √(2 ln n). Readings above it count as contact. With a lower threshold,
+/// Returns the expected maximum of noise with standard deviation σ on n taxels, σ √(2 ln n); readings above it count as contact. With a lower threshold,
 /// untouched taxels would count; with a higher one, the rim of a contact would not. (Donoho and Johnstone 1994, Biometrika 81, 425: the universal threshold.)
 fn noise_level(noise_std: f64, n_taxels: usize) -> f64 {
     noise_std * (2.0 * (n_taxels as f64).ln()).sqrt()

@@ -1,4 +1,4 @@
-//! Frames → signal → measurements, for one condition of the signal, ensemble and trial.
+//! Measurement of frames after the signal chain, for one signal condition, ensemble and trial.
 
 use crate::error::Result;
 use crate::inputs::sensor_errors::TestSensor;
@@ -30,27 +30,27 @@ pub struct Measurements {
     pub n_touches: usize,
     /// Number F of frames per touch.
     pub n_frames: usize,
-    /// Φ1, the measurements of a frame of ones, shape (m,).
+    /// Measurements Φ1 of a frame of ones, shape (m,).
     pub of_ones: Array1<f64>,
     /// Image features, shape (n_touches, F·k) each, followed by the rows of tilted copies.
     pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
-    /// Tilted copies of training touches.
+    /// Tilted copies of the training touches, if any.
     pub copies: Option<TiltedCopies>,
-    /// Processor time, s, summed over threads.
+    /// Processor time summed over threads, s.
     pub cpu_s: f64,
 }
 
-/// Projection of a group in a trial, with the estimators fitted on training touches.
+/// Projection of a group of configurations in a trial, with the estimators fitted to training touches.
 #[derive(Clone, Debug)]
 pub struct SensedBy {
-    /// Measurement matrix of the ensemble.
+    /// Measurement matrix Φ.
     pub projection: Projection,
-    /// Image estimators, if a configuration uses image features.
+    /// Image estimators; `None` if no configuration uses image features.
     pub images: Option<Images>,
 }
 
 impl Measurements {
-    /// Returns the numbers of all readings of the touches: the first reading of each touch in order, then the second of each.
+    /// Returns the numbers of all readings of the given touches: the first reading of each touch in order, then the second of each.
     pub fn readings(&self, touches: &[usize]) -> Vec<usize> {
         let n_read = self.values.nrows() / (self.n_touches * self.n_frames);
         let readings = (0..n_read).map(|reading| reading * self.n_touches);
@@ -58,7 +58,7 @@ impl Measurements {
         numbers.collect()
     }
 
-    /// Returns the features of these touches (by number), shape (n, F·m): the first m measurements of each frame, combined over time if the inputs require it.
+    /// Returns the features of the given touches, shape (n, F·m): the first m measurements of each frame, combined over time if the inputs require it.
     pub fn features(&self, inputs: &RowInputs, touches: &[usize]) -> Array2<f64> {
         let mut rows = Array2::zeros((touches.len(), inputs.n_features()));
         let Some(temporal_features) = inputs.temporal_features else {
@@ -76,8 +76,8 @@ impl Measurements {
         rows
     }
 
-    /// Returns the numbers of the tilted copies of these training touches, which follow all readings. The first copy of each touch comes first, then the
-    /// second of each.
+    /// Returns the numbers of the tilted copies of the given training touches; the copies are numbered after all readings. The first copy of each touch comes
+    /// first, then the second of each.
     pub fn copies(&self, inputs: &RowInputs, train: &[usize]) -> Vec<usize> {
         let Some(copies) = &self.copies else {
             return Vec::new();
@@ -110,11 +110,11 @@ impl Measurements {
     }
 }
 
-/// Touches with their frames.
+/// Set of touches with its simulated frames.
 pub type MadeTouches<'a> = (&'a dyn TouchSet, &'a Frames);
 
-/// Reads and projects all frames of a group in one trial, for each number of measurements in the inputs. If test touches are made differently, `tested`
-/// contains as many touches in the same order. The trial's test touches are then read from there.
+/// Computes the measurements of all touches of a group in one trial, for each number of measurements in the inputs. If test touches are made differently,
+/// `tested` contains as many touches in the same order. The trial's test touches are then read from `tested`.
 ///
 /// # Errors
 /// If a signal step or the projection is invalid.
@@ -202,7 +202,7 @@ fn tilted_copies(
     Some(TiltedCopies::new(copies, train, a_pixel, &seed))
 }
 
-/// Draws Φ in a trial, or fits it to training touches, and fits the image estimators.
+/// Draws the measurement matrix Φ of a trial, or fits it to training touches, and fits the image estimators.
 fn sensed_by(
     inputs: &MeasurementInputs,
     (whole, touches): (Reading, &[TouchToRead]),
@@ -253,7 +253,7 @@ fn sensed_by(
     Ok(SensedBy { projection, images })
 }
 
-/// Number of readings of the untouched skin. The noise along a component is then known to √(2 / 256) = 9 %.
+/// Number of readings of the untouched skin. The noise along a component is then known with a relative error of √(2 / 256) = 9 %.
 pub const UNTOUCHED: usize = 256;
 
 /// Returns readings of the untouched skin of the training touches, shape (readings, n).
@@ -269,7 +269,7 @@ fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     readings
 }
 
-/// Returns the skin of training touches, followed by the skin of test touches if it differs.
+/// Returns the skin of the training touches, followed by the skin of the test touches if it differs.
 fn skins<'a>(
     inputs: &MeasurementInputs,
     (learned, tested): (&'a Frames, &'a Frames),

@@ -1,8 +1,8 @@
-//! Inputs of the measurements of a group of configurations, in addition to the frames of its touches.
+//! All inputs that determine the measurements of a group of configurations, apart from the frames of its touches.
 //!
-//! [`measure_group`](crate::studies::recognition::measurements::measurement::measure_group) takes these inputs and no plan, so it cannot depend on any other
-//! value of a study. Groups whose inputs have equal [keys](MeasurementInputs::key) share their measurements. The key is the derived `Debug` form of all
-//! fields, so a new field becomes part of the key.
+//! [`measure_group`](crate::studies::recognition::measurements::measurement::measure_group) receives these inputs and no plan, so it cannot depend on any other
+//! value of a study. Groups whose inputs have equal [keys](MeasurementInputs::key) share their measurements. The key is the derived `Debug` form of all fields,
+//! so a new field becomes part of the key.
 
 use crate::inputs::content_hash::Hashed;
 use crate::inputs::sensor_errors::{Strengths, TestSensor, all_strengths};
@@ -19,28 +19,28 @@ use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::sweep::configurations::Sweep;
 use bubbletouch_svm::split::Split;
 
-/// Inputs of the measurements of a group of configurations.
+/// All inputs that determine the measurements of a group of configurations.
 #[derive(Clone, Debug)]
 pub struct MeasurementInputs<'a> {
-    /// Array that is pressed.
+    /// Array of taxels that is pressed on the objects.
     pub array: &'a TaxelArray,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Number of projections combined with each split; `None` if each trial has its own projection.
+    /// Number of projections that are combined with each split; `None` if each trial has its own projection.
     pub projections_per_split: Option<usize>,
-    /// Approach speed at the time of reading, m/s.
+    /// Approach speed of the press at the time of reading, m/s.
     pub speed: f64,
     /// Signal chain of the training touches.
     pub signal: SignalInputs,
-    /// Skin of the test touches.
+    /// Skin of the test touches: the training skin or another one.
     pub test_sensor: TestSensor,
-    /// Inputs in which test touches differ, if the study has `[test]`.
+    /// Differing inputs of the test touches; `None` unless the study has `[test]`.
     pub test: Option<TestInputs<'a>>,
-    /// Ensemble of the measurement matrix.
+    /// Ensemble from which the measurement matrix is drawn.
     pub ensemble: Ensemble,
-    /// Numbers of measurements to project to, distinct and ascending.
+    /// Numbers m of measurements to compute, distinct and ascending.
     pub projected: Vec<usize>,
-    /// Number of readings of each touch.
+    /// Number of readings of each training touch.
     pub n_readings: usize,
     /// Image features to compute from the measurements.
     pub of_images: Vec<FeaturesOfImages>,
@@ -48,12 +48,12 @@ pub struct MeasurementInputs<'a> {
     pub copies: Option<CopyInputs>,
 }
 
-/// Inputs of the measurements of test touches that differ from those of training touches.
+/// Inputs in which the measurements of test touches differ from those of training touches.
 #[derive(Clone, Debug)]
 pub struct TestInputs<'a> {
-    /// Array that is pressed; its frames have the shape of the training touches' frames.
+    /// Array of taxels of the test touches; its frames have the shape of the training touches' frames.
     pub array: &'a TaxelArray,
-    /// Approach speed at the time of reading, m/s.
+    /// Approach speed of the press at the time of reading, m/s.
     pub speed: f64,
     /// Signal chain of the test touches.
     pub signal: SignalInputs,
@@ -62,31 +62,32 @@ pub struct TestInputs<'a> {
 /// Inputs of the measurements that depend on the trial.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasuredTrial<'a> {
-    /// Number of the trial.
+    /// Number of the trial, from 0.
     pub number: usize,
-    /// Split of the trial, if the measurements depend on it: if something is fitted to training touches, or if test touches have another skin.
+    /// Split of the trial; `None` if the measurements do not depend on it. They do if something is fitted to training touches, or if test touches have another
+    /// skin.
     pub split: Option<&'a Hashed<Split>>,
 }
 
-/// Inputs of the signal chain. Steps without effect are omitted.
+/// Inputs of the signal chain; steps without effect are omitted.
 #[derive(Clone, Debug)]
 pub struct SignalInputs {
-    /// The steps, in their order.
+    /// Steps of the signal chain, in order.
     pub steps: Vec<StepSpec>,
-    /// Unit of the noise; the full scale if there is no noise.
+    /// Unit of the noise; full scale if there is no noise.
     pub noise_unit: NoiseUnit,
-    /// Strength of each step.
+    /// Strength of each signal step.
     pub condition: Condition,
 }
 
-/// Inputs of tilted copies.
+/// Inputs that determine the tilted copies of training touches.
 #[derive(Clone, Copy, Debug)]
 pub struct CopyInputs {
     /// Number of copies of each touch, at least 1.
     pub n_copies: usize,
-    /// Number of training touches of each class that are copied, in drawing order; `None`: all.
+    /// Number of copied training touches per class, in drawing order; `None` for all.
     pub n_touches: Option<usize>,
-    /// Largest tilt of a copy, radians.
+    /// Maximum tilt of a copy, radians.
     pub tilt: f64,
 }
 
@@ -96,14 +97,14 @@ impl MeasurementInputs<'_> {
         format!("{self:?}")
     }
 
-    /// Returns the inputs that belong to a trial of a sweep.
+    /// Returns the inputs that belong to a given trial of a sweep.
     pub fn trial<'s>(&self, sweep: &'s Sweep, number: usize) -> MeasuredTrial<'s> {
         let depends = self.learns() || self.has_own_test();
         let split = depends.then(|| &sweep.splits[number]);
         MeasuredTrial { number, split }
     }
 
-    /// Returns whether something is fitted to training touches before measuring.
+    /// Returns whether a projection or an estimator is fitted to training touches before measuring.
     pub fn learns(&self) -> bool {
         self.ensemble.is_learned() || !self.of_images.is_empty()
     }
@@ -120,7 +121,7 @@ impl MeasurementInputs<'_> {
 }
 
 impl MeasuredTrial<'_> {
-    /// Returns the split.
+    /// Returns the split of the trial.
     ///
     /// # Panics
     /// If the measurements do not depend on the split.
@@ -137,7 +138,7 @@ fn counts(of_images: &[FeaturesOfImages]) -> Vec<usize> {
 }
 
 impl SignalInputs {
-    /// Returns the signal steps of a skin.
+    /// Returns the signal steps for a skin with the given seed.
     pub fn steps(&self, skin: &Seed) -> Vec<SignalStep> {
         let condition = &self.condition;
         let step = |&step: &StepSpec| match step {
@@ -155,7 +156,7 @@ impl SignalInputs {
     }
 }
 
-/// Returns the inputs of a plan's signal in a condition.
+/// Returns the signal inputs of a plan under a given condition.
 fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
     let is_active = |step: &&StepSpec| match step {
         StepSpec::Force => true,
@@ -183,12 +184,12 @@ fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
 }
 
 impl Group {
-    /// Returns the inputs of the group's signal.
+    /// Returns the signal inputs of the group.
     pub fn signal(&self, plan: &Plan) -> SignalInputs {
         signal_inputs(plan, self.condition)
     }
 
-    /// Returns the group restricted to these configurations.
+    /// Returns a copy of the group with only the given configurations.
     pub fn with_cells(&self, configurations: &[Configuration]) -> Self {
         Self {
             array: self.array,
@@ -200,7 +201,7 @@ impl Group {
         }
     }
 
-    /// Returns the inputs of the group's measurements.
+    /// Returns the measurement inputs of the group.
     pub fn inputs<'a>(&self, plan: &'a Plan) -> MeasurementInputs<'a> {
         let test = plan.tested.as_deref().map(|tested| {
             let condition = plan.tested_condition(self.condition);
@@ -226,7 +227,7 @@ impl Group {
         }
     }
 
-    /// Returns whether something is fitted to training touches before measuring.
+    /// Returns whether a projection or an estimator is fitted to training touches before measuring.
     pub fn learns(&self) -> bool {
         self.ensemble.is_learned()
             || self
@@ -240,7 +241,7 @@ impl Group {
         counts(&self.features_of_images())
     }
 
-    /// Returns the inputs of the copies: as many as the configuration with the most copies needs.
+    /// Returns the inputs of the tilted copies, with the largest number of copies that any configuration needs.
     fn copies(&self, plan: &Plan) -> Option<CopyInputs> {
         let recognition = &plan.spec.recognition;
         let copied = self.configurations.iter();

@@ -1,4 +1,4 @@
-//! Tilted copies of training touches, which show objects in tilts that the training touches do not contain.
+//! Tilted copies of training touches. They show objects in tilts that the training touches do not contain.
 
 use crate::random::Seed;
 use crate::studies::recognition::measurements::measurement_inputs::CopyInputs;
@@ -12,15 +12,15 @@ pub struct TiltedCopies {
     pub touches: Vec<usize>,
     /// Number of copies of each touch.
     pub n_copies: usize,
-    /// Slopes of each copy of each touch: increase of a reading from a taxel to the next along x and y.
+    /// Slope of each copy of each touch along x and y: increase of the reading from one taxel to the next.
     pub slopes: Vec<(f64, f64)>,
     /// Position of each touch in `touches`.
     places: HashMap<usize, usize>,
 }
 
 impl TiltedCopies {
-    /// Draws copies of training touches, given in drawing order, which alternates between n classes. `steepest` is the largest increase from a taxel to the
-    /// next. Each touch has its own random stream.
+    /// Draws copies of training touches; the touches are given in drawing order, alternating between n classes. `steepest` is the maximum increase of a reading
+    /// from one taxel to the next. Each touch has its own random stream.
     pub fn new(
         CopyInputs {
             n_copies,
@@ -49,7 +49,7 @@ impl TiltedCopies {
         }
     }
 
-    /// Returns the rows of the first `n_copies` copies of the touches: the first copy of each touch, then the second of each.
+    /// Returns the row numbers of the first `n_copies` copies of the touches: the first copy of each touch, then the second of each.
     ///
     /// # Panics
     /// If a touch was not copied, or if there are fewer copies.

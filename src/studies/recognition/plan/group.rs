@@ -1,4 +1,4 @@
-//! Groups of configurations that share their measurements, and the families within them.
+//! Groups of configurations that share their measurements, and families of configurations that share their features.
 
 use crate::inputs::sensor_errors::TestSensor;
 use crate::sensing::Ensemble;
@@ -7,7 +7,7 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 
-/// Configurations that are computed from the same measurements.
+/// Group of configurations that are computed from the same measurements.
 #[derive(Clone, Debug)]
 pub struct Group {
     /// Index of the array in the plan.
@@ -25,8 +25,8 @@ pub struct Group {
 }
 
 impl Group {
-    /// Returns the configurations by family. A family shares the rows of the same features; its configurations differ only in C and in the fused touches.
-    /// Configurations with equal C are adjacent.
+    /// Returns the configurations by family. The configurations of a family share the rows of features; they differ only in C, in the number of touches per
+    /// decision and in the choice of the next touch. Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {
         let family = |configuration: &Configuration| {
             let (m, kind) = (configuration.measurements, configuration.classifier);
@@ -47,7 +47,7 @@ impl Group {
             .chunk_by(move |a, b| family(a) == family(b))
     }
 
-    /// Returns the number of readings of each touch.
+    /// Returns the number of readings of each training touch.
     pub fn n_readings(&self, plan: &Plan) -> usize {
         let asked = plan.spec.recognition.readings_per_touch.unwrap_or(1);
         if self.condition.is_random_by_reading() {

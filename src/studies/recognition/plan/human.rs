@@ -11,7 +11,7 @@ use crate::studies::recognition::spec::study::StudySpec;
 use crate::world::{Layout, Patch, Taxels};
 
 impl HumanTouchSpec {
-    /// Returns the distance from the axis of the arm to the outside of its skin, metres.
+    /// Returns the distance from the axis of the arm to the outside of the skin, metres.
     pub fn surface(&self) -> f64 {
         self.arm_radius_mm * MM
     }
@@ -43,7 +43,7 @@ impl HumanTouchSpec {
 }
 
 impl Check<'_> {
-    /// Checks `[human_touch]`: a study has objects or human touches, and no keys that need objects beside human touches.
+    /// Checks `[human_touch]`: a study has either objects or human touches, and human touches allow no keys that need objects.
     pub fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
         let Some(human) = &spec.human_touch else {
             if spec.places_objects() && spec.touches == TouchesSpec::default() {
@@ -76,7 +76,7 @@ impl Check<'_> {
         arrays.try_for_each(|array| self.fits_around(human, array))
     }
 
-    /// Checks that the array leaves a gap of at least one pitch on the other side of the arm, and that its layout has rows and columns.
+    /// Checks that the array leaves a gap of at least one pitch on the far side of the arm, and that its layout has rows and columns.
     fn fits_around(&self, human: &HumanTouchSpec, array: &TaxelArray) -> Result<()> {
         let grid = array.grid();
         let radius = human.surface() - array.taxel().radius;

@@ -16,8 +16,7 @@ use crate::studies::recognition::spec::study::{RecognitionSpec, SensingSpec, Stu
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
 
-/// Default of the largest tilt of a copy about each axis, degrees. If it is larger, images lack parts that were not touched. If it is smaller, the copies add
-/// no new tilts.
+/// Default of the maximum tilt of a copy about each axis, degrees. If larger, images lack parts that were not touched; if smaller, the copies add no new tilts.
 const DEFAULT_TILT_DEG: f64 = 5.0;
 
 /// Pairs of keys that exclude each other.
@@ -27,7 +26,7 @@ const ONE_OF: [[&str; 2]; 3] = [
     ["test_fraction", "folds"],
 ];
 
-/// Keys that require one of some other keys.
+/// Keys that require at least one of some other keys.
 const BESIDE: [(&str, &[&str]); 4] = [
     ("cv_touches", &["c_grid", "gamma_grid"]),
     ("tilt_augmentation_deg", &["tilt_augmentation"]),
@@ -97,7 +96,7 @@ impl Check<'_> {
                 return Err(self.error(&format!("recognition.{key}"), value, allowed));
             }
         }
-        // With folds, the rarest objects may have too few rows for the inner folds.
+        // If C or γ is chosen, the rarest objects may have too few rows for the inner folds.
         let is_open = recognition.c_grid.is_some() || recognition.gamma_grid.is_some();
         if let Some(folds) = recognition.cv_folds
             && !is_open
@@ -150,7 +149,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks image features, which need one value per taxel.
+    /// Checks the image features, which need one value per taxel.
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
         let mut features = recognition.features.values().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
@@ -187,7 +186,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks the combination of frames, which must not need more frames than a touch has.
+    /// Checks `temporal_features`, which must not need more frames than a touch has.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
         let values = Axis::optional_values(&recognition.temporal_features);
@@ -213,7 +212,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks a split by poses: no other key may define the split.
+    /// Checks a split by poses; no other key may define the split.
     pub fn split(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         if recognition.split == PoseSplit::Random {
@@ -242,7 +241,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the choice of the next touch. It needs several touches per decision, and poses that a robot can command for any object.
+    /// Checks `next_touch`, which needs several touches per decision and poses that a robot can command for any object.
     pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         let Some(chosen) = recognition.chosen_next().next() else {
@@ -288,7 +287,7 @@ impl Check<'_> {
 }
 
 impl SensingSpec {
-    /// Returns the numbers m of measurements on an array of `n_taxels`, each at least 1; all taxels if neither ratio nor number is given.
+    /// Returns the numbers m of measurements for an array of `n_taxels`, each at least 1; `n_taxels` if neither ratio nor number is given.
     pub fn measurements_on(&self, n_taxels: usize) -> Vec<usize> {
         let of_ratio = |ratio: f64| ((n_taxels as f64 / ratio).round() as usize).max(1);
         match (&self.ratio, &self.measurements) {
@@ -300,18 +299,18 @@ impl SensingSpec {
 }
 
 impl RecognitionSpec {
-    /// Returns a table `[recognition]` in which every key has its default.
+    /// Returns a table `[recognition]` in which every key has its default value.
     fn usual() -> toml::Table {
         let usual: Self = toml::from_str("classifier = []").expect("all other keys have defaults");
         toml::Table::try_from(usual).expect("every field of a study has a TOML form")
     }
 
-    /// Returns the fraction of touches held out for testing, if there are no folds.
+    /// Returns the fraction of touches held out for testing if there are no folds; default 0.25.
     pub fn test_share(&self) -> f64 {
         self.test_fraction.unwrap_or(0.25)
     }
 
-    /// Returns the depth windows of the features; features of measurements have none.
+    /// Returns the depth windows of image features, as fractions of the full scale; a single `None` for features of measurements.
     pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
         match features.of_image() {
             Some(_) => Axis::optional_values(&self.depth_window_full_scale),
@@ -319,7 +318,7 @@ impl RecognitionSpec {
         }
     }
 
-    /// Returns the numbers of tilted copies; features of measurements have none.
+    /// Returns the numbers of tilted copies for image features; a single `None` for features of measurements.
     pub fn copies(&self, features: Features) -> Vec<Option<usize>> {
         match features.of_image() {
             Some(_) => Axis::optional_values(&self.tilt_augmentation),
@@ -327,7 +326,7 @@ impl RecognitionSpec {
         }
     }
 
-    /// Returns the policies for the touches after the first of k. For k = 1 all policies are equal.
+    /// Returns the policies that choose the touches after the first of k touches. For k = 1, all policies are equal.
     pub fn next_touches(&self, k: usize) -> Vec<Option<NextTouch>> {
         match (k, &self.next_touch) {
             (1, Some(_)) => vec![Some(NextTouch::Random)],
@@ -335,31 +334,31 @@ impl RecognitionSpec {
         }
     }
 
-    /// Returns the policies that are not random.
+    /// Returns the policies for the next touch that are not random.
     pub fn chosen_next(&self) -> impl Iterator<Item = NextTouch> {
         let all = self.next_touch.iter().flat_map(Axis::values);
         all.filter(|next| *next != NextTouch::Random)
     }
 
-    /// Returns whether a policy uses decisions on training touches.
+    /// Returns whether a policy for the next touch uses decisions on training touches.
     pub fn is_informed(&self) -> bool {
         let mut chosen = self.chosen_next();
         chosen.any(|next| next == NextTouch::MostInformative)
     }
 
-    /// Returns the largest tilt of a copy, radians.
+    /// Returns the maximum tilt of a tilted copy, radians.
     pub fn copies_tilt(&self) -> f64 {
         self.tilt_augmentation_deg
             .unwrap_or(DEFAULT_TILT_DEG)
             .to_radians()
     }
 
-    /// Returns the number of folds of the inner cross-validation.
+    /// Returns the number of folds of the inner cross-validation; default 5.
     pub fn n_choice_folds(&self) -> usize {
         self.cv_folds.unwrap_or(5)
     }
 
-    /// Returns the groups that a split does not divide, with the distances below which drawn values are neighbours.
+    /// Returns the rule that groups touches which a split does not divide, with the distances below which drawn values are neighbours.
     pub fn kept_together(&self) -> Option<KeepTogether> {
         Some(KeepTogether {
             kind: self.group_by.or(self.split.group())?,
@@ -368,7 +367,7 @@ impl RecognitionSpec {
         })
     }
 
-    /// Returns the values of C for classifiers that have one; `None` is a C chosen by cross-validation.
+    /// Returns the values of C for classifiers that have a C; `None` means that C is chosen by cross-validation.
     pub fn penalties(&self) -> Vec<Option<f64>> {
         match (&self.c, &self.c_grid) {
             (_, Some(_)) => vec![None],

@@ -1,4 +1,4 @@
-//! The plan of a recognition study: checked keys in SI units.
+//! Plan of a recognition study: checked keys, converted to SI units.
 
 pub mod group;
 pub(crate) mod human;

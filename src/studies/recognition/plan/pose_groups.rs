@@ -1,10 +1,10 @@
 //! Groups of touches that a split does not divide: touches with equal listed values, or touches whose drawn values are close.
 //!
-//! Listed values: touches with equal values on the grouping axes form a group, whatever their object.
+//! If the values are listed, touches with equal values on the grouping axes form a group, for any object.
 //!
-//! Values that are spread uniformly: two touches of an object are neighbours if their listed values are equal and they differ by less than the stated distance
-//! on *each* drawn axis (a yaw of 359° is 2° from one of 1°). A group consists of all touches connected by neighbours (single linkage). A touch of another
-//! group is therefore at least that distance away on some axis. Touches of different objects are never neighbours, because their labels differ.
+//! If the values are drawn uniformly, two touches of an object are neighbours if their listed values are equal and they differ by less than the stated distance
+//! on *each* drawn axis (a yaw of 359° is 2° from one of 1°). A group consists of all touches connected by neighbours (single linkage). Touches of different
+//! groups are therefore at least that distance apart on some axis. Touches of different objects are never neighbours, because their labels differ.
 
 use crate::error::{Error, Result};
 use crate::studies::recognition::spec::pose_split::GroupSpec;
@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// Rule that defines groups of touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepTogether {
-    /// Axes whose values define a group.
+    /// Pose parameters whose values define a group.
     pub kind: GroupSpec,
     /// Distance below which drawn offsets and depths are neighbours, metres, positive.
     pub metres: Option<f64>,
@@ -25,7 +25,7 @@ pub struct KeepTogether {
 }
 
 impl GroupSpec {
-    /// Returns the axes that define the group.
+    /// Returns the touch axes whose values define a group.
     fn axes(self) -> &'static [TouchAxis] {
         use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
         match self {
@@ -40,7 +40,7 @@ impl GroupSpec {
 }
 
 impl KeepTogether {
-    /// Returns the distance below which values of a drawn axis are neighbours.
+    /// Returns the distance below which values of a drawn axis are neighbours, metres or radians.
     fn distance(&self, axis: TouchAxis) -> Result<f64> {
         let (distance, key) = match axis {
             TouchAxis::Yaw | TouchAxis::TiltX | TouchAxis::TiltY => {
@@ -78,7 +78,7 @@ impl KeepTogether {
         Ok(keys.into())
     }
 
-    /// Returns the axes whose values are drawn, with their distances.
+    /// Returns the grouping axes whose values are drawn, with their neighbour distances.
     fn drawn(&self, touches: &[Touch]) -> Result<Vec<(TouchAxis, f64)>> {
         let is_drawn = |axis: &&TouchAxis| {
             let mut indices = touches.iter().map(|touch| touch.indices[**axis as usize]);
@@ -88,7 +88,7 @@ impl KeepTogether {
         axes.map(|&axis| Ok((axis, self.distance(axis)?))).collect()
     }
 
-    /// Returns the indices of the values of a touch on those grouping axes whose values are listed in the study.
+    /// Returns the value indices of a touch on those grouping axes whose values are listed in the study.
     fn listed(&self, touch: &Touch) -> Vec<usize> {
         let axes = self.kind.axes().iter();
         let indices = axes.map(|&axis| touch.indices[axis as usize]);
@@ -96,7 +96,7 @@ impl KeepTogether {
     }
 }
 
-/// Returns, for each touch, the first touch of its connected component.
+/// Returns the first touch of each touch's connected component.
 fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)]) -> Vec<usize> {
     let mut first: Vec<usize> = (0..touches.len()).collect();
     let Some(&(along, distance)) = drawn.first() else {

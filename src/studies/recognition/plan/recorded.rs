@@ -14,7 +14,7 @@ use crate::world::{ArrayLayout, Grid};
 use glam::DVec2;
 
 impl RecordedSpec {
-    /// Sets the number of values per taxel from the quantity that the skin reads.
+    /// Sets the number of values per taxel of the recording, given the quantity that the skin reads.
     pub(crate) fn settle_values(&mut self, skin: &SkinSpec) {
         self.n_values = match skin.sensed.unwrap_or_default() {
             SensedSpec::Shear => 3,
@@ -22,7 +22,7 @@ impl RecordedSpec {
         };
     }
 
-    /// Returns the equivalent of `[touches]` for recorded touches: the number of frames, and a speed if time passes between them.
+    /// Returns `[touches]` keys that describe the recorded touches: the number of frames, and a speed if time passes between them.
     ///
     /// # Errors
     /// If [`shape_of`](Self::shape_of) fails.
@@ -38,7 +38,7 @@ impl RecordedSpec {
 }
 
 impl Check<'_> {
-    /// Returns the array that recorded the frames, after checking that the study has no keys that make touches.
+    /// Checks `[recorded]` and returns the array that recorded the frames. Keys that make touches are not allowed.
     pub fn recorded(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<Vec<TaxelArray>> {
         let StudySpec {
             objects, touches, ..
@@ -58,7 +58,7 @@ impl Check<'_> {
         let (key, allowed) = ("recorded.zero", "a finite number");
         let zero = match recorded.zero {
             ZeroSpec::One(zero) => self.value(key, zero, f64::is_finite, allowed)?,
-            // Zeros from a file are compared with the full scale when the frames are read.
+            // Zeros from a file are compared with the full scale later, when the frames are read.
             ZeroSpec::Each(_) => f64::NEG_INFINITY,
         };
         if let Some(full_scale) = recorded.full_scale
@@ -106,7 +106,7 @@ impl Check<'_> {
         Ok(vec![array])
     }
 
-    /// Checks the keys of speed and time between frames.
+    /// Checks the keys for the speed and for the time between frames.
     fn of_time(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<()> {
         self.value(
             "recorded.speed_mm_per_s",

@@ -18,10 +18,10 @@ fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
 }
 
 impl ObjectsSpec {
-    /// Sets the defaults that depend on the arrays: the model of meshes and the largest distance of spheres from surfaces.
+    /// Sets the defaults that depend on the arrays: the model of meshes and the maximum surface error of packed spheres.
     pub(crate) fn settle_surface_error(&mut self, arrays: &[TaxelArray]) {
         if self.meshes.is_some() {
-            // The default is written out, so that the study records the model it was run with.
+            // The default is stored in the specification, so that the results record which model was used.
             self.model.get_or_insert_default();
         }
         let finest = finest_pitch(arrays);
@@ -44,7 +44,7 @@ impl ObjectsSpec {
 }
 
 impl SkinSpec {
-    /// Returns the taxel of an array with this pitch.
+    /// Returns the taxel parameters of an array with this pitch (mm).
     pub(crate) fn taxel(&self, pitch_mm: f64) -> Taxel {
         Taxel {
             radius: self.taxel_radius_mm.unwrap_or(0.5 * pitch_mm) * MM,
@@ -136,7 +136,7 @@ impl Check<'_> {
         Ok(arrays)
     }
 
-    /// Returns the arrays of a study that supports only square grids.
+    /// Checks that all arrays are square grids, and returns them.
     pub fn grids(&self, skin: &SkinSpec) -> Result<Vec<TaxelArray>> {
         let only = |key: &str, what: &str| {
             let allowed = format!("no such key: only studies of recognition have {what}");
@@ -154,7 +154,7 @@ impl Check<'_> {
         self.arrays(skin)
     }
 
-    /// Returns the array of a study that supports a single array; `allowed` describes this in the error.
+    /// Checks that the study has a single array, and returns it; `allowed` is the text of the error.
     pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
         let mut arrays = self.grids(skin)?;
         match (arrays.pop(), arrays.len()) {
@@ -178,7 +178,7 @@ impl Check<'_> {
         }
     }
 
-    /// Returns the placement of touches for a study whose touches have one frame and no slide.
+    /// Returns the placement of touches that have one frame and no slide; returns an error for other touches.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
         let of_recognition = [
             ("slide_mm", touches.slide_mm.is_some()),
@@ -192,7 +192,7 @@ impl Check<'_> {
         self.placed(touches)
     }
 
-    /// Returns the placement of touches.
+    /// Returns the placement of touches in SI units.
     pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
         self.table("touches", touches)?;
         let degree = std::f64::consts::PI / 180.0;

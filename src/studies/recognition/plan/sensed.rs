@@ -1,4 +1,4 @@
-//! Quantity that the taxels of an array read.
+//! Quantities that the taxels of an array read.
 
 use crate::random::Seed;
 use crate::world::Shear;
@@ -11,13 +11,13 @@ pub enum Sensed {
     Deflection,
     /// Force along the taxel's axis, newtons.
     Force,
-    /// Forces along and across the taxel's axis, newtons, with these shear springs: three channels. The second and third are along x and y of the taxel's
-    /// [frame](crate::world::Layout::frame).
+    /// Forces along and across the taxel's axis, newtons, with the given shear springs: three channels. The second and third channel are along x and y of the
+    /// taxel's [frame](crate::world::Layout::frame).
     Shear(Shear),
 }
 
 impl Sensed {
-    /// Returns the number of values that a taxel reads.
+    /// Returns the number of values per taxel.
     pub fn n_channels(&self) -> usize {
         match self {
             Self::Deflection | Self::Force => 1,
@@ -25,7 +25,7 @@ impl Sensed {
         }
     }
 
-    /// Returns the name of the quantity.
+    /// Returns the name of the quantity in words.
     pub fn words(&self) -> &'static str {
         match self {
             Self::Deflection => "deflection",
@@ -35,7 +35,7 @@ impl Sensed {
     }
 }
 
-/// Returns the seed of a channel; the first channel has the given seed.
+/// Returns the random seed of a channel; the first channel has the given seed.
 pub(crate) fn of_channel(named: &Seed, channel: usize) -> Seed {
     match channel {
         0 => *named,

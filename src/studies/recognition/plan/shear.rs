@@ -1,4 +1,4 @@
-//! Checks of `skin.sensed` and `touches.slide_mm`, and the arrays that result from them.
+//! Checks of `skin.sensed` and `touches.slide_mm`, and construction of the arrays.
 
 use crate::error::Result;
 use crate::inputs::check::Check;
@@ -68,7 +68,7 @@ impl Check<'_> {
 }
 
 impl SkinSpec {
-    /// Returns the quantity that the taxels read.
+    /// Returns the quantity that the taxels of this skin read.
     pub(crate) fn sensed(&self) -> Sensed {
         match self.sensed.unwrap_or_default() {
             SensedSpec::Deflection => Sensed::Deflection,

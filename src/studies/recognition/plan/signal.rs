@@ -1,4 +1,4 @@
-//! Checks of `[signal]`, and the conditions that result from its axes.
+//! Checks of `[signal]`, and the signal conditions that result from its axes.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
@@ -11,19 +11,19 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
 
-/// One value for each axis of the signal.
+/// Signal condition: one value for each axis of `[signal]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
-    /// Noise standard deviation, in the plan's unit.
+    /// Noise standard deviation, in the noise unit of the plan.
     pub noise: f64,
-    /// Standard deviation of the smoothing, metres.
+    /// Standard deviation of the Gaussian smoothing, metres.
     pub smoothing: f64,
     /// Strengths of the sensor errors.
     pub strengths: Strengths,
 }
 
 impl Check<'_> {
-    /// Returns the unit of the noise and its axis, for the quantity that the taxels read.
+    /// Returns the unit and the values of the noise axis, for the quantity that the taxels read.
     pub fn noise(
         &self,
         signal: &SignalSpec,
@@ -58,7 +58,7 @@ impl Check<'_> {
         Err(self.error(&key, given, allowed))
     }
 
-    /// Checks the strengths of sensor errors. If an error acts only while the press moves, the press must move while frames are read.
+    /// Checks the strengths of sensor errors. Errors that act only during motion require that the press moves while frames are read.
     pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
         let range = |strength: &Strength| Range::Of(strength.is_allowed, strength.allowed);
         let ranges = all_strengths().map(|(_, strength)| (strength.key, range(strength)));
@@ -96,7 +96,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the skin of test touches; another skin needs a sensor error that belongs to a skin.
+    /// Checks `test_sensor`: another skin for test touches requires a sensor error that differs between skins.
     pub fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);
@@ -110,8 +110,8 @@ impl Check<'_> {
         Err(self.error("signal.test_sensor", given, allowed))
     }
 
-    /// Checks the steps: each at most once. A step whose axis is set must be listed, and a listed step without effect needs its axis; it would otherwise be
-    /// ignored silently.
+    /// Checks the signal steps: each occurs at most once, a step whose axis is set is listed, and a listed sensor error has at least one strength. Otherwise a
+    /// key would be ignored silently.
     pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
         const KEY: &str = "signal.steps";
         if !signal.steps.is_empty() {
@@ -143,7 +143,7 @@ fn key(strength: &Strength) -> String {
 }
 
 impl SignalSpec {
-    /// Returns the number of conditions.
+    /// Returns the number of signal conditions.
     pub(crate) fn n_conditions(&self) -> f64 {
         let axes = self.axes.given();
         let lengths = axes.map(|(.., axis)| axis.values().len() as f64);
@@ -155,7 +155,7 @@ impl SignalSpec {
 }
 
 impl Plan {
-    /// Returns every condition of the signal: all combinations of its axes, or each axis alone.
+    /// Returns all signal conditions: all combinations of the axes, or each axis alone.
     pub fn conditions(&self) -> Vec<Condition> {
         let signal = &self.spec.signal;
         let first = |condition: Condition, (key, step, axis): &SignalAxis| {
@@ -183,13 +183,13 @@ impl Plan {
 }
 
 impl Condition {
-    /// Returns whether two readings of one touch differ.
+    /// Returns whether two readings of the same touch differ.
     pub fn is_random_by_reading(&self) -> bool {
         let mut present = self.strengths.present();
         self.noise > 0.0 || present.any(|(error, ..)| error.about().is_random_by_reading)
     }
 
-    /// Returns the condition with another value on one axis.
+    /// Returns a copy of the condition with another value on one axis.
     pub(crate) fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
         match step {
             StepSpec::Noise => self.noise = value,

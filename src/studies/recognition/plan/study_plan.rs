@@ -1,7 +1,7 @@
-//! Plan of a recognition study: every key of its [`StudySpec`] checked and converted to SI units.
+//! Plan of a recognition study: the keys of its [`StudySpec`], checked and converted to SI units.
 //!
-//! The checks in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs` convert millimetres, degrees and
-//! fractions into metres, radians and absolute values. Later stages use SI units only.
+//! The checks are in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. They convert millimetres,
+//! degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
 
 use crate::engine::axes::AxisValues;
 use crate::error::Result;
@@ -18,10 +18,11 @@ use crate::world::Placement;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Largest number of trials of a study; the splits of all trials are in memory before the first trial runs.
+/// Maximum number of trials of a study; the splits of all trials are in memory before the first trial runs.
 pub(crate) const MAX_TRIALS: usize = 100_000;
 
-/// Rounds a converted number to the decimal that was written: 30, not 29.999999999999996. Numbers that are not decimals of nine places are unchanged.
+/// Rounds a converted number to the decimal that was written, for example to 30 instead of 29.999999999999996. Numbers with more than nine decimals are
+/// unchanged.
 pub fn as_written(value: f64) -> f64 {
     let decimal = (value * 1e9).round() / 1e9;
     match (decimal - value).abs() <= 4.0 * f64::EPSILON * value.abs() {
@@ -30,29 +31,29 @@ pub fn as_written(value: f64) -> f64 {
     }
 }
 
-/// Checked study: its axes and settings as written, and their values in SI units.
+/// Checked study: its specification, and its values in SI units.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Specification as written in the file.
+    /// Specification as written in the study file.
     pub spec: StudySpec,
     /// Arrays, one for each combination of pitch and size.
     pub arrays: Vec<TaxelArray>,
     /// Distribution of touch poses; unused in studies of human touches.
     pub placement: Placement,
-    /// Approach speed at the time of reading, m/s.
+    /// Approach speed of the press at the time of reading, m/s.
     pub speed: f64,
     /// Unit of the noise axis.
     pub noise_unit: NoiseUnit,
-    /// Numbers of frames per touch.
+    /// Numbers of frames per touch (axis `touches.frames`).
     pub frames: Vec<usize>,
-    /// Groups of touches that a split does not divide.
+    /// Rule that groups touches which a split does not divide.
     pub group_by: Option<KeepTogether>,
-    /// Plan of the test touches, if the study has `[test]`. Only its touches and their signal are used.
+    /// Plan of the test touches; `None` unless the study has `[test]`. Only its touches and their signal are used.
     pub tested: Option<Arc<Plan>>,
 }
 
 impl Plan {
-    /// Checks a study.
+    /// Creates the plan of a study and checks all keys.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -62,7 +63,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Checks a study as [`new`](Self::new) does, but accepts keys without effect.
+    /// Creates the plan like [`new`](Self::new), but accepts keys without effect.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -129,8 +130,8 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Returns a plan for each combination of the values in `[axes]`, or a single plan if there are no axes. Each plan contains the specification of the whole
-    /// study.
+    /// Returns one plan for each combination of the values in `[axes]`, or a single plan if there are no axes. Each plan contains the specification of the
+    /// whole study.
     ///
     /// # Errors
     /// If [`Plan::new`] fails; the error names the axis.
@@ -156,14 +157,14 @@ impl Plan {
         Ok(plans)
     }
 
-    /// Returns an upper bound of the number of configurations. Equal values of m, or values of C for a classifier without C, do not give further
+    /// Returns an upper bound of the number of configurations. Equal values of m, or several values of C for a classifier without C, give no further
     /// configurations.
     pub fn n_configurations(&self) -> f64 {
         let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
         self.spec.signal.n_conditions() * lengths.product::<f64>()
     }
 
-    /// Returns the numbers m of measurements on an array; different ratios may give equal m on a small array.
+    /// Returns the numbers m of measurements for an array; different ratios may give equal m on a small array.
     pub(crate) fn measurement_counts(&self, array: &TaxelArray, ensemble: Ensemble) -> Vec<usize> {
         let n_values = array.n_values();
         if ensemble.about().is_whole_frame {
@@ -177,7 +178,7 @@ impl Plan {
 }
 
 impl Plan {
-    /// Returns a description of a noise level: `5 % of full scale`.
+    /// Returns a text that describes a noise level, such as `5 % of full scale`.
     pub fn describe_noise(&self, level: f64) -> String {
         match self.noise_unit {
             NoiseUnit::FullScale => format!("{} % of full scale", (level * 1e8).round() / 1e6),

@@ -12,17 +12,16 @@ use ndarray::Array2;
 use std::fmt;
 use std::sync::Arc;
 
-/// Picture configurations per pitch; with fewer configurations, the offset of staggered rows is not visible.
+/// Picture cells per pitch. If smaller, the offset of staggered rows is not visible.
 const PICTURE_CELLS: f64 = 3.0;
 
-/// Array of taxels: its layout, the quantity that it reads, and its slide along the object. A layout other than the square grid has the density and the size
-/// of the grid.
+/// Array of taxels: its layout, the quantity that it reads, and its slide along the object. All layouts have the density and the size of a square grid.
 #[derive(Clone)]
 pub struct TaxelArray {
     grid: Grid,
     taxel: Taxel,
     layout: ArrayLayout,
-    /// Radius of curvature, metres; 0 for a flat layout.
+    /// Radius of curvature of the layout, metres; 0 for a flat layout.
     radius: f64,
     sensed: Sensed,
     slide: DVec2,
@@ -68,28 +67,28 @@ impl TaxelArray {
         Ok(self)
     }
 
-    /// Marks the positions of the taxels as unknown.
+    /// Marks the taxel positions as unknown.
     pub fn without_places(mut self) -> Self {
         self.is_placed = false;
         self
     }
 
-    /// Returns whether the positions of the taxels are known.
+    /// Returns whether the taxel positions are known.
     pub fn is_placed(&self) -> bool {
         self.is_placed
     }
 
-    /// Returns the patch with the array's taxels.
+    /// Returns the patch that consists of the array's taxels.
     pub fn patch(&self) -> &Patch {
         &self.patch
     }
 
-    /// Returns the square grid that the array consists of, or whose density and size the layout has.
+    /// Returns the square grid of the array, or the grid that defines the density and size of another layout.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// Returns the layout of the taxels.
+    /// Returns the layout of the array's taxels.
     pub fn layout(&self) -> ArrayLayout {
         self.layout
     }
@@ -99,19 +98,19 @@ impl TaxelArray {
         &self.sensed
     }
 
-    /// Returns whether the array is a square grid that reads only the normal direction and does not slide.
+    /// Returns whether the array is a square grid that reads one normal quantity and does not slide.
     pub fn is_plain(&self) -> bool {
         self.layout == ArrayLayout::Grid
             && self.sensed.n_channels() == 1
             && self.slide == DVec2::ZERO
     }
 
-    /// Returns whether the taxels form straight rows and columns, one pitch apart along the surface.
+    /// Returns whether the taxels form straight rows and columns with a distance of one pitch along the surface.
     pub fn is_image(&self) -> bool {
         self.layout.is_image()
     }
 
-    /// Returns the number of rows and columns of the array's images, and the side of a pixel, metres. The image is a square around all taxels.
+    /// Returns the numbers of rows and columns of the array's images, and the side of a pixel, metres. An image is a square around all taxels.
     pub fn image(&self) -> ((usize, usize), f64) {
         let (n, pitch) = (self.grid.nx, self.pitch());
         if self.is_image() {
@@ -129,8 +128,8 @@ impl TaxelArray {
         (!self.is_image()).then(chart)
     }
 
-    /// Returns the positions of the taxels on a plane, metres. On a sphere, distance along the surface and direction from the middle are preserved (azimuthal
-    /// equidistant projection).
+    /// Returns the positions of the taxels mapped to a plane, metres. On a sphere, distance along the surface and direction from the middle are preserved
+    /// (azimuthal equidistant projection).
     fn chart_places(&self) -> Vec<DVec2> {
         let place = |center: &DVec3| self.layout.place_on_plane(*center, self.radius);
         self.patch.layout().centers().iter().map(place).collect()
@@ -141,32 +140,32 @@ impl TaxelArray {
         self.slide
     }
 
-    /// Returns the parameters of a taxel.
+    /// Returns the parameters of the array's taxels.
     pub fn taxel(&self) -> &Taxel {
         &self.taxel
     }
 
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of the array.
     pub fn n_taxels(&self) -> usize {
         self.patch.n_taxels()
     }
 
-    /// Returns the number of values of a frame: one or more per taxel, ordered by channel.
+    /// Returns the number of values per frame: one or more per taxel, ordered by channel.
     pub fn n_values(&self) -> usize {
         self.sensed.n_channels() * self.n_taxels()
     }
 
-    /// Returns the numbers of rows and columns; `None` if the layout has no rows and columns.
+    /// Returns the numbers of rows and columns; `None` if the layout has none.
     pub fn sides(&self) -> Option<(usize, usize)> {
         self.layout.sides(&self.grid).filter(|_| self.is_placed)
     }
 
-    /// Returns the numbers of rows and columns; a layout without them counts as one row.
+    /// Returns the numbers of rows and columns of the array; a layout without them counts as one row.
     pub fn shape(&self) -> (usize, usize) {
         self.sides().unwrap_or((1, self.n_taxels()))
     }
 
-    /// Returns the numbers of rows and columns of a frame, in which the channels are stacked vertically.
+    /// Returns the numbers of rows and columns of a frame; channels are stacked vertically.
     pub fn frame_shape(&self) -> (usize, usize) {
         let (rows, columns) = self.shape();
         (self.sensed.n_channels() * rows, columns)
@@ -177,12 +176,12 @@ impl TaxelArray {
         self.grid.pitch
     }
 
-    /// Returns a short description: `64×64 at 2 mm`.
+    /// Returns a short description, such as `64×64 at 2 mm`.
     pub fn describe(&self) -> String {
         self.say("×", "")
     }
 
-    /// Returns a description that contains the word taxels: `64 × 64 taxels at 2 mm`.
+    /// Returns a description with the word taxels, such as `64 × 64 taxels at 2 mm`.
     pub fn describe_taxels(&self) -> String {
         self.say(" × ", " taxels")
     }
@@ -204,8 +203,8 @@ impl TaxelArray {
         }
     }
 
-    /// Returns the taxel shown in each configuration of a picture, shape (rows, columns). Images have one configuration per taxel. Other layouts are projected along the axis of
-    /// the middle, with three configurations per pitch. Each configuration shows its nearest taxel, or none if all taxels are far away.
+    /// Returns the taxel shown in each cell of a picture, shape (rows, columns). Images have one cell per taxel. Other layouts are projected along the axis of
+    /// the middle, with three cells per pitch. Each cell shows the nearest taxel, or none if all taxels are far away.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
         let (ny, nx) = self.shape();
         if self.is_image() {
@@ -228,7 +227,7 @@ impl TaxelArray {
         })
     }
 
-    /// Returns the distance between the configurations of a picture, mm.
+    /// Returns the distance between neighbouring cells of a picture, mm.
     pub fn picture_pitch_mm(&self) -> f64 {
         match self.is_image() {
             true => millimetres(self.pitch()),
@@ -258,7 +257,7 @@ impl fmt::Debug for TaxelArray {
     }
 }
 
-/// Returns the seed of an array's skin, which is the same in every touch and trial.
+/// Returns the random seed of an array's skin, which is equal in all touches and trials.
 pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
     let (ny, nx) = array.shape();
     let sides = study.named("skin").numbered(nx as u64);
@@ -267,8 +266,8 @@ pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
 }
 
 impl TaxelArray {
-    /// Returns the signal chain of each channel, with the steps returned by `steps` for the channel's seed. Each channel has its own converter and therefore
-    /// its own seed and noise; the first channel has the seed of the skin.
+    /// Returns the signal chain of each channel; `steps` returns the steps for a channel's seed. Each channel has its own converter, and therefore its own seed
+    /// and noise; the first channel has the seed of the skin.
     ///
     /// # Errors
     /// If [`Chain::new`] fails.

@@ -1,4 +1,4 @@
-//! `[test]`: keys with which test touches differ from training touches.
+//! Table `[test]`: keys in which test touches differ from training touches.
 //!
 //! ```toml
 //! [test]
@@ -8,7 +8,7 @@
 //! "test.signal.dead_fraction" = [0.0, 0.1, 0.2]
 //! ```
 //! The study with these keys is planned like any study. Its touches have the same numbers as the study's touches, so the splits are equal. Projections,
-//! features and classifiers are fitted to the study's training touches.
+//! features and classifiers are fitted to the training touches.
 
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
@@ -21,11 +21,11 @@ use crate::studies::recognition::spec::study::StudySpec;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// Tables whose keys may differ for test touches, for studies that place objects and for other studies.
+/// Tables whose keys `[test]` may contain: in studies that place objects, and in other studies.
 const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
 const TABLES_OF_OTHERS: &[&str] = &["signal"];
 
-/// Keys that test touches share with training touches.
+/// Keys that test touches always share with training touches.
 const SHARED: [&str; 4] = [
     "touches.per_object",
     "touches.frames",
@@ -34,7 +34,7 @@ const SHARED: [&str; 4] = [
 ];
 
 impl Check<'_> {
-    /// Returns the plan of the test touches, or `None` if they are made like training touches. `plan` is the study without `[test]`.
+    /// Returns the plan of the test touches, or `None` if they equal the training touches. `plan` is the plan of the study without `[test]`.
     ///
     /// # Errors
     /// If a key cannot differ for test touches or is out of its range, or if a taxel of the test touches has no counterpart in training touches.
@@ -95,7 +95,7 @@ impl Check<'_> {
         Ok(Some(Arc::new(tested)))
     }
 
-    /// Returns the error with the key as written in `[test]`, if the error names a key of that table.
+    /// Returns the error with the key as written in `[test]`, if the error concerns a key of that table.
     fn under_test(&self, error: Error, test: &Table) -> Error {
         let Error::Input {
             place,
@@ -119,8 +119,8 @@ impl Check<'_> {
         }
     }
 
-    /// Checks that the frames of test and training touches have the same taxels and values. If an axis belongs to the study, `[test]` must not list values for
-    /// it.
+    /// Checks that the frames of test and training touches have the same taxels and values. A key that is an axis of the study must not have a list in
+    /// `[test]`.
     fn check_alike(&self, plan: &Plan, tested: &Plan) -> Result<()> {
         let shapes = |plan: &Plan| -> Vec<_> {
             let arrays = plan.arrays.iter();
@@ -158,7 +158,7 @@ impl Plan {
         given.filter(move |(key, ..)| own.is_some_and(|own| own.contains_key(*key)))
     }
 
-    /// Returns the signal condition of test touches if training touches have the condition `learned`.
+    /// Returns the signal condition of test touches for the training condition `learned`.
     pub fn tested_condition(&self, learned: Condition) -> Condition {
         let Some(tested) = &self.tested else {
             return learned;

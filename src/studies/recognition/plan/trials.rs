@@ -1,24 +1,24 @@
-//! Numbers of the split and the projection of each trial.
+//! Numbering of splits and projections over the trials.
 
 use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::studies::recognition::spec::study::StudySpec;
 
-/// Trial t has split t and projection t. With P `projections_per_split`, trial t has split t / P and projection t mod P, so that each split is combined with P
-/// projections. All other random numbers are drawn anew in each trial.
+/// Trial t has split t and projection t. With P = `projections_per_split`, trial t has split t / P and projection t mod P, so that each split is combined with
+/// P projections. All other random numbers are drawn anew in each trial.
 impl StudySpec {
-    /// Returns the number of a trial's split.
+    /// Returns the number of the split that a trial uses.
     pub fn split_of(&self, trial: usize) -> usize {
         trial / self.projections_per_split.unwrap_or(1)
     }
 
-    /// Returns the number of a trial's projection.
+    /// Returns the number of the projection that a trial uses.
     pub fn projection_of(&self, trial: usize) -> usize {
         projection_of(self.projections_per_split, trial)
     }
 }
 
-/// Returns the number of a trial's projection: the trial's own, or one of `projections_per_split` shared by all splits.
+/// Returns the number of the projection that a trial uses: its own, or one of `projections_per_split` shared by all splits.
 pub(crate) fn projection_of(projections_per_split: Option<usize>, trial: usize) -> usize {
     projections_per_split.map_or(trial, |n| trial % n)
 }

@@ -1,4 +1,4 @@
-//! Checks for keys of `[skin]` and `[signal]` that have no effect with the other keys of a study.
+//! Checks for keys of `[skin]` and `[signal]` that have no effect in a study.
 
 use crate::engine::axes::CombineSpec;
 use crate::error::Result;
@@ -8,7 +8,7 @@ use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::spec::study::StudySpec;
 
 impl Check<'_> {
-    /// Checks that dampers, friction and combinations have an effect. One value of an axis that uses a key suffices, as do separate test touches.
+    /// Checks that dampers, friction and `signal.combine` have an effect. One value of an axis that uses a key suffices, as do separate test touches.
     pub fn unused_keys(&self, spec: &StudySpec) -> Result<()> {
         if !spec.test.is_empty() {
             return Ok(());
@@ -26,7 +26,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the damper. It acts on moving taxels, and so affects only forces that are read during the press.
+    /// Checks that the damper has an effect. A damper acts on moving taxels, and so affects only forces that are read during the press.
     fn used_damper(&self, spec: &StudySpec) -> Result<()> {
         let (skin, touches, axes) = (&spec.skin, &spec.touches, &spec.axes);
         let sensed = skin.sensed.unwrap_or_default();
@@ -60,7 +60,8 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the friction. It acts only on taxels that move along the object; the taxels of a flat array that is pressed straight on do not.
+    /// Checks that the friction has an effect. Friction acts only on taxels that move along the object, which excludes a flat array that is pressed straight
+    /// on.
     fn used_friction(&self, spec: &StudySpec) -> Result<()> {
         let (skin, axes) = (&spec.skin, &spec.axes);
         let rubs = spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)

@@ -1,10 +1,10 @@
-//! Grouping of configurations by the condition of the world; the best configuration is selected within each condition.
+//! Grouping of configurations by their conditions (settings of the world, such as noise); the best configuration is selected within each condition.
 
 use crate::error::Result;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::table::{Columns, File, Role, Table};
 
-/// Returns a table of the settings of configurations, without scores.
+/// Returns a table with the settings of the given configurations, without scores.
 ///
 /// # Errors
 /// If a configuration cannot be written as a row of a table.
@@ -33,7 +33,7 @@ pub fn by_condition<'a>(
     ))
 }
 
-/// Returns the index of the largest accuracy, in a tie the first; `None` if there are no accuracies.
+/// Returns the index of the highest accuracy, the first index in a tie; `None` if there are no accuracies.
 pub fn most_accurate(accuracies: impl IntoIterator<Item = (usize, f64)>) -> Option<usize> {
     let better = |best: (usize, f64), other: (usize, f64)| match other.1 > best.1 {
         true => other,

@@ -1,4 +1,4 @@
-//! Configuration of a recognition study: one value of every axis. These are the first columns of a row of results.
+//! Configuration of a recognition study: one value of every axis. Its parameters are the first columns of a row of results.
 
 use crate::engine::axes::AxisValues;
 use crate::inputs::sensor_errors::{Strengths, TestSensor, strength_columns};
@@ -22,8 +22,8 @@ const OVER_TIME: &[(&str, &str)] = &[
 ];
 const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
 
-/// Declares a configuration: each parameter with its type, its column, and the condition under which the column exists. Struct, columns and file format are
-/// generated from this list, in its order.
+/// Declares a configuration: each parameter has a type, a column, and a condition under which the column exists. The struct, the columns and the file format
+/// are generated from this list, in its order.
 macro_rules! configuration {
     ($(#[$of_cell:meta])* pub struct $configuration:ident {
         $($(#[$of_field:meta])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(named $names:expr)?;)*
@@ -43,7 +43,7 @@ macro_rules! configuration {
             }
         }
 
-        /// Returns all columns except the columns of the axes in `[axes]`.
+        /// Returns all columns except those of the axes in `[axes]`.
         impl Columns for $configuration {
             fn columns() -> Vec<Column> {
                 let mut columns = Vec::new();
@@ -61,41 +61,41 @@ macro_rules! configuration {
 }
 
 configuration! {
-/// One configuration of a study: one value of every axis.
+/// Configuration of a study: one value of every axis.
 pub struct Configuration {
-    /// Number of the configuration, from 0, in sweep order.
+    /// Number of the configuration in sweep order, from 0.
     configuration: usize => always (Note, "configuration", "", Linear);
-    /// Pitch of the taxels, mm.
+    /// Pitch of the taxels, mm: side of the square area per taxel.
     pitch_mm: f64 => always (Choice, "pitch", "mm", Linear);
-    /// Number of taxel columns.
+    /// Number of taxel columns (along x).
     nx: usize => always (Note, "taxels along x", "", Linear);
-    /// Number of taxel rows.
+    /// Number of taxel rows (along y).
     ny: usize => always (Note, "taxels along y", "", Linear);
     /// Numbers of rows and columns of the array's images.
     image_shape: (usize, usize) => hidden;
-    /// Side length of the array along x: nx × pitch.
+    /// Side length of the array along x, mm: nx times the pitch.
     size_mm: f64 => always (Choice, "array size", "mm", Linear);
     /// Noise standard deviation, in `noise_unit`.
     noise_std: f64 => always (Condition, "noise", "%", Share);
-    /// Unit of `noise_std`.
+    /// Unit of `noise_std`: fraction of full scale, mm or N.
     noise_unit: NoiseUnit => always (Note, "noise unit", "", Words);
-    /// Standard deviation of the Gaussian smoothing, mm; 0 without smoothing.
+    /// Standard deviation of the Gaussian smoothing over the array, mm; 0 without smoothing.
     smoothing_mm: f64 => always (Choice, "smoothing", "mm", Linear);
-    /// Strength of each sensor error; one column for each strength that the study has.
+    /// Strength of each sensor error. The study has one column for each strength that it sets.
     strengths: Strengths => each_strength;
-    /// Skin of the test touches. Present only if the study has the key.
+    /// Skin of the test touches: the training skin or another one. Present only if the study has the key.
     test_sensor: Option<TestSensor> => if_given (Condition, "test sensor", "", Words);
     /// Ensemble of the measurement matrix.
     ensemble: Ensemble => always (Choice, "ensemble", "", Words) named Ensemble::NAMES;
     /// Number m of measurements per frame.
     measurements: usize => always (Choice, "m", "", Log);
-    /// Compression ratio n / m.
+    /// Compression ratio n / m: values of a frame per measurement.
     ratio: f64 => always (Choice, "compression", ":1", Log);
     /// Number F of frames per touch; a row of features has F · m values.
     frames: usize => always (Choice, "frames a touch", "", Log);
-    /// How the frames of a touch are combined. Present only if the study has the key; otherwise frames are concatenated.
+    /// Combination of the frames of a touch into features. Present only if the study has the key; otherwise, frames are concatenated.
     temporal_features: Option<TemporalFeatures> => if_given (Choice, "temporal features", "", Words) named OVER_TIME;
-    /// Features computed from the measurements.
+    /// Features that are computed from the measurements.
     features: Features => always (Choice, "features", "", Words) named Features::NAMES;
     /// Depth window of image features behind the foremost point, as a fraction of the full scale; 1 for other features. Present only if the study has the key.
     depth_window_full_scale: Option<f64> => if_given (Choice, "depth window", "%", Share);
@@ -103,24 +103,24 @@ pub struct Configuration {
     tilt_augmentation: Option<usize> => if_given (Choice, "tilt augmentation", "", Linear);
     /// Kind of classifier.
     classifier: ClassifierKind => always (Choice, "classifier", "", Words) named ClassifierKind::NAMES;
-    /// Penalty C; empty if C is chosen by cross-validation or the classifier has none.
+    /// Penalty C; empty if C is chosen by cross-validation or the classifier has no C.
     c: Option<f64> => always (Choice, "C", "", Log) named CHOSEN;
-    /// Largest number of training touches per object.
+    /// Maximum number of training touches per object.
     train_touches: usize => always (Choice, "training touches", "", Log);
-    /// Fraction of training touches with another object's label. Present only if the study has the key.
+    /// Fraction of training touches that are labelled as another object, 0 to 1. Present only if the study has the key.
     mislabelled_fraction: Option<f64> => if_given (Condition, "mislabelled", "%", Share);
-    /// Ratio of the training touches of the most frequent to the least frequent object. Present only if the study has the key.
+    /// Ratio of the training touches of the most frequent object to those of the least frequent, at least 1. Present only if the study has the key.
     class_imbalance: Option<f64> => if_given (Condition, "class imbalance", ":1", Log);
-    /// Number of test touches of an object that are fused into one decision by the sum of their scores.
+    /// Number of test touches of an object that are combined into one decision by the sum of their scores.
     touches_per_decision: usize => always (Choice, "touches per decision", "", Log);
-    /// Policy that chooses the touches after the first. Present only if the study has the key.
+    /// Policy that chooses the touches of a decision after the first one. Present only if the study has the key.
     next_touch: Option<NextTouch> => if_given (Choice, "next touch", "", Words);
-    /// Values on the axes in `[axes]`, one column for each axis.
+    /// Values of the axes in `[axes]`, one column per axis.
     variant: AxisValues => each_axis;
 } }
 
 impl Configuration {
-    /// Returns the inputs of the configuration's features.
+    /// Returns the inputs that determine the configuration's features.
     pub fn rows(&self) -> RowInputs {
         let is_of_images = self.features.of_image().is_some();
         RowInputs {
@@ -139,13 +139,13 @@ impl Configuration {
         self.rows().of_images()
     }
 
-    /// Returns the number of features of a touch.
+    /// Returns the number of features per touch.
     pub fn n_features(&self) -> usize {
         self.rows().n_features()
     }
 }
 
-/// Parameters with a column in every study.
+/// Parameters that have a column in every study.
 mod always {
     use super::*;
 
@@ -162,7 +162,7 @@ mod always {
     }
 }
 
-/// Parameters with a column in studies that have their key.
+/// Parameters that have a column only in studies with their key.
 mod if_given {
     use super::*;
 
@@ -193,7 +193,7 @@ mod hidden {
     }
 }
 
-/// One column for each strength of a sensor error that the study has.
+/// One column for each sensor-error strength that the study sets.
 mod each_strength {
     use super::*;
 
@@ -240,7 +240,7 @@ mod each_axis {
 pub(crate) mod tests {
     use super::*;
 
-    /// Example configuration for tests: 32 × 32 taxels at 2 mm, 16:1.
+    /// Returns an example configuration for tests: 32 × 32 taxels at 2 mm, compression ratio 16:1.
     pub(crate) fn configuration() -> Configuration {
         Configuration {
             configuration: 0,

@@ -2,10 +2,10 @@
 
 use bubbletouch_sim::features::Join;
 
-/// Image features that configurations of a group use.
+/// Image features that the configurations of a group use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeaturesOfImages {
-    /// Kinds of image features.
+    /// Kinds of image features, joined into one feature vector.
     pub join: Join,
     /// Depth window behind the foremost point, as a fraction of the full scale.
     pub foremost: Option<f64>,

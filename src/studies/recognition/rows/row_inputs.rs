@@ -1,10 +1,10 @@
-//! Inputs of the feature rows of a configuration.
+//! Inputs that determine the feature rows of a configuration.
 
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use bubbletouch_sim::features::Features;
 
-/// Inputs of the features of a touch.
+/// Inputs that determine the features of a touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowInputs {
     /// Numbers of rows and columns of the images of frames.
@@ -13,9 +13,9 @@ pub struct RowInputs {
     pub measurements: usize,
     /// Number F of frames per touch.
     pub frames: usize,
-    /// How the frames are combined; `None` if they are concatenated.
+    /// Combination of the frames of a touch into features; `None` if the frames are concatenated.
     pub temporal_features: Option<TemporalFeatures>,
-    /// Features of a frame's measurements.
+    /// Features that are computed from the measurements of a frame.
     pub features: Features,
     /// Depth window of image features behind the foremost point, as a fraction of the full scale.
     pub depth_window_full_scale: Option<f64>,
@@ -33,12 +33,12 @@ impl RowInputs {
         })
     }
 
-    /// Returns the number of features of a frame.
+    /// Returns the number of features per frame.
     pub fn n_frame_features(&self) -> usize {
         self.features.n_values(self.measurements, self.image_shape)
     }
 
-    /// Returns the number of features of a touch.
+    /// Returns the number of features per touch.
     pub fn n_features(&self) -> usize {
         let (n_frames, m) = (self.frames, self.n_frame_features());
         self.temporal_features

@@ -1,4 +1,4 @@
-//! Rows of the result tables: one plain struct for each kind of row, one field for each column.
+//! Rows of the result tables: one plain struct for each kind of row, with one field per column.
 //!
 //! A row of `accuracy.csv` is a [`Configuration`] followed by a [`TrialScore`]; the other tables are built the same way.
 
@@ -14,45 +14,45 @@ row! {
 pub struct TrialScore {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
-    /// Number of the trial's split. Present only if the study has `projections_per_split`.
+    /// Number of the split that the trial uses. Present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     split: Option<usize> => Note: Linear, optional;
-    /// Number of the trial's projection. Present only if the study has `projections_per_split`.
+    /// Number of the projection that the trial uses. Present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     projection: Option<usize> => Note: Linear, optional;
-    /// Number of the first trial with the same training and test touches; with `projections_per_split`, the number of the first such split. Present only if
-    /// trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count trials of one split once.
+    /// Number of the first trial with the same training and test touches (with `projections_per_split`: of the first such split). Present only if trials repeat
+    /// splits, as splits by pose do if there are more trials than parts. Statistical tests count trials of one split once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     distinct_split: Option<usize> => Note "same split as": Linear, optional;
-    /// Number of training rows.
+    /// Number of training rows (readings of training touches) of the trial.
     n_train: usize => Note "training rows": Linear;
-    /// Number of test rows. A test row is a group of `touches_per_decision` test touches.
+    /// Number of test rows of the trial. A test row is a group of `touches_per_decision` test touches.
     n_test: usize => Note "test rows": Linear;
-    /// Test touches that do not fill a whole group of `touches_per_decision`, over all objects.
+    /// Number of test touches that do not fill a whole group of `touches_per_decision`, over all objects.
     n_left_out: usize => Note "test touches left out": Linear;
-    /// Number of correctly recognised test rows.
+    /// Number of test rows whose object is recognised correctly.
     n_correct: usize => Note "test rows recognised": Linear;
-    /// Accuracy of the trial, `n_correct / n_test`.
+    /// Accuracy of the trial, `n_correct / n_test`, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of the 95 % interval of the accuracy: Wilson's interval of the test rows, or [of the held-out groups](crate::statistics::grouped).
+    /// Lower end of the 95 % interval of the accuracy: Wilson's interval over test rows, or the interval [over held-out groups](crate::statistics::grouped).
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of groups behind the interval; the number of test rows if no groups are held out. Present only if the study holds out groups.
+    /// Number of groups behind the interval of the accuracy; the number of test rows if no groups are held out. Present only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
-    /// Mean over classes of the F1 score.
+    /// F1 score averaged over all objects, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
-    /// C used by the classifier: given, or chosen by cross-validation within the training rows. Empty if the classifier has no C.
+    /// Penalty C that the classifier used: given, or chosen by cross-validation within the training rows. Empty if the classifier has no C.
     c_used: Option<f64> => Note "C used": Log;
-    /// γ used by the RBF or polynomial kernel: given, scaled or chosen. Empty if the kernel has no γ.
+    /// Parameter γ that the kernel used: given, scaled or chosen. Empty if the classifier has no γ.
     gamma_used: Option<f64> => Note "γ used": Log;
-    /// Number of binary SVMs that stopped at the iteration cap.
+    /// Number of optimisation problems of the classifier that stopped at the iteration cap.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
 impl TrialScore {
-    /// Returns the accuracy of this trial for statistics over trials, if each decision uses `n_fused` touches.
+    /// Returns the accuracy of this trial for statistics over trials; each decision uses `n_fused` touches.
     pub fn repeat(&self, n_fused: usize) -> Repeat {
         let split = self.distinct_split.or(self.split);
         Repeat {
@@ -70,42 +70,44 @@ impl TrialScore {
 }
 
 row! {
-/// Score of a configuration over its trials. A row of `summary.csv` is a [`Configuration`] followed by a `CellScore`.
+/// Score of one configuration over all its trials. A row of `summary.csv` is a [`Configuration`] followed by a `CellScore`.
 pub struct CellScore {
-    /// Number of trials.
+    /// Number of trials of the configuration.
     n_trials: usize => Note "trials": Linear;
     /// Number of test rows of one trial. A test row is a group of `touches_per_decision` test touches.
     n_test: usize => Note "test rows": Linear;
-    /// Mean accuracy over trials.
+    /// Mean accuracy over trials, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Standard deviation of the accuracy over trials (0 for one trial).
+    /// Standard deviation of the accuracy over trials; 0 for one trial.
     accuracy_std: f64 => Note "standard deviation over trials": Share;
     /// Lower end of the 95 % interval of the mean accuracy.
     ///
-    /// Wilson's interval of the counts of all trials, at the number of test rows of one trial, or of all folds. If groups are held out, the interval over the
-    /// groups that all trials hold out. Trials split the same touches again, so counting the test rows of all trials would make the interval too narrow; each
-    /// fold and each group counts once.
+    /// This is Wilson's interval for the counts of all trials, at the number of test rows of one trial, or of all folds. If groups are held out, it is the
+    /// interval over all groups that the trials hold out. Trials split the same touches again, so counting the test rows of all trials would make the interval
+    /// too narrow; each fold and each group counts once.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the mean accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of groups behind the interval, over all trials; the test rows of a trial if no groups are held out. Present only if the study holds out groups.
+    /// Number of groups behind the interval, over all trials; the number of test rows of a trial if no groups are held out. Present only if the study holds out
+    /// groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
-    /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials: its spread under other splits, projections and noise on the same touches.
+    /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials: its variation under other splits, projections and noise on the same touches.
     /// Empty with fewer than five trials, splits or projections.
     #[serde(default)]
     bootstrap_low: Option<f64> => Note "mean over trials, lower end": Share;
-    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials.
+    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials; see `bootstrap_low`.
     #[serde(default)]
     bootstrap_high: Option<f64> => Note "mean over trials, upper end": Share;
-    /// Mean macro-F1 over trials.
+    /// Macro-averaged F1 score, averaged over trials, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
-    /// Binary SVMs that stopped at the iteration cap, over all trials.
+    /// Number of optimisation problems that stopped at the iteration cap, over all trials.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
 row! {
-/// Number of test rows of one object that were recognised as another, over all trials of a configuration: a row of `confusion.csv`. Zero counts are omitted.
+/// Number of test rows of one object that were recognised as another object, over all trials of a configuration: a row of `confusion.csv`. Zero counts are
+/// omitted.
 pub struct Confusion {
     /// Number of the configuration.
     configuration: usize => Subject: Linear;
@@ -113,7 +115,7 @@ pub struct Confusion {
     object: String => Subject;
     /// Name of the recognised object.
     predicted: String => Subject "taken for";
-    /// Number of test rows.
+    /// Number of test rows of `object` that were recognised as `predicted`.
     // A logarithmic scale makes rare confusions visible.
     count: usize => Value(Neither) "test rows": Log;
 } }
@@ -121,7 +123,8 @@ pub struct Confusion {
 row! {
 /// Pair of objects that the best configuration confuses most often: a row of `confused.csv`.
 ///
-/// If touches are fused, the best configuration of the fewest touches is taken. The confusion with the most fused touches is listed beside it.
+/// If the study varies `touches_per_decision`, the best configuration with the fewest touches per decision is listed, and its confusion with the most touches
+/// per decision is given beside it.
 pub struct Confused {
     /// Number of the best configuration.
     configuration: usize => Subject: Linear;
@@ -139,32 +142,32 @@ pub struct Confused {
     fraction_low: f64 => Note "95 % interval, lower end": Share, optional;
     /// Upper end of the 95 % Wilson interval of `fraction`.
     fraction_high: f64 => Note "95 % interval, upper end": Share, optional;
-    /// Largest number of fused touches. Present only if the study fuses touches.
+    /// Largest number of touches per decision in the study. Present only if the study combines several touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     max_touches_per_decision: Option<usize> => Note "most touches per decision": Linear, optional;
-    /// `fraction` in decisions on `max_touches_per_decision` touches. Present only if the study fuses touches.
+    /// Value of `fraction` for decisions on `max_touches_per_decision` touches. Present only if the study combines several touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     fraction_at_max_touches: Option<f64> => Value(Less) "fraction with most touches": Share, optional;
 } }
 
 row! {
-/// Published accuracy beside ours. A row of `published.csv` is a [`Configuration`] followed by a `Published`.
+/// Comparison of a published accuracy with ours. A row of `published.csv` is a [`Configuration`] followed by a `Published`.
 ///
-/// The [`Configuration`] is the most accurate of the configurations to which the claim applies. A claim has one row for each condition of these configurations.
+/// The [`Configuration`] is the most accurate one to which the claim applies. A claim has one row for each condition of the matching configurations.
 pub struct Published {
-    /// The claim, in words.
+    /// Published claim, in words.
     claim: String => Subject;
-    /// Source of the claim.
+    /// Publication that makes the claim.
     source: String => Subject;
     /// Published accuracy, 0 to 1.
     published_accuracy: f64 => Value(Neither) "published accuracy": Share;
-    /// Our mean accuracy over trials.
+    /// Our mean accuracy over trials, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of the 95 % interval of our accuracy, as in `summary.csv`.
+    /// Lower end of the 95 % interval of our mean accuracy, as in `summary.csv`.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % interval of our accuracy.
+    /// Upper end of the 95 % interval of our mean accuracy, as in `summary.csv`.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Difference between our accuracy and the published one, `accuracy − published_accuracy`.
+    /// Our accuracy minus the published accuracy, `accuracy − published_accuracy`.
     difference: f64 => Value(More) "difference to what was published": Linear;
     /// Number of configurations in this condition to which the claim applies.
     n_matching: usize => Note "configurations that it is about": Linear;
@@ -177,9 +180,9 @@ pub struct Comparison {
     configuration: usize => Subject: Linear;
     /// Number of the configuration with the highest mean accuracy in the same condition.
     best_configuration: usize => Note "best configuration": Linear;
-    /// Number of trials that both configurations have; trials of one split count once.
+    /// Number of trials that both configurations have finished; trials of one split count once.
     n_trials: usize => Note "trials of both": Linear;
-    /// Mean over trials of the accuracy minus the best configuration's accuracy.
+    /// Accuracy of the configuration minus accuracy of the best configuration, averaged over trials.
     difference: f64 => Value(More) "difference to the best": Linear between [difference_low, difference_high];
     /// Lower end of the 95 % interval of the difference; empty with one trial.
     difference_low: Option<f64> => Note "difference, lower end": Linear;
@@ -190,106 +193,106 @@ pub struct Comparison {
     /// p-value after Holm's correction over all configurations except the best ones; empty for the best ones.
     #[serde(default)]
     p_holm: Option<f64> => Value(Neither) "p-value, Holm": Linear;
-    /// Reason why there is a p-value, or why there is none.
+    /// Reason why the row has a p-value, or why it has none.
     #[serde(default)]
     p_status: PStatus => Outcome "test";
-    /// Smallest [number of trials](crate::statistics::comparison::trials_needed) with which a p-value exists; with `projections_per_split`, the number of
-    /// splits. Empty if no number suffices, because too many rows are tested or further trials repeat the same splits.
+    /// Minimum [number of trials](crate::statistics::comparison::trials_needed) for which a p-value exists; with `projections_per_split`, the number of splits.
+    /// Empty if no number suffices, because too many rows are tested or further trials repeat the same splits.
     #[serde(default)]
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }
 
 row! {
-/// Times of a trial of a configuration. A row of `timing.csv` is a [`Configuration`] followed by a `TrialTime`.
+/// Computing times of a configuration in one trial. A row of `timing.csv` is a [`Configuration`] followed by a `TrialTime`.
 pub struct TrialTime {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
-    /// Seconds to fit, including scaling and the choice of C and γ. Configurations that differ only in `touches_per_decision` share one fit.
+    /// Time to train the classifier, s, including scaling and the choice of C and γ. Configurations that differ only in `touches_per_decision` share one fit.
     fit_s: f64 => Cost "time to train" in "s": Log;
-    /// Seconds to score all test touches and to decide all test rows. Configurations that differ only in `touches_per_decision` share the scores.
+    /// Time to score all test touches and to decide all test rows, s. Configurations that differ only in `touches_per_decision` share the scores.
     predict_s: f64 => Cost "time to predict" in "s": Log;
-    /// Microseconds to predict one test touch.
+    /// Time to predict one test touch, µs.
     predict_us_per_touch: f64 => Cost "time to predict a touch" in "µs": Log;
 } }
 
 row! {
-/// Accuracy of a configuration and its cost. A row of `pareto.csv` is a [`Configuration`] followed by a `Pareto`.
+/// Mean accuracy and cost of a configuration. A row of `pareto.csv` is a [`Configuration`] followed by a `Pareto`.
 ///
-/// A configuration is on a front if no other of the same [condition](crate::table::Role::Condition) dominates it. A configuration dominates if it is at least
-/// as accurate in at most the same time and better in one of the two.
+/// A configuration is on a Pareto front if no other one with the same [condition](crate::table::Role::Condition) dominates it. A configuration dominates
+/// another one if it is at least as accurate in at most the same time, and better in one of the two.
 pub struct Pareto {
-    /// Mean accuracy over trials.
+    /// Mean accuracy over trials, 0 to 1.
     accuracy: f64 => Value(More): Share;
-    /// Mean time to fit, seconds.
+    /// Mean time to train the classifier, s.
     fit_s: f64 => Cost "time to train" in "s": Log;
-    /// Mean microseconds of fitting per training touch.
+    /// Mean training time per training touch, µs.
     fit_us_per_touch: f64 => Cost "time to train, of a training touch" in "µs": Log;
-    /// Mean time of one decision on `touches_per_decision` touches, microseconds.
+    /// Mean time of one decision on `touches_per_decision` touches, µs.
     predict_us_per_decision: f64 => Cost "time of a decision" in "µs": Log;
-    /// Whether the configuration is on the front of accuracy against `fit_s`.
+    /// Whether the configuration is on the Pareto front of accuracy against `fit_s`.
     on_training_front: bool => Note;
-    /// Whether the configuration is on the front of accuracy against `predict_us_per_decision`.
+    /// Whether the configuration is on the Pareto front of accuracy against `predict_us_per_decision`.
     on_prediction_front: bool => Note;
 } }
 
 row! {
-/// Time of a stage before recognition: a row of `stages.csv`.
+/// Computing time of a stage before recognition: a row of `stages.csv`.
 pub struct StageTime {
-    /// `simulate` or `measure` (signal and projection), with the number of frames per touch if that is more than one.
+    /// Name of the stage: `simulate` or `measure` (signal and projection), with the number of frames per touch if it is above one.
     stage: String => Subject;
-    /// Distance between taxels, mm.
+    /// Pitch of the taxels, mm.
     pitch_mm: f64 => Subject "pitch" in "mm": Linear;
-    /// Number of taxel columns.
+    /// Number of taxel columns (along x).
     nx: usize => Subject "taxels along x": Linear;
-    /// Number of taxel rows.
+    /// Number of taxel rows (along y).
     ny: usize => Subject "taxels along y": Linear;
     /// Number of touches that the stage processed.
     n_touches: usize => Note "touches": Linear;
-    /// Processor time, s, summed over threads.
+    /// Processor time of the stage, summed over threads, s.
     cpu_s: f64 => Cost "processor time" in "s": Log;
-    /// Processor time per touch, µs.
+    /// Processor time of the stage per touch, µs.
     us_per_touch: f64 => Cost "processor time of a touch" in "µs": Log;
 } }
 
 row! {
 /// Number of times that a limit of the model was reached: a row of `limits.csv`.
 pub struct Limit {
-    /// The limit, such as `saturated taxels`.
+    /// Name of the limit, such as `saturated taxels`.
     limit: String => Subject;
     /// Number of cases in which the limit was reached.
     count: u64 => Note: Log;
-    /// Total number of cases.
+    /// Total number of cases in which the limit could be reached.
     total: u64 => Note: Linear;
-    /// Consequence for the results, in words.
+    /// Meaning of the limit for the results, in words.
     meaning: String => Note;
 } }
 
 /// All result tables of a recognition study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {
-    /// `accuracy.csv`: one row per configuration and trial, ordered by configuration.
+    /// Rows of `accuracy.csv`: one per configuration and trial, ordered by configuration.
     pub accuracy: Vec<(Configuration, TrialScore)>,
-    /// `summary.csv`: one row per configuration.
+    /// Rows of `summary.csv`: one per configuration.
     pub summary: Vec<(Configuration, CellScore)>,
-    /// `confusion.csv`: non-zero counts, ordered by configuration.
+    /// Rows of `confusion.csv`: non-zero counts, ordered by configuration.
     pub confusion: Vec<Confusion>,
-    /// `comparison.csv`: one row per configuration.
+    /// Rows of `comparison.csv`: one per configuration.
     pub comparison: Vec<Comparison>,
-    /// `timing.csv`: one row per configuration and trial.
+    /// Rows of `timing.csv`: one per configuration and trial.
     pub timing: Vec<(Configuration, TrialTime)>,
-    /// `pareto.csv`: one row per configuration.
+    /// Rows of `pareto.csv`: one per configuration.
     pub pareto: Vec<(Configuration, Pareto)>,
-    /// `stages.csv`: one row per array, number of frames and stage.
+    /// Rows of `stages.csv`: one per array, number of frames and stage.
     pub stages: Vec<StageTime>,
-    /// `confused.csv`: the pairs of objects that the best configuration confuses most often, in descending order of the count.
+    /// Rows of `confused.csv`: the pairs of objects that the best configuration confuses most often, in descending order of the count.
     pub confused: Vec<Confused>,
-    /// `published.csv`: published accuracies beside ours.
+    /// Rows of `published.csv`: comparisons of published accuracies with ours.
     pub published: Vec<(Configuration, Published)>,
-    /// `variance.csv`: three rows per configuration, for studies with `projections_per_split`.
+    /// Rows of `variance.csv`: three per configuration, for studies with `projections_per_split`.
     pub variance: Vec<Variance>,
-    /// `limits.csv`: counts of reached limits of the model.
+    /// Rows of `limits.csv`: counts of reached limits of the model.
     pub limits: Vec<Limit>,
-    /// Whether the trials test the folds of a cross-validation one after the other.
+    /// Whether the trials are the folds of a cross-validation.
     pub has_folds: bool,
 }
 
@@ -297,37 +300,37 @@ pub struct Tables {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// Division into training and test touches.
+    /// Split into training and test touches.
     Split,
-    /// Random projection.
+    /// Random projection (measurement matrix).
     Projection,
     /// Noise and all other random draws of a trial, and the interaction of split and projection.
     Rest,
 }
 
 row! {
-/// Contribution of a source to the variance of a configuration's accuracy: a row of `variance.csv`, for studies with `projections_per_split`.
+/// Variance of a configuration's accuracy due to one source: a row of `variance.csv`, for studies with `projections_per_split`.
 pub struct Variance {
     /// Number of the configuration.
     configuration: usize => Subject: Linear;
     /// Source of the variance.
     source: Source => Subject "source of variance";
-    /// Number of drawn levels of the source; for [`Source::Rest`], the number of trials.
+    /// Number of random levels of the source; for [`Source::Rest`], the number of trials.
     n_levels: usize => Note "levels": Linear;
-    /// Degrees of freedom of the mean square.
+    /// Degrees of freedom of the source's mean square.
     degrees_of_freedom: usize => Note: Linear;
-    /// Mean square of the source.
+    /// Mean square of the source in the analysis of variance.
     mean_square: f64 => Note: Linear;
-    /// Unbiased estimate of the variance due to the source (method of moments); may be negative by chance if the variance is small.
+    /// Unbiased estimate of the variance due to the source (method of moments). If the variance is small, the estimate may be negative by chance.
     estimate: f64 => Note "variance": Linear;
     /// Standard deviation of the accuracy due to this source alone: the square root of `estimate`, or 0 if the estimate is negative.
     accuracy_std: f64 => Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
-    /// Lower end of the 95 % interval of `accuracy_std`: modified large samples, or χ² for [`Source::Rest`].
+    /// Lower end of the 95 % interval of `accuracy_std`: method of modified large samples, or χ² for [`Source::Rest`].
     accuracy_std_low: f64 => Note "standard deviation, lower end": Linear;
     /// Upper end of the 95 % interval of `accuracy_std`.
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
-    /// Fraction of the variance of a trial, with negative estimates counted as zero; empty if nothing varies.
+    /// Fraction of a trial's variance that is due to the source, with negative estimates counted as zero; empty if nothing varies.
     fraction: Option<f64> => Value(Less) "share of the variance": Share;
-    /// p-value of the F test that the source contributes nothing; empty for [`Source::Rest`].
+    /// p-value of the F test of the hypothesis that the source contributes nothing; empty for [`Source::Rest`].
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }

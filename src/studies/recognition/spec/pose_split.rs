@@ -1,7 +1,7 @@
-//! Splits by pose: which poses train and which test, if the touches have listed values.
+//! Splits by pose: rules that decide which poses are for training and which for testing, if the touches have listed values.
 //!
-//! Values are numbered in ascending order, whatever their order in the study. Each trial holds out one part. The parts are held out in order, and the
-//! first part follows the last:
+//! Values are numbered in ascending order, regardless of their order in the study. Each trial holds out one part. The parts are held out in order; after the
+//! last part, the first one follows again:
 //!
 //! | `recognition.split` | tested | learned | parts |
 //! |---|---|---|---|
@@ -24,22 +24,22 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PoseSplit {
-    /// Touches drawn at random; on a grid of poses, most test touches have neighbours among the training touches.
+    /// Randomly drawn touches are held out. On a grid of poses, most test touches then have neighbours among the training touches.
     #[default]
     Random,
-    /// One yaw per trial.
+    /// One yaw is held out in each trial.
     LeaveOneYawOut,
-    /// The larger half of the yaws in one trial, the smaller half in the next.
+    /// The larger half of the yaws is held out in one trial, the smaller half in the next.
     HalfOfYaws,
-    /// An eighth of the offsets and yaws is tested; the opposite eighth is trained on.
+    /// One eighth of the offsets and yaws is held out for testing; the opposite eighth is used for training.
     OppositeBlocks,
-    /// One tilt per trial.
+    /// One tilt is held out in each trial.
     UnseenTilt,
-    /// One depth per trial.
+    /// One depth is held out in each trial.
     UnseenDepth,
 }
 
-/// Axes that a block divides into halves.
+/// Touch axes that a block divides into halves.
 const BLOCK: [TouchAxis; 3] = [TouchAxis::OffsetX, TouchAxis::OffsetY, TouchAxis::Yaw];
 
 impl PoseSplit {
@@ -55,7 +55,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns a description of the test touches.
+    /// Returns a description of the test touches in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Random => "random touches: most have neighbours in the pose that are learned",
@@ -69,7 +69,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the grouping of training touches for the inner cross-validation that chooses C or γ; `None` if touches are drawn individually.
+    /// Returns the grouping of training touches for the inner cross-validation that chooses C or γ; `None` if touches are drawn one by one.
     pub(crate) fn group(self) -> Option<GroupSpec> {
         match self {
             Self::Random | Self::OppositeBlocks => None,
@@ -79,12 +79,12 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the number of the tested block if the split holds out blocks of neighbouring poses.
+    /// Returns the number of the tested block; `None` unless the split holds out blocks of neighbouring poses.
     pub(crate) fn tested_block(self, trial: usize) -> Option<usize> {
         (self == Self::OppositeBlocks).then_some(trial % (1 << BLOCK.len()))
     }
 
-    /// Checks that the split can divide these touches.
+    /// Checks that the split rule can divide the given touches.
     ///
     /// # Errors
     /// If [`sides`](Self::sides) fails.
@@ -120,14 +120,14 @@ impl PoseSplit {
                 Ok(leave_one_out(tilts))
             }
             Self::UnseenDepth => Ok(leave_one_out(number(&[TouchAxis::Depth])?)),
-            // A block of one axis has half of the values; the opposite block has the other half.
+            // A block of one axis contains half of the values; the opposite block contains the other half.
             Self::HalfOfYaws => self.blocks(touches, &[TouchAxis::Yaw], trial),
             Self::OppositeBlocks => self.blocks(touches, &BLOCK, trial),
         }
     }
 
-    /// Each bit of `trial` selects the tested half of one axis; 0 selects the larger values. Touches in the tested half of all axes test; touches in none
-    /// train.
+    /// Returns the sides for a split by blocks. Each bit of `trial` selects the tested half of one axis; 0 selects the larger values. Touches in the tested
+    /// half of all axes are test touches; touches in the tested half of no axis are training touches.
     fn blocks(self, touches: &[&Touch], axes: &[TouchAxis], trial: usize) -> Result<Vec<Side>> {
         let block = axes.len();
         // For each touch, the number of its values that lie in the tested halves.
@@ -148,7 +148,7 @@ impl PoseSplit {
         Ok(n_tested.into_iter().map(side).collect())
     }
 
-    /// Returns, for each touch, the number of its combination of values on `axes`, and the number of combinations.
+    /// Returns, for each touch, the index of its combination of values on `axes`; also returns the number of combinations.
     fn numbered(self, touches: &[&Touch], axes: &[TouchAxis]) -> Result<(Vec<usize>, usize)> {
         let refused = |given: String| {
             let allowed = format!(
@@ -175,7 +175,7 @@ impl PoseSplit {
     }
 }
 
-/// Listed value, ordered by size.
+/// Listed value of a touch axis, ordered by size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Value(f64);
 
@@ -193,20 +193,20 @@ impl PartialOrd for Value {
     }
 }
 
-/// Property that defines groups of touches which a split does not divide.
+/// Property of touches that defines groups; a split does not divide a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GroupSpec {
-    /// Rest pose, offset, yaw and tilt: the whole pose except the depth.
+    /// Resting pose, offset, yaw and tilt: the whole pose except the depth.
     Pose,
     /// Offsets along x and y.
     Offset,
-    /// Yaw.
+    /// Yaw of the object.
     Yaw,
     /// Tilts about x and y.
     Tilt,
-    /// Stable pose on the table.
+    /// Stable resting pose of the object on the table.
     Rest,
-    /// Depth.
+    /// Depth of the press.
     Depth,
 }

@@ -1,4 +1,4 @@
-//! Specification of recorded frames: `[recorded]`, which replaces `[objects]` and `[touches]`.
+//! Specification of recorded frames: the table `[recorded]`, which replaces `[objects]` and `[touches]`.
 
 use crate::error::{Error, Result};
 use crate::files::{file_path, optional_file_path};
@@ -10,100 +10,100 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// `[recorded]`: frames of a real skin, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). `[skin]` gives the pitch and the stroke of its taxels.
+/// Keys of `[recorded]`: frames of a real skin, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). `[skin]` gives the pitch and the stroke of the taxels.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedSpec {
-    /// Frames: shape (n, rows, columns), or (n, F, rows, columns) for touches of F frames, or (n, taxels) for a skin without rows and columns. Any
+    /// File of the frames, shape (n, rows, columns), or (n, F, rows, columns) for touches of F frames, or (n, taxels) for a skin without rows and columns. Any
     /// numeric type of up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
     #[serde(deserialize_with = "file_path")]
     pub frames: PathBuf,
-    /// Tangential forces of a skin that reads shear, newtons: the two forces across the axis of each taxel. The array has the axes of `frames`
-    /// plus an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
+    /// File of the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus an
+    /// axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub shear: Option<PathBuf>,
-    /// Class of every touch, shape (n,): integers or texts; or shape (n, classes) with entries 0 and 1.
+    /// File of the class of every touch, shape (n,): integers or texts; or shape (n, classes) with entries 0 and 1.
     #[serde(
         default,
         skip_serializing_if = "is_empty",
         deserialize_with = "file_path"
     )]
     pub labels: PathBuf,
-    /// Group of every touch, shape (n,), such as the grasp or the day. A split never divides a group.
+    /// File of the group of every touch, shape (n,), such as its grasp or day. A split never divides a group.
     #[serde(default, deserialize_with = "optional_file_path")]
     pub groups: Option<PathBuf>,
-    /// One letter for each axis of the frames: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values of a taxel, or taxels without
+    /// Letters of the axes of the frames, one per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values of a taxel, or taxels without
     /// rows and columns. Default: `n y x`, `n t y x` or `n c`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<String>,
-    /// Numbers of rows and columns into which the axis `c` is divided.
+    /// Numbers of rows and columns into which the taxel axis `c` is divided.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<[usize; 2]>,
-    /// Frames of a separate test set, with the axes of `frames`; all touches of `frames` then train.
+    /// File of the frames of a separate test set, with the axes of `frames`; all touches of `frames` are then training touches.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub frames_test: Option<PathBuf>,
-    /// Tangential forces of the separate test set, as in `shear`.
+    /// File of the tangential forces of the separate test set, newtons, with the axes of `shear`.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub shear_test: Option<PathBuf>,
-    /// Classes of the separate test set, as in `labels`.
+    /// File of the classes of the separate test set, in the format of `labels`.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub labels_test: Option<PathBuf>,
-    /// Groups of the separate test set, from which the interval of the accuracy is computed.
+    /// File of the groups of the separate test set; the interval of the accuracy is computed over these groups.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub groups_test: Option<PathBuf>,
-    /// Names of the classes, by label.
+    /// Names of the classes, in the order of the labels.
     pub names: Option<Vec<String>>,
-    /// Reading of an untouched taxel: one number, or a file with one number for each taxel. Default: 0.
+    /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
     #[serde(default)]
     pub zero: ZeroSpec,
-    /// Reading of a taxel at its full scale, which corresponds to its stroke. Default: the largest reading.
+    /// Reading of a taxel at full scale, that is, when its deflection equals its stroke. Default: the largest reading.
     pub full_scale: Option<f64>,
-    /// Press depth of each touch, metres, shape (n,); together with `speed_mm_per_s` it gives the time between the frames of a touch.
+    /// File of the press depth of each touch, metres, shape (n,). Together with `speed_mm_per_s`, it determines the time between the frames of a touch.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub depths: Option<PathBuf>,
-    /// Approach speed at the time of reading, mm/s, which acts on the damper.
+    /// Approach speed of the press at the time of reading, mm/s, at least 0; it acts on the damper. Default: 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed_mm_per_s: f64,
-    /// Interval between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
+    /// Time between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_interval_s: Option<f64>,
-    /// Touch that precedes each touch, for sensor errors with memory.
+    /// Touch that precedes each touch, for sensor errors with memory. Default: `random`.
     #[serde(default, skip_serializing_if = "is_usual")]
     pub previous_touch: PreviousTouch,
-    /// Number of values per taxel, set by the plan; 0 counts as 1.
+    /// Number of values per taxel, set by the plan and not by the study file; 0 counts as 1.
     #[serde(skip)]
     pub n_values: usize,
 }
 
-/// Readings of untouched taxels: `zero = 100.0` or `zero = "zero.npy"`.
+/// Readings of untouched taxels, written as `zero = 100.0` or `zero = "zero.npy"`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum ZeroSpec {
-    /// Common reading of all taxels.
+    /// Reading that is common to all untouched taxels.
     One(f64),
     /// File with one reading for each taxel: an array with the taxel axes of `frames`, or a list in row-major order.
     Each(PathBuf),
@@ -117,7 +117,7 @@ impl Default for ZeroSpec {
 
 impl<'de> Deserialize<'de> for ZeroSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        /// Distinguishes a number from a path.
+        /// Deserialises either a number or a path.
         struct NumberOrPath;
         impl Visitor<'_> for NumberOrPath {
             type Value = ZeroSpec;
@@ -158,7 +158,7 @@ impl<'de> Deserialize<'de> for ZeroSpec {
     }
 }
 
-/// Choice of the touch before each touch. It matters for sensor errors with memory, such as hysteresis.
+/// Choice of the touch that precedes each touch. It matters for sensor errors with memory, such as hysteresis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreviousTouch {
@@ -191,7 +191,7 @@ fn is_usual(touch: &PreviousTouch) -> bool {
 }
 
 impl RecordedSpec {
-    /// Returns a specification of frames without labels, for commands that only read frames.
+    /// Returns a specification of frames without labels, for commands that read only frames.
     pub fn of_frames(frames: &Path, order: Option<&str>, grid: Option<[usize; 2]>) -> Self {
         Self {
             frames: frames.to_owned(),
@@ -201,7 +201,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns mutable references to all given paths, to resolve them against another folder.
+    /// Returns mutable references to all given paths, so that they can be resolved against another folder.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let labels = Some(&mut self.labels).filter(|path| !is_empty(path));
         let zero = match &mut self.zero {
@@ -221,7 +221,7 @@ impl RecordedSpec {
         files.chain(others.into_iter().flatten())
     }
 
-    /// Returns all files that the study reads.
+    /// Returns the paths of all files that the study reads.
     pub fn files(&self) -> Vec<&Path> {
         let labels = Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty());
         let others = [
@@ -242,7 +242,7 @@ impl RecordedSpec {
         files.into_iter().flatten().chain(others).collect()
     }
 
-    /// Returns the file of the array `name`: the given file, or the archive of the frames if it contains the array.
+    /// Returns the file of the array `name`: the given file, or the frame archive if it contains the array.
     pub fn file_of(&self, name: &str) -> Option<&Path> {
         let given = match name {
             "frames" => Some(self.frames.as_path()),
@@ -256,12 +256,12 @@ impl RecordedSpec {
         given.or_else(|| Some(self.frames.as_path()).filter(|path| is_member(path, name)))
     }
 
-    /// Returns whether there is a separate test set.
+    /// Returns whether the recording has a separate test set.
     pub fn has_test_set(&self) -> bool {
         self.file_of("frames_test").is_some()
     }
 
-    /// Returns the axes of `frames` or `frames_test`.
+    /// Returns the axes of the array `frames` or `frames_test`.
     ///
     /// # Errors
     /// If the file does not exist or its axes are not axes of frames.
@@ -308,7 +308,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns the file of the tangential forces of `frames` or `frames_test`, and the name of the array in it.
+    /// Returns the file of the tangential forces that belong to `frames` or `frames_test`, and the name of the array in it.
     pub fn shear_of(&self, name: &str) -> Option<(&Path, &'static str)> {
         let (path, name) = match name {
             "frames" => (&self.shear, "shear"),
@@ -317,7 +317,8 @@ impl RecordedSpec {
         Some((path.as_deref()?, name))
     }
 
-    /// Returns the axes of the tangential forces of `frames` or `frames_test`, given the axes of the frames. Returns `None` if there is no such file.
+    /// Returns the axes of the tangential forces that belong to `frames` or `frames_test`, given the axes of the frames. Returns `None` if there is no such
+    /// file.
     ///
     /// # Errors
     /// If the axes differ from the axes of the frames with two values per taxel.

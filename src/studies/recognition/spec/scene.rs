@@ -1,77 +1,77 @@
-//! Specification of the scene: `[objects]`, `[skin]` and `[touches]`.
+//! Specification of the touched scene: the tables `[objects]`, `[skin]` and `[touches]`.
 
 use crate::engine::axis::{Axis, one_value};
 use crate::inputs::defaults::number;
 use crate::world::{ArrayLayout, RestPoses};
 use serde::{Deserialize, Serialize};
 
-/// `[skin]`: the arrays of taxels.
+/// Keys of `[skin]`: the arrays of taxels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SkinSpec {
-    /// Axis: side of the square area per taxel, mm; the distance between neighbours in a grid. In a hexagonal lattice (`hexagonal`, `disc`) the distance
-    /// between neighbours is 1.0746 times as large.
+    /// Axis: side of the square area per taxel, mm, positive. In a grid it is the distance between neighbours. In a hexagonal lattice (`hexagonal`, `disc`) the
+    /// distance between neighbours is 1.0746 times as large.
     pub pitch_mm: Axis<f64>,
     /// Axis: side length of the square array, mm; a multiple of the pitch.
     pub size_mm: Option<Axis<f64>>,
-    /// Axis, instead of `size_mm`: number of taxels along a side.
+    /// Axis: number of taxels along a side of the square array; replaces `size_mm`.
     pub taxels: Option<Axis<usize>>,
-    /// Layout of the taxels; all layouts have the same area. One of `grid` (default), `hexagonal`, `disc`, `cylinder`, `cap`.
+    /// Layout of the taxels: `grid` (default), `hexagonal`, `disc`, `cylinder` or `cap`. All layouts have the same area.
     pub layout: Option<ArrayLayout>,
-    /// Radius of curvature of `cylinder` and `cap`, measured to the rest centres of the taxels, mm.
+    /// Radius of curvature of the layouts `cylinder` and `cap`, measured to the rest centres of the taxels, mm.
     pub curvature_radius_mm: Option<f64>,
-    /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and the two forces across it).
+    /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and two forces across it).
     pub sensed: Option<SensedSpec>,
-    /// Friction coefficient μ between taxels and object, with `sensed = "shear"`. Used only if taxels move along the object, in a slide or on a curved
+    /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. It acts only if taxels move along the object, in a slide or on a curved
     /// layout. The taxels of a flat array that is pressed straight on do not slip.
     pub friction: Option<f64>,
     /// Tangential stiffness k_t of a taxel, N/m, with `friction`. Default: the stiffness along the axis.
     pub shear_stiffness_n_per_m: Option<f64>,
-    /// Taxel radius ρ, mm. Default: half the pitch.
+    /// Radius ρ of a taxel, mm. Default: half the pitch.
     pub taxel_radius_mm: Option<f64>,
-    /// Stroke s of a taxel, mm.
+    /// Stroke s of a taxel, mm: its maximum deflection.
     pub stroke_mm: f64,
-    /// Stiffness k of a taxel, N/m.
+    /// Stiffness k of a taxel along its axis, N/m. Default: 100.
     #[serde(default = "number::<100>")]
     pub stiffness_n_per_m: f64,
-    /// Damping c of a taxel, N·s/m.
+    /// Damping coefficient c of a taxel along its axis, N·s/m. Default: 0.
     #[serde(default)]
     pub damping_n_s_per_m: f64,
 }
 
-/// `[touches]`: poses and depths at which objects are touched.
+/// Keys of `[touches]`: poses and depths in which objects are touched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TouchesSpec {
-    /// Rest poses of the object on the table.
+    /// Resting poses of the object on the table: `as_modelled` (default) or `stable`.
     pub rest: RestPoses,
-    /// Number of touches per object. Default: all combinations of values.
+    /// Number of touches per object. Default: all combinations of the listed values.
     pub per_object: Option<usize>,
-    /// Offset of the patch's centre from the object's centre along the table's x axis, mm.
+    /// Offset of the patch's centre from the object's centre along the table's x axis, mm. Default: 0.
     pub offset_x_mm: SpreadSpec,
-    /// Offset of the patch's centre from the object's centre along the table's y axis, mm.
+    /// Offset of the patch's centre from the object's centre along the table's y axis, mm. Default: 0.
     pub offset_y_mm: SpreadSpec,
-    /// Rotation of the object about the vertical, degrees.
+    /// Rotation of the object about the vertical axis, degrees. Default: 0.
     pub yaw_deg: SpreadSpec,
-    /// Tilt of the patch about its x axis, degrees.
+    /// Tilt of the patch about its x axis, degrees. Default: 0.
     pub tilt_x_deg: SpreadSpec,
-    /// Tilt of the patch about its y axis, degrees.
+    /// Tilt of the patch about its y axis, degrees. Default: 0.
     pub tilt_y_deg: SpreadSpec,
-    /// Travel of the patch past first contact, mm; beyond the stroke taxels stay saturated.
+    /// Travel of the patch past first contact, mm, positive. Beyond the stroke, taxels stay saturated.
     pub depth_mm: SpreadSpec,
     /// Distance that the pressed patch slides along the object, mm. Default: no slide.
     pub slide_mm: Option<f64>,
-    /// Direction of the slide, degrees from the patch's x axis towards its y axis, with `slide_mm`. Default: along x.
+    /// Direction of the slide, degrees from the patch's x axis towards its y axis, with `slide_mm`. Default: 0.
     pub slide_deg: Option<f64>,
-    /// Axis: F, number of frames per touch. The frames are read at the depths d/F, 2d/F, …, d, each with its own noise. The measurements of all
-    /// frames are the features of the touch.
+    /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, each with its own noise. The measurements
+    /// of all frames are the features of the touch.
     pub frames: Axis<usize>,
-    /// Approach speed at the time of reading, mm/s, which acts on the damper.
+    /// Approach speed of the press at the time of reading, mm/s, at least 0; it acts on the damper. Default: 0.
     pub speed_mm_per_s: f64,
 }
 
 impl TouchesSpec {
-    /// Describes the keys of `[touches]` that have a list of values, which may be mistaken for an axis. Returns `None` if there is no such key.
+    /// Returns a text that names the keys of `[touches]` with a list of values, which may be mistaken for axes; `None` if there is no such key.
     pub fn mixed_values(&self) -> Option<String> {
         let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
         let lists = table.iter().filter_map(|(key, spread)| {
@@ -90,7 +90,7 @@ impl TouchesSpec {
     }
 }
 
-/// No touches, for studies that do not press objects.
+/// Creates a specification without touches, for studies that do not press objects.
 impl Default for TouchesSpec {
     fn default() -> Self {
         Self {
@@ -130,11 +130,11 @@ pub enum SensedSpec {
     expecting = "expected a number, a list, { grid = [first, last, count] }, { uniform = [low, high] } or { within = half_width }"
 )]
 pub enum SpreadSpec {
-    /// One value for all touches: `yaw_deg = 30.0`.
+    /// Single value for all touches, such as `yaw_deg = 30.0`.
     One(f64),
-    /// `yaw_deg = [0.0, 10.0, 20.0]`: every configuration contains all of these values, so the list is not an axis.
+    /// List of values, such as `yaw_deg = [0.0, 10.0, 20.0]`. Every configuration contains all values, so the list is not an axis.
     List(Vec<f64>),
-    /// Grid or interval: `yaw_deg = { grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`.
+    /// Grid or interval, such as `{ grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`.
     Range(RangeSpec),
 }
 
@@ -142,9 +142,9 @@ pub enum SpreadSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RangeSpec {
-    /// First value, last value, number of values.
+    /// Evenly spaced values, given by the first value, the last value and the number of values.
     Grid(f64, f64, usize),
-    /// Values drawn uniformly between two bounds.
+    /// Values drawn uniformly between a lower and an upper bound.
     Uniform(f64, f64),
     /// Values drawn uniformly between −w and w, for a given half width w ≥ 0.
     Within(f64),

@@ -1,4 +1,4 @@
-//! Specification of the signal chain: `[signal]`.
+//! Specification of the signal chain: the table `[signal]`.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
@@ -10,17 +10,17 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// `[signal]`: noise, sensor errors and processing of the readings.
+/// Keys of `[signal]`: noise, sensor errors and processing of the readings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalSpec {
-    /// Steps of the signal chain, applied to a frame of deflections in this order; each step at most once.
+    /// Steps of the signal chain, applied to the frames in this order; each step at most once. Default: `noise`, `smoothing`.
     pub steps: Vec<StepSpec>,
-    /// Strengths of the steps.
+    /// Numeric keys of the steps, such as the standard deviation of the noise and the strengths of sensor errors; each is an axis.
     #[serde(flatten)]
     pub axes: SignalAxes,
-    /// Axis: skin of the test touches, `same_skin` (default: the skin of the training touches) or `another_skin`.
+    /// Axis: skin of the test touches: `same_skin` (default, the skin of the training touches) or `another_skin`.
     pub test_sensor: Option<Axis<TestSensor>>,
-    /// How the axes of `[signal]` are combined with each other; all combinations with other axes are run.
+    /// Combination of the axes of `[signal]` with each other: `all` (default) or `one_at_a_time`. All combinations with other axes are run.
     #[serde(skip_serializing_if = "is_default")]
     pub combine: CombineSpec,
 }
@@ -28,18 +28,18 @@ pub struct SignalSpec {
 /// Numeric axes of `[signal]`, each with the step to which it belongs.
 ///
 /// The noise has one axis: its standard deviation as a fraction of the full scale, in millimetres of deflection or in newtons of force. The smoothing has the
-/// width of its Gaussian, mm. Each sensor error has the strengths named by its [keys](crate::signal::Strength::key).
+/// standard deviation of its Gaussian, mm. Each sensor error has the strengths named by its [keys](crate::signal::Strength::key).
 ///
-/// Hysteresis: each touch follows another touch of the study, drawn at random and released. Gains, drift and faults belong to a skin: they depend only on the
-/// seed and the array, and are equal in all touches and trials. Drift: a session consists of the study's touches in random order, trial by trial, and starts
-/// with zero drift. Scan: the press continues at `touches.speed_mm_per_s` while the array is read; the last frame of a touch is read at rest.
+/// **Hysteresis**: each touch follows another touch of the study, drawn at random and released. **Gains, drift and faults** belong to a skin: they depend only
+/// on the seed and the array, and are equal in all touches and trials. **Drift**: a session consists of the study's touches in random order, trial by trial,
+/// and starts with zero drift. **Scan**: the press continues at `touches.speed_mm_per_s` while the array is read; the last frame of a touch is read at rest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalAxes(BTreeMap<usize, SignalAxis>);
 
-/// Key of an axis, the step to which it belongs, and its values.
+/// Key of a signal axis, the step to which it belongs, and its values.
 pub type SignalAxis = (&'static str, StepSpec, Axis<f64>);
 
-/// Returns all axes in the order in which conditions iterate over them.
+/// Returns all possible signal axes in the order in which conditions iterate over them.
 fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
     let errors = all_strengths().map(|(error, strength)| (strength.key, StepSpec::Error(error)));
     NOISES
@@ -50,18 +50,18 @@ fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
 }
 
 impl SignalAxes {
-    /// Returns the axis of a key, if the study has it.
+    /// Returns the values of the axis with this key; `None` if the study does not set it.
     pub fn get(&self, key: &str) -> Option<&Axis<f64>> {
         let mut given = self.given();
         given.find_map(|(known, _, axis)| (*known == key).then_some(axis))
     }
 
-    /// Returns the axes that the study has.
+    /// Returns the axes that the study sets.
     pub fn given(&self) -> impl Iterator<Item = &SignalAxis> {
         self.0.values()
     }
 
-    /// Sets the axis of a key, if the key exists.
+    /// Sets the values of the axis with this key, if the key exists.
     fn set(&mut self, key: &str, axis: Axis<f64>) {
         let found = all_axes().enumerate().find(|(_, (known, _))| *known == key);
         if let Some((place, (key, step))) = found {
@@ -76,17 +76,17 @@ impl Serialize for SignalAxes {
     }
 }
 
-/// Step of the signal chain.
+/// Step of the signal chain that processes the frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum StepSpec {
-    /// Conversion of deflections to forces, newtons.
+    /// Conversion of deflections into forces, newtons.
     Force,
     /// Additive zero-mean Gaussian noise.
     Noise,
-    /// Gaussian smoothing over the array.
+    /// Gaussian smoothing of the readings over the array.
     Smoothing,
-    /// Sensor error, whose strengths have their own keys.
+    /// Sensor error; its strengths have keys of their own.
     Error(SensorError),
 }
 
@@ -101,7 +101,7 @@ impl StepSpec {
         }
     }
 
-    /// Returns every step.
+    /// Returns all steps of the signal chain.
     fn all() -> impl Iterator<Item = Self> {
         let errors = SENSOR_ERRORS.iter().map(|error| Self::Error(*error));
         [Self::Force, Self::Noise, Self::Smoothing]
@@ -133,7 +133,7 @@ fn unknown(what: &str, given: &str, known: impl Iterator<Item = &'static str>) -
     )
 }
 
-/// Key of `[signal]`.
+/// Name of a key of `[signal]`.
 struct Key(String);
 
 impl<'de> Deserialize<'de> for Key {
@@ -150,7 +150,7 @@ impl<'de> Deserialize<'de> for Key {
     }
 }
 
-/// Implemented by hand, because each sensor error defines its own keys.
+/// Implemented manually, because each sensor error defines its own keys.
 impl<'de> Deserialize<'de> for SignalSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(SpecVisitor)

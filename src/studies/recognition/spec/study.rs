@@ -1,6 +1,7 @@
-//! Specification of a recognition study: the keys of its TOML file, in the units of the keys.
+//! Specification of a recognition study: the keys of its TOML file, in the units of the file.
 //!
-//! Only names and types are checked here; [`Plan`](crate::studies::recognition::plan::study_plan::Plan) checks values. An axis takes one value or a list.
+//! Only names and types are checked here; [`Plan`](crate::studies::recognition::plan::study_plan::Plan) checks values. A key that is an axis has one value or a
+//! list of values.
 
 use crate::engine::axes;
 use crate::engine::axes::{AxisRules, StudyAxes};
@@ -27,56 +28,56 @@ use bubbletouch_svm::scaling::Scaling;
 use bubbletouch_svm::{Multiclass, Solver};
 use serde::{Deserialize, Serialize};
 
-/// A recognition study file.
+/// Contents of a recognition study file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StudySpec {
-    /// Question of the study, in one sentence.
+    /// Question that the study answers, in one sentence.
     pub question: String,
-    /// Expectation of the author before the first run.
+    /// Answer that the author expected before the first run. Default: empty.
     #[serde(default)]
     pub expected: String,
-    /// Seed of all random numbers.
+    /// Seed of all random numbers. Default: 2018.
     #[serde(default = "default_seed")]
     pub seed: u64,
-    /// Number of trials per configuration, each with a new split, projection and noise.
+    /// Number of trials per configuration, at least 1, each with a new split, projection and noise. Default: 1.
     #[serde(default = "count::<1>")]
     pub trials: usize,
-    /// Number p of projections, each combined with each of `trials` / p splits, instead of one projection per trial. Separates the effect of the projection
-    /// on the accuracy from the effect of the split (`variance.csv`).
+    /// Number P of projections that are combined with each of `trials` / P splits. Default: one projection per trial. The combination separates the effect of
+    /// the projection on the accuracy from the effect of the split (`variance.csv`).
     pub projections_per_split: Option<usize>,
-    /// Touched objects.
+    /// Table `[objects]`: the touched objects.
     #[serde(default, skip_serializing_if = "is_default")]
     pub objects: ObjectsSpec,
-    /// The skin.
+    /// Table `[skin]`: the arrays of taxels.
     pub skin: SkinSpec,
-    /// The touches.
+    /// Table `[touches]`: poses and depths of the touches.
     #[serde(default, skip_serializing_if = "is_default")]
     pub touches: TouchesSpec,
-    /// Recognition of kinds of human touch; replaces `[objects]` and `[touches]`.
+    /// Table `[human_touch]`: recognition of kinds of human touch; replaces `[objects]` and `[touches]`.
     pub human_touch: Option<HumanTouchSpec>,
-    /// Recorded frames; replaces `[objects]` and `[touches]`.
+    /// Table `[recorded]`: recorded frames; replaces `[objects]` and `[touches]`.
     pub recorded: Option<RecordedSpec>,
-    /// Processing of a frame before it is compressed.
+    /// Table `[signal]`: noise, sensor errors and processing of frames before compression.
     #[serde(default)]
     pub signal: SignalSpec,
-    /// Compression of a frame.
+    /// Table `[sensing]`: compression of frames.
     pub sensing: SensingSpec,
-    /// Features, classifier and split.
+    /// Table `[recognition]`: features, classifiers, and the split into training and test touches.
     pub recognition: RecognitionSpec,
-    /// Keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` with the values of test touches if these differ: `test.touches.depth_mm`.
+    /// Table `[test]`: keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` whose values differ for test touches, such as `test.touches.depth_mm`.
     #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
     pub test: toml::Table,
-    /// Contents of the report.
+    /// Table `[report]`: contents of the report.
     #[serde(default)]
     pub report: ReportSpec,
-    /// Further axes, each a key with its values: [`axes`].
+    /// Table `[axes]`: further axes, each a key with its values; see [`axes`].
     #[serde(skip)]
     pub axes: StudyAxes,
 }
 
-/// Keys that accept a list of values in their own table. If they are given in `[axes]`, they are moved there. In `[signal]`, all keys except the steps are
-/// axes.
+/// Keys that accept a list of values in their own table. If one of them is given in `[axes]`, its values are moved to its own table. In `[signal]`, all keys
+/// except `steps` and `combine` are axes.
 const AXES_IN_PLACE: &[&str] = &[
     "skin.pitch_mm",
     "skin.size_mm",
@@ -98,7 +99,7 @@ const AXES_IN_PLACE: &[&str] = &[
     "recognition.next_touch",
 ];
 
-/// Keys that cannot be axes: trials repeat the same touches, and texts and reports belong to the whole study.
+/// Keys that cannot be axes: all trials use the same touches, and texts and reports belong to the whole study.
 const AXIS_RULES: AxisRules = AxisRules {
     in_place: |key| match key.strip_prefix("signal.") {
         Some(key) => !matches!(key, "steps" | "combine"),
@@ -114,133 +115,135 @@ const AXIS_RULES: AxisRules = AxisRules {
     ],
 };
 
-/// `[sensing]`: compression of frames into measurements.
+/// Keys of `[sensing]`: compression of frames into measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensingSpec {
-    /// Axis: ensemble of the measurement matrix.
+    /// Axis: ensemble from which the measurement matrix is drawn. Default: `gaussian`.
     #[serde(default = "default_ensemble")]
     pub ensemble: Axis<Ensemble>,
-    /// Axis: compression ratio, taxels per measurement.
+    /// Axis: compression ratio n / m, taxels per measurement, at least 1.
     pub ratio: Option<Axis<f64>>,
-    /// Axis, instead of `ratio`: number of measurements per touch.
+    /// Axis: number m of measurements per frame; replaces `ratio`.
     pub measurements: Option<Axis<usize>>,
 }
 
-/// `[recognition]`: features, classifiers, and the split into training and test touches.
+/// Keys of `[recognition]`: features, classifiers, and the split into training and test touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecognitionSpec {
-    /// Axis: transformation of a touch's measurements before scaling. Values: `raw`, `centred`, `unit_norm`, `centred_unit_norm`. Features of images:
-    /// `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features of force, add
-    /// `"force"` to `signal.steps`.
+    /// Axis: features of a touch, before scaling. Default: `raw`. Transformations of the measurements: `raw`, `centred`, `unit_norm`, `centred_unit_norm`.
+    /// Features of images: `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features
+    /// of force, add `"force"` to `signal.steps`.
     #[serde(default = "default_features")]
     pub features: Axis<Features>,
     /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. The window makes the features invariant to the
     /// press depth. Default: the whole image.
     pub depth_window_full_scale: Option<Axis<f64>>,
     /// Axis: number of additional copies of each training touch, tilted at random as far as its images allow. The copies make recognition robust to tilts that
-    /// were not trained on. Only for image features; default: none.
+    /// do not occur in training. Only for image features. Default: 0.
     pub tilt_augmentation: Option<Axis<usize>>,
-    /// Largest tilt of a copy about the array's x and y axes, degrees; tilts are uniformly distributed. Default: 5.
+    /// Maximum tilt of a copy about the array's x and y axes, degrees; tilts are distributed uniformly. Default: 5.
     pub tilt_augmentation_deg: Option<f64>,
-    /// Axis: how the frames of a touch are combined. Default: concatenated. `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in time),
-    /// `moments` of each measurement, `course` of the touch, or `summarised` (moments and course).
+    /// Axis: combination of the frames of a touch into features. Values: `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in time),
+    /// `moments` of each measurement, `course` of the touch, or `summarised` (moments and course). Default: all frames are concatenated.
     pub temporal_features: Option<Axis<TemporalFeatures>>,
-    /// Axis: classifier.
+    /// Axis: kind of classifier.
     pub classifier: Axis<ClassifierKind>,
-    /// Scheme that combines two-class SVMs into a multi-class one.
+    /// Strategy that combines binary SVMs into a multi-class classifier: `one_vs_one` (default) or `one_vs_rest`.
     #[serde(default)]
     pub multiclass: Multiclass,
-    /// Solver that trains SVMs.
+    /// Solver of SVMs: `smo` (default) or `coordinate_descent`.
     #[serde(default)]
     pub solver: Solver,
-    /// Scaling of features, fitted on training rows.
+    /// Scaling of the features, fitted to training rows: `standard` (default), `overall` or `none`.
     #[serde(default)]
     pub scaling: Scaling,
-    /// Axis: penalty C of the classifiers that have one. Default: 1.
+    /// Axis: penalty C > 0 of the classifiers that have one. Default: 1.
     pub c: Option<Axis<f64>>,
-    /// Candidate values of C, instead of `c`. Each fit chooses one by cross-validation within its training rows.
+    /// Candidate values of C; replaces `c`. Each fit chooses one of them by cross-validation within its training rows.
     pub c_grid: Option<Vec<f64>>,
-    /// γ of the RBF, Laplacian and polynomial kernels. Default: 'scale', 1 / (F · m · variance); for the Laplacian kernel with the standard deviation.
+    /// Kernel parameter γ of the RBF, Laplacian and polynomial kernels. Default: 'scale', 1 / (F · m · variance); for the Laplacian kernel with the standard
+    /// deviation instead of the variance.
     pub gamma: Option<f64>,
-    /// Candidate values of γ as multiples of 'scale', instead of `gamma`. Each fit chooses one together with C.
+    /// Candidate values of γ as multiples of 'scale'; replaces `gamma`. Each fit chooses one of them together with C.
     pub gamma_grid: Option<Vec<f64>>,
-    /// Number of folds of the inner cross-validation, which chooses C and γ and estimates decisions on unseen touches for `most_informative`. Default: 5.
-    /// Folds do not divide the groups that the split keeps together.
+    /// Number of folds of the inner cross-validation. It chooses C and γ, and estimates decisions on unseen touches for `most_informative`. Default: 5. Folds
+    /// do not divide groups that the split does not divide.
     pub cv_folds: Option<usize>,
-    /// Largest number of training touches per object for the choice of C and γ. Default: all. The default γ is computed from all training touches.
+    /// Maximum number of training touches per object for the choice of C and γ. Default: all. The default γ is computed from all training touches.
     pub cv_touches: Option<usize>,
-    /// Number of readings of each training touch, each with its own noise. Default: 1. Without noise, drift or pink noise all readings of a touch are equal,
-    /// and one is used. C and γ are chosen on first readings.
+    /// Number of readings of each training touch, each with its own noise. Default: 1. Without noise, drift or pink noise, all readings of a touch are equal,
+    /// and one is used. C and γ are chosen on the first readings.
     pub readings_per_touch: Option<usize>,
-    /// Degree d of the polynomial kernel.
+    /// Degree d of the polynomial kernel, 1 to 20. Default: 3.
     #[serde(default = "default_degree")]
     pub degree: u32,
-    /// Constant c₀ of the polynomial kernel.
+    /// Constant c₀ ≥ 0 of the polynomial kernel. Default: 1.
     #[serde(default = "number::<1>")]
     pub coef0: f64,
-    /// Number k of nearest neighbours. Default: 5.
+    /// Number k of nearest neighbours, at least 1. Default: 5.
     pub n_neighbours: Option<usize>,
-    /// Number of trees of a random forest. Default: 100.
+    /// Number of trees of a random forest, at least 1. Default: 100.
     pub n_trees: Option<usize>,
-    /// Largest depth of a decision tree and of a forest's trees. Default: unlimited, until leaves are pure.
+    /// Maximum depth of the trees of a random forest, at least 1. Default: unlimited; trees grow until their leaves are pure.
     pub max_depth: Option<usize>,
-    /// Memory limit for the kernel values that an SVM solver stores, GiB. Default: 2. Above the limit values are recomputed, which takes longer and may change
-    /// the last digits.
+    /// Maximum size of the kernel values that an SVM solver keeps in memory, GiB. Default: 2. Above the limit, values are recomputed; this takes longer and may
+    /// change the last digits.
     pub solver_memory_gib: Option<f64>,
-    /// Axis: largest number of training touches per object. Default: all touches of the training split.
+    /// Axis: maximum number of training touches per object. Default: all touches of the training split.
     pub train_touches: Option<Axis<usize>>,
-    /// Axis: fraction of each object's training touches that are labelled as another, randomly drawn object, 0 to 1.
+    /// Axis: fraction of each object's training touches that are labelled as another, randomly drawn object, 0 to 1. Default: 0.
     pub mislabelled_fraction: Option<Axis<f64>>,
-    /// Axis: ratio of the training touches of the most frequent object to the least frequent, at least 1. The other objects lie between in a geometric
-    /// sequence, in an order drawn for each trial. The numbers of test touches are unchanged.
+    /// Axis: ratio of the training touches of the most frequent object to those of the least frequent, at least 1. The other objects lie between in a geometric
+    /// sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
     pub class_imbalance: Option<Axis<f64>>,
-    /// Axis: number k of test touches of an object that are fused into one decision by the sum of their scores. An object's test touches are grouped at
-    /// random; a remainder of fewer than k touches is omitted.
+    /// Axis: number k of test touches of an object that are combined into one decision by the sum of their scores, at least 1. Default: 1. An object's test
+    /// touches are grouped at random; a remainder of fewer than k touches is omitted.
     #[serde(default = "one_value")]
     pub touches_per_decision: Axis<usize>,
-    /// Axis: policy that chooses the touches after the first. `random`; `farthest`, the pose farthest from the previous ones; `most_informative`, the pose
-    /// with the least expected entropy of the belief over objects. Candidates are all test touches of the object, each at most once per decision.
+    /// Axis: policy that chooses the touches of a decision after the first one. `random` (default); `farthest`: the pose farthest from the previous ones;
+    /// `most_informative`: the pose with the lowest expected entropy of the belief over objects. All test touches of the object are candidates, each at most
+    /// once per decision.
     pub next_touch: Option<Axis<NextTouch>>,
-    /// Poses that are held out: `random` ones, or a rule of [`PoseSplit`].
+    /// Rule that decides which touches are held out for testing: `random` (default) or a rule of [`PoseSplit`].
     #[serde(default, skip_serializing_if = "is_default")]
     pub split: PoseSplit,
-    /// Fraction of the touches that a random split holds out for testing, without `folds`. Default: 0.25.
+    /// Fraction of the touches that a random split holds out for testing, between 0 and 1. Default: 0.25.
     pub test_fraction: Option<f64>,
-    /// Number k of folds of a k-fold split, instead of `test_fraction`; `trials` must be a multiple of k.
+    /// Number k of folds of a k-fold split, at least 2; replaces `test_fraction`. `trials` must be a multiple of k.
     pub folds: Option<usize>,
-    /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If
-    /// the values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours are closer than
+    /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If the
+    /// values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours differ by less than
     /// `group_by_mm` and `group_by_deg` on each drawn axis.
     pub group_by: Option<GroupSpec>,
-    /// Distance below which drawn offsets and depths are neighbours, mm.
+    /// Distance below which drawn offsets and depths are neighbours, mm, positive; used with `group_by`.
     pub group_by_mm: Option<f64>,
-    /// Angle below which drawn yaws and tilts are neighbours, degrees.
+    /// Angle below which drawn yaws and tilts are neighbours, degrees, positive; used with `group_by`.
     pub group_by_deg: Option<f64>,
 }
 
-/// `[report]`: contents of the page and of some tables.
+/// Keys of `[report]`: contents of the page and of some tables.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReportSpec {
-    /// Objects whose touches are drawn side by side. Default: four, spread over the list.
+    /// Names of the objects whose touches are drawn side by side. Default: four, spread over the list.
     pub samples: Option<Vec<String>>,
-    /// Whether to chart accuracy against time with its Pareto front. Default: if at least three classifiers are swept.
+    /// Whether to chart accuracy against time with its Pareto front. Default: true if at least three classifiers are swept.
     pub pareto: Option<bool>,
-    /// Configurations whose confusion matrix is in `confusion.csv`.
+    /// Configurations whose confusion matrix is written to `confusion.csv`: `all` (default) or `best`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub confusion: ConfusionMatrices,
-    /// Published accuracies, shown beside the best of the configurations to which each claim applies.
+    /// Published accuracies. Each is compared with the most accurate configuration to which its claim applies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<PublishedSpec>,
 }
 
-/// `report.confusion`: configurations whose confusion matrix is in `confusion.csv`.
+/// Configurations whose confusion matrix is written to `confusion.csv`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ConfusionMatrices {
-    /// All configurations.
+    /// All configurations of the study.
     #[default]
     All,
     /// The most accurate configuration and the configurations in `confused.csv`. With many objects, confusion matrices take most of the space of a result
@@ -248,23 +251,23 @@ pub enum ConfusionMatrices {
     Best,
 }
 
-/// Published accuracy: `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`
+/// Published accuracy, such as `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PublishedSpec {
-    /// The claim, in words.
+    /// Published claim, in words.
     pub claim: String,
-    /// Published fraction of recognised test touches, 0 to 1.
+    /// Published fraction of correctly recognised test touches, 0 to 1.
     pub accuracy: f64,
-    /// Source of the claim.
+    /// Publication that makes the claim.
     pub source: String,
-    /// Other keys, which select the configurations to compare with. Each is the name of a column of [`Configuration`] (`noise` is short for `noise_std`) with its
-    /// value.
+    /// Further keys, which select the configurations to compare with. Each is the name of a column of [`Configuration`] with its value (`noise` is short for
+    /// `noise_std`).
     #[serde(flatten)]
     pub at: toml::Table,
 }
 
 impl StudySpec {
-    /// Reads a study from the text of its file.
+    /// Parses a study from the text of its file.
     ///
     /// # Errors
     /// If the text is not a valid study. The error names the file, the line and the key.
@@ -278,7 +281,7 @@ impl StudySpec {
         self.human_touch.is_none() && self.recorded.is_none()
     }
 
-    /// Returns the number of values of each key that has a list in its own table. Keys of the signal are excluded, because they may be combined differently.
+    /// Returns the number of values of each axis key. Keys of the signal are excluded, because they may be combined differently.
     pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
         // TOML integers have 63 bits; a seed from the command line may be larger.
         let without_seed = Self {
@@ -294,7 +297,7 @@ impl StudySpec {
         })
     }
 
-    /// Returns the columns of the study's own axes in result tables.
+    /// Returns one result-table column for each axis in `[axes]` that has no column yet.
     pub fn axis_columns(&self) -> Vec<Column> {
         let of_cells = Configuration::columns();
         let of_trials = TrialScore::columns();
@@ -308,13 +311,13 @@ impl StudySpec {
         self.axes.columns(|name| known.contains(&name))
     }
 
-    /// Returns the study as TOML with all defaults written out.
+    /// Returns the study as TOML, with all defaults written out.
     pub fn to_toml(&self) -> String {
         axes::to_toml(self, &self.axes)
     }
 }
 
-/// Default seed of all kinds of study.
+/// Returns the default seed of all kinds of studies.
 pub(crate) fn default_seed() -> u64 {
     2018
 }

@@ -1,4 +1,4 @@
-//! The recognition study as a kind of study.
+//! Recognition study as an implementation of [`Study`](crate::studies::study::Study).
 
 use crate::engine::work_items::{PendingItems, Scale, WorkItem};
 use crate::error::Result;
@@ -20,7 +20,7 @@ use crate::table::{ChartSpec, Table};
 
 /// Columns with the intervals of accuracies.
 const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high";
-/// Methods of these intervals if test rows are held out one by one, and if whole groups are held out.
+/// Methods of the accuracy intervals if test rows are held out one by one, and if whole groups are held out.
 const BY_ROWS: (&str, &str) = (
     ACCURACIES,
     "Wilson score interval of the counts of all trials, at the test rows of one trial",
@@ -34,7 +34,7 @@ const BY_GROUPS: (&str, &str) = (
     "score interval of the groups that are held out: Wilson's of the test rows divided by the design effect (Rao, Scott 1992), Student's t of groups - 1",
 );
 
-/// Methods of all other intervals and p-values, by table and columns; all intervals are at 95 %.
+/// Methods of all other intervals and p-values, by table and columns; all intervals have a confidence of 95 %.
 const METHODS: [(&str, &str); 5] = [
     (
         "summary.csv: bootstrap_low, bootstrap_high",
@@ -97,7 +97,7 @@ impl Study for RecognitionStudy {
         self.scale.clone()
     }
 
-    /// Items are ordered by trial and family, followed by the touches of each array.
+    /// The work items are ordered by trial and family; the items of the touches of each array follow.
     fn work_items(&self) -> Vec<WorkItem> {
         let families = 0..self.families.len();
         let of_family = |family: usize| {
@@ -164,7 +164,7 @@ impl Study for RecognitionStudy {
         }
     }
 
-    /// A family is described by the settings of its first configuration.
+    /// A family of configurations is described by the settings of its first configuration.
     fn item_words(&self, number: usize, item: &WorkItem) -> String {
         if number >= self.touches_item(0) {
             return item.name.clone();
@@ -235,7 +235,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Returns a description of the split: how test touches relate to training touches.
+/// Returns a text that describes the split: how test touches relate to training touches.
 fn split_words(spec: &StudySpec) -> String {
     let held_out = match spec.recognition.group_by {
         _ if let Some(recorded) = &spec.recorded => {
@@ -266,7 +266,7 @@ fn split_words(spec: &StudySpec) -> String {
     held_out.to_owned()
 }
 
-/// Returns pictures of every object, preceded by the shown samples if they differ.
+/// Returns pictures of every object, preceded by the sample pictures if they differ.
 fn gallery(Samples { shown, each }: &Samples) -> Vec<Snapshots> {
     let is_like = |each: &Snapshots| each.caption == shown.caption;
     let shown = Some(shown).filter(|_| !each.as_ref().is_some_and(is_like));

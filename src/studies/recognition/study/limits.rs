@@ -7,13 +7,13 @@ use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::study::rows::TouchRow;
 
 impl RecognitionStudy {
-    /// Returns the limits reached by touches on all arrays and by fits.
+    /// Returns the counts of limits that touches and fits reached, over all arrays.
     pub(crate) fn limits(
         &self,
         fits: &[(Configuration, TrialScore)],
         rows: &[TouchRow],
     ) -> Vec<Limit> {
-        // The deepest frame is the same for any number of frames per touch.
+        // The deepest frame is equal for any number of frames per touch.
         let is_counted = |row: &&TouchRow| {
             let (_, _, n_frames) = self.on(row.on);
             row.is_made && n_frames == self.first_frames(row.on)

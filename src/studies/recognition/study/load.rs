@@ -1,4 +1,4 @@
-//! Loads a recognition study. Objects are built once and touches are drawn once for all combinations that share them.
+//! Loading of a recognition study. All combinations of axis values that share objects or touches use one copy of them.
 
 use crate::engine::axes::AxisValues;
 use crate::error::{Error, Result};
@@ -23,7 +23,7 @@ use std::collections::hash_map::Entry;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reads and checks a study; returns a plan for each combination of the values in `[axes]`.
+/// Reads and checks a study file; returns one plan for each combination of the values in `[axes]`.
 ///
 /// # Errors
 /// If a key is unknown or out of its range.
@@ -43,11 +43,11 @@ pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
         Some(recorded) => source.replace_recorded(recorded),
         None => source.replace_objects(&mut spec.objects),
     }
-    // Values on axes may be paths.
+    // Axis values may be paths.
     with_folder(folder, || Plan::variants(&source.place, spec))
 }
 
-/// Reads and checks a study, builds its objects and draws its touches, if they fit into memory.
+/// Reads and checks a study file, builds its objects, and draws its touches if they fit into memory.
 ///
 /// # Errors
 /// If [`read_plans`] fails, an object cannot be read, or the touches do not fit into memory.
@@ -60,8 +60,8 @@ pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
 }
 
 impl RecognitionStudy {
-    /// Builds the objects of [plans](Plan::variants) and draws their touches, if these fit into `ceiling` bytes (`None`: no limit). Packed objects are cached
-    /// in `packings`.
+    /// Builds the objects of [plans](Plan::variants) and draws their touches, if they fit into `ceiling` bytes (`None`: no limit). Packed objects are cached in
+    /// `packings`.
     ///
     /// # Errors
     /// If an object cannot be built, there are too many touches, or [`of_variants`](Self::of_variants) fails; the error names `place` (the file).
@@ -116,28 +116,28 @@ impl RecognitionStudy {
     }
 }
 
-/// Number of touches times trials from which [`slow_splits`] returns a message, equivalent to some seconds. If it is larger, commands are silent for longer;
-/// if smaller, short waits are announced.
+/// Number of touches times trials above which [`slow_splits`] returns a message; it corresponds to a few seconds. If larger, commands are silent for longer; if
+/// smaller, short waits are announced.
 const MANY_SPLITS: f64 = 7e7;
 
-/// Returns a message if splitting the touches will take noticeable time.
+/// Returns a message if splitting the touches takes a noticeable time.
 fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
     (n_touches * n_trials as f64 >= MANY_SPLITS)
         .then(|| format!("splitting {n_touches} touches in {n_trials} trials"))
 }
 
-/// Returns a text that is equal for plans with equal touches, apart from the array and the files of their objects.
+/// Returns a text that identifies a plan's touches; it does not depend on the array and the files of the objects.
 pub fn touch_content(plan: &Plan) -> String {
     TouchInputs::new(plan).key()
 }
 
-/// Memory of a touch, bytes: its pose, its label and how it is read.
+/// Memory per touch, bytes: its pose, its label and its reading parameters.
 const TOUCH_BYTES: f64 = 400.0;
 
-/// Memory of a touch in the split of a trial, bytes.
+/// Memory per touch and trial for its position in the split, bytes.
 const SPLIT_BYTES: f64 = 8.0;
 
-/// Checks before drawing that the touches of `n_classes` classes, with one split per trial, fit into `ceiling` bytes (`None`: no limit).
+/// Checks before drawing whether the touches of `n_classes` classes, with one split per trial, fit into `ceiling` bytes (`None`: no limit).
 ///
 /// # Errors
 /// If the touches need more memory; the error names the key that sets their number.

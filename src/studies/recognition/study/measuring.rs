@@ -1,4 +1,4 @@
-//! Computes the work items: simulates the touches of an array once, measures each group once per trial, and evaluates every pending family.
+//! Computation of the work items: simulates the touches of an array once, measures each group once per trial, and evaluates every pending family.
 
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Measurement of a group in a trial, and the pending families that use it.
+/// Measurement of a group of configurations in a trial, with the pending families that use it.
 pub(crate) struct Job<'a> {
     study: &'a RecognitionStudy,
     /// Index of the first of the groups that are measured together.
@@ -36,7 +36,7 @@ impl RecognitionStudy {
             (part, array, Reverse(n_frames))
         });
         if self.has_axes() {
-            // A progress line for each combination would be too many.
+            // Progress lines for every combination would be too many.
             let n_items =
                 |(_, jobs): &(usize, Vec<Job>)| 1 + jobs.iter().flat_map(Job::items).count();
             let n_items: usize = jobs.iter().map(n_items).sum();
@@ -63,7 +63,7 @@ impl RecognitionStudy {
         self.parts().len() > 1
     }
 
-    /// Returns the sets of touches that pending items need, with the measurements of each.
+    /// Returns the sets of touches that pending work items need, each with the measurements to compute from it.
     fn jobs_left(&self, left: &PendingItems<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
         let touches = 0..self.touch_sets.len();
         let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
@@ -73,8 +73,8 @@ impl RecognitionStudy {
         jobs.filter(is_left).collect()
     }
 
-    /// Returns the measurements of a set of touches for pending families. A group whose smaller sets of measurements are prefixes is measured once for all
-    /// configurations; otherwise each m is measured separately.
+    /// Returns the measurements of a set of touches that pending families need. A group whose smaller sets of measurements are prefixes is measured once for
+    /// all configurations; otherwise, each m is measured separately.
     fn jobs(&self, left: &PendingItems<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
@@ -109,7 +109,7 @@ impl RecognitionStudy {
         jobs
     }
 
-    /// Computes the pending work items of a set of training touches, grouped by their test touches.
+    /// Computes the pending work items of one set of training touches, grouped by their test touches.
     fn on_touches(
         &self,
         left: &PendingItems<RecognitionRows>,
@@ -139,8 +139,8 @@ impl RecognitionStudy {
         Ok(())
     }
 
-    /// Simulates touches for jobs, and finishes their work item unless `told` is set. Returns `None` if they cannot be simulated; the jobs are then recorded
-    /// as failed.
+    /// Simulates a set of touches for the given jobs, and finishes the work item of the touches on the first call for this set. Returns `None` if the touches
+    /// cannot be simulated; the jobs are then recorded as failed.
     fn make(
         &self,
         left: &PendingItems<RecognitionRows>,
@@ -195,7 +195,7 @@ impl Job<'_> {
         families.map(|&family| self.study.family_item(self.trial, family))
     }
 
-    /// Measures the group, then evaluates its families.
+    /// Measures the group, then evaluates its pending families.
     fn run(&self, left: &PendingItems<RecognitionRows>, frames: [&Frames; 2]) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
         let measured = left.prepare(&need, || self.measure(frames))?;
@@ -206,7 +206,7 @@ impl Job<'_> {
         let families = self.families.par_iter().zip(&need).enumerate();
         families.try_for_each(|(place, (&family, &item))| {
             left.finish(item, || {
-                // The row of the measured touches is reported once.
+                // The row of the measured touches is recorded only once.
                 let touches = (place == 0).then(|| TouchRow {
                     n_touches: self.study.group(self.group).0.sweep.labels.len(),
                     cpu_s,

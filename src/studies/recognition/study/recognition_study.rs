@@ -1,4 +1,4 @@
-//! A recognition study: its work items, and the tables of their results.
+//! Recognition study with its work items and result tables.
 
 use crate::engine::axes::AxisValues;
 use crate::engine::progress::Progress;
@@ -27,14 +27,14 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A combination of the values in `[axes]`: the values, the plan, the training touches and the test touches.
+/// Combination of the values in `[axes]`: the values, the plan, the training touches and the test touches.
 pub type StudyVariant = (AxisValues, Plan, [Arc<dyn TouchSet + Send>; 2]);
 
-/// A recognition study with its list of work items.
+/// Recognition study with its list of work items.
 pub struct RecognitionStudy {
-    /// One part for each combination of the values in `[axes]`; a single part if there are no axes.
+    /// Parts of the study, one for each combination of the values in `[axes]`; a single part if there are no axes.
     parts: Vec<StudyPart>,
-    /// Size of the study.
+    /// Size of the study: work items, memory and disk space.
     pub(crate) scale: Scale,
     /// Sample touches for pictures, computed on first use.
     samples: Shared<Samples>,
@@ -46,38 +46,38 @@ pub struct RecognitionStudy {
     pub(crate) families: Vec<Family>,
 }
 
-/// Set of touches of an array, with a number of frames per touch.
+/// Set of touches on an array, with a fixed number of frames per touch.
 pub(crate) struct Touches {
-    /// First group that reads the touches.
+    /// Index of the first group of configurations that reads the touches.
     pub group: usize,
-    /// Whether that group reads them only as test touches.
+    /// Whether this group reads them only as test touches.
     is_tested: bool,
-    /// Hash of all inputs of the touches except the files of objects.
+    /// Hash of all inputs of the touches, except the files of objects.
     pub content: String,
 }
 
-/// A group of configurations within a part.
+/// Group of configurations and its place in the study.
 pub(crate) struct PlacedGroup {
-    /// Index of the part.
+    /// Index of the part that contains the group.
     pub part: usize,
-    /// Index of the group in the part's sweep.
+    /// Index of the group in the sweep of its part.
     place: usize,
-    /// Index of its training touches.
+    /// Index of the group's training touches in [`RecognitionStudy::touch_sets`].
     pub touches: usize,
-    /// Index of its test touches; equal to `touches` unless the study has `[test]`.
+    /// Index of the group's test touches; equal to `touches` unless the study has `[test]`.
     pub tested: usize,
     /// Index of the first group with equal measurements.
     pub measured_as: usize,
 }
 
-/// A [family](Group::families) of configurations: its group and the range of its configurations.
+/// [Family](Group::families) of configurations: its group and its range of configurations.
 pub(crate) struct Family {
     pub group: usize,
     pub configurations: Range<usize>,
 }
 
 impl RecognitionStudy {
-    /// Creates a study from a plan and its touches.
+    /// Creates a study from one plan and its touches.
     ///
     /// # Errors
     /// If there are too few objects or touches, or a sample object does not exist.
@@ -124,7 +124,7 @@ impl RecognitionStudy {
         let configurations: Vec<&Configuration> = study.all_cells().collect();
         let report = &study.first().plan.spec.report;
         check_published(&report.published, &configurations)?;
-        // Confusion matrices show the chance level of each configuration.
+        // Confusion matrices give the chance level of each configuration.
         let n_objects = |part: &StudyPart| part.touched.class_names().len();
         let n_first = n_objects(study.first());
         let differ = study.parts.iter().any(|part| n_objects(part) != n_first);
@@ -136,7 +136,7 @@ impl RecognitionStudy {
         Ok(study)
     }
 
-    /// Lists groups and families, and finds groups with equal touches and measurements.
+    /// Lists all groups and families, and finds groups with equal touches and measurements.
     fn place_groups(&mut self) {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
@@ -184,17 +184,17 @@ impl RecognitionStudy {
         }
     }
 
-    /// Returns the first combination of the values in `[axes]`.
+    /// Returns the part of the first combination of the values in `[axes]`.
     pub fn first(&self) -> &StudyPart {
         &self.parts[0]
     }
 
-    /// Returns all combinations of the values in `[axes]`.
+    /// Returns the parts of all combinations of the values in `[axes]`.
     pub fn parts(&self) -> &[StudyPart] {
         &self.parts
     }
 
-    /// Returns the part that contains a configuration, given by its number; the last part if no part contains it.
+    /// Returns the part that contains the configuration with this number; the last part if no part contains it.
     pub fn part_of(&self, configuration: usize) -> &StudyPart {
         let has_it = |part: &&StudyPart| {
             part.sweep
@@ -207,7 +207,7 @@ impl RecognitionStudy {
             .unwrap_or_else(|| self.first())
     }
 
-    /// Returns all configurations, in the order of their numbers.
+    /// Returns all configurations in the order of their numbers.
     pub fn all_cells(&self) -> impl Iterator<Item = &Configuration> {
         self.parts
             .iter()
@@ -229,7 +229,7 @@ impl RecognitionStudy {
         arrays.collect::<HashSet<_>>().len()
     }
 
-    /// Returns the SHA-256 of each object's content, by the object's name; if parts differ in an object, also by the values in `[axes]`.
+    /// Returns the SHA-256 hash of each object's content, by the object's name. If parts differ in an object, the key also contains the values in `[axes]`.
     ///
     /// # Errors
     /// If a file of an object cannot be read.
@@ -255,12 +255,12 @@ impl RecognitionStudy {
         Ok(all)
     }
 
-    /// Returns the number of trials of each configuration.
+    /// Returns the number of trials per configuration.
     pub(crate) fn n_trials(&self) -> usize {
         self.first().plan.spec.trials
     }
 
-    /// Returns a group and its part.
+    /// Returns the group with this number and its part.
     pub(crate) fn group(&self, number: usize) -> (&StudyPart, &Group) {
         let PlacedGroup { part, place, .. } = self.groups[number];
         let part = &self.parts[part];
@@ -287,14 +287,14 @@ impl RecognitionStudy {
         self.family_item(self.n_trials(), 0) + touches
     }
 
-    /// Returns the part and the array, by index, on which touches are simulated, and their number of frames.
+    /// Returns the index of the part and of the array on which a set of touches is simulated, and the number of frames per touch.
     pub(crate) fn made_on(&self, touches: usize) -> (usize, usize, usize) {
         let group = self.touch_sets[touches].group;
         let (_, Group { array, frames, .. }) = self.group(group);
         (self.groups[group].part, *array, *frames)
     }
 
-    /// Returns a set of touches with its array and its number of frames.
+    /// Returns a set of touches with its array and its number of frames per touch.
     pub(crate) fn on(&self, touches: usize) -> (&dyn TouchSet, &TaxelArray, usize) {
         let Touches {
             group, is_tested, ..
@@ -307,12 +307,12 @@ impl RecognitionStudy {
         (touched, &plan.arrays[group.array], group.frames)
     }
 
-    /// Returns the number of frames of a set of touches at the first values of the axes.
+    /// Returns the number of frames per touch of a set of touches, at the first values of the axes.
     pub(crate) fn first_frames(&self, touches: usize) -> usize {
         self.group(self.touch_sets[touches].group).0.plan.frames[0]
     }
 
-    /// Returns the computing times of simulating and measuring touches.
+    /// Returns the rows of `stages.csv`: the times of simulating and measuring touches.
     fn stages(&self, rows: &[TouchRow]) -> Vec<StageTime> {
         let mut stages = Vec::new();
         for on in 0..self.touch_sets.len() {
@@ -341,7 +341,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Checks that test touches correspond one-to-one to the study's touches.
+/// Checks that the test touches correspond one-to-one to the training touches.
 fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<()> {
     let (learned, shown) = (touched.classes(), tested.classes());
     if learned == shown {
@@ -362,7 +362,7 @@ fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<(
     ))
 }
 
-/// Number of hexadecimal digits of the hash of touches. With fewer digits, two sets of touches may collide.
+/// Number of hexadecimal digits of the hash of touches. If smaller, two sets of touches may collide.
 const DIGITS: usize = 24;
 
 impl RecognitionStudy {
@@ -374,7 +374,7 @@ impl RecognitionStudy {
         self.outcome(run_whole(self, progress)?)
     }
 
-    /// Returns the tables as typed rows.
+    /// Returns all result tables as typed rows.
     ///
     /// # Errors
     /// If [`Study::tables`](crate::studies::study::Study::tables) fails.
@@ -407,7 +407,7 @@ impl RecognitionStudy {
         Ok(tables)
     }
 
-    /// Returns sample touches of the first combination of the values in `[axes]`.
+    /// Returns the sample touches of the first combination of the values in `[axes]`.
     pub(crate) fn samples(&self) -> Result<&Samples> {
         let first = self.first();
         let make = || first.touched.samples(&first.plan, &first.sweep.groups);
@@ -415,7 +415,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Returns the name of a stage, with the number of frames per touch if that is not one.
+/// Returns the name of a stage, followed by the number of frames per touch if it is not one.
 pub(crate) fn in_frames(stage: &str, n_frames: usize) -> String {
     match n_frames {
         1 => stage.to_owned(),

@@ -3,33 +3,33 @@
 use crate::studies::recognition::training::trial::Evaluation;
 use serde::{Deserialize, Serialize};
 
-/// Results of work items: configurations in trials, and sets of touches that were simulated or measured.
+/// Results of work items: of configurations in trials, and of sets of touches that were simulated or measured.
 pub type RecognitionRows = (Vec<CellRow>, Vec<TouchRow>);
 
-/// Result of a configuration in a trial.
+/// Result of one configuration in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellRow {
-    /// Index of its group and its index within the group, in the current study.
+    /// Index of the configuration's group and its index within the group, in the current study.
     #[serde(skip)]
     pub at: (usize, usize),
     /// Scores and times of the configuration.
     pub evaluation: Evaluation,
 }
 
-/// Set of touches of an array, with a number of frames per touch.
+/// Result of simulating or measuring a set of touches on an array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TouchRow {
     /// Index of the set of touches in the current study.
     #[serde(skip)]
     pub on: usize,
-    /// Whether the touches were simulated; otherwise they were measured.
+    /// Whether the row describes simulation; otherwise it describes measurement.
     pub is_made: bool,
     /// Number of touches.
     pub n_touches: usize,
-    /// Number of simulated touches that touched nothing.
+    /// Number of simulated touches that deflected no taxel.
     pub n_missed: usize,
     /// Number of simulated touches with at least one taxel at its stroke.
     pub n_saturated: usize,
-    /// Processor time, s.
+    /// Processor time summed over threads, s.
     pub cpu_s: f64,
 }

@@ -1,4 +1,4 @@
-//! Memory of a recognition study: frames, measurements, and the rows and matrices of training.
+//! Memory estimate of a recognition study: frames, measurements, and the rows and matrices of training.
 
 use crate::engine::work_items::scale::Scale;
 use crate::sensing::N_COMPONENTS;
@@ -13,16 +13,16 @@ use crate::studies::recognition::training::evaluation_inputs::solver_memory;
 use bubbletouch_sim::frame_coding::most_bytes;
 use bubbletouch_svm::{Multiclass, Solver};
 
-/// Memory of a configuration in a trial, bytes: its rows in all tables.
+/// Memory of the result rows of a configuration in a trial, bytes.
 const CELL_BYTES: f64 = 4e3;
-/// Memory of training rows, bytes per number: original, scaled, sorted by class, and as support vectors.
+/// Memory per number of the training rows, bytes: original, scaled, sorted by class, and as support vectors.
 const TRAINING_BYTES: f64 = 32.0;
-/// Memory of test rows, bytes per number: original, scaled, and in the format of the kernel.
+/// Memory per number of the test rows, bytes: original, scaled, and in the format of the kernel.
 const TEST_BYTES: f64 = 20.0;
-/// Memory of a score and its contribution to fused decisions, bytes.
+/// Memory of a score and of its contribution to decisions on several touches, bytes.
 const SCORE_BYTES: f64 = 16.0;
 
-/// Returns the size of a study.
+/// Returns the size of a recognition study: work items, memory and disk space.
 pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     type Placed<'a> = (&'a StudyPart, &'a Group);
     let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
@@ -64,12 +64,12 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         },
         n_configurations: study.n_configurations(),
         bytes: frames + CELL_BYTES * (study.n_configurations() * first.plan.spec.trials) as f64,
-        // A thread that waits for others starts another group.
+        // A thread that waits for other threads starts another group.
         item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
     }
 }
 
-/// Returns the memory of the frames used for fitting (n values each, original and centred) and of the fitted estimators, bytes.
+/// Returns the memory of learned ensembles and estimators, bytes: the frames for fitting (n values each, original and centred) and the fitted estimators.
 fn learned_bytes(group: &Group, n: f64) -> f64 {
     let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
     let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
@@ -79,8 +79,8 @@ fn learned_bytes(group: &Group, n: f64) -> f64 {
     }
 }
 
-/// Returns the memory of a family, bytes: its training and test rows, their scores, and the kernel values of its solver. `n_read` is the number of readings of
-/// one touch per class.
+/// Returns the memory of a family of configurations, bytes: its training and test rows, their scores, and the kernel values of its solver. `n_read` is the
+/// number of readings of one touch per class.
 fn family_bytes(
     plan: &Plan,
     configuration: &Configuration,
@@ -90,7 +90,7 @@ fn family_bytes(
     let learned = &plan.spec.recognition;
     let fuses = learned.touches_per_decision.values().iter().any(|&k| k > 1);
     let n_scores = match (configuration.classifier.has_c(), learned.multiclass) {
-        // Without fusion, test rows are processed in blocks.
+        // Without decisions on several touches, test rows are processed in blocks.
         (true, _) if !fuses => 0,
         (true, Multiclass::OneVsOne) => n_classes * (n_classes - 1) / 2,
         _ => n_classes,
@@ -103,7 +103,7 @@ fn family_bytes(
     let kernel_values = match (learned.solver, learned.multiclass) {
         _ if !is_kernel_svm => 0.0,
         (Solver::CoordinateDescent, _) => 0.0,
-        // The solver stores at most as many values as its limit allows.
+        // The solver keeps at most as many values as its limit allows.
         _ => of_all.min(solver_memory(learned.solver_memory_gib) as f64),
     };
     // Inner folds exist beside the fit on all rows; the model of expected decisions has one table per object and test pose.

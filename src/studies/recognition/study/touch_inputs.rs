@@ -1,4 +1,4 @@
-//! Inputs of the touches of a study.
+//! Inputs that determine the touches of a study.
 
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::studies::recognition::plan::study_plan::Plan;
@@ -6,7 +6,7 @@ use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::world::Placement;
 
-/// Inputs from which a plan's touches are drawn, apart from the array and the files of its objects. Plans with equal inputs share their touches.
+/// Inputs that determine a plan's touches, apart from the array and the files of its objects. Plans with equal inputs share their touches.
 #[derive(Debug)]
 pub(crate) struct TouchInputs<'a> {
     pub(crate) objects: &'a ObjectsSpec,
@@ -17,7 +17,7 @@ pub(crate) struct TouchInputs<'a> {
 }
 
 impl<'a> TouchInputs<'a> {
-    /// Returns the inputs of a plan's touches.
+    /// Returns the inputs that determine a plan's touches.
     pub fn new(plan: &'a Plan) -> Self {
         let spec = &plan.spec;
         Self {
@@ -34,8 +34,8 @@ impl<'a> TouchInputs<'a> {
         format!("{self:?}")
     }
 
-    /// Returns a text that identifies the touches. Pitch and size of the arrays are excluded, because they only affect which objects are rejected or noted; an
-    /// axis of arrays may therefore be extended.
+    /// Returns a text that identifies the touches. The text does not contain the pitch and size of the arrays, because they only affect which objects are
+    /// rejected or noted. An axis of arrays may therefore be extended.
     pub fn content(&self) -> String {
         let objects = ObjectsSpec {
             pitch: None,

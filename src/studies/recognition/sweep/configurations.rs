@@ -1,4 +1,4 @@
-//! The configurations of a study, grouped by the computations that they share.
+//! Configurations of a study, grouped by the computations that they share.
 //!
 //! ```text
 //! array × frames per touch ── touches simulated once
@@ -29,7 +29,7 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::sync::Arc;
 
-/// Nested loops; the last variable changes fastest.
+/// Nested loops over several variables; the last variable changes fastest.
 macro_rules! nested {
     ($name:pat in $values:expr; $($rest:tt)*) => {
         for $name in $values {
@@ -48,27 +48,27 @@ pub(crate) use nested;
 pub struct Sweep {
     /// Groups of configurations, ordered by array.
     pub groups: Vec<Group>,
-    /// Split of all touches in each trial.
+    /// Split of all touches for each trial.
     pub splits: Vec<Hashed<Split>>,
-    /// For each trial, the first trial with the same split; the trial's own number if there is no earlier one.
+    /// Number of the first trial with the same split, for each trial; the trial's own number if there is no earlier one.
     pub first_equal: Vec<usize>,
-    /// Object number of every touch.
+    /// Object label of every touch.
     pub labels: Hashed<Array1<usize>>,
-    /// Group number of every touch, if the split does not divide groups.
+    /// Group number of every touch; `None` if the split may divide groups.
     pub group_keys: Option<Hashed<Array1<usize>>>,
-    /// Pose of every touch, if the study chooses touches by their poses.
+    /// Pose of every touch; `None` unless the study chooses touches by their poses.
     pub poses: Option<Hashed<Poses>>,
 }
 
-/// Plan, touches and configurations of one combination of the values in `[axes]`.
+/// Part of a study: plan, touches and configurations of one combination of the values in `[axes]`.
 pub struct StudyPart {
-    /// Plan of the combination.
+    /// Plan of this combination of values.
     pub plan: Plan,
     /// Training touches; shared by parts with equal touches.
     pub touched: Arc<dyn TouchSet + Send>,
     /// Test touches, numbered like the training touches; the training touches themselves unless the study has `[test]`.
     pub tested: Arc<dyn TouchSet + Send>,
-    /// Splits and configurations.
+    /// Splits and configurations of this combination of values.
     pub sweep: Sweep,
 }
 
@@ -135,7 +135,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// Assigns the configurations to a combination of the values in `[axes]` and numbers them from `first`.
+    /// Assigns the configurations to a combination of the values in `[axes]`, and numbers them from `first`.
     pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
         for configuration in self
             .groups
@@ -147,7 +147,7 @@ impl Sweep {
         }
     }
 
-    /// Returns all configurations, in order.
+    /// Returns all configurations, in sweep order.
     pub fn configurations(&self) -> impl Iterator<Item = &Configuration> {
         self.groups.iter().flat_map(|group| &group.configurations)
     }
@@ -160,7 +160,7 @@ impl Sweep {
             .sum()
     }
 
-    /// Checks that a learned ensemble has more frames of training touches than measurements. The frames minus their mean must span that many directions.
+    /// Checks that a learned ensemble has enough frames of training touches: the frames minus their mean must span more directions than there are measurements.
     fn check_learned(&self, plan: &Plan, group: &Group) -> Result<()> {
         if !group.ensemble.is_learned() {
             return Ok(());
@@ -202,7 +202,7 @@ impl Sweep {
             true => learned.penalties(),
             false => vec![None],
         };
-        // Configurations are counted from the last group; counting all of them would take quadratic time.
+        // The last group gives the number of configurations; counting all of them would take quadratic time.
         let last = self
             .groups
             .last()

@@ -1,4 +1,4 @@
-//! The splits and configurations of a study.
+//! Splits and configurations of a study.
 
 pub mod configurations;
 pub(crate) mod learned_frames;

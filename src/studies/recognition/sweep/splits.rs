@@ -1,4 +1,4 @@
-//! Splits into training and test touches for each trial, and the check that each side has enough touches.
+//! Splits into training and test touches for each trial, and checks that both sides have enough touches.
 
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
@@ -13,7 +13,7 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::collections::{HashMap, HashSet};
 
-/// Draws the split of all touches in a trial. The split is given by the data, or drawn by poses, by groups (`keys`), or by single touches.
+/// Draws the split of all touches for a trial. The split is given by the data, or drawn by poses, by groups (`keys`), or by single touches.
 ///
 /// # Errors
 /// If the split requires listed values but a pose is drawn, or if a class has no training or test rows.
@@ -30,7 +30,7 @@ pub fn draw_split(
     let n_folds = recognition.folds.unwrap_or(1);
     let seed = Seed::new(plan.spec.seed).named("split");
     if let Some(sides) = given_sides {
-        // A given split is the same in all trials; subsets of the training touches are drawn anew in each.
+        // A given split is equal in all trials; subsets of the training touches are drawn anew in each trial.
         let drawn = recognition.train_touches.as_ref().map_or(0, |_| trial);
         return Ok(given_hold_out(labels, sides, &seed.numbered(drawn as u64))?);
     }
@@ -55,7 +55,7 @@ pub fn draw_split(
     Ok(folds.swap_remove(trial % n_folds))
 }
 
-/// Returns, for each split, the index of the first split with the same training and test touches in any order.
+/// Returns the index of the first split with the same training and test touches in any order, for each split.
 pub fn first_equal(splits: &[Split]) -> Vec<usize> {
     let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
     let trained = |place: usize| splits[place].train.iter().collect::<HashSet<_>>();
@@ -74,8 +74,8 @@ pub fn first_equal(splits: &[Split]) -> Vec<usize> {
     first
 }
 
-/// Returns the values of the training-touches axis; by default the largest number that every object has in every training split. Checks that every object has
-/// enough touches in every trial: test touches for at least one group, training touches for each inner fold and for each imbalance.
+/// Returns the values of the axis `train_touches`; by default, the maximum number that every object has in every training split. Checks that every object has
+/// enough touches in every trial: test touches for at least one group, and training touches for each inner fold and each imbalance.
 ///
 /// # Errors
 /// If a split has fewer training touches of an object than the study requires.

@@ -1,4 +1,4 @@
-//! Tables of results, computed from the scores of trials.
+//! Result tables, computed from the scores of trials.
 
 pub mod published;
 pub mod summary;

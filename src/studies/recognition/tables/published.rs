@@ -1,4 +1,4 @@
-//! Published accuracies beside ours: the configurations to which a claim applies, and the most accurate of them.
+//! Comparison of published accuracies with ours: finds the most accurate configuration to which each claim applies.
 
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::number;
@@ -9,7 +9,7 @@ use crate::studies::recognition::spec::study::PublishedSpec;
 use crate::table::{Table, Value, column_name};
 use std::fmt::Display;
 
-/// Checks that every claim is a valid accuracy and applies to at least one configuration.
+/// Checks that every published claim has a valid accuracy and applies to at least one configuration.
 ///
 /// # Errors
 /// If an accuracy is not between 0 and 1, a key is not a column of [`Configuration`], no configuration has a value, or no configuration has all values of a claim.
@@ -61,7 +61,7 @@ fn check(claim: &PublishedSpec, configurations: &Table) -> Result<()> {
     }
 }
 
-/// Returns a value as it is written in a study.
+/// Converts a TOML value of a study to a table value.
 fn setting(written: &toml::Value) -> Value {
     match (number(written), written.as_str()) {
         (Some(number), _) => Value::Number(number),
@@ -75,7 +75,7 @@ fn is_about(claim: &PublishedSpec, configurations: &Table, row: usize) -> bool {
     keys.all(|(key, wanted)| configurations.has_setting(column_name(key), row, &setting(wanted)))
 }
 
-/// Returns each claim beside the most accurate configuration to which it applies (in a tie the first), once for each condition of these configurations.
+/// Returns each claim with the most accurate configuration to which it applies (the first in a tie), once for each condition of the matching configurations.
 ///
 /// # Errors
 /// If a configuration cannot be written as a row of a table.
@@ -121,7 +121,7 @@ mod tests {
         toml::from_str(&text).unwrap()
     }
 
-    /// Two classifiers × two ratios × noise of 0 or 10 %; accuracies increase with the number of the configuration.
+    /// Returns a summary of two classifiers × two ratios × noise of 0 or 10 %; accuracies increase with the number of the configuration.
     fn summary() -> Vec<(Configuration, CellScore)> {
         let mut rows = Vec::new();
         for noise_std in [0.0, 0.1] {

@@ -1,4 +1,4 @@
-//! Aggregation of trials to configurations: means, intervals, and comparisons with the best configuration.
+//! Summary of trials per configuration: means, intervals, and comparisons with the best configuration.
 
 use crate::error::Result;
 use crate::statistics::bootstrap::Bootstrap;
@@ -15,11 +15,11 @@ use crate::table::front;
 use bubbletouch_sim::statistics::interval::{Interval, RowTest};
 use std::collections::BTreeMap;
 
-/// Row of the accuracy table.
+/// Row of the table `accuracy.csv`.
 type Row = (Configuration, TrialScore);
 
-/// Returns one row per configuration from one row per configuration and trial; the trials of a configuration are adjacent. `groups` contains the tested groups
-/// of each row, if there are any. `n_folds` returns the number of folds of a configuration, 1 without folds.
+/// Returns one row per configuration, given one row per configuration and trial; the trials of a configuration are adjacent. `groups` contains the tested
+/// groups of each row, if there are any. `n_folds` returns the number of folds of a configuration, 1 without folds.
 ///
 /// # Errors
 /// If the trials of a configuration have no rows.
@@ -43,7 +43,7 @@ pub fn summarise(
         .collect()
 }
 
-/// Returns the group counts of trials that hold out groups, for statistics over groups.
+/// Returns the group counts of trials that hold out whole groups, for statistics over groups.
 pub fn grouped_tests<'a>(
     trials: impl Iterator<Item = (&'a TrialScore, &'a Vec<GroupCount>)>,
 ) -> Vec<GroupedTest<'a>> {
@@ -56,7 +56,7 @@ pub fn grouped_tests<'a>(
     tested.collect()
 }
 
-/// Returns the joint score of the trials of a configuration.
+/// Returns the combined score of all trials of a configuration.
 fn score(
     trials: &[&TrialScore],
     (groups, n_folds): (&[Vec<GroupCount>], usize),
@@ -111,7 +111,7 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
     trials.iter().map(|(_, t)| value(t)).sum::<f64>() / trials.len() as f64
 }
 
-/// Compares every configuration with the one of the highest mean accuracy in its condition (in a tie the first), paired by trial.
+/// Compares every configuration with the configuration of the highest mean accuracy in its condition (the first in a tie), paired by trial.
 ///
 /// # Errors
 /// If a trial has no training or test rows.
@@ -171,14 +171,14 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     })
 }
 
-/// Largest number of pairs in the list of confusions.
+/// Maximum number of pairs in the list of confusions.
 const MAX_CONFUSED: usize = 15;
 
-/// Returns the pairs of objects that a configuration confuses most often, by the fraction of the touched object's test rows; in a tie the first in the table.
-/// `fused` is the number of the configuration with the most touches fused, and this number of touches.
+/// Returns the pairs of objects that a configuration confuses most often, by the fraction of the touched object's test rows; pairs with equal fractions keep
+/// the order of the table. `fused` is the number of the configuration with the most touches per decision, and this number of touches.
 ///
 /// # Errors
-/// None for counts of a table.
+/// Returns no error for the counts of a table.
 pub fn most_confused(
     confusion: &[Confusion],
     configuration: usize,
@@ -220,7 +220,7 @@ pub fn most_confused(
     Ok(pairs)
 }
 
-/// Returns the number of test rows of each object in a configuration.
+/// Returns the number of test rows of each object in one configuration.
 fn rows_of_objects(confusion: &[Confusion], configuration: usize) -> BTreeMap<&str, usize> {
     let mut n_test = BTreeMap::new();
     for row in confusion
@@ -232,7 +232,7 @@ fn rows_of_objects(confusion: &[Confusion], configuration: usize) -> BTreeMap<&s
     n_test
 }
 
-/// Returns the accuracy and the costs of every configuration, and marks the Pareto fronts; both tables have the same rows.
+/// Returns the accuracy and the costs of every configuration, and marks the Pareto fronts. Both tables have the same rows.
 ///
 /// # Errors
 /// If a configuration cannot be written as a row of a table.
@@ -269,7 +269,7 @@ pub fn pareto(
     Ok(table)
 }
 
-/// Marks each configuration that no other of the same condition dominates.
+/// Marks each configuration that no other configuration of the same condition dominates.
 fn mark_fronts(table: &mut [(Configuration, Pareto)]) -> Result<()> {
     for alike in by_condition(table.iter().map(|(configuration, _)| configuration))? {
         let on_front = |cost: fn(&Pareto) -> f64| {

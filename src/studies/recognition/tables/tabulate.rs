@@ -1,4 +1,4 @@
-//! Assembly of the tables from finished configurations, ordered by configuration and trial.
+//! Assembly of the result tables from finished configurations, ordered by configuration and trial.
 
 use crate::error::Result;
 use crate::studies::recognition::rows::conditions::most_accurate;
@@ -12,7 +12,7 @@ use crate::studies::recognition::tables::variance_table::variances;
 use crate::studies::recognition::training::trial::Evaluation;
 use std::collections::BTreeMap;
 
-/// Fills all tables except the stages and the published accuracies. `name` returns the class of a label in a configuration. `n_folds` returns the number
+/// Fills all tables except the stages and the published accuracies. `name` returns the class name of a label in a configuration. `n_folds` returns the number
 /// of folds of a configuration, 1 without folds. `matrices` lists the configurations whose confusion matrix is stored.
 ///
 /// # Errors
@@ -56,7 +56,7 @@ pub fn tabulate(
     tables.summary = summarise(&tables.accuracy, &groups, n_folds)?;
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
-    // Confusions of single touches are more informative than those that remain after fusion.
+    // Confusions of single touches are more informative than those of decisions on several touches.
     let configurations = || {
         tables
             .summary
@@ -93,8 +93,8 @@ pub fn tabulate(
     Ok(())
 }
 
-/// Gives all rows the columns that any row has. If a combination of axes holds out no groups, each test row counts as a group. A split without an earlier
-/// equal split is its own first equal split.
+/// Gives all rows the optional columns that any row has. If a combination of axis values holds out no groups, each test row counts as a group. A split without
+/// an earlier equal split is its own first equal split.
 pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
     let has_groups = scores.iter().any(|score| score.n_groups.is_some());
     let has_repeats = scores.iter().any(|score| score.distinct_split.is_some());
@@ -109,7 +109,8 @@ pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
     }
 }
 
-/// Returns the configuration that differs only in the number of fused touches and has the largest, with this number; `None` if no configuration fuses more.
+/// Returns the configuration that differs only in its number of touches per decision and has the largest, with this number; `None` if no configuration has
+/// more.
 fn max_touches_per_decision<'a>(
     mut configurations: impl Iterator<Item = &'a Configuration> + Clone,
     of: usize,

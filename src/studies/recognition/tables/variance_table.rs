@@ -1,4 +1,4 @@
-//! Decomposition of the variance of each configuration's accuracy into splits, projections, and the rest.
+//! Analysis of variance of each configuration's accuracy: splits, projections, and the rest.
 
 use crate::error::Result;
 use crate::statistics::p_status::CONFIDENCE;
@@ -7,7 +7,7 @@ use crate::statistics::variance::{Component, components};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{Source, TrialScore, Variance};
 
-/// Returns three rows for each configuration whose trials combine every split with every projection; no rows for other configurations.
+/// Returns the rows of `variance.csv`: three for each configuration whose trials combine every split with every projection, none for other configurations.
 ///
 /// # Errors
 /// If the scores of a configuration cannot be decomposed.

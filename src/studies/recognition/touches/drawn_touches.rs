@@ -1,4 +1,4 @@
-//! Touches of objects, drawn from a placement.
+//! Touches of objects, drawn from a placement (the distribution of touch poses).
 
 use crate::error::Result;
 use crate::objects::Object;
@@ -7,18 +7,18 @@ use crate::world::{Placement, RestPose, Touch, touches};
 use ndarray::Array1;
 use rayon::prelude::*;
 
-/// An object with its rest poses and its touches.
+/// Object with its resting poses and its touches.
 #[derive(Clone, Debug)]
 pub struct TouchedObject {
-    /// The touched object.
+    /// Object that is touched.
     pub object: Object,
-    /// Rest poses of the object; each touch contains the index of one.
+    /// Resting poses of the object; each touch contains the index of one.
     pub rests: Vec<RestPose>,
-    /// Touches of the object.
+    /// Touches of the object in drawing order.
     pub touches: Vec<Touch>,
 }
 
-/// Draws the touches of every object.
+/// Draws the touches of every object from its own random stream.
 ///
 /// # Errors
 /// If [`touches`](crate::world::touches()) fails.
@@ -46,7 +46,7 @@ pub fn touch_labels(classes: &[(&str, usize)]) -> Array1<usize> {
     labels.collect()
 }
 
-/// Returns the seed from which an object's touches are drawn.
+/// Returns the seed of the random stream from which an object's touches are drawn.
 pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
     seed.named("touches").named(&object.name)
 }

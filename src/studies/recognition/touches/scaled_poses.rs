@@ -1,11 +1,11 @@
-//! Poses of touches along the axes of a placement that have more than one value.
+//! Poses of touches along those placement axes that have more than one value.
 
 use crate::learning::evaluation::next_touch::Poses;
 use crate::world::{Placement, Spread, Touch, TouchAxis};
 use ndarray::Array2;
 use std::f64::consts::TAU;
 
-/// Returns the poses of touches along the axes of a placement that have more than one value.
+/// Returns the poses of touches along those placement axes that have more than one value.
 pub fn scaled_poses(placement: &Placement, touches: &[&Touch]) -> Poses {
     let spreads = placement.spreads().into_iter();
     let ranges = spreads.map(|(axis, spread)| (axis, range(spread)));

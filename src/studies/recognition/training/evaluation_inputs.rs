@@ -1,6 +1,6 @@
-//! Inputs of the evaluation of a family of configurations in a trial, in addition to the measurements.
+//! All inputs that determine the evaluation of a family of configurations in a trial, apart from the measurements.
 //!
-//! [`Trial::evaluate`](crate::studies::recognition::training::trial::Trial::evaluate) takes these inputs and no plan, so it cannot depend on any other value
+//! [`Trial::evaluate`](crate::studies::recognition::training::trial::Trial::evaluate) receives these inputs and no plan, so it cannot depend on any other value
 //! of a study. The name of a work item is a hash of the `Debug` form of these inputs and of the [inputs of its
 //! measurements](crate::studies::recognition::measurements::measurement_inputs). A new field therefore changes the name.
 
@@ -24,72 +24,72 @@ use bubbletouch_svm::kernel::Gamma;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
 
-/// Number of hexadecimal digits of a hash in a name. With fewer digits, the names of two work items may collide.
+/// Number of hexadecimal digits of a hash in a work item's name. If smaller, the names of two work items may collide.
 const DIGITS: usize = 24;
 
-/// Inputs that the families of a trial share.
+/// Inputs that all families of a trial share.
 #[derive(Clone, Copy, Debug)]
 pub struct TrialInputs<'a> {
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Number of the trial.
+    /// Number of the trial, from 0.
     pub number: usize,
-    /// Numbers of the split and the projection, if each split is combined with several projections.
+    /// Numbers of the split and of the projection, if each split is combined with several projections.
     pub crossed: Option<(usize, usize)>,
-    /// The split of all touches.
+    /// Split of all touches.
     pub split: &'a Hashed<Split>,
     /// Number of the first split with the same touches; `None` if this split is the first.
     pub distinct_split: Option<usize>,
-    /// Number of the block of poses that the trial tests; only for a split by blocks.
+    /// Number of the block of poses that the trial tests; `None` unless the split is by blocks.
     pub tested_block: Option<usize>,
-    /// Object number of every touch.
+    /// Object label of every touch.
     pub labels: &'a Hashed<Array1<usize>>,
-    /// Group number of every touch, if the split does not divide groups.
+    /// Group number of every touch; `None` if the split may divide groups.
     pub group_keys: Option<&'a Hashed<Array1<usize>>>,
 }
 
-/// Inputs that the trials of a family share.
+/// Inputs that all trials of a family share.
 #[derive(Clone, Debug)]
 pub struct FamilyInputs<'a> {
-    /// Inputs of the feature rows.
+    /// Inputs that determine the feature rows.
     pub rows: RowInputs,
-    /// Largest number of training touches per object; `None`: all training touches of the split.
+    /// Maximum number of training touches per object; `None` for all training touches of the split.
     pub train_touches: Option<usize>,
-    /// Fraction of training touches with another object's label.
+    /// Fraction of training touches that are labelled as another object, 0 to 1.
     pub mislabelled_fraction: Option<f64>,
-    /// Ratio of the training touches of the most frequent to the least frequent object.
+    /// Ratio of the training touches of the most frequent object to those of the least frequent.
     pub class_imbalance: Option<f64>,
-    /// Classifier, with the rules by which its C and γ are chosen.
+    /// Classifier, with the candidates from which its C and γ are chosen.
     pub training: TrainingInputs,
-    /// Configurations, in order; configurations with equal C are adjacent.
+    /// Settings of the family's configurations, in order; configurations with equal C are adjacent.
     pub decisions: Vec<Decision>,
-    /// Pose of every touch, if a configuration chooses touches by their poses.
+    /// Pose of every touch; `None` unless a configuration chooses touches by their poses.
     pub poses: Option<&'a Hashed<Poses>>,
 }
 
-/// Inputs of the training of a classifier. Parameters that the classifier does not use have their default values.
+/// Inputs that determine the training of a classifier. Parameters that the classifier does not use have their default values.
 #[derive(Clone, Debug)]
 pub struct TrainingInputs {
-    /// Classifier; its C is set by each [`Decision`].
+    /// Classifier and its parameters; each [`Decision`] sets its C.
     pub classifier: Classifier,
-    /// Candidate values of C, if C is chosen.
+    /// Candidate values of C; `None` if C is given.
     pub c_grid: Option<Vec<f64>>,
-    /// Candidate values of γ as multiples of 'scale', if γ is chosen.
+    /// Candidate values of γ as multiples of 'scale'; `None` if γ is given.
     pub gamma_grid: Option<Vec<f64>>,
-    /// Largest number of training touches per object for a choice; `None`: all.
+    /// Maximum number of training touches per object for the choice of C and γ; `None` for all.
     pub cv_touches: Option<usize>,
-    /// Number of inner folds, if folds are needed.
+    /// Number of inner folds; `None` if no folds are needed.
     pub n_folds: Option<usize>,
 }
 
-/// Settings in which the configurations of a family differ.
+/// Settings that differ between the configurations of a family.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
-    /// C; `None` if C is chosen or the classifier has none.
+    /// Penalty C; `None` if C is chosen or the classifier has no C.
     pub c: Option<f64>,
-    /// Number of test touches that are fused into one decision.
+    /// Number of test touches that are combined into one decision.
     pub touches_per_decision: usize,
-    /// Policy that chooses the touches after the first.
+    /// Policy that chooses the touches of a decision after the first one.
     pub next_touch: NextTouch,
 }
 
@@ -100,16 +100,16 @@ impl TrialInputs<'_> {
         format!("trial {number} {}", short_hash(format!("{self:?}"), DIGITS))
     }
 
-    /// Returns a named random stream of the trial.
+    /// Returns the random stream of the trial with this name.
     pub fn stream(&self, name: &str) -> Seed {
         let seed = Seed::new(self.seed).named(name);
         seed.numbered(self.number as u64)
     }
 
-    /// Returns the split of a family, reduced to its number of training touches per object and to its class imbalance.
+    /// Returns the split of a family, reduced to its number of training touches per object and its class imbalance.
     ///
     /// # Errors
-    /// If an object is left without training touches.
+    /// If an object has no training touches after the reduction.
     pub fn split(&self, family: &FamilyInputs) -> Result<Split> {
         let labels = self.labels.view();
         let split = match family.train_touches {
@@ -122,7 +122,7 @@ impl TrialInputs<'_> {
         }
     }
 
-    /// Returns the training labels of all touches; a fraction of the split's training touches has another object's label.
+    /// Returns the training labels of all touches, after assigning another object's label to a fraction of the training touches.
     ///
     /// # Errors
     /// If the fraction is not between 0 and 1.
@@ -138,7 +138,7 @@ impl TrialInputs<'_> {
         Ok(labels)
     }
 
-    /// Returns the group of each test touch, if whole groups are held out.
+    /// Returns the group of each test touch; `None` unless whole groups are held out.
     pub fn test_groups(&self, test: &[usize]) -> Option<Vec<usize>> {
         match (self.tested_block, self.group_keys) {
             (Some(block), _) => Some(vec![block; test.len()]),
@@ -154,7 +154,7 @@ impl TrialInputs<'_> {
 }
 
 impl<'a> FamilyInputs<'a> {
-    /// Returns the inputs of a [family](Group::families) of at least one configuration.
+    /// Returns the inputs of a [family](Group::families) that has at least one configuration.
     pub fn new(plan: &Plan, sweep: &'a Sweep, family: &[Configuration]) -> Self {
         let recognition = &plan.spec.recognition;
         let decisions = family.iter().map(|configuration| Decision {
@@ -182,14 +182,14 @@ impl<'a> FamilyInputs<'a> {
         }
     }
 
-    /// Returns the decisions grouped by equal C; each group shares one fit.
+    /// Returns the settings grouped by equal C; each group shares one fit.
     pub fn fits(&self) -> impl Iterator<Item = &[Decision]> {
         self.decisions.chunk_by(|a, b| a.c == b.c)
     }
 }
 
 impl Decision {
-    /// Returns whether the next touch is chosen using decisions on training touches.
+    /// Returns whether a policy for the next touch uses decisions on training touches.
     pub fn is_informed(&self) -> bool {
         self.next_touch == NextTouch::MostInformative
     }
@@ -244,8 +244,7 @@ impl TrainingInputs {
     }
 }
 
-/// Returns the name of a [family](Group::families); different inputs give different names. The measurements in the name are those that the family would have
-/// alone.
+/// Returns the name of a [family](Group::families); different inputs give different names. The name contains the measurements that the family alone would need.
 pub fn family_name(
     plan: &Plan,
     (group, touches): (&Group, &str),
@@ -258,10 +257,10 @@ pub fn family_name(
 }
 
 impl Sweep {
-    /// Returns the inputs that the families of a trial share.
+    /// Returns the inputs that all families of the trial with this number share.
     ///
     /// # Errors
-    /// If the study has fewer trials.
+    /// If the study has no trial with this number.
     pub fn trial(&self, plan: &Plan, number: usize) -> Result<TrialInputs<'_>> {
         let Some(split) = self.splits.get(number) else {
             let last = self.splits.len() - 1;
@@ -285,7 +284,7 @@ impl Sweep {
     }
 }
 
-/// Returns the memory limit for the kernel values of a solver, bytes.
+/// Returns the memory limit for a solver's kernel values, converted from GiB to bytes; default 2 GiB.
 pub fn solver_memory(gib: Option<f64>) -> usize {
     gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
 }

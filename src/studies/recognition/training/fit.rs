@@ -1,4 +1,4 @@
-//! Training of a family of configurations: the same rows and features, one fit for each C.
+//! Training of a family of configurations on common features: one fit for each C.
 
 use crate::error::Result;
 use crate::learning::classifiers::classifier::{Classifier, Cost};
@@ -14,34 +14,34 @@ use ndarray::{Array1, Axis};
 use std::collections::HashMap;
 use std::time::Instant;
 
-/// Training rows of a family in one trial, with the settings of the training.
+/// Training rows of a family in one trial, and the training parameters.
 pub struct Training<'a> {
-    /// Classifier, with the rules by which its C and γ are chosen.
+    /// Classifier, with the candidates from which its C and γ are chosen.
     pub inputs: &'a TrainingInputs,
-    /// Training rows in drawing order, alternating between objects: first readings, further readings, tilted copies.
+    /// Training rows in drawing order, alternating between objects: first readings, then further readings, then tilted copies.
     pub data: Dataset,
-    /// Number of rows that are first readings; only these are used to choose C and γ.
+    /// Number of rows that are first readings; C and γ are chosen on these rows only.
     pub n_first: usize,
-    /// Group of each row, if the split does not divide groups.
+    /// Group of each row; `None` if the split may divide groups.
     pub group_keys: Option<Array1<usize>>,
-    /// Seed of the inner folds.
+    /// Seed of the random draw of inner folds.
     pub seed: Seed,
 }
 
 /// Trained classifier and its parameters.
 pub struct Fitted {
-    /// The trained classifier with its scaling.
+    /// Trained classifier, including its scaling.
     pub classifier: TrainedClassifier,
-    /// C, if the classifier has one.
+    /// Penalty C; `None` if the classifier has no C.
     pub c: Option<f64>,
-    /// γ, if the classifier has one.
+    /// Kernel parameter γ; `None` if the classifier has no γ.
     pub gamma: Option<f64>,
-    /// Time to choose the parameters and to train, seconds.
+    /// Time to choose the parameters and to train, s.
     pub fit_s: f64,
 }
 
 impl Training<'_> {
-    /// Trains one classifier for each C, in order. `None` stands for a chosen C, or for a classifier without C.
+    /// Trains one classifier for each penalty, in order. A penalty of `None` means that C is chosen, or that the classifier has no C.
     ///
     /// # Errors
     /// If a fold cannot be drawn or the training fails.
@@ -57,7 +57,7 @@ impl Training<'_> {
         self.inputs.gamma_grid.is_some()
     }
 
-    /// Trains classifiers for several given values of C. Shared computations are done once, and their time is divided equally.
+    /// Trains classifiers for several given values of C. Common computations are done once, and their time is divided equally.
     fn train_path(&self, path: &[f64]) -> Result<Vec<Fitted>> {
         let start = Instant::now();
         let classifier = &self.inputs.classifier;
@@ -73,7 +73,7 @@ impl Training<'_> {
         Ok(fitted.collect())
     }
 
-    /// Trains a classifier with a given or chosen C, or without C; γ is given or chosen.
+    /// Trains one classifier with a given C, a chosen C, or no C; γ is also given or chosen.
     fn train(&self, c: Option<f64>) -> Result<Fitted> {
         let start = Instant::now();
         let classifier = &self.inputs.classifier;
@@ -99,7 +99,7 @@ impl Training<'_> {
         })
     }
 
-    /// Returns the best C and the classifier with the best γ of the candidates. γ is a multiple of the default γ of all training rows, even if the choice uses
+    /// Returns the best C, and the classifier with the best γ of the candidates. γ is a multiple of the default γ of all training rows, even if the choice uses
     /// only some of the rows. A single candidate gives the same result as a given value.
     fn choose(&self, classifier: Classifier, candidates: &Candidates) -> Result<(f64, Classifier)> {
         let unit = self.gamma()?;
@@ -125,7 +125,7 @@ impl Training<'_> {
         Ok((chosen.best.c, classifier.with_choice(&chosen)))
     }
 
-    /// Returns the decisions on each touch (its first reading) by classifiers that were trained like `like` without the touch's fold.
+    /// Returns the predicted label of each touch (its first reading) by classifiers that were trained like `like` but without the touch's fold.
     ///
     /// # Errors
     /// If a fold cannot be drawn or the training fails.
@@ -153,7 +153,7 @@ impl Training<'_> {
         Ok(answers)
     }
 
-    /// Returns γ if the classifier has one and it is not chosen.
+    /// Returns the given γ, or the default computed from the training rows; `None` if the classifier has no γ.
     fn gamma(&self) -> Result<Option<f64>> {
         let classifier = &self.inputs.classifier;
         let kernel = classifier.kind.about().kernel;
@@ -167,8 +167,8 @@ impl Training<'_> {
         Ok(Some(number(classifier.gamma).unwrap_or_else(scale)))
     }
 
-    /// Returns the training rows for a choice: the first rows of each object up to the limit, first readings only. Otherwise a fold could train on another
-    /// reading of a held-out touch.
+    /// Returns the training rows for the choice of C and γ: first readings only, and at most the given number per object. With further readings, a fold could
+    /// train on another reading of a held-out touch.
     fn choosing_rows(&self) -> Vec<usize> {
         let most = self.inputs.cv_touches.unwrap_or(usize::MAX);
         let mut n_chosen: HashMap<usize, usize> = HashMap::new();
@@ -180,7 +180,7 @@ impl Training<'_> {
         (0..self.n_first).filter(takes_part).collect()
     }
 
-    /// Returns inner folds as positions in `rows`. The folds do not divide the groups that the study's split does not divide.
+    /// Returns the inner folds as positions in `rows`. The folds do not divide groups that the study's split does not divide.
     fn folds(&self, rows: &[usize]) -> Result<Vec<Split>> {
         let labels = self.data.targets.select(Axis(0), rows);
         let k = self.inputs.n_folds.expect("folds of a choice");
@@ -194,7 +194,7 @@ impl Training<'_> {
     }
 }
 
-/// Returns γ as a number, or `None` where the kernel computes γ itself or has none.
+/// Returns γ as a number; `None` if the kernel computes γ itself or has no γ.
 fn number(gamma: Gamma) -> Option<f64> {
     match gamma {
         Gamma::Value(gamma) => Some(gamma),

@@ -1,4 +1,4 @@
-//! Training of classifiers and scores of trials.
+//! Training of classifiers, and scores of trials.
 
 pub mod evaluation_inputs;
 pub mod fit;

@@ -1,4 +1,4 @@
-//! Choice of the test touches that are fused into one decision, if poses are chosen: a robot touches an unknown object in a known frame.
+//! Choice of the test touches that are combined into one decision, if poses are chosen. The robot touches an unknown object in a known frame.
 
 use crate::error::Result;
 use crate::learning::evaluation::next_touch::{
@@ -13,7 +13,7 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use rayon::prelude::*;
 
-/// Fits a model of the decisions on training touches, using classifiers that were trained without these touches.
+/// Fits a model of the decisions to training touches, using classifiers that were trained without these touches.
 pub(super) fn answer_model<'a>(
     (trial, family): (&TrialInputs, &FamilyInputs<'a>),
     training: &Training,
@@ -30,8 +30,8 @@ pub(super) fn answer_model<'a>(
     Ok(Some(AnswerModel::new(poses, &touches, trial.n_objects())))
 }
 
-/// Returns groups of k touches, as indices into the test touches, ordered by class. The groups are random, or have random first touches and further touches
-/// chosen among all test touches of the object.
+/// Returns groups of k touches, as indices into the test touches, ordered by class. All touches of a group are random, or the first is random and the others
+/// are chosen among all test touches of the object.
 pub(super) fn choose_touches(
     (family, configuration): (&FamilyInputs, &Decision),
     answered: &AnsweredTouches,
@@ -52,7 +52,7 @@ pub(super) fn choose_touches(
         let touches: Vec<usize> = places.iter().map(|&place| touches[place]).collect();
         let answers: Vec<usize> = places.iter().map(|&place| answers[place]).collect();
         let poses = poses.select(&touches);
-        // All sequences of an object choose among the same poses.
+        // All groups of an object choose among the same poses.
         let told: Vec<PoseAnswers> = match (next, model) {
             (NextTouch::MostInformative, Some(model)) => {
                 touches.iter().map(|&touch| model.at(touch)).collect()
@@ -76,21 +76,21 @@ pub(super) fn choose_touches(
     chosen.concat()
 }
 
-/// Test touches with the decisions of one fit.
+/// Test touches with the decisions of one classifier.
 pub(super) struct AnsweredTouches<'a> {
     pub(super) fitted: &'a Fitted,
     pub(super) test: &'a Dataset,
     /// Numbers of the touches.
     pub(super) touches: &'a [usize],
-    /// Group of each touch.
+    /// Group of each test touch; `None` unless whole groups are held out.
     pub(super) groups: Option<&'a [usize]>,
     pub(super) decide: Decide<'a>,
     pub(super) answer_s: f64,
     pub(super) n_train: usize,
-    /// Expected decisions on touches, if a configuration uses them, and the seconds to fit this model.
+    /// Model of the expected decisions on touches; `None` if no configuration uses it.
     pub(super) model: Option<AnswerModel<'a>>,
     pub(super) model_s: f64,
 }
 
-/// Function that returns one label for each group of touches.
+/// Function that returns one predicted label for each group of touches.
 pub(crate) type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;

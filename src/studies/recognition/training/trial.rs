@@ -1,4 +1,4 @@
-//! Evaluation of a family of configurations in one trial: one fit for each C, one prediction of all test touches, one decision for each k.
+//! Evaluation of a family of configurations in one trial: one fit for each C, one prediction of all test touches, one decision for each number of touches.
 
 use crate::error::Result;
 use crate::learning::evaluation::fusion::{fuse_rows, fuse_scores};
@@ -22,37 +22,37 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::time::Instant;
 
-/// Result of a configuration in a trial.
+/// Result of one configuration in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
-    /// Row of the accuracy table.
+    /// Row of the table `accuracy.csv`.
     pub score: TrialScore,
-    /// Row of the timing table.
+    /// Row of the table `timing.csv`.
     pub time: TrialTime,
-    /// Non-zero counts: (object, predicted object, count).
+    /// Non-zero confusion counts: (object, predicted object, count).
     pub confusion: Vec<(usize, usize, usize)>,
     /// Counts for each group of test rows; empty if no groups are held out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<GroupCount>,
 }
 
-/// Data that the evaluations of a group share in a trial.
+/// Data that all evaluations of a group share in one trial.
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
     /// Labels, split and groups of the trial.
     pub inputs: TrialInputs<'a>,
-    /// Measurements of all touches, with at least as many per frame as a configuration needs.
+    /// Measurements of all touches; each frame has at least as many as a configuration needs.
     pub measurements: &'a Measurements,
 }
 
-/// Returns the function with which a fit decides on the test touches.
+/// Returns the function by which a trained classifier decides on groups of test touches.
 fn decider<'a>(
     fitted: &'a Fitted,
     test: &Dataset,
     configurations: &[Decision],
 ) -> Result<Decide<'a>> {
     let (classifier, features) = (&fitted.classifier, test.records.view());
-    // Without fusion, labels suffice and are faster to compute.
+    // If each decision uses one touch, labels suffice and are faster to compute.
     if configurations
         .iter()
         .all(|configuration| configuration.touches_per_decision == 1)
@@ -68,7 +68,7 @@ fn decider<'a>(
 }
 
 impl Trial<'_> {
-    /// Fits and tests the configurations of a [family](crate::studies::recognition::plan::group::Group::families) on the first m measurements, in order.
+    /// Trains and tests the configurations of a [family](crate::studies::recognition::plan::group::Group::families) on the first m measurements, in order.
     ///
     /// # Errors
     /// If rows of the family cannot be computed, or the training fails.
@@ -113,7 +113,7 @@ impl Trial<'_> {
         Ok(evaluations)
     }
 
-    /// Returns one label for each group of k test touches.
+    /// Returns the results for the decisions on groups of k test touches.
     fn decide(
         &self,
         (family, configuration): (&FamilyInputs, &Decision),
@@ -134,7 +134,7 @@ impl Trial<'_> {
         let counts = counts.filter(|(_, count)| **count > 0);
         let groups = answered.groups.map_or_else(Vec::new, |groups| {
             let decisions = rows.groups.iter().enumerate();
-            // A decision on touches of several groups counts as a row of each group.
+            // A decision on touches of several groups counts as a row of each of these groups.
             count_groups(decisions.flat_map(|(row, touches)| {
                 let of: BTreeSet<usize> = touches.iter().map(|&touch| groups[touch]).collect();
                 let is_correct = predicted[row] == truth[row];
@@ -199,7 +199,7 @@ impl Trial<'_> {
     }
 }
 
-/// Returns the rows to train on: all readings of the training touches, then their tilted copies, with the labels of all rows.
+/// Returns the training rows: all readings of the training touches, then their tilted copies. Also returns the labels of all rows.
 pub(crate) fn learned_rows(
     measurements: &Measurements,
     inputs: &RowInputs,
