@@ -3,7 +3,7 @@
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, s};
 
-/// Columns factorised together: large enough that matrix products do most of the work, small enough for the cache.
+/// Number of columns factorised together: large enough that matrix products do most of the work, small enough for the cache.
 const BLOCK: usize = 64;
 
 /// Lower triangular factor L of A = L Lᵀ.
@@ -11,7 +11,7 @@ const BLOCK: usize = 64;
 pub(super) struct Cholesky(Array2<f64>);
 
 impl Cholesky {
-    /// Factorises A (symmetric; only its lower triangle is used). Returns `None` if A is not positive definite.
+    /// Factorises a symmetric matrix A, of which only the lower triangle is used. Returns `None` if A is not positive definite.
     pub(super) fn new(mut a: Array2<f64>) -> Option<Self> {
         let n = a.nrows();
         for start in (0..n).step_by(BLOCK) {
@@ -43,7 +43,7 @@ impl Cholesky {
         Some(Self(a))
     }
 
-    /// Solves A X = B for all columns of B (n × any number).
+    /// Solves A X = B for all columns of B, shape (n, number of right-hand sides).
     pub(super) fn solve(&self, b: ArrayView2<f64>) -> Array2<f64> {
         let mut x = b.as_standard_layout().into_owned();
         let n = self.0.nrows();

@@ -1,4 +1,4 @@
-//! The discrete cosine basis.
+//! Discrete cosine transform (DCT-II) of arrays.
 
 use ndarray::Array2;
 use std::f64::consts::PI;
@@ -12,7 +12,7 @@ pub(super) fn cosines(n: usize) -> Array2<f64> {
     })
 }
 
-/// Returns W_y X W_xᵀ for one ny × nx array.
+/// Returns W_y X W_xᵀ, the coefficients of one ny × nx array X.
 pub(super) fn analyse(
     x: ndarray::ArrayView2<f64>,
     wy: &Array2<f64>,

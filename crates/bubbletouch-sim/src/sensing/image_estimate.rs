@@ -1,7 +1,7 @@
 //! Estimates of images of a skin from compressed measurements.
 //!
-//! Frames of training touches give statistics of images: their mean x₀, k principal components ψⱼ with mean squares λⱼ, and a remainder of
-//! mean square τ per taxel. The [linear estimate](super::Lmmse) of least mean square error is α̂ = Λ Aᵀ (A Λ Aᵀ + τ ΦΦᵀ)⁻¹ (y − Φx₀), A = ΦΨ.
+//! Frames of training touches give statistics of images: their mean x₀, k principal components ψⱼ with mean squares λⱼ, and a remainder of mean square τ per
+//! taxel. The [linear estimate](super::Lmmse) of least mean square error is α̂ = Λ Aᵀ (A Λ Aᵀ + τ ΦΦᵀ)⁻¹ (y − Φx₀), with A = ΦΨ.
 //!
 //! Training frames contain the noise of the signal, and so does λⱼ: readings of the untouched skin have a mean square νⱼ along ψⱼ. The estimate of
 //! the image without noise reduces each coefficient (Wiener): x̂ = x₀ + Σ max(0, 1 − νⱼ / λⱼ) α̂ⱼ ψⱼ.
@@ -11,10 +11,9 @@
 //!
 //! x ← x₊ + Φ⁺ (y − Φx₊), Φ⁺ = Φᵀ (ΦΦᵀ)⁻¹.
 //!
-//! These are projections onto two convex sets that contain the image, so no step increases the distance of x to it. Youla and Webb (1982), *Image
-//! restoration by
-//! the method of convex projections*, IEEE Transactions on Medical Imaging 1, 81. The steps would also fit noise in the measurements, so they are omitted
-//! if there is noise. The steps are also omitted if rows of Φ are linearly dependent.
+//! These steps are projections onto two convex sets that contain the image, so no step increases the distance between x and the image. Youla and Webb (1982),
+//! *Image restoration by the method of convex projections*, IEEE Transactions on Medical Imaging 1, 81. The steps would also fit noise in the measurements, so
+//! they are omitted if there is noise. The steps are also omitted if rows of Φ are linearly dependent.
 //!
 //! The estimate of a complete frame is the frame itself.
 
@@ -29,7 +28,7 @@ use ndarray::{Array2, ArrayView2};
 pub struct ImageEstimate {
     /// Linear estimate and projection; `None` if measurements are complete frames.
     lmmse: Option<(Lmmse, Projection)>,
-    /// Transpose of Φ⁺, shape (m, n); `None` if the steps to nonnegative images are omitted.
+    /// Transpose of Φ⁺, shape (m, n); `None` if the steps to a nonnegative image are omitted.
     nearest: Option<Array2<f64>>,
     noise_std: f64,
 }
@@ -39,7 +38,7 @@ pub struct ImageEstimate {
 pub const N_STEPS: usize = 20;
 
 impl ImageEstimate {
-    /// Creates the estimator of complete frames; the noise is computed from untouched readings.
+    /// Creates the estimator for complete frames; the noise is computed from untouched readings.
     pub fn of_frames(untouched: ArrayView2<f64>) -> Self {
         Self {
             lmmse: None,
@@ -72,7 +71,7 @@ impl ImageEstimate {
         self.noise_std
     }
 
-    /// Estimates images from measurements (n_frames × m), shape (n_frames, n).
+    /// Estimates images, shape (n_frames, n), from measurements, shape (n_frames, m).
     ///
     /// # Panics
     /// If a row does not have m values.

@@ -1,7 +1,7 @@
 //! Statistics of images, learned from frames of training touches.
 //!
-//! Statistics of few frames overfit: images of training touches would be more accurate than images of test touches. A classifier trained on the former would
-//! err on the latter. Shifted and mirrored copies of the frames reduce this effect.
+//! Statistics of few frames overfit: images of training touches would be more accurate than images of test touches. A classifier trained on accurate images
+//! would misclassify the less accurate ones. Shifted and mirrored copies of the frames reduce this effect.
 
 use super::{Basis, Dictionary};
 use crate::error::Result;
@@ -13,7 +13,7 @@ use rand::Rng;
 /// fewer measurements.
 pub const N_COMPONENTS: usize = 512;
 
-/// Readings for the estimate, one row of n taxels each, all through one signal chain.
+/// Readings from which the statistics are learned, one row of n taxels each; all have passed one signal chain.
 #[derive(Clone, Copy, Debug)]
 pub struct Readings<'a> {
     /// Readings of training touches.
@@ -27,13 +27,13 @@ pub struct Readings<'a> {
 pub struct ImagePrior {
     /// Principal components ψⱼ with mean squares λⱼ.
     pub(super) dictionary: Dictionary,
-    /// Wiener factors max(0, 1 − νⱼ / λⱼ).
+    /// Wiener factors max(0, 1 − νⱼ / λⱼ) of the components.
     pub(super) shrinkage: Array1<f64>,
     pub(super) untouched: Array2<f64>,
 }
 
-/// Largest shift of copies of training frames, relative to the sides of the array. If the value is larger, contacts leave the array; if the value is smaller,
-/// some places are covered by few frames.
+/// Largest shift of copies of training frames, relative to the sides of the array. If larger, contacts leave the array; if smaller, some positions are covered
+/// by few frames.
 const MOVED: f64 = 0.25;
 
 impl ImagePrior {
@@ -67,7 +67,7 @@ impl ImagePrior {
     }
 }
 
-/// Returns the frames, followed by equally many copies of each, up to `n_frames` in total. Copies are shifted by up to a quarter of the array and may be
+/// Returns the frames, followed by equally many copies of each frame, up to `n_frames` in total. Copies are shifted by up to a quarter of the array and may be
 /// mirrored. Shifted images are equally likely, and more frames reduce overfitting.
 fn with_copies(
     frames: ArrayView2<f64>,

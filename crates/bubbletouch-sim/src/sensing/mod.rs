@@ -1,4 +1,4 @@
-//! Sensing: frames → measurements `y = Φx`, and back.
+//! Sensing: compresses frames to measurements `y = Φx`, and reconstructs frames.
 //!
 //! A [`Projection`] converts a frame x of n taxels (ny × nx, row after row) to m measurements, 1 ≤ m ≤ n. The compression ratio is n / m.
 //!
@@ -18,16 +18,16 @@
 //! **Scale.** No entry depends on m. For the random ensembles √(n/m)·Φ therefore preserves norms on average (Johnson and Lindenstrauss);
 //! a study that scales its features is not affected.
 //!
-//! **Nesting.** For one seed, the first m measurements of a larger projection are bit by bit the measurements of the
-//! smaller one ([`Ensemble::is_prefix_nested`]). A sweep over ratios projects once, at its largest m, and takes leading columns.
-//! Plain block averages cannot be nested in this way: the mean of the whole array is the mean of neither of its halves. For the nesting of block averages
-//! see [`Ensemble::BlockAverage`].
+//! **Nesting.** For one seed, the first m measurements of a larger projection are bit by bit the measurements of the smaller one
+//! ([`Ensemble::is_prefix_nested`]). A sweep over ratios projects once, at its largest m, and takes leading columns. Plain block averages cannot be nested in
+//! this way: the mean of the whole array is the mean of neither of its halves. The documentation of [`Ensemble::BlockAverage`] describes how block averages are
+//! nested.
 //!
 //! **Repeatability.** A row of measurements has equal bits in any batch.
 //!
 //! # Back to frames
 //!
-//! A [`Dictionary`] Ψ of orthonormal atoms represents frames as x = x₀ + Ψα. After projection it is A = ΦΨ, a
+//! A [`Dictionary`] Ψ of orthonormal atoms represents frames as x = x₀ + Ψα. The projected dictionary is A = ΦΨ, a
 //! [`SensedDictionary`], and a [`Reconstructor`] computes α from y − Φx₀ = Aα + Φ·noise.
 //!
 //! | solver | α | cost of a frame |

@@ -1,6 +1,6 @@
 //! Principal components of frames, by a randomised range finder.
 //!
-//! Halko, Martinsson and Tropp (2011), *Finding structure with randomness*, algorithm 4.4 (subspace iteration), then the
+//! Algorithm 4.4 (subspace iteration) of Halko, Martinsson and Tropp (2011), *Finding structure with randomness*, then the
 //! Rayleigh–Ritz step: the frames restricted to the computed subspace are diagonalised exactly. If the number of directions is at least the
 //! rank of the frames, the result equals the full eigendecomposition.
 
@@ -11,13 +11,13 @@ use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, Axis, s};
 use ndarray_rand::RandomExt;
 use rand_distr::StandardNormal;
 
-/// Number of extra directions. If the value is smaller, the last components are inaccurate; if the value is larger, only the time increases.
+/// Number of extra directions. If smaller, the last components are inaccurate; if larger, only the time increases.
 const OVERSAMPLING: usize = 16;
-/// Number of products with the covariance; each one squares the ratio of kept to discarded variances.
+/// Number of products with the covariance matrix; each product squares the ratio of kept to discarded variances.
 const ITERATIONS: usize = 3;
-/// Smallest variance of a direction relative to the largest; smaller ones are rounding errors.
+/// Smallest variance of a direction relative to the largest; smaller variances are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-12;
-/// Smallest remainder of a row after orthogonalisation; rows below it depend on earlier rows.
+/// Smallest norm of a row after orthogonalisation; a row with a smaller norm depends linearly on earlier rows.
 const DEPENDENT: f64 = 1e-10;
 
 /// Mean frame and principal components.
@@ -25,7 +25,7 @@ const DEPENDENT: f64 = 1e-10;
 pub(super) struct Pca {
     /// Mean frame, shape (n,).
     pub mean: Array1<f64>,
-    /// Orthonormal components, shape (k, n), the largest variance first; the largest entry of each is positive.
+    /// Orthonormal components, shape (k, n), in order of decreasing variance; the largest entry of each is positive.
     pub components: Array2<f64>,
     /// Mean square of the frames along each component (divisor: number of frames).
     pub variance: Array1<f64>,
@@ -34,7 +34,7 @@ pub(super) struct Pca {
 }
 
 impl Pca {
-    /// Computes at most k components of frames (n_frames × n); fewer if the rank of the frames is lower.
+    /// Computes at most k principal components of frames (n_frames × n); fewer if the rank of the frames is lower.
     pub(super) fn new(frames: ArrayView2<f64>, k: usize, seed: &Seed) -> Self {
         let (n_frames, n) = frames.dim();
         let mean = frames
@@ -79,7 +79,7 @@ fn point_up(mut row: ArrayViewMut1<f64>) {
     }
 }
 
-/// Orthonormalises rows by Gram–Schmidt, applied twice for accuracy; rows that depend on earlier rows are left out.
+/// Orthonormalises rows by Gram–Schmidt, applied twice for accuracy; rows that depend on earlier rows are omitted.
 ///
 /// Rows are made orthogonal to all earlier blocks by matrix products, then to each other within their block.
 fn orthonormal_rows(mut rows: Array2<f64>) -> Array2<f64> {

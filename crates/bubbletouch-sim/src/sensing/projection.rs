@@ -1,4 +1,4 @@
-//! Prepared projection of any ensemble.
+//! Prepared measurement projection of any ensemble.
 
 use super::Ensemble;
 use super::ensembles::ScrambledHadamard;
@@ -32,7 +32,7 @@ pub struct Projection {
 impl Projection {
     /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`.
     ///
-    /// [`Ensemble::Identity`] has n measurements for any m.
+    /// The ensemble [`Ensemble::Identity`] has n measurements for any m.
     ///
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the ensemble is learned.
@@ -50,7 +50,7 @@ impl Projection {
         })
     }
 
-    /// Prepares the projection of any ensemble; learned ensembles use frames of training touches (n_frames × n).
+    /// Prepares the projection of any ensemble. Learned ensembles use the frames of training touches (n_frames × n).
     ///
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the frames differ in fewer than m directions.
@@ -76,13 +76,13 @@ impl Projection {
         })
     }
 
-    /// Prepares the scrambled block Hadamard ensemble with blocks of `block` taxels; \[SBHE\] and [`Projection::new`] use 32.
+    /// Prepares the scrambled block Hadamard ensemble with blocks of `block` taxels; \[SBHE\] and `Projection::new` use 32.
     ///
     /// m measurements use at most m · `block` taxels. If this is far below n, as on a body with millions of taxels, most taxels are never
     /// used. A block of about n / m taxels or more uses every taxel, with few entries per taxel.
     ///
     /// # Errors
-    /// If [`Projection::new`] would fail, or if `block` is not a power of two.
+    /// If `Projection::new` would fail, or if `block` is not a power of two.
     pub fn sbhe(grid: (usize, usize), m: usize, block: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
         if !block.is_power_of_two() {
@@ -112,7 +112,7 @@ impl Projection {
         self.n_measurements
     }
 
-    /// Measures frames (n_frames × n, one per row), shape (n_frames, m).
+    /// Measures frames (n_frames × n, one per row); returns measurements, shape (n_frames, m).
     ///
     /// # Panics
     /// If a frame does not have n values.
@@ -152,7 +152,7 @@ impl Projection {
         })
     }
 
-    /// Returns the matrix Φ (m × n) that [`measure`](Self::measure) applies.
+    /// Returns the matrix Φ (m × n) of the projection.
     pub fn matrix(&self) -> Array2<f64> {
         // Number of unit frames measured at a time, which bounds the memory.
         const BLOCK: usize = 256;

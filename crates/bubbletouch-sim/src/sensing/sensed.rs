@@ -1,4 +1,4 @@
-//! Sensed dictionary: the matrix A = ΦΨ that every reconstruction uses.
+//! Sensed dictionary: the matrix A = ΦΨ that every reconstruction solver uses.
 
 use super::{Dictionary, Projection};
 use crate::error::{Error, Result};
@@ -22,7 +22,7 @@ pub struct SensedDictionary<'a> {
 }
 
 impl<'a> SensedDictionary<'a> {
-    /// Measures every atom.
+    /// Measures every atom of the dictionary.
     ///
     /// # Errors
     /// If projection and dictionary belong to different arrays, or if the dictionary has no atoms.
@@ -61,12 +61,12 @@ impl<'a> SensedDictionary<'a> {
         self.dictionary
     }
 
-    /// Returns Aᵀ: measured atoms Φψⱼ, one per row, shape (k, m).
+    /// Returns Aᵀ, the measured atoms Φψⱼ, one per row, shape (k, m).
     pub fn atoms(&self) -> ArrayView2<'_, f64> {
         self.atoms.view()
     }
 
-    /// Returns AᵀA, shape (k, k), computed on first use and then stored.
+    /// Returns the Gram matrix AᵀA, shape (k, k), computed on first use and then stored.
     pub fn gram(&self) -> &Array2<f64> {
         self.gram.get_or_init(|| self.atoms.dot(&self.atoms.t()))
     }
@@ -76,7 +76,7 @@ impl<'a> SensedDictionary<'a> {
         self.atoms.map_axis(Axis(1), |atom| atom.dot(&atom).sqrt())
     }
 
-    /// Returns y − Φx₀ for each row of measurements (n_frames × m).
+    /// Returns the centred measurements y − Φx₀ for each row of measurements (n_frames × m).
     ///
     /// # Panics
     /// If a row does not have m values.

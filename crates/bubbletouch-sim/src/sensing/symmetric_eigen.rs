@@ -1,7 +1,7 @@
 //! Eigenvalues and eigenvectors of a symmetric matrix, for sizes up to a few hundred.
 //!
-//! Householder's reduction to tridiagonal form, then the QL iteration with implicit shifts: the pair `tred2` and `tql2` of
-//! EISPACK (Bowdler, Martin, Reinsch and Wilkinson 1968), here with eigenvectors as rows, which lie together in memory.
+//! Algorithm: Householder's reduction to tridiagonal form, then the QL iteration with implicit shifts. These are `tred2` and `tql2` of
+//! EISPACK (Bowdler, Martin, Reinsch and Wilkinson 1968), here with eigenvectors as rows, which are contiguous in memory.
 
 use ndarray::{Array1, Array2, ArrayView2};
 
@@ -20,7 +20,7 @@ pub(super) fn symmetric_eigen(a: ArrayView2<f64>) -> (Array1<f64>, Array2<f64>) 
     (values, vectors.select(ndarray::Axis(0), &order))
 }
 
-/// Reduces A = Qᵀ T Q to tridiagonal form. Returns the diagonal of T and its off-diagonal (entry i is T[i, i + 1], the last is 0); leaves Q in `a`.
+/// Reduces A = Qᵀ T Q to tridiagonal form. Returns the diagonal of T and its off-diagonal (entry i is T[i, i + 1], the last is 0); writes Q to `a`.
 fn tridiagonalise(a: &mut Array2<f64>) -> (Vec<f64>, Vec<f64>) {
     let n = a.nrows();
     // Reflections H = 1 − v vᵀ·2/vᵀv, one per step, which clear row `step` to the right of its off-diagonal.
@@ -66,7 +66,7 @@ fn tridiagonalise(a: &mut Array2<f64>) -> (Vec<f64>, Vec<f64>) {
     (diagonal, beside)
 }
 
-/// Applies QL with implicit Wilkinson shifts, and rotates the rows of `vectors`.
+/// Applies the QL iteration with implicit Wilkinson shifts, and rotates the rows of `vectors`.
 fn diagonalise(d: &mut [f64], e: &mut [f64], vectors: &mut Array2<f64>) {
     let n = d.len();
     for l in 0..n {

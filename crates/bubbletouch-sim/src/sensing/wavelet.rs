@@ -1,4 +1,4 @@
-//! Orthonormal wavelet pyramids of square-by-two arrays: Haar, and Daubechies' with four taps.
+//! Orthonormal wavelet pyramids of arrays whose sides are powers of two: Haar, and Daubechies' wavelet with four taps.
 
 use crate::error::{Error, Result};
 use ndarray::{Array1, ArrayViewMut1, ArrayViewMut2, Axis, s};
@@ -45,7 +45,7 @@ impl Wavelet {
         ))
     }
 
-    /// Computes the pyramid of averages and details in place; each level halves every side longer than one.
+    /// Computes the pyramid of averages and details of a frame in place; each level halves every side longer than one.
     pub(super) fn analyse(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()) {
             let mut corner = frame.slice_mut(s![..ny, ..nx]);
@@ -60,7 +60,7 @@ impl Wavelet {
         }
     }
 
-    /// Computes the inverse of [`analyse`](Self::analyse).
+    /// Computes the inverse of `analyse` in place.
     pub(super) fn synthesise(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()).into_iter().rev() {
             let mut corner = frame.slice_mut(s![..ny, ..nx]);

@@ -1,4 +1,4 @@
-//! Readings of the taxels of a whole body, computed taxel by taxel; the cost is proportional to the number of taxels that are read.
+//! Readings of the taxels of a whole body, computed taxel by taxel; the cost is proportional to the number of taxels read.
 //!
 //! A [`Chain`](super::Chain) draws the noise of a frame taxel after taxel, so two million taxels cost two million normal numbers per frame.
 //! A [`BodyReadout`] computes noise, zeros, gains and faults with [counter-based random numbers](crate::random::CounterKey).
@@ -18,7 +18,7 @@ use crate::world::Taxel;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Number of taxels from which on a reading uses several threads. With fewer taxels, starting a second thread takes longer than the reading.
+/// Minimum number of taxels for which a reading uses several threads. With fewer taxels, starting a second thread takes longer than the reading.
 pub const WORTH_THREADS: usize = 4 * CHUNK;
 
 /// Signal steps of a whole body, checked and prepared for its patches.
@@ -72,7 +72,7 @@ pub struct BodyReadout {
 pub struct BodyReading {
     /// Taxel indices in the body, ascending.
     pub taxels: Vec<usize>,
-    /// Readings of `taxels`, metres or newtons.
+    /// Readings of the taxels in `taxels`, metres or newtons.
     pub values: Vec<f64>,
 }
 
@@ -85,8 +85,8 @@ impl BodyReading {
 }
 
 impl BodyReadout {
-    /// Checks the steps in their order and prepares them for each patch. [`Force`](SignalStep::Force) must be the first step or absent;
-    /// noise and sensor errors must be independent between taxels. `noise` seeds the noise of all frames.
+    /// Checks the signal steps in their order and prepares them for each patch. The force step must be the first step or absent; noise and sensor errors must
+    /// be independent between taxels. `noise` seeds the noise of all frames.
     ///
     /// # Errors
     /// If a step depends on other taxels or other frames, if force is not the first step, or if a strength is out of range.
@@ -146,7 +146,7 @@ impl BodyReadout {
     /// Writes the readings of all taxels of a patch, shape (n_taxels,), in the order of the layout.
     ///
     /// # Panics
-    /// If `body` has another number of taxels, if the patch does not exist, if there is not one value per taxel, or if the time is not from 0 to 1.
+    /// If `body` has another number of taxels, the patch does not exist, or the number of values is wrong. Also if the time is not from 0 to 1.
     pub fn read_patch(
         &self,
         body: &WholeBody,
@@ -215,7 +215,7 @@ impl BodyReadout {
     }
 }
 
-/// Prepares the steps in the units of one patch; steps of zero strength are left out.
+/// Prepares the steps in the units of one patch; steps of zero strength are omitted.
 fn prepare(
     steps: &[SignalStep],
     quantity: Quantity,
@@ -251,7 +251,7 @@ fn prepare(
     Ok(prepared)
 }
 
-/// Reason in the error for a step that needs other taxels or frames.
+/// Reason in the error message for a step that needs other taxels or frames.
 const OF_OTHERS: &str = "which needs other taxels or other frames";
 
 fn refused(step: &str, why: &str) -> Error {

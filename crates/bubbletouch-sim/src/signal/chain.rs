@@ -7,7 +7,7 @@ use crate::random::Seed;
 use crate::world::{Patch, Taxel};
 use std::sync::Arc;
 
-/// Checked signal steps, prepared for one patch of any layout. The empty chain leaves deflections as they are.
+/// Checked signal steps, prepared for one patch of any layout. An empty chain leaves deflections unchanged.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -33,7 +33,7 @@ pub struct Chain {
     n_taxels: usize,
     taxel: Taxel,
     quantity: Quantity,
-    /// Whether values have a sign (shear forces); otherwise they are zero or positive.
+    /// Whether values have a sign, as shear forces do; otherwise they are zero or positive.
     is_signed: bool,
     scratch_len: usize,
 }
@@ -45,8 +45,8 @@ pub struct Recording<'a> {
     pub frames: &'a mut [f64],
     /// Rates of deflection δ̇, m/s, one per deflection; `None` if the patch is at rest. Only the force step uses them.
     pub rates: Option<&'a [f64]>,
-    /// Number of leading frames that came before the touch. If the chain [depends on history](Chain::remembers), they change the readings of the touch. Their
-    /// own values have no meaning after the chain.
+    /// Number of leading frames that came before the touch. If the chain [depends on history](Chain::remembers), these frames change the readings of the touch.
+    /// Their own values have no meaning after the chain.
     pub n_before: usize,
     /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
     pub interval: Option<f64>,
@@ -54,7 +54,7 @@ pub struct Recording<'a> {
     pub time: Option<f64>,
 }
 
-/// Working memory of [`Chain::apply`]: one per thread, usable with any chain. The memory grows to the size that the largest chain needs.
+/// Working memory of a chain: one per thread, usable with any chain. The memory grows to the size that the largest chain needs.
 #[derive(Clone, Debug, Default)]
 pub struct SignalWorkspace(Vec<f64>);
 
@@ -71,36 +71,35 @@ enum Prepared {
 }
 
 impl Chain {
-    /// Checks the steps in their order and prepares them for the layout and the taxels of a patch.
+    /// Checks the signal steps in their order and prepares them for the layout and the taxels of a patch.
     ///
     /// # Errors
-    /// If force is listed twice, or a noise level or its unit does not fit the frame at this step (see [`Noise::std_of`](super::Noise::std_of)).
-    /// If a strength is out of range (see the type of each step), if the taxels differ in stroke, stiffness or damping, or if the layout does not
-    /// support a step.
+    /// If force is listed twice, or a noise level or its unit does not fit the frame at this step. Also if a strength is out of range, the taxels differ in
+    /// stroke, stiffness or damping, or the layout does not support a step.
     pub fn new(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         Self::with_quantity(steps, patch, Quantity::Deflection)
     }
 
-    /// Prepares a chain for frames whose initial quantity is `quantity` instead of deflection.
+    /// Prepares a chain for frames that initially contain `quantity` instead of deflections.
     ///
     /// # Errors
-    /// If the arguments are invalid, as for [`new`](Self::new).
+    /// If the arguments are invalid, as for `new`.
     pub fn with_quantity(steps: &[SignalStep], patch: &Patch, quantity: Quantity) -> Result<Self> {
         Self::prepared(steps, patch, quantity, false)
     }
 
-    /// Prepares a chain for shear forces: newtons of either sign. The full scale equals the full scale of the normal force.
-    /// The frames are forces from the start, so [`Force`](SignalStep::Force) has no effect.
+    /// Prepares a chain for shear forces: newtons of either sign. The full scale equals the full scale of the normal force. The frames are forces from the
+    /// start, so the force step has no effect.
     ///
     /// # Errors
-    /// If the arguments are invalid, as for [`new`](Self::new).
+    /// If the arguments are invalid, as for `new`.
     pub fn of_shear(steps: &[SignalStep], patch: &Patch) -> Result<Self> {
         let mut steps = steps.to_vec();
         steps.retain(|step| *step != SignalStep::Force);
         Self::prepared(&steps, patch, Quantity::Force, true)
     }
 
-    /// Returns the full scale of the output: the stroke in metres, or the force at the stroke in newtons.
+    /// Returns the full scale of the output frames: the stroke in metres, or the force at the stroke in newtons.
     pub fn full_scale(&self) -> f64 {
         self.quantity.full_scale(&self.taxel)
     }
@@ -138,7 +137,7 @@ impl Chain {
         self.quantity
     }
 
-    /// Returns whether the frames before a touch change its readings.
+    /// Returns whether the frames before a touch change the readings of the touch.
     pub fn remembers(&self) -> bool {
         self.n_remembering > 0
     }
@@ -174,7 +173,7 @@ impl Chain {
     /// The function allocates no memory if `scratch` has already been used with this chain.
     ///
     /// # Panics
-    /// If a frame is incomplete, if there are no frames after the leading `n_before`, or if there is not one rate per value.
+    /// If a frame is incomplete, there are no frames after the leading `n_before`, or the number of rates differs from the number of values.
     pub fn apply_recording(
         &self,
         recording: Recording,
@@ -296,10 +295,10 @@ impl Chain {
     }
 }
 
-/// Returns the common properties of the taxels of a patch; the radii may differ.
+/// Returns the common properties of a patch's taxels; the radii may differ.
 ///
 /// # Errors
-/// If taxels differ in stroke, stiffness or damping; a fraction of the full scale would differ between them.
+/// If taxels differ in stroke, stiffness or damping, because a fraction of the full scale would then differ between them.
 fn read_alike(patch: &Patch) -> Result<Taxel> {
     let reads = |taxel: &Taxel| (taxel.stroke, taxel.stiffness, taxel.damping);
     let first = *patch.taxels().at(0);

@@ -1,7 +1,7 @@
 //! Crosstalk: a fraction of each taxel's value leaks to its neighbours.
 //!
-//! xᵢ ← (1 − κ) xᵢ + κ/4 (x_left + x_right + x_above + x_below): a fraction κ of each value leaks, a quarter of it to each of
-//! the four neighbours. At an edge the missing neighbour is replaced by the taxel itself. Rows and columns of this operator sum to 1. A uniform pressure is
+//! The operator is xᵢ ← (1 − κ) xᵢ + κ/4 (x_left + x_right + x_above + x_below). A fraction κ of each value leaks, a quarter of it to each of the four
+//! neighbours. At an edge the missing neighbour is replaced by the taxel itself. Rows and columns of this operator sum to 1. A uniform pressure is
 //! therefore unchanged, and the sum over the array is conserved, as if a cover or a shared wire distributed the load.
 //! Only four of the eight neighbours are coupled directly, because coupling decreases with distance; values reach a diagonal
 //! neighbour through two steps.
@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::text::in_range::fraction;
 use crate::world::{Grid, Neighbours};
 
-/// Crosstalk, prepared for one grid.
+/// Crosstalk between grid neighbours, prepared for one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crosstalk {
     nx: usize,
@@ -70,7 +70,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// Crosstalk between neighbours on a skin that is no grid.
+/// Crosstalk between neighbours on a skin that is not a grid.
 #[derive(Debug)]
 struct SurfaceLeak {
     leak: f64,

@@ -6,10 +6,10 @@
 //!
 //! W(t) = c Σₖ ξₖ √2 sin((k − ½) π t) / ((k − ½) π),  ξₖ ~ N(0, 1),  k = 1 … 64,
 //!
-//! The zero at any time can be computed without earlier times, so touches need no order. 64 terms contain 99.7 % of the
+//! The zero at any time can be computed without earlier times, so touches need no order. The 64 terms contain 99.7 % of the
 //! variance; the factor c makes the variance at the end exactly σ².
 //!
-//! A [`BodyReadout`](super::BodyReadout) uses counter-based random numbers; its W is linear between 2⁶ + 1 equally spaced times of the session.
+//! A [`BodyReadout`](super::BodyReadout) uses counter-based random numbers. Its W is linear between 2⁶ + 1 equally spaced times of the session.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};
@@ -25,7 +25,7 @@ use std::f64::consts::{PI, SQRT_2};
 /// memory increase.
 const N_MODES: usize = 64;
 
-/// Drifting zeros of a skin, at any time of its session.
+/// Drifting zeros of a skin, which can be computed for any time of its session.
 #[derive(Clone, Debug)]
 struct Zeros {
     n_taxels: usize,
@@ -55,7 +55,7 @@ impl Zeros {
         })
     }
 
-    /// Writes the zero of each taxel at a time of the session (0 is its beginning, 1 its end).
+    /// Writes the zero of each taxel at a time of the session (0 is the beginning, 1 the end).
     fn at(&self, time: f64, zeros: &mut [f64]) {
         zeros.fill(0.0);
         let modes = self.coefficients.chunks_exact(self.n_taxels);
@@ -73,7 +73,7 @@ fn time_of(touch: &Seed) -> f64 {
     touch.named("time").rng().r#gen()
 }
 
-/// Returns (k − ½) π for the mode with the index k − 1.
+/// Returns the angular frequency (k − ½) π for the mode with the index k − 1.
 fn frequency(mode: usize) -> f64 {
     (mode as f64 + 0.5) * PI
 }
@@ -138,8 +138,8 @@ impl TaxelEffect for ZerosByNumber {
     }
 }
 
-/// Returns indices and weights of normal numbers. Their weighted sum is a Wiener process at a time from 0 to 1, by Lévy's construction: number 0 is the
-/// value at the end, and number 2ˡ + k displaces the middle of interval k of 2ˡ equal intervals.
+/// Returns indices and weights of normal numbers. Their weighted sum is a Wiener process at a time from 0 to 1, by Lévy's construction. Number 0 is the value
+/// at the end, and number 2ˡ + k displaces the middle of interval k of 2ˡ equal intervals.
 fn walk(time: f64) -> [(u64, f64); 1 + N_HALVINGS as usize] {
     let mut terms = [(0, time); 1 + N_HALVINGS as usize];
     for (halving, term) in terms[1..].iter_mut().enumerate() {

@@ -1,11 +1,10 @@
-//! Forces from deflections and their rates.
+//! Normal forces from deflections and their rates.
 
 use crate::world::Taxel;
 
-/// Replaces deflections (metres) by normal forces (newtons): f = max(0, k δ + c δ̇) where δ > 0,
-/// else 0 \[BT\].
+/// Replaces deflections (metres) by normal forces (newtons): f = max(0, k δ + c δ̇) where δ > 0, otherwise 0 \[BT\].
 ///
-/// `rate` is δ̇ in m/s, one per taxel; `None` if the patch is at rest. A free taxel relaxes with
+/// The argument `rate` is δ̇ in m/s, one value per taxel; `None` if the patch is at rest. A free taxel relaxes with
 /// k δ + c δ̇ = 0. After a step of length Δt, its backward difference gives k δ + c δ̇ ≤ 0, because (1 + a) e⁻ᵃ ≤ 1 with a = k Δt / c.
 /// The maximum therefore sets its force to 0, and no list of contacts is needed.
 ///

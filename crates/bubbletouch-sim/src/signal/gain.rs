@@ -46,7 +46,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// One gain per taxel.
+/// Gain of each taxel, dimensionless.
 #[derive(Debug)]
 struct Gains(Vec<f64>);
 

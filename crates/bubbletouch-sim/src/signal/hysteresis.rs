@@ -6,7 +6,7 @@
 //!
 //! - First loading of a fresh taxel follows y = (1 − 4w) x + w Σ max(0, x − rⱼ), a fixed curve without history that reaches X at the full scale.
 //! - Cycles between 0 and X form a closed loop of width w X in its middle and area 11/16 w X².
-//! - A taxel does not return to 0 after a press. The residual is 2 w X after a full press and a quarter of that
+//! - A taxel does not return to 0 after a press. The residual is 2 w X after a full press and a quarter of this value
 //!   after a press of half the depth, until the taxel is pressed deeper. The readings of a touch therefore depend on the touches before it.
 //!   (Skins that recover with time lie between this model and a fresh skin.)
 
@@ -18,17 +18,17 @@ const N_PLAYS: usize = 8;
 /// Largest loop width for which all weights are positive. Above it, the reading would fall while the load increases.
 const MAX_WIDTH: f64 = 0.25;
 
-/// Hysteresis of one width, prepared for frames of one full scale.
+/// Hysteresis with one loop width, prepared for frames with one full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hysteresis {
     /// Loop width w, a fraction of the full scale.
     width: f64,
-    /// Thresholds rⱼ, in the unit of the frame.
+    /// Thresholds rⱼ of the play operators, in the unit of the frame.
     thresholds: [f64; N_PLAYS],
 }
 
 impl Hysteresis {
-    /// Prepares a loop of a width (fraction of the full scale, 0 to 0.25). `full_scale` is in the unit of the frames.
+    /// Prepares a hysteresis loop of a width (fraction of the full scale, 0 to 0.25). `full_scale` is in the unit of the frames.
     ///
     /// # Errors
     /// If the width is not from 0 to 0.25.
@@ -44,7 +44,7 @@ impl Hysteresis {
         })
     }
 
-    /// Replaces true values by readings of fresh taxels. `frames` has n_taxels values per frame, frames in the order of time.
+    /// Replaces true values by the readings of previously unloaded taxels. `frames` has n_taxels values per frame, frames in the order of time.
     ///
     /// # Panics
     /// If `n_taxels` is zero or a frame is incomplete.
@@ -102,7 +102,7 @@ mod tests {
         frames
     }
 
-    /// Returns equal steps from a to b, both included.
+    /// Returns equally spaced values from a to b, both included.
     fn ramp(a: f64, b: f64, steps: usize) -> Vec<f64> {
         (0..=steps)
             .map(|i| a + (b - a) * i as f64 / steps as f64)
@@ -146,7 +146,7 @@ mod tests {
             assert_eq!(out[0], 0.0);
             assert!((out[100] - FULL_SCALE).abs() < 1e-17);
             assert!(out.windows(2).all(|w| w[1] >= w[0]));
-            // A direct press equals the end of a slow one, because only turning points of the load matter.
+            // A direct press equals the end of a slow press, because only turning points of the load matter.
             for (deflection, slow) in felt.iter().zip(&out) {
                 assert!((read(width, &[*deflection])[0] - slow).abs() < 1e-17);
             }

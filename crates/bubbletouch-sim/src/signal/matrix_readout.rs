@@ -2,7 +2,7 @@
 //!
 //! The conductance of a taxel is proportional to its value: g = x/X, where X is the full scale; a fully pressed taxel has conductance 1.
 //! The electronics apply 1 V to one row, hold all other lines at 0 V, and measure the current of one column. Each line (wire and
-//! switch) has a resistance ε, relative to that of a fully pressed taxel. The readings of taxels on one line therefore depend on each other \[DA\].
+//! switch) has a resistance ε, relative to a fully pressed taxel's resistance. The readings of taxels on one line therefore depend on each other \[DA\].
 //! With t = 1/ε the voltages v of all lines obey A v = t eᵢ,
 //!
 //! A = ⎡ diag(t + Σⱼ gᵢⱼ)       −G        ⎤  and what is read is  xᵢⱼ ← X t² (A⁻¹)ᵢⱼ,
@@ -19,12 +19,12 @@ use crate::error::{Error, Result};
 use crate::text::in_range::not_negative;
 use crate::world::Grid;
 
-/// Matrix readout of one line resistance, prepared for one grid and full scale.
+/// Matrix readout with one line resistance, prepared for one grid and full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixReadout {
     nx: usize,
     ny: usize,
-    /// Line resistance ε.
+    /// Line resistance ε, relative to the resistance of a fully pressed taxel.
     resistance: f64,
     /// Full scale X, in the unit of the frame.
     full_scale: f64,
@@ -191,7 +191,7 @@ mod tests {
         (0..n).map(value).collect()
     }
 
-    /// Solves Kirchhoff's law at every line by elimination, row by row: the currents of the columns while one row is driven.
+    /// Solves Kirchhoff's law at every line by elimination, row by row, for the currents of the columns while one row is driven.
     fn network(frame: &[f64], (nx, ny): (usize, usize), resistance: f64) -> Vec<f64> {
         let line = 1.0 / resistance;
         let mut out = Vec::new();

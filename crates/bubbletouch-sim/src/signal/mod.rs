@@ -1,8 +1,8 @@
-//! Signal: deflections → frames.
+//! Signal: converts deflections to the frames that a sensor reads.
 //!
 //! A [`Chain`] is a list of [`SignalStep`]s, applied to one frame at a time in the order in which the study lists them.
 //! A frame has one number per taxel: shape ny × nx on a grid, row = patch y, ascending, stored row after row; otherwise in the order of the layout.
-//! On a layout that is no grid, crosstalk and smoothing use the [neighbours](crate::world::Neighbours); a matrix readout needs a grid.
+//! On a layout other than a grid, crosstalk and smoothing use the [neighbours](crate::world::Neighbours); a matrix readout needs a grid.
 //!
 //! | step | equation | symbols |
 //! |---|---|---|
@@ -19,10 +19,9 @@
 //! | [`PinkNoise`](SensorError::PinkNoise) | xᵢ ← xᵢ + σ pᵢ, p of a 1/f spectrum in the order of reading | σ of the full scale |
 //! | [`Quantisation`] | x ← q round(x / q), clipped to the full scale | b bits |
 //!
-//! Smoothing is a filter; the steps below it are sensor errors of real skins: mismatching, drift, hysteresis and crosstalk \[SD\], and errors of
-//! the readout
-//! electronics. A step of zero strength has no effect. The table has the physical order: first the material, then the readout of each taxel,
-//! then the converter. Noise belongs after drift.
+//! Smoothing is a filter; the steps below it are sensor errors of real skins: mismatching, drift, hysteresis and crosstalk \[SD\], and errors of the readout
+//! electronics. A step of zero strength has no effect. The table has the physical order: first the material, then the readout of each taxel, then the
+//! converter. Noise belongs after drift.
 //!
 //! **Units.** A chain starts from deflections in metres. `Force` converts them to newtons and may occur once. [`Noise`] converts its
 //! standard deviation to the current unit of the frame; so does each step whose strength is a fraction of the full scale.

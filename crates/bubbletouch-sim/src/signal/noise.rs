@@ -10,7 +10,7 @@ use rand::Rng;
 use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 
-/// Unit of a noise standard deviation.
+/// Unit of the standard deviation of noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoiseUnit {
@@ -25,17 +25,17 @@ pub enum NoiseUnit {
 /// Independent zero-mean Gaussian noise on every taxel, touched or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// Standard deviation σ, in `unit`; zero or positive.
+    /// Standard deviation σ of the noise, in `unit`; zero or positive.
     pub std: f64,
-    /// The unit of `std`.
+    /// Unit of the standard deviation.
     pub unit: NoiseUnit,
 }
 
 impl Noise {
-    /// Returns σ in the unit of the frame: metres for deflections, newtons for forces.
+    /// Returns the standard deviation σ in the unit of the frame: metres for deflections, newtons for forces.
     ///
     /// # Errors
-    /// If `std` is negative or not finite; if its unit is millimetres for forces or newtons for deflections.
+    /// If `std` is negative or not finite, or its unit does not fit: millimetres for forces, or newtons for deflections.
     pub fn std_of(&self, quantity: Quantity, taxel: &Taxel) -> Result<f64> {
         not_negative("noise std", self.std, "")?;
         match (self.unit, quantity) {
@@ -59,7 +59,7 @@ impl Noise {
     }
 }
 
-/// Adds σ zᵢ to each value. z is drawn from the start of the stream and does not depend on σ. σ = 0 draws nothing.
+/// Adds σ zᵢ to each value. The normal numbers z are drawn from the start of the stream and do not depend on σ. If σ = 0, nothing is drawn.
 pub(super) fn add_normal(frame: &mut [f64], std: f64, stream: &Seed) {
     if std == 0.0 {
         return;

@@ -1,7 +1,7 @@
 //! Pink noise: 1/f noise of an amplifier that reads the taxels one after another.
 //!
-//! Readings are numbered row after row and frame after frame. Reading r of a touch becomes xᵣ ← xᵣ + σ pᵣ, where p has variance 1 and a power
-//! spectrum proportional to 1/f over K octaves below the readings' frequency. p is the sum of Voss and McCartney: source k of K sources is
+//! Readings are numbered row after row and frame after frame. Reading r of a touch becomes xᵣ ← xᵣ + σ pᵣ. The noise p has variance 1 and a power spectrum
+//! proportional to 1/f over K octaves below the readings' frequency. Voss and McCartney's method computes p as a sum: source k of K sources is
 //! redrawn every 2ᵏ readings and constant in between,
 //!
 //! p = K^(−½) Σₖ zₖ,  E pᵣ pᵣ₊ₗ = K⁻¹ Σₖ max(0, 1 − l/2ᵏ),  k = 0 … K − 1.
@@ -36,7 +36,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// Pink noise of one standard deviation σ, in the unit of the frame.
+/// Pink noise with one standard deviation σ, in the unit of the frame.
 #[derive(Debug)]
 struct PinkNoise {
     std: f64,
@@ -56,7 +56,7 @@ fn stream(touch: &Seed, source: usize) -> Seed {
     touch.named("pink noise").numbered(source as u64)
 }
 
-/// Adds one source, redrawn every `hold` readings counted back from the end; the last hold has a random length of 1 to `hold` readings.
+/// Adds the noise of one source, redrawn every `hold` readings counted back from the end. The last hold has a random length of 1 to `hold` readings.
 fn add_held(readings: &mut [f64], scale: f64, hold: usize, stream: &Seed) {
     let mut rng = stream.rng();
     let first = rng.gen_range(1..=hold);
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::statistics::standard_errors::{assert_expected, of_mean};
 
-    /// Returns the noise of a touch with `n_readings` readings and standard deviation 1.
+    /// Returns pink noise of standard deviation 1 for a touch with `n_readings` readings.
     fn noise(touch: u64, n_readings: usize) -> Vec<f64> {
         let mut readings = vec![0.0; n_readings];
         let seed = Seed::new(5).numbered(touch);

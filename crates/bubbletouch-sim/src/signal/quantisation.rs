@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 /// Maximum number of bits. A finer step is smaller than any effect of a touch.
 const MAX_BITS: u32 = 24;
 
-/// Converter, prepared for frames of one range.
+/// Analogue-to-digital converter, prepared for frames of one range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantisation {
     least: f64,
@@ -37,7 +37,7 @@ impl Quantisation {
         })
     }
 
-    /// Clips and rounds each value.
+    /// Clips each value to the range and rounds it to the nearest code.
     pub fn convert(&self, frame: &mut [f64]) {
         for value in frame {
             let share = (*value - self.least) / self.span;

@@ -1,14 +1,14 @@
-//! Physical quantity of a frame.
+//! Physical quantity of a frame: deflection or force.
 
 use crate::world::Taxel;
 
-/// Physical quantity of the numbers of a frame.
+/// Physical quantity that the numbers of a frame represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
-    /// Deflection, metres.
+    /// Deflection of each taxel, metres.
     Deflection,
-    /// Force, newtons.
+    /// Force of each taxel, newtons.
     Force,
 }
 

@@ -3,20 +3,20 @@
 //! Taxels are read row after row. Taxel i of n is read τᵢ = T i/n after the first one, T the scan time of the
 //! array. A frame that begins at time t contains xᵢ(t + τᵢ): taxels that are read later are pressed deeper.
 //! Between the frames of a touch the values are interpolated linearly. After the last frame the press is at rest. The last frame
-//! of a touch, and a touch of a single frame, are therefore unchanged; so is a touch whose press stops at each depth.
+//! of a touch, and a touch of a single frame, are therefore unchanged. A touch whose press stops at each depth is also unchanged.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::Result;
 use crate::text::in_range::not_negative;
 
-/// Scan of one duration.
+/// Scan that reads the taxels one after another within a given duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scan {
     seconds: f64,
 }
 
 impl Scan {
-    /// Prepares a scan of a duration in seconds, zero or more.
+    /// Prepares a scan with a duration in seconds, zero or more.
     ///
     /// # Errors
     /// If the time is negative or not finite.
@@ -37,7 +37,7 @@ impl Scan {
         let last = frames.len() / n_taxels - 1;
         for taxel in 0..n_taxels {
             let late = self.seconds / interval * taxel as f64 / n_taxels as f64;
-            // A frame needs itself and later frames, which still contain the true values.
+            // Each frame is computed from itself and later frames, which still contain the true values.
             for frame in 0..last {
                 let time = (frame as f64 + late).min(last as f64);
                 let before = (time as usize).min(last - 1);

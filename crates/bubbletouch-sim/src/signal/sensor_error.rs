@@ -1,4 +1,4 @@
-//! Description of a sensor error: its step, its strengths, its dependencies and its constructor.
+//! Description of a sensor error: its signal step, strengths, dependencies and constructor.
 
 use super::taxel_effect::TaxelEffect;
 use crate::error::Result;
@@ -11,13 +11,13 @@ use std::fmt::Debug;
 pub struct Strength {
     /// Key in `[signal]` and name of the table column.
     pub key: &'static str,
-    /// Name in texts, before a value: `gain mismatch`.
+    /// Display name of the strength, written before a value: `gain mismatch`.
     pub words: &'static str,
     /// Unit of the value, such as `ms`; `%` for a fraction.
     pub unit: &'static str,
     /// Whether the value must be an integer.
     pub is_whole: bool,
-    /// Returns whether a value is allowed.
+    /// Function that returns whether a value is allowed.
     pub is_allowed: fn(f64) -> bool,
     /// Allowed values, in words.
     pub allowed: &'static str,
@@ -33,10 +33,10 @@ pub type Prepare = fn(&[f64; MAX_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
 pub type PrepareByTaxel =
     fn(&[f64; MAX_STRENGTHS], f64, CounterKey) -> Result<Box<dyn TaxelEffect>>;
 
-/// Description of a sensor error.
+/// Description of a sensor error: strengths, dependencies, and constructors.
 #[derive(Debug)]
 pub struct ErrorAbout {
-    /// Name of the step in `signal.steps`.
+    /// Name of the error's step in `signal.steps`.
     pub step: &'static str,
     /// Strength parameters: one, or [two](MAX_STRENGTHS) fractions whose sum is at most 1.
     pub strengths: &'static [Strength],
@@ -50,16 +50,16 @@ pub struct ErrorAbout {
     pub needs_motion: bool,
     /// Whether the error depends on the positions of the taxels: on their neighbours, or on rows and columns.
     pub needs_places: bool,
-    /// Checks the strengths, at least one of them nonzero, and prepares the effect.
+    /// Function that checks the strengths, at least one of them nonzero, and prepares the effect.
     pub prepare: Prepare,
-    /// Prepares the error for a [`BodyReadout`](super::BodyReadout); `None` if it depends on other taxels or on other frames.
+    /// Function that prepares the error for a [`BodyReadout`](super::BodyReadout); `None` if the error depends on other taxels or on other frames.
     pub by_taxel: Option<PrepareByTaxel>,
 }
 
 /// Maximum number of strength parameters of a sensor error.
 pub const MAX_STRENGTHS: usize = 2;
 
-/// Skin for which a sensor error is prepared.
+/// Skin for which a sensor error is prepared, with its full scale and seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Skin<'a> {
     /// Patch with the taxels of the skin.
@@ -68,22 +68,22 @@ pub struct Skin<'a> {
     pub full_scale: f64,
     /// Lowest possible reading: zero, or minus the full scale if values have a sign.
     pub least: f64,
-    /// Seed of this piece of hardware; it is constant over all touches.
+    /// Seed of this piece of hardware, constant over all touches.
     pub name: Seed,
 }
 
 /// Prepared sensor error or smoothing, applied to frames.
 pub trait Effect: Debug + Send + Sync {
-    /// Number of values of working memory that [`apply`](Self::apply) needs.
+    /// Number of values of working memory that `apply` needs.
     fn scratch_len(&self) -> usize {
         0
     }
 
-    /// Applies the effect to frames of n_taxels values each, in the order of time. Must not allocate memory.
+    /// Applies the effect to frames of n_taxels values each, in the order of time, without allocating memory.
     fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]);
 }
 
-/// Metadata of a touch: how its frames are read.
+/// Metadata of a touch that determine how its frames are read.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchRead<'a> {
     /// Number of values in a frame.
@@ -165,7 +165,7 @@ macro_rules! sensor_errors {
             $(#[doc = $doc] $name,)*
         }
 
-        /// All sensor errors.
+        /// List of all sensor errors.
         pub const SENSOR_ERRORS: &[SensorError] = &[$(SensorError::$name),*];
 
         impl SensorError {

@@ -10,24 +10,24 @@ use crate::error::{Error, Result};
 use crate::world::Grid;
 use multiversion::multiversion;
 
-/// Radius of the kernel, in widths.
+/// Radius of the kernel, in multiples of the width.
 const TRUNCATE: f64 = 4.0;
-/// Largest width in taxel pitches. The limit is far above the size of any array and bounds the time to sum the kernel (about 50 ms).
+/// Largest width, in taxel pitches. The limit is far above the size of any array and bounds the time to sum the kernel (about 50 ms).
 const MAX_WIDTH_PITCHES: f64 = 1e6;
 
-/// Gaussian smoothing of one width, prepared for one grid.
+/// Gaussian smoothing with one width, prepared for one grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothing {
     nx: usize,
     ny: usize,
-    /// Kernel weights at distances 0, 1, … along x, with the mirroring folded in: at most nx + 1.
+    /// Kernel weights at distances 0, 1, … along x, with the mirrored parts added; at most nx + 1 weights.
     taps_x: Vec<f64>,
-    /// Kernel weights along y, at most ny + 1.
+    /// Kernel weights at distances 0, 1, … along y, with the mirrored parts added; at most ny + 1 weights.
     taps_y: Vec<f64>,
 }
 
 impl Smoothing {
-    /// Prepares a width (σ, metres, zero or positive) for a grid. Width 0 has no effect.
+    /// Prepares Gaussian smoothing with a width (σ, metres, zero or positive) for a grid. Width 0 has no effect.
     ///
     /// # Errors
     /// If the width is negative, not finite or above a million pitches.
@@ -49,7 +49,7 @@ impl Smoothing {
         })
     }
 
-    /// How many numbers of scratch [`apply`](Self::apply) needs: one frame and one mirrored line.
+    /// Returns the number of scratch values that `apply` needs: one frame and one mirrored line.
     pub fn scratch_len(&self) -> usize {
         self.nx * self.ny + self.nx + 2 * (self.taps_x.len() - 1)
     }
@@ -57,7 +57,7 @@ impl Smoothing {
     /// Smooths a frame of ny × nx values in place.
     ///
     /// # Panics
-    /// When the frame has another size, or the scratch is shorter than [`scratch_len`](Self::scratch_len).
+    /// If the frame has another size, or the scratch is shorter than `scratch_len` returns.
     pub fn apply(&self, frame: &mut [f64], scratch: &mut [f64]) {
         assert_eq!(frame.len(), self.nx * self.ny, "one value for each taxel");
         if self.taps_x.len() == 1 && self.taps_y.len() == 1 {
@@ -86,8 +86,8 @@ impl Effect for Smoothing {
     }
 }
 
-/// Smooths along y. Each output row is a weighted sum of input rows, added in mirrored pairs: a flipped frame gives the
-/// flipped result bit by bit.
+/// Smooths a frame along y. Each output row is a weighted sum of input rows, added in mirrored pairs, so that a flipped frame gives the flipped result bit by
+/// bit.
 fn smooth_columns(frame: &[f64], out: &mut [f64], nx: usize, taps: &[f64]) {
     let ny = frame.len() / nx;
     let row = |y: isize| {
@@ -126,7 +126,7 @@ fn start(out: &mut [f64], values: &[f64], tap: f64) {
     }
 }
 
-/// Adds `tap` times the sum of two rows at equal distances on both sides.
+/// Adds `tap` times the sum of two rows at equal distances on either side.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_pair(out: &mut [f64], (a, b): (&[f64], &[f64]), tap: f64) {
     let n = out.len();
@@ -184,7 +184,7 @@ mod tests {
     fn width_zero_changes_nothing() {
         let frame: Vec<f64> = (0..12).map(|i| (i as f64).sin()).collect();
         assert_eq!(smoothed(&frame, 4, 3, 0.0), frame);
-        // A reach below half a step has no effect: 4 σ + ½ < 1.
+        // A kernel radius below half a step has no effect: 4 σ + ½ < 1.
         assert_eq!(smoothed(&frame, 4, 3, 0.1), frame);
     }
 

@@ -3,7 +3,7 @@
 use super::{MAX_STRENGTHS, Noise, SENSOR_ERRORS, SensorError};
 use crate::random::Seed;
 
-/// One step of the signal chain, as a study lists it.
+/// Step of a signal chain, as listed in a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SignalStep {
     /// Converts deflections to forces.
@@ -12,14 +12,14 @@ pub enum SignalStep {
     Noise(Noise),
     /// Smooths the frame.
     Smoothing {
-        /// σ of the Gaussian, metres, zero or positive.
+        /// Standard deviation σ of the Gaussian, metres, zero or positive.
         width: f64,
     },
     /// Applies a sensor error.
     Error {
-        /// Type of the error.
+        /// Type of the sensor error.
         error: SensorError,
-        /// Values of its [strengths](super::ErrorAbout::strengths), zero or positive.
+        /// Values of the error's strengths, zero or positive.
         strengths: [f64; MAX_STRENGTHS],
         /// Seed of the skin that has the error.
         skin: Seed,

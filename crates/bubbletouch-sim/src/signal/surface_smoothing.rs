@@ -1,18 +1,18 @@
-//! Gaussian smoothing on a skin that is no grid.
+//! Gaussian smoothing on a skin that is not a grid.
 //!
-//! xᵢ ← Σⱼ wᵢⱼ xⱼ / Σⱼ wᵢⱼ, wᵢⱼ = exp(−½ (dᵢⱼ / w)²), over all taxels whose distance d along the surface ([`Neighbours`]) is at most 4 w. w is
-//! the width (σ) in metres, as on a [grid](super::Smoothing). Taxels beyond an edge have no weight; a uniform frame is unchanged.
+//! xᵢ ← Σⱼ wᵢⱼ xⱼ / Σⱼ wᵢⱼ, wᵢⱼ = exp(−½ (dᵢⱼ / w)²), over all taxels whose distance d along the surface ([`Neighbours`]) is at most 4 w. w is the width (σ) in
+//! metres, as on a grid. Taxels beyond an edge have no weight; a uniform frame is unchanged.
 
 use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};
 use crate::world::{Neighbours, Patch};
 
-/// Radius of the kernel, in widths.
+/// Radius of the kernel, in multiples of the width.
 const TRUNCATE: f64 = 4.0;
-/// Maximum number of weights; they need one gigabyte.
+/// Maximum number of weights of a kernel; this many weights need one gigabyte.
 const MAX_WEIGHTS: usize = 1 << 26;
 
-/// Gaussian smoothing of one width, prepared for one skin.
+/// Gaussian smoothing with one width, prepared for one skin.
 #[derive(Debug)]
 pub(super) struct SurfaceSmoothing {
     /// Index of the first weight of each taxel, followed by the total number of weights.
@@ -23,7 +23,7 @@ pub(super) struct SurfaceSmoothing {
 }
 
 impl SurfaceSmoothing {
-    /// Prepares a width (σ, metres, zero or positive).
+    /// Prepares Gaussian smoothing with a width (σ, metres, zero or positive) for a skin.
     ///
     /// # Errors
     /// If the width is negative or not finite, or if there are more than [`MAX_WEIGHTS`] pairs of taxels within four widths.

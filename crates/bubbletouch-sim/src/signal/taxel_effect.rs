@@ -7,13 +7,12 @@ use crate::contact::{Instructions, for_instructions};
 use crate::random::{CounterKey, GROUP};
 use std::fmt::Debug;
 
-/// Number of taxels that are read together. If the value is larger, the data leave the processor's cache; if the value is smaller, blocks of counters are
-/// only partly used.
+/// Number of taxels that are read together. If larger, the data leave the processor's cache; if smaller, blocks of counters are only partly used.
 pub(super) const CHUNK: usize = 512;
 /// Number of counters that are computed together: f64 lanes of 512 bits.
 const LANES: usize = 8;
 
-/// Time at which a body is read.
+/// Time at which a whole body is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Index of the frame; the noise depends on it.
@@ -28,14 +27,14 @@ pub trait TaxelEffect: Debug + Send + Sync {
     fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]);
 }
 
-/// Draws of eight counters; the first index is the item within its group of four.
+/// Random draws of eight counters; the first index is the item within its group of four.
 type Block = [[f64; LANES]; GROUP];
 
-/// Up to [`CHUNK`] taxels and the counters of their draws.
+/// Block of up to [`CHUNK`] taxels, with the counters of their random draws.
 pub struct Chunk {
     groups: [[u64; LANES]; CHUNK / LANES],
     n_blocks: usize,
-    /// Index of each taxel's draw in `draws`, flattened.
+    /// Flattened index of each taxel's draw in `draws`.
     places: [u16; CHUNK],
     draws: [Block; CHUNK / LANES],
 }
@@ -69,7 +68,7 @@ impl Chunk {
         self.n_blocks = n_groups.div_ceil(LANES);
     }
 
-    /// Draws one number per taxel: the weighted sum of the normal numbers at the indices of `terms`.
+    /// Draws one number per taxel, as the weighted sum of the normal numbers at the indices of `terms`.
     pub(super) fn draw_sum<const N: usize>(&mut self, key: CounterKey, terms: [(u64, f64); N]) {
         let draws = &mut self.draws[..self.n_blocks];
         draws.fill([[0.0; LANES]; GROUP]);
@@ -119,7 +118,7 @@ fn add_each(key: CounterKey, index: u64, weight: f64, groups: &[[u64; LANES]], s
 }
 
 for_instructions! {
-    /// Writes the uniform numbers at an index.
+    /// Writes the uniform random numbers at an index.
     fn lay_uniforms(
         key: CounterKey,
         index: u64,

@@ -1,4 +1,4 @@
-//! Body: patches of skin in a form with few bytes per taxel.
+//! Body of a robot as patches of skin, stored with few bytes per taxel.
 
 use super::dome_patch::DomePatch;
 use super::draped_patch::{self, DrapedPatch};
@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::objects::Sphere;
 use crate::world::{Extrusion, Layout, Patch, Rule, Taxel, Taxels};
 
-/// Patch of a body, stored with few bytes per taxel.
+/// Patch of a whole body, stored with few bytes per taxel.
 #[derive(Clone, Debug)]
 pub struct BodyPatch {
     name: String,
@@ -19,17 +19,17 @@ pub struct BodyPatch {
 /// Arrangement of the taxels of a patch.
 #[derive(Clone, Debug)]
 pub(super) enum Surface {
-    /// One row repeated along a line.
+    /// One row of taxels repeated along a line.
     Rows(RowPatch),
-    /// Rings on a sphere.
+    /// Rings of taxels on a sphere.
     Dome(DomePatch),
-    /// Arbitrary places, each with an axis of its own.
+    /// Arbitrary positions, each with its own axis.
     Draped(DrapedPatch),
 }
 
 impl BodyPatch {
     /// # Errors
-    /// If [`WholeBody::new`] refuses the patch.
+    /// If the patch does not meet the requirements of [`WholeBody::new`].
     fn new(patch: &Patch) -> Result<Self> {
         let name = patch.name().to_owned();
         let refuse = |what: &str, given: String, allowed: String| {
@@ -67,7 +67,7 @@ impl BodyPatch {
         &self.name
     }
 
-    /// Returns the place and axis of every taxel, in the patch frame.
+    /// Returns the rest centre and axis of every taxel, in the patch frame.
     pub fn layout(&self) -> Layout {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().clone().into(),
@@ -76,17 +76,18 @@ impl BodyPatch {
         }
     }
 
-    /// Returns the properties shared by all taxels.
+    /// Returns the properties that all taxels share.
     pub fn taxel(&self) -> &Taxel {
         &self.taxel
     }
 
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of the patch.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
 
-    /// Returns a ball in the patch frame. A sphere can push a taxel only if its distance from the ball's centre is less than both radii plus ρ.
+    /// Returns the patch's bounding ball in the patch frame. A sphere can push a taxel only if its distance from the ball's centre is less than both radii plus
+    /// ρ.
     pub fn ball(&self) -> Sphere {
         match &self.surface {
             Surface::Rows(rows) => rows.ball(),
@@ -100,7 +101,7 @@ impl BodyPatch {
         &self.surface
     }
 
-    /// Returns the number of rows, rings, or blocks of tiles.
+    /// Returns the number of rows, rings, or blocks of tiles, depending on the arrangement.
     pub(super) fn n_rows(&self) -> usize {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().rows().len(),
@@ -109,7 +110,7 @@ impl BodyPatch {
         }
     }
 
-    /// Returns the number of the first taxel of a row.
+    /// Returns the index of the first taxel of a row.
     #[inline(always)]
     pub(super) fn row_start(&self, row: u32) -> u32 {
         match &self.surface {
@@ -122,21 +123,21 @@ impl BodyPatch {
 
 /// All patches of a body.
 ///
-/// Taxels are numbered patch by patch, each in the order of its [layout](BodyPatch::layout).
+/// Taxels are numbered patch by patch, each patch in the order of its [layout](BodyPatch::layout).
 #[derive(Clone, Debug)]
 pub struct WholeBody {
     patches: Vec<BodyPatch>,
-    /// Number of each patch's first taxel.
+    /// Index of each patch's first taxel.
     firsts: Vec<usize>,
     n_taxels: usize,
 }
 
 impl WholeBody {
-    /// Creates a body of patches, each with equal taxels. Patches other than grids, [`Extrusion`]s and [`Dome`](crate::world::Dome)s are fast only if
-    /// neighbours have near numbers: see [`Layout::with_neighbours_together`].
+    /// Creates a body from patches, each with equal taxels. Patches other than grids, extrusions and domes are fast only if neighbouring taxels have close
+    /// indices, as in [`Layout::with_neighbours_together`].
     ///
     /// # Errors
-    /// If two patches have one name, a patch has taxels of more than one kind, or a dome is smaller than the depth of its taxels.
+    /// If two patches have equal names, a patch has taxels of more than one kind, or a dome is smaller than the depth of its taxels.
     pub fn new(patches: &[Patch]) -> Result<Self> {
         let patches = patches.iter().map(BodyPatch::new);
         let patches = patches.collect::<Result<Vec<_>>>()?;
@@ -164,12 +165,12 @@ impl WholeBody {
         &self.patches
     }
 
-    /// Returns the number of the first taxel of each patch.
+    /// Returns the index of the first taxel of each patch.
     pub fn firsts(&self) -> &[usize] {
         &self.firsts
     }
 
-    /// Returns the patch of a taxel, and the taxel's number in the patch.
+    /// Returns the index of the patch that contains a taxel, and the taxel's index in this patch.
     ///
     /// # Panics
     /// If the taxel does not exist.
@@ -179,11 +180,11 @@ impl WholeBody {
         (patch, taxel - self.firsts[patch])
     }
 
-    /// Returns the number of taxels of all patches.
+    /// Returns the number of taxels of all patches together.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
-    /// Returns the memory of the body in bytes, without the state ([`BodyState::n_bytes`](super::BodyState::n_bytes)).
+    /// Returns the memory of the body in bytes, excluding its [`BodyState`](super::BodyState).
     pub fn n_bytes(&self) -> usize {
         let patch = |patch: &BodyPatch| {
             let surface = match &patch.surface {
@@ -196,7 +197,7 @@ impl WholeBody {
         self.patches.iter().map(patch).sum::<usize>() + size_of_val(&self.firsts[..])
     }
 
-    /// Returns a dense frame of the whole body, shape (n_taxels,), from the values of some taxels; all others are zero.
+    /// Returns a dense frame of the whole body, shape (n_taxels,), from the values of some taxels; all other values are zero.
     ///
     /// # Panics
     /// If a taxel does not exist.

@@ -1,4 +1,4 @@
-//! State of a body between steps.
+//! State of a whole body, carried from step to step.
 
 use super::body_patch::WholeBody;
 use super::patch_state::PatchState;
@@ -6,19 +6,19 @@ use crate::contact::Instructions;
 use crate::geometry::Pose;
 use crate::objects::{Sphere, SphereClusters};
 
-/// Number of deflected taxels at the last step above which threads share the work. Smaller: the work ends before a second thread has started.
+/// Number of deflected taxels at the last step above which several threads are used. If smaller, the work ends before a second thread has started.
 pub const WORTH_THREADS: usize = 4000;
 
-/// Deflections of a body between steps. Reuse avoids allocations once the largest touch has been computed.
+/// Deflections of a whole body, carried from step to step. Reuse avoids allocations once the largest touch has been computed.
 #[derive(Clone, Debug, Default)]
 pub struct BodyState {
     patches: Vec<PatchState>,
     world_from_patches: Vec<Pose>,
-    /// Ball around each patch, including ρ, in the world frame, metres.
+    /// Bounding ball of each patch, including the taxels' radius ρ, in the world frame, metres.
     balls: Vec<Sphere>,
-    /// Ball around each object at this step, in the world frame, metres.
+    /// Bounding ball of each object at this step, in the world frame, metres.
     object_balls: Vec<Sphere>,
-    /// Patches that this step must evaluate; ascending.
+    /// Indices of the patches that this step must evaluate, ascending.
     busy: Vec<u32>,
     /// Length of the last step, seconds.
     dt: f64,
@@ -26,24 +26,23 @@ pub struct BodyState {
     contact: BodyContact,
 }
 
-/// Summary of a step.
+/// Summary of one step of a whole body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BodyContact {
     /// Number of taxels with a deflection above zero.
     pub n_touched: usize,
-    /// Number of taxels at their stroke that an object would push further.
+    /// Number of saturated taxels: at their stroke, and an object would push them further.
     pub n_saturated: usize,
     /// Number of patches with a deflected taxel.
     pub n_patches: usize,
-    /// Number of pairs of a sphere and a patch for which rows, rings or tiles were evaluated. The candidates are all spheres of
-    /// objects near a patch.
+    /// Number of evaluated pairs of a sphere and a patch, for which rows, rings or tiles were computed. The candidates are all spheres of objects near a patch.
     pub n_evaluated: usize,
     /// Number of candidate pairs excluded by their clusters or by their distance from the whole patch.
     pub n_rejected: usize,
 }
 
 impl BodyState {
-    /// Creates the state of an untouched body, with the patch frames at the world frame.
+    /// Creates the state of an untouched body whose patch frames coincide with the world frame.
     pub fn at_rest(body: &WholeBody) -> Self {
         let mut state = Self {
             patches: body.patches().iter().map(PatchState::at_rest).collect(),
@@ -53,7 +52,7 @@ impl BodyState {
         state
     }
 
-    /// Selects other instructions than the best for later steps, for comparisons.
+    /// Selects the vector instructions for later steps, for comparisons.
     pub fn use_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }
@@ -79,8 +78,7 @@ impl BodyState {
             }));
     }
 
-    /// Advances by `dt` seconds (positive; irrelevant for taxels without dampers) to the objects' poses `world_from_objects`,
-    /// one per object.
+    /// Advances the state by `dt` seconds (positive; irrelevant for taxels without dampers) to the objects' poses `world_from_objects`, one per object.
     ///
     /// Only patches near an object or with deflected taxels are evaluated. The result does not depend on the number of threads.
     ///
@@ -118,7 +116,7 @@ impl BodyState {
         self.count()
     }
 
-    /// Returns the deflected taxels of the last step, ascending: number and deflection, metres.
+    /// Returns the deflected taxels of the last step, ascending, as pairs of index and deflection (metres).
     pub fn touched(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
         self.touched_of_patches(body).flat_map(|(first, touched)| {
             let touched = touched.iter();
@@ -126,7 +124,7 @@ impl BodyState {
         })
     }
 
-    /// Returns the deflected taxels patch by patch: the number of the patch's first taxel, and the touched taxels numbered from there.
+    /// Returns the deflected taxels patch by patch: the index of the patch's first taxel, and the touched taxels with indices relative to it.
     pub(crate) fn touched_of_patches(
         &self,
         body: &WholeBody,
@@ -137,10 +135,10 @@ impl BodyState {
         })
     }
 
-    /// Returns the forces on the deflected taxels, ascending: number and newtons; 0 for a taxel that relaxes freely.
+    /// Returns the forces on the deflected taxels, ascending, as pairs of index and force (newtons). The force is 0 for a taxel that relaxes freely.
     ///
-    /// The forces equal those of [`DamperState`](crate::contact::DamperState): kδ without a damper. With a damper, the force is the constant one that
-    /// moves the taxel to its deflection within the last step, which tends to kδ + cδ̇.
+    /// The forces equal the forces of [`DamperState`](crate::contact::DamperState), and kδ without a damper. With a damper, the force is the constant force
+    /// that moves the taxel to its deflection within the last step; it tends to kδ + cδ̇.
     pub fn forces(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
         self.busy.iter().flat_map(|&number| {
             let (patch, first) = (number as usize, body.firsts()[number as usize]);
@@ -196,7 +194,7 @@ impl BodyState {
     }
 }
 
-/// Returns the ball around an object at a pose.
+/// Returns the bounding ball of an object at a pose.
 fn in_world((object, pose): (&SphereClusters, &Pose)) -> Sphere {
     let Sphere { center, radius } = object.ball();
     Sphere {
@@ -211,7 +209,7 @@ fn are_near(a: &Sphere, b: &Sphere) -> bool {
     a.center.distance_squared(b.center) <= reach * reach
 }
 
-/// Calls `step` with each number and its state; `first` is the number of the first of `states`. Threads share the work by halving.
+/// Calls `step` with the index of each state and the state; `first` is the index of the first of `states`. Threads share the work by recursive halving.
 fn step_each(
     numbers: &[u32],
     first: u32,

@@ -1,4 +1,4 @@
-//! Robot covered with skin: patches on cylinders, their hemispherical or flat ends, and boxes.
+//! Skin that covers a robot: patches on cylinders, on their hemispherical or flat ends, and on boxes.
 
 use super::body_patch::WholeBody;
 use super::flat_ends::flat_ends;
@@ -9,45 +9,45 @@ use crate::world::{Dome, Extrusion, Grid, Layout, LinkGeometry, Patch, Robot, Ta
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Skin of a robot, with the mounting poses of its patches on the links.
+/// Skin that covers a robot, with the mounting poses of its patches on the links.
 #[derive(Clone, Debug)]
 pub struct CoveredRobot {
     body: WholeBody,
     mounts: Vec<Mount>,
 }
 
-/// Mounting of a patch.
+/// Mounting of a patch: its link, and its pose on the link.
 #[derive(Clone, Copy, Debug)]
 struct Mount {
     link: usize,
     link_from_patch: Pose,
 }
 
-/// Properties of a cover: equal taxels, and size of the patches.
+/// Properties of a cover: the taxels and their pitch, and the size of the patches.
 #[derive(Clone, Copy)]
 struct Cover {
     taxel: Taxel,
-    /// Distance between taxels, metres.
+    /// Distance between neighbouring taxels, metres.
     pitch: f64,
-    /// Approximate side of a patch, metres.
+    /// Approximate side of each patch, metres.
     side: f64,
 }
 
 impl Cover {
-    /// Returns the number of patches along a length.
+    /// Returns the number of patches along a length, metres.
     fn parts(&self, length: f64) -> f64 {
         (length / self.side).round().max(1.0)
     }
 }
 
-/// Patches created so far.
+/// Patches and mountings created so far.
 #[derive(Default)]
 struct Covered {
     patches: Vec<Patch>,
     mounts: Vec<Mount>,
 }
 
-/// Shape on a link.
+/// Shape on a link that is being covered.
 struct On<'a> {
     name: &'a str,
     link: usize,
@@ -55,11 +55,11 @@ struct On<'a> {
 }
 
 impl CoveredRobot {
-    /// Covers the collision cylinders, capsules, spheres and boxes of a robot with equal patches of about `side` by `side`
-    /// metres. Taxels are about `pitch` metres apart, also across seams; on boxes 0.5 to 1.5 pitches across seams.
+    /// Covers the collision cylinders, capsules, spheres and boxes of a robot with equal patches of about `side` by `side` metres. Taxels are about `pitch`
+    /// metres apart, also across seams; on boxes 0.5 to 1.5 pitches across seams.
     ///
-    /// - The side of a cylinder is divided around and along. The name of a patch contains the link, the ring from its lower end, and the
-    ///   place around it from +x, both from 1: `trunk 2.3`. Names for the link's second shape begin with `trunk'`.
+    /// - The side of a cylinder is divided around and along. The name of a patch contains the link, the ring from its lower end, and the position around it
+    ///   from +x, both from 1: `trunk 2.3`. Names for the link's second shape begin with `trunk'`.
     /// - The end of a capsule, and a sphere at the end of a cylinder of its radius, are covered on their outer half. Other spheres are covered
     ///   wholly. Each half is divided from pole to rim: `head cap 2.3` is the third part of the second hemisphere in the file.
     /// - A sphere within a larger one of another link, such as the inner one of an elbow, cannot be touched and is omitted.
@@ -73,11 +73,11 @@ impl CoveredRobot {
         Self::with_cover(robot, Cover { taxel, pitch, side }, &[])
     }
 
-    /// Covers a robot as [`new`](Self::new) does, and covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`.
-    /// Ends that lie on another cylinder, sphere or box with all joints at zero cannot be touched and are omitted.
+    /// Covers a robot as [`new`](Self::new) does, and also covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`. An
+    /// end that lies on another cylinder, sphere or box when all joints are at zero cannot be touched and is omitted.
     ///
     /// # Errors
-    /// If [`new`](Self::new) fails.
+    /// If `new` fails for these arguments.
     pub fn with_flat_ends(robot: &Robot, taxel: Taxel, pitch: f64, side: f64) -> Result<Self> {
         Self::with_cover(robot, Cover { taxel, pitch, side }, &flat_ends(robot)?)
     }
@@ -125,12 +125,12 @@ impl CoveredRobot {
         })
     }
 
-    /// Returns the patches.
+    /// Returns the whole body made of all patches.
     pub fn body(&self) -> &WholeBody {
         &self.body
     }
 
-    /// Returns the index of the link of each patch.
+    /// Returns, for each patch, the index of the link that carries it.
     pub fn links(&self) -> impl ExactSizeIterator<Item = usize> {
         self.mounts.iter().map(|mount| mount.link)
     }
@@ -161,7 +161,7 @@ impl Covered {
     fn add_side(&mut self, on: &On, (radius, length): (f64, f64), cover: Cover) -> Result<()> {
         let Cover { taxel, pitch, .. } = cover;
         let (n_around, n_along) = (cover.parts(TAU * radius), cover.parts(length));
-        // Half a pitch is left at each seam, so that taxels continue at equal distances across it.
+        // At each seam half a pitch is left free, so that taxels continue at equal distances across it.
         let arc = TAU / n_around - pitch / radius;
         let part_length = length / n_along - pitch;
         let part = Extrusion::cylinder(radius, part_length.max(0.0), arc, pitch)
@@ -183,7 +183,7 @@ impl Covered {
         Ok(())
     }
 
-    /// Adds the faces of a box; x and y of each patch are the two axes that follow its normal cyclically.
+    /// Adds the faces of a box; the x and y axes of each patch are the two axes that follow its normal cyclically.
     fn add_faces(&mut self, on: &On, size: DVec3, cover: Cover) -> Result<()> {
         for (face, (axis, side)) in (0..6).map(|face| (face, (face / 2, face % 2))) {
             let outwards = DVec3::AXES[axis] * if side == 0 { 1.0 } else { -1.0 };
@@ -216,7 +216,7 @@ impl Covered {
         Ok(())
     }
 
-    /// Adds a flat end. Half a pitch is left to the rim.
+    /// Adds a patch on the flat end of a cylinder; half a pitch is left free at the rim.
     fn add_end(&mut self, name: &str, end: &End, cover: Cover) -> Result<()> {
         let radius = (end.radius - 0.5 * cover.pitch).max(0.5 * end.radius);
         let layout = Layout::disc(radius, cover.pitch);

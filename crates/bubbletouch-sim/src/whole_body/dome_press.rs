@@ -1,4 +1,4 @@
-//! Presses of spheres on a spherical patch: a sphere covers one interval of each ring of taxels.
+//! Presses of spheres on a spherical patch, in which a sphere covers one interval of each ring of taxels.
 //!
 //! The axis of every taxel passes through the centre. With t = c·n and Q = |c|² − S² the sphere therefore needs
 //! `δ = √(t² − Q) − (t − R)` for any taxel. The deflection is positive where t is above
@@ -26,7 +26,7 @@ const ROUNDING: f64 = 1e-9;
 const ACOS_ROUNDING: f64 = 1e-7;
 
 impl Pushed for DomePatch {
-    /// Always true: the bounding ball, which has been tested, is the only bound.
+    /// Always returns true, because the bounding ball, which has been tested already, is the only bound.
     #[inline(always)]
     fn is_near(&self, _: DVec3, _: f64) -> bool {
         true
@@ -65,8 +65,7 @@ impl Pushed for DomePatch {
     }
 }
 
-/// Returns the largest distance from φ_c, radians, at which `around · cos(φ − φ_c)` is at least `least`, plus rounding; `None` if
-/// there is none.
+/// Returns the largest distance from φ_c, radians, at which `around · cos(φ − φ_c)` is at least `least`, plus rounding; `None` if there is no such angle.
 fn half_width(least: f64, around: f64) -> Option<f64> {
     if least > around * (1.0 + ROUNDING) {
         return None;
@@ -77,7 +76,7 @@ fn half_width(least: f64, around: f64) -> Option<f64> {
     Some((least / around).min(1.0).acos() + ACOS_ROUNDING)
 }
 
-/// Returns the columns of a ring within `half_width` radians of an angle; up to three ranges if the ring is closed.
+/// Returns the columns of a ring within `half_width` radians of an angle. There are up to three ranges if the ring is closed.
 fn covered(ring: &DomeRing, angle: f64, half_width: f64) -> [Range<usize>; 3] {
     [-TAU, 0.0, TAU].map(|turn| {
         let middle = (angle + turn - ring.start) / ring.step;

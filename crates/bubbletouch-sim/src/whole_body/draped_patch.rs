@@ -1,7 +1,7 @@
-//! Patch on any surface: tiles of taxels, each with an axis of its own.
+//! Patch on any surface: tiles of taxels, each taxel with its own axis.
 //!
-//! Taxels are stored in tiles of eight, in the order of their layout. Each tile has a bounding ball, as have eight consecutive tiles,
-//! eight of those groups, and so on. A sphere descends this tree to the tiles nearby.
+//! Taxels are stored in tiles of eight, in the order of their layout. Each tile has a bounding ball; so have eight consecutive tiles, eight of those groups,
+//! and so on. A press descends this tree of balls to the tiles near a sphere.
 
 use super::lanes::{Balls, FAR, LANES, ball_around, filled};
 use crate::objects::Sphere;
@@ -11,26 +11,26 @@ use glam::DVec3;
 /// Number of taxels that share one touched range.
 pub(super) const BLOCK: usize = LANES * LANES;
 
-/// Equal taxels at arbitrary places; 61 bytes per taxel including the state.
+/// Equal taxels at arbitrary positions; 61 bytes per taxel including the state.
 #[derive(Clone, Debug)]
 pub(super) struct DrapedPatch {
     pub n_taxels: usize,
-    /// Height of the substrate, metres.
+    /// Height of the substrate relative to the rest centres, metres.
     pub behind: f64,
     pub tiles: Vec<Tile>,
-    /// Balls of the tree, level by level. The first level is one block of at most eight balls. Ball k bounds block k of the next level;
-    /// on the last level it bounds tile k.
+    /// Balls of the tree, level by level. The first level is one block of at most eight balls. Ball k bounds block k of the next level; on the last level ball
+    /// k bounds tile k.
     pub levels: Vec<Vec<Balls>>,
-    /// Ball around all taxels from their rest centres back to the substrate, in the patch frame.
+    /// Ball around all taxels, from their rest centres back to the substrate, in the patch frame.
     pub ball: Sphere,
 }
 
-/// Eight taxels, coordinate by coordinate. The last tile is padded with taxels far away.
+/// Tile of eight taxels, coordinate by coordinate. The last tile is padded with taxels far away.
 #[derive(Clone, Debug)]
 pub(super) struct Tile {
-    /// Rest centres: x, y, z, metres.
+    /// Rest centres of the taxels: x, y, z, metres.
     pub centers: [[f64; LANES]; 3],
-    /// Axes: x, y, z.
+    /// Axes of the taxels: x, y, z, unit vectors.
     pub axes: [[f64; LANES]; 3],
 }
 
@@ -39,7 +39,7 @@ impl DrapedPatch {
     pub fn new(layout: &Layout, behind: f64) -> Self {
         let taxels = layout.centers().iter().copied();
         let taxels: Vec<_> = taxels.zip(layout.axes().iter().copied()).collect();
-        // From the rest centres back to the substrate.
+        // Segment of a taxel, from the rest centre back to the substrate.
         let ends = |&(center, axis): &(DVec3, DVec3)| [center, center + behind * axis];
         let ball = |taxels: &[_]| ball_around(taxels.iter().flat_map(ends));
         let balls = |n: usize| taxels.chunks(n).map(ball).collect::<Vec<_>>();
@@ -70,7 +70,7 @@ impl DrapedPatch {
             .expect("it has been a layout before")
     }
 
-    /// Returns the heap memory in bytes.
+    /// Returns the heap memory of the patch in bytes.
     pub fn n_bytes(&self) -> usize {
         let levels = self.levels.iter().map(|balls| size_of_val(&balls[..]));
         size_of_val(&self.tiles[..]) + levels.sum::<usize>()

@@ -1,4 +1,4 @@
-//! Presses of spheres on a patch of any surface: a sphere descends the tree of balls to the tiles nearby.
+//! Presses of spheres on a patch of any surface, by descending the tree of balls to the tiles near a sphere.
 
 use super::draped_patch::{BLOCK, DrapedPatch, Tile};
 use super::lanes::{Balls, LANES};
@@ -8,7 +8,7 @@ use crate::contact::LanesBelow;
 use crate::contact::law::{beats, indent, squares_in_front};
 use glam::DVec3;
 
-/// Largest number of levels of balls; each level allows eight times as many taxels.
+/// Maximum number of levels of the tree of balls; each level allows eight times as many taxels.
 const MAX_LEVELS: usize = 10;
 
 impl Pushed for DrapedPatch {
@@ -26,10 +26,10 @@ impl Pushed for DrapedPatch {
 }
 
 impl DrapedPatch {
-    /// Pushes the taxels of a tile.
+    /// Pushes the taxels of a tile by a sphere with its centre in the patch frame.
     #[inline(always)]
     fn push_tile(&self, state: &mut PatchState, tile: usize, center: DVec3, reach: f64) {
-        // S² − b² and h of each taxel.
+        // Squares S² − b² and heights h of each taxel.
         let (mut squares, mut heights) = ([0.0; LANES], [0.0; LANES]);
         let Tile {
             centers: [x, y, z],
@@ -64,9 +64,9 @@ struct Descent<'a> {
     levels: &'a [Vec<Balls>],
     center: DVec3,
     reach: f64,
-    /// Present level.
+    /// Present level of the tree.
     level: usize,
-    /// Block of each level down to the present one, and its balls still to be visited.
+    /// Block of each level down to the present one, and the balls of this block that are still to be visited.
     blocks: [(usize, LanesBelow); MAX_LEVELS],
 }
 

@@ -1,4 +1,4 @@
-//! Hemispheres of a robot that can be touched: ends of capsules, and spheres.
+//! Hemispheres of a robot that objects can touch: ends of capsules, and spheres.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -8,12 +8,12 @@ use glam::{DQuat, DVec3};
 /// Difference below which distances and radii count as equal, metres.
 pub(super) const SAME: f64 = 1e-6;
 
-/// Hemisphere, or flat end of a cylinder, on a link.
+/// Hemisphere or flat end of a cylinder, on a link.
 pub(super) struct End {
     pub link: usize,
-    /// Pose of the end: the centre, with +z to the pole or outwards.
+    /// Pose of the end on the link: origin at the centre, +z towards the pole or outwards.
     pub link_from_end: Pose,
-    /// Radius, metres.
+    /// Radius of the hemisphere or flat end, metres.
     pub radius: f64,
 }
 
@@ -28,8 +28,8 @@ impl End {
     }
 }
 
-/// Returns the outer hemispheres of a robot's collision shapes, link by link, in the order of the file. A sphere that is not at a cylinder's end
-/// has two. Hemispheres within a larger sphere of another link, with all joints at zero, are omitted.
+/// Returns the outer hemispheres of a robot's collision shapes, link by link, in the order of the file. A sphere that is not at a cylinder's end has two
+/// hemispheres. With all joints at zero, hemispheres within a larger sphere of another link are omitted.
 pub(super) fn half_balls(robot: &Robot) -> Result<Vec<End>> {
     let all: Vec<End> = robot
         .links()
@@ -86,7 +86,7 @@ fn of_link(number: usize, link: &Link) -> Vec<End> {
     halves
 }
 
-/// Returns the ends of a cylinder at a pose: centre, and outward unit vector.
+/// Returns the two ends of a cylinder at a pose, each as a centre and an outward unit vector.
 pub(super) fn ends(link_from_cylinder: &Pose, length: f64) -> [(DVec3, DVec3); 2] {
     [-1.0, 1.0].map(|side| {
         let outwards = side * DVec3::Z;

@@ -1,15 +1,15 @@
-//! Blocks of eight: searches test eight balls at a time, and presses evaluate eight taxels at a time.
+//! Blocks of eight values: searches test eight balls at a time, and presses evaluate eight taxels at a time.
 
 use crate::contact::LanesBelow;
 use crate::objects::{ClusterBounds, MAX_IN_CLUSTER, Sphere, SphereClusters};
 use glam::{DMat3, DVec3};
 
-/// Number of taxels or balls in a block: f64 lanes of 512 bits. Larger: needless taxels beside small spheres; smaller: needless
-/// blocks.
+/// Number of taxels or balls in a block: f64 lanes of 512 bits. If larger, taxels beside small spheres are evaluated needlessly; if smaller, more blocks are
+/// tested.
 pub(super) const LANES: usize = 8;
-/// Factor that covers rounding of a reach: far above 1e-16 and far below any measurable difference.
+/// Factor that covers rounding of a radius: far above 1e-16 and far below any measurable difference.
 pub(super) const ROUNDING: f64 = 1.0 + 1e-9;
-/// Coordinate of padding in a block, metres: beyond any reach.
+/// Coordinate of padding entries in a block, metres: beyond the reach of any sphere.
 pub(super) const FAR: f64 = 1e100;
 
 /// Eight balls, coordinate by coordinate, metres.
@@ -40,7 +40,7 @@ impl Balls {
         balls.chunks(LANES).map(block).collect()
     }
 
-    /// Returns the balls that a sphere with this reach comes near.
+    /// Returns the balls that a sphere with the radius `reach` comes near.
     #[inline(always)]
     pub fn near(&self, center: DVec3, reach: f64) -> LanesBelow {
         let mut gaps = [0.0; LANES];
@@ -57,19 +57,19 @@ impl Balls {
     }
 }
 
-/// Transform from an object's frame to a patch, with the region of the patch where taxels can be pushed.
+/// Transform from an object's frame to a patch frame, with the region of the patch where taxels can be pushed.
 pub(super) struct View {
     /// Rows of the rotation matrix.
     rows: DMat3,
     translation: DVec3,
-    /// Radius ρ of a taxel, metres.
+    /// Radius ρ of the taxels, metres.
     taxel_radius: f64,
-    /// Ball around all taxels from their rest centres back to the substrate.
+    /// Ball around all taxels, from their rest centres back to the substrate.
     ball: Sphere,
 }
 
 impl View {
-    /// Creates the transform for an object at `rotation` and `translation` and a patch with taxels of one radius inside `ball`.
+    /// Creates the transform for an object at `rotation` and `translation`, and a patch with taxels of one radius inside `ball`.
     pub fn new(rotation: DMat3, translation: DVec3, taxel_radius: f64, ball: Sphere) -> Self {
         Self {
             rows: rotation.transpose(),
@@ -99,7 +99,8 @@ impl View {
         dx * dx + dy * dy + dz * dz - reach * reach
     }
 
-    /// Computes for each cluster a bound of its distance from the patch, as a difference of squares, m²; below zero if one of its spheres may touch.
+    /// Computes for each cluster a bound of its distance from the patch, as a difference of squares, m². The bound is negative if one of the cluster's spheres
+    /// may touch.
     #[inline(always)]
     pub fn lay_gaps(&self, bounds: &ClusterBounds, gaps: &mut [f64]) {
         let n = gaps.len();
@@ -111,7 +112,7 @@ impl View {
         }
     }
 
-    /// Returns the ball around a cluster: its centre in the patch, and its radius plus ρ.
+    /// Returns the bounding ball of a cluster: its centre in the patch frame, and its radius plus ρ, metres.
     #[inline(always)]
     pub fn ball(&self, bounds: &ClusterBounds, cluster: usize) -> (DVec3, f64) {
         let [x, y, z] = &bounds.middle;
@@ -153,25 +154,25 @@ pub(super) struct Placed {
     z: [f64; MAX_IN_CLUSTER],
     /// Sum of the radii S = ρ + R of each sphere, metres.
     reaches: [f64; MAX_IN_CLUSTER],
-    /// Below zero for spheres that may touch the patch.
+    /// Bounds of the spheres' distances from the patch, m²; negative for spheres that may touch the patch.
     gaps: [f64; MAX_IN_CLUSTER],
 }
 
 impl Placed {
-    /// Returns the spheres that may touch the patch.
+    /// Returns the indices of the spheres that may touch the patch.
     #[inline(always)]
     pub fn near(&self) -> LanesBelow {
         LanesBelow::new(&self.gaps, 0.0)
     }
 
-    /// Returns the centre and S of one sphere.
+    /// Returns the centre and the sum of radii S of one sphere, metres.
     #[inline(always)]
     pub fn at(&self, k: usize) -> (DVec3, f64) {
         (DVec3::new(self.x[k], self.y[k], self.z[k]), self.reaches[k])
     }
 }
 
-/// Returns a value of each item, at most a block, padded with the value of `behind`.
+/// Returns the value of each item (at most a block of items), padded with the value of `behind`.
 pub(super) fn filled<T>(items: &[T], behind: &T, value: fn(&T) -> f64) -> [f64; LANES] {
     let mut values = [value(behind); LANES];
     for (lane, item) in values.iter_mut().zip(items) {
@@ -180,7 +181,7 @@ pub(super) fn filled<T>(items: &[T], behind: &T, value: fn(&T) -> f64) -> [f64; 
     values
 }
 
-/// Returns a ball around some points, at least one, centred at their mean.
+/// Returns a ball around some points (at least one), centred at their mean.
 pub(super) fn ball_around(points: impl Iterator<Item = DVec3> + Clone) -> Sphere {
     let center = points.clone().sum::<DVec3>() / points.clone().count() as f64;
     let distances = points.map(|point| point.distance(center));

@@ -8,17 +8,17 @@ use crate::contact::{Instructions, LanesBelow, for_instructions};
 use crate::geometry::Pose;
 use glam::{DMat3, DVec3};
 
-/// Surface of taxels that spheres push. A trait is used because closures would be compiled without vector instructions.
+/// Surface with taxels that spheres push. A trait is used because closures would be compiled without vector instructions.
 pub(super) trait Pushed {
-    /// Returns whether a ball comes near any taxel; centre in the surface's frame and radius plus ρ, metres.
+    /// Returns whether a ball comes near any taxel. The centre is in the surface's frame, and `reach` is the radius plus ρ; metres.
     fn is_near(&self, center: DVec3, reach: f64) -> bool;
 
-    /// Pushes the taxels by a sphere: centre in the surface's frame and S, metres.
+    /// Pushes the taxels by a sphere. The centre is in the surface's frame, and `reach` is the sum of radii S; metres.
     fn push(&self, state: &mut PatchState, center: DVec3, reach: f64);
 }
 
 impl PatchState {
-    /// Relaxes deflected taxels for `dt` seconds, then pushes them by objects at poses in the patch frame.
+    /// Relaxes the deflected taxels of a patch for `dt` seconds, then pushes them by objects at poses in the patch frame.
     pub fn step<'a>(
         &mut self,
         patch: &BodyPatch,
@@ -35,7 +35,7 @@ impl PatchState {
 }
 
 for_instructions! {
-    /// Pushes a patch by one object.
+    /// Pushes the taxels of a patch by one object.
     fn push_object(
         state: &mut PatchState,
         patch: &BodyPatch,

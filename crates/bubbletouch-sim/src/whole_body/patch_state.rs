@@ -1,4 +1,4 @@
-//! State of one patch between steps: the deflected taxels and their deflections.
+//! State of one patch, carried from step to step: the deflected taxels and their deflections.
 
 use super::body_patch::BodyPatch;
 use super::lanes::LANES;
@@ -9,28 +9,28 @@ use std::ops::Range;
 /// Deflection below which a relaxing taxel counts as at rest, metres; a ten-thousandth of the resolution of the finest skins.
 pub const AT_REST: f64 = 1e-9;
 
-/// State of a patch: 8 bytes per taxel, and 8 more per deflected taxel.
+/// State of one patch: 8 bytes per taxel, and 8 more per deflected taxel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PatchState {
-    /// Metres, shape (n_taxels,), padded by one block so that the last row consists of whole blocks too.
+    /// Deflections, metres, shape (n_taxels,), padded by one block so that the last row also consists of whole blocks.
     deflections: Vec<f64>,
     n_taxels: usize,
-    /// Range of columns of each row outside which all taxels are at rest; empty if the whole row is at rest.
+    /// Range of columns in each row outside of which all taxels are at rest; empty if the whole row is at rest.
     spans: Vec<Range<u32>>,
-    /// Rows that are not at rest.
+    /// Indices of the rows that are not at rest.
     active: Vec<u32>,
-    /// Deflected taxels by number, with their deflections, metres.
+    /// Deflected taxels as pairs of index and deflection (metres).
     touched: Vec<(u32, f64)>,
-    /// Deflected taxels before the last step; only with dampers, whose forces depend on them.
+    /// Deflected taxels before the last step, stored only with dampers, whose forces depend on them.
     before: Vec<(u32, f64)>,
     n_saturated: usize,
     /// Number of spheres for which rows, rings or tiles were evaluated in the last step.
     pub n_evaluated: usize,
-    /// Number of spheres of objects near the patch that were excluded before.
+    /// Number of spheres near the patch that were excluded before evaluating rows, rings or tiles.
     pub n_rejected: usize,
-    /// Scratch memory of a search: for each cluster of an object a bound, below zero if one of its spheres may touch.
+    /// Scratch memory of a search: for each cluster of an object a bound, negative if one of its spheres may touch.
     pub gaps: Vec<f64>,
-    /// Scratch memory for a sphere: the bundles under it, by their first columns.
+    /// Scratch memory for one sphere: the bundles of columns under it, with their first columns.
     pub under: Vec<(u32, SphereOverBundle)>,
 }
 
@@ -49,17 +49,17 @@ impl PatchState {
         self.active.is_empty()
     }
 
-    /// Returns the deflected taxels, ascending, and their deflections, metres.
+    /// Returns the deflected taxels, ascending, as pairs of index and deflection (metres).
     pub fn touched(&self) -> &[(u32, f64)] {
         &self.touched
     }
 
-    /// Returns the number of taxels at their stroke that would be pushed further.
+    /// Returns the number of taxels at their stroke that an object would push further.
     pub fn n_saturated(&self) -> usize {
         self.n_saturated
     }
 
-    /// Returns the memory in bytes.
+    /// Returns the memory of the state in bytes.
     pub fn n_bytes(&self) -> usize {
         size_of::<Self>()
             + size_of_val(&self.deflections[..])
@@ -70,7 +70,7 @@ impl PatchState {
             + (self.touched.capacity() + self.before.capacity()) * size_of::<(u32, f64)>()
     }
 
-    /// Returns the deflections, metres, shape (n_taxels,).
+    /// Returns the deflections of the patch, metres, shape (n_taxels,).
     pub fn deflections(&self) -> &[f64] {
         &self.deflections[..self.n_taxels]
     }
@@ -84,7 +84,7 @@ impl PatchState {
         self.relax(patch, relaxation_factor(patch.taxel(), dt));
     }
 
-    /// Returns the deflected taxels, ascending, and the forces, newtons, that moved them in the last step of `dt` seconds.
+    /// Returns the deflected taxels, ascending, with the forces, newtons, that moved them in the last step of `dt` seconds.
     pub fn forces(&self, patch: &BodyPatch, dt: f64) -> impl Iterator<Item = (u32, f64)> {
         let relaxation = Relaxation::new(patch.taxel(), dt);
         let mut before = self.before.iter().copied().peekable();
@@ -96,7 +96,7 @@ impl PatchState {
         })
     }
 
-    /// Raises the deflections of a row's `columns` to those that `needed` returns, metres.
+    /// Raises the deflections of a row's `columns` to the values that `needed` returns, metres.
     #[inline(always)]
     pub fn push_row(
         &mut self,
@@ -113,13 +113,13 @@ impl PatchState {
         }
     }
 
-    /// Extends a row's range to contain some columns, and marks the row as active.
+    /// Extends a row's range of deflected columns to contain `columns`, and marks the row as active.
     #[inline(always)]
     pub fn widen(&mut self, row: usize, columns: &Range<u32>) {
         widen(&mut self.spans[row], columns, row as u32, &mut self.active);
     }
 
-    /// Returns a block of taxels; beyond the row's end it contains taxels of the next row.
+    /// Returns a block of deflections; beyond the row's end the block contains taxels of the next row.
     #[inline(always)]
     pub fn block(&mut self, first: usize) -> &mut [f64; LANES] {
         let block = self.deflections[first..].first_chunk_mut();
@@ -163,7 +163,7 @@ impl PatchState {
 
 /// Limits the deflections of consecutive taxels to the stroke, lists the deflected ones, and counts the saturated ones.
 ///
-/// As a separate function its few values stay in registers; inlined, it takes a sixth longer.
+/// A separate function keeps its few values in registers; inlined, it takes a sixth longer.
 #[inline(never)]
 fn read_row(taxels: &mut [f64], first: u32, stroke: f64, touched: &mut Vec<(u32, f64)>) -> usize {
     let limit = saturation_limit(stroke);
@@ -179,7 +179,7 @@ fn read_row(taxels: &mut [f64], first: u32, stroke: f64, touched: &mut Vec<(u32,
     n_saturated
 }
 
-/// Extends a row's range to contain another one, and marks the row as active.
+/// Extends a row's range of deflected columns to contain another range, and marks the row as active.
 #[inline(always)]
 fn widen(span: &mut Range<u32>, by: &Range<u32>, row: u32, active: &mut Vec<u32>) {
     if span.start >= span.end {

@@ -7,20 +7,20 @@ use crate::objects::Sphere;
 use crate::world::Extrusion;
 use glam::{DVec2, DVec3};
 
-/// Equal taxels in a repeated row, with the structures that find taxels near a sphere.
+/// Equal taxels in a repeated row, with the structures that find the taxels near a sphere.
 #[derive(Clone, Debug)]
 pub(super) struct RowPatch {
     extrusion: Extrusion,
-    /// Height of the substrate, metres.
+    /// Height of the substrate relative to the rest centres, metres.
     behind: f64,
     bundles: Vec<Bundle>,
     circles: Vec<Balls>,
     lines: Lines,
-    /// Ball around all taxels from their rest centres back to the substrate: u, v, w.
+    /// Ball around all taxels, from their rest centres back to the substrate, in the coordinates u, v, w.
     ball: Sphere,
 }
 
-/// Neighbouring columns, coordinate by coordinate: rest centres (metres) and axes. The last bundle is padded with columns far away.
+/// Bundle of neighbouring columns, coordinate by coordinate: rest centres (metres) and axes. The last bundle is padded with columns far away.
 #[derive(Clone, Debug)]
 pub(super) struct Bundle {
     pub u: [f64; LANES],
@@ -30,7 +30,7 @@ pub(super) struct Bundle {
 }
 
 impl RowPatch {
-    /// Creates the patch, with the substrate at the height `behind`, metres.
+    /// Creates the patch, with the substrate at the height `behind`, metres, relative to the rest centres.
     pub fn new(extrusion: Extrusion, behind: f64) -> Self {
         let columns = extrusion.places().iter().copied();
         let columns: Vec<_> = columns.zip(extrusion.axes().iter().copied()).collect();
@@ -39,7 +39,7 @@ impl RowPatch {
             lines.positions[0],
             lines.positions[lines.positions.len() - 1],
         );
-        // From the rest centres back to the substrate, across the rows.
+        // Segment of a column, from the rest centre back to the substrate, in the plane across the rows.
         let ends = |&(place, axis): &(DVec2, DVec2)| {
             [place, place + behind * axis].map(|end: DVec2| end.extend(0.0))
         };
@@ -60,18 +60,18 @@ impl RowPatch {
         }
     }
 
-    /// Returns the rest centres and axes of the taxels.
+    /// Returns the extrusion with the rest centres and axes of the taxels.
     pub fn extrusion(&self) -> &Extrusion {
         &self.extrusion
     }
 
-    /// Returns the height of the substrate, metres.
+    /// Returns the height of the substrate relative to the rest centres, metres.
     #[inline(always)]
     pub fn behind(&self) -> f64 {
         self.behind
     }
 
-    /// Returns the ball of [`BodyPatch::ball`](super::BodyPatch::ball).
+    /// Returns the bounding ball of the patch, in the patch frame.
     pub fn ball(&self) -> Sphere {
         Sphere {
             center: self.extrusion.uvw_from_patch().transpose() * self.ball.center,
@@ -79,12 +79,12 @@ impl RowPatch {
         }
     }
 
-    /// Returns the ball of the patch with its centre as u, v, w.
+    /// Returns the bounding ball of the patch, with its centre in the coordinates u, v, w.
     pub fn ball_in_uvw(&self) -> Sphere {
         self.ball
     }
 
-    /// Returns the heap memory in bytes.
+    /// Returns the heap memory of the patch in bytes.
     pub fn n_bytes(&self) -> usize {
         size_of_val(self.extrusion.places())
             + size_of_val(self.extrusion.axes())
@@ -94,7 +94,7 @@ impl RowPatch {
             + size_of_val(&self.lines.positions[..])
     }
 
-    /// Returns the rows.
+    /// Returns the positions of the rows.
     pub fn lines(&self) -> &Lines {
         &self.lines
     }
@@ -104,7 +104,7 @@ impl RowPatch {
         &self.bundles
     }
 
-    /// Returns circles around the bundles across the rows, as balls with their centres at w = 0.
+    /// Returns circles around the bundles in the plane across the rows, as balls with their centres at w = 0.
     pub fn circles(&self) -> &[Balls] {
         &self.circles
     }
@@ -124,18 +124,18 @@ impl Bundle {
     }
 }
 
-/// Sphere above the columns of a bundle, equal for all rows.
+/// Quantities of a sphere above the columns of a bundle, equal for all rows.
 #[derive(Clone, Debug)]
 pub(super) struct SphereOverBundle {
-    /// S² − b² of each column, m².
+    /// Square S² − b² of each column, m².
     pub squares: [f64; LANES],
     /// Height h of the sphere above each column, metres.
     pub heights: [f64; LANES],
 }
 
 impl SphereOverBundle {
-    /// Returns the sphere above the columns, and the square of the largest distance along the rows, m², at which it pushes a taxel from the front.
-    /// The square is zero or less if the sphere pushes none.
+    /// Returns the sphere's quantities above the columns, and the square of the largest distance along the rows, m², at which it pushes a taxel from the front.
+    /// The square is zero or less if the sphere pushes no taxel.
     #[inline(always)]
     pub fn new(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -152,7 +152,7 @@ impl SphereOverBundle {
         (Self { squares, heights }, largest(&spares))
     }
 
-    /// Indents the taxels of a row at the distance √`along2` along the rows; `along2` in m².
+    /// Raises the deflections of the taxels in a row at the distance √`along2` from the sphere along the rows; `along2` is in m².
     #[inline(always)]
     pub fn push(&self, along2: f64, is_small: bool, taxels: &mut [f64; LANES]) {
         let mut squares = self.squares;
@@ -164,7 +164,7 @@ impl SphereOverBundle {
         }
     }
 
-    /// Returns S² − b² − `along2`, m², for substrates at the height `behind`; zero or less if the sphere does not reach through a substrate.
+    /// Returns S² − b² − `along2`, m², for substrates at the height `behind`; the value is zero or less if the sphere does not reach through a substrate.
     #[inline(always)]
     pub fn through(&self, along2: f64, behind: f64) -> [f64; LANES] {
         let mut squares = self.squares;

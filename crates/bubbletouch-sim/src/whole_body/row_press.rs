@@ -1,4 +1,4 @@
-//! Presses of spheres on a patch of rows: first bundles of columns, then rows.
+//! Presses of spheres on a patch of rows: first bundles of columns are selected, then rows.
 //!
 //! Computed in f64, although f32 roots would be 4.6 times as fast: the rounding of S² in f32 grows with the sphere.
 //! For 32 spheres that touch all of 64 × 64 taxels, the f32 error is 5e-9 m (radius 45 mm, light press) and 2e-7 m (pressed to
@@ -13,8 +13,8 @@ use crate::contact::LanesBelow;
 use crate::contact::law::{beats, indent};
 use glam::DVec3;
 
-/// Number of bundles up to which a sphere counts as small: testing whether the sphere needs more than the present deflection then takes as long as the
-/// root.
+/// Maximum number of bundles for which a sphere counts as small. For a small sphere, testing whether it needs more than the present deflection takes as long as
+/// the root.
 const FEW: usize = 3;
 
 impl Pushed for RowPatch {
@@ -55,7 +55,7 @@ impl Pushed for RowPatch {
     }
 }
 
-/// Replaces each of some heights by the lower of two.
+/// Replaces each value by the smaller of `lowest` and `heights`.
 #[inline(always)]
 fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
     for k in 0..LANES {
@@ -67,14 +67,14 @@ fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
     }
 }
 
-/// Returns whether no row is within reach of a place along the rows.
+/// Returns whether no row is within `reach` of a position w along the rows, metres.
 #[inline(always)]
 fn is_beside(patch: &RowPatch, w: f64, reach: f64) -> bool {
     let rows = &patch.lines().positions;
     w + reach <= rows[0] || w - reach >= rows[rows.len() - 1]
 }
 
-/// Pushes the rows within a distance of w, metres, for some bundles, given by their first columns.
+/// Pushes the rows within a distance of w, metres, for bundles given by their first columns.
 #[inline(always)]
 fn push_rows(
     state: &mut PatchState,

@@ -1,4 +1,4 @@
-//! Independent entries ±1/√n with equal probability.
+//! Bernoulli ensemble: independent entries ±1/√n with equal probability.
 
 use super::dense::{Dense, about, by_rows};
 use super::ensemble::EnsembleAbout;

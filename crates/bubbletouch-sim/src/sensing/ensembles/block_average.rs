@@ -6,7 +6,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-/// Rectangle of taxels.
+/// Rectangular block of taxels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Block {
     /// Row range, along patch y.
@@ -20,7 +20,7 @@ impl Block {
         self.rows.len() * self.columns.len()
     }
 
-    /// Returns two halves along the longer side (along rows if the sides are equal); the first half is not smaller.
+    /// Returns the two halves of a block along its longer side (along rows if the sides are equal); the first half is not smaller.
     fn halves(self) -> [Self; 2] {
         let half = |range: &Range<usize>| range.start + range.len().div_ceil(2);
         if self.rows.len() >= self.columns.len() {
@@ -49,7 +49,7 @@ fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
     blocks
 }
 
-/// Returns m equal squares that tile the array; `None` if this is impossible.
+/// Returns m equal squares that tile the array; `None` if no such tiling exists.
 fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
     let side = (ny * nx / m).isqrt();
     let tiles = side * side * m == ny * nx && ny % side == 0 && nx % side == 0;
@@ -65,7 +65,7 @@ fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
     })
 }
 
-/// Returns blocks by repeated halving; `None` if they differ in size.
+/// Returns m blocks by repeated halving; `None` if they differ in size.
 fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
     let blocks = split_blocks(grid, m);
     let area = blocks[0].area();
@@ -89,7 +89,7 @@ fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     rows.collect()
 }
 
-/// Halves the largest block (the oldest among equals) until there are m.
+/// Halves the largest block (the oldest among equals) until there are m blocks.
 fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     let whole = Block {
         rows: 0..ny,
@@ -114,7 +114,7 @@ fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     blocks
 }
 
-/// Returns ‖φᵢ‖² of each row of Φ; the rows are orthogonal.
+/// Returns the squared norm ‖φᵢ‖² of each row of Φ; the rows are orthogonal.
 fn row_squares(blocks: &[Block]) -> Array1<f64> {
     blocks
         .iter()
@@ -122,7 +122,7 @@ fn row_squares(blocks: &[Block]) -> Array1<f64> {
         .collect()
 }
 
-/// Calls `visit` with measurement, taxel and value of each nonzero entry.
+/// Calls `visit` with the measurement, taxel and value of each nonzero entry of Φ.
 fn each_entry(blocks: &[Block], visit: &mut dyn FnMut(usize, usize, f64)) {
     let nx = width(blocks);
     for (measurement, block) in blocks.iter().enumerate() {
@@ -165,7 +165,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     })
 };
 
-/// Blocks of the measurements.
+/// Block of each measurement.
 #[derive(Debug)]
 struct Blocks(Vec<Block>);
 

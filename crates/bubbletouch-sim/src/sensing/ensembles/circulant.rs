@@ -17,9 +17,9 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 
 #[derive(Debug)]
 struct Circulant {
-    /// Signs g, stored twice, so that every cyclic shift is a slice.
+    /// Random signs g, stored twice, so that every cyclic shift is a slice.
     signs: Vec<f64>,
-    /// Shifts s.
+    /// Cyclic shift s of each measurement.
     shifts: Vec<usize>,
 }
 
@@ -38,7 +38,7 @@ impl Circulant {
         }
     }
 
-    /// Returns a row of Φ.
+    /// Returns the row of Φ of one measurement.
     fn row(&self, measurement: usize) -> ArrayView1<'_, f64> {
         let n = self.signs.len() / 2;
         let start = n - self.shifts[measurement];

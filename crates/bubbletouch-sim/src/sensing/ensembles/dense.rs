@@ -30,7 +30,7 @@ impl Operator for Dense {
     }
 }
 
-/// Describes an ensemble with a stored matrix; `draw` creates it.
+/// Describes an ensemble with a stored matrix, which the function `draw` creates.
 pub(crate) const fn about(words: &'static str, draw: Draw) -> EnsembleAbout {
     EnsembleAbout {
         // Memory during drawing and afterwards.
@@ -39,8 +39,7 @@ pub(crate) const fn about(words: &'static str, draw: Draw) -> EnsembleAbout {
     }
 }
 
-/// Returns rows of n numbers of variance 1, divided by √n. Row r depends only on child r of the stream, so a larger m keeps
-/// the rows of a smaller one.
+/// Returns rows of n random numbers of variance 1, divided by √n. Row r depends only on child r of the stream, so a larger m keeps the rows of a smaller one.
 pub(crate) fn by_rows(
     m: usize,
     n: usize,
@@ -56,15 +55,13 @@ pub(crate) fn by_rows(
     matrix * scale
 }
 
-/// Number of taxels that the matrix product sums in one block (`D_KC` of matrixmultiply). Leaving out zeros
-/// within a block does not change the bits of the result.
+/// Number of taxels that the matrix product sums in one block (`D_KC` of matrixmultiply). Omitting zeros within a block does not change the bits of the result.
 const SUMMED_TOGETHER: usize = 256;
 /// Fraction of touched taxels above which all taxels are used, because copying the touched ones would take longer than it saves.
 const MOSTLY_TOUCHED: f64 = 0.8;
 
-/// Computes Y = X Φᵀ by the blocked matrix product. Each entry is summed over the taxels in one fixed order for any
-/// number of frames or measurements (tested as a law). Taxels that are zero in all frames are left out, which
-/// changes no bit.
+/// Computes Y = X Φᵀ by the blocked matrix product. Each entry is summed over the taxels in one fixed order for any number of frames or measurements (tested as
+/// a law). Taxels that are zero in all frames are omitted, which does not change the bits of the result.
 fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
     let touched = touched(frames);
     if touched.len() as f64 > MOSTLY_TOUCHED * frames.ncols() as f64 {
@@ -77,7 +74,7 @@ fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2
     }
 }
 
-/// Returns the taxels that are nonzero in at least one frame, in order.
+/// Returns the indices of taxels that are nonzero in at least one frame, ascending.
 fn touched(frames: ArrayView2<f64>) -> Vec<usize> {
     let mut any = vec![false; frames.ncols()];
     for frame in frames.outer_iter() {

@@ -6,13 +6,13 @@ use crate::sensing::Ensemble;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
 
-/// Draws the map from an ny × nx array to m measurements, 1 ≤ m ≤ n, with its own stream.
+/// Function that draws the map from an ny × nx array to m measurements, 1 ≤ m ≤ n, with its own random stream.
 pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
 
-/// Learns the map from frames (n_frames × n), at least one.
+/// Function that learns the map from frames (n_frames × n, at least one frame).
 pub type Learn = fn(ArrayView2<f64>, usize, &Seed) -> Result<Box<dyn Operator>>;
 
-/// Origin of a map.
+/// Origin of a measurement map: drawn or learned.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
     /// The map is drawn at random or fixed.
@@ -24,7 +24,7 @@ pub enum Source {
 /// Description of an ensemble of measurements.
 #[derive(Debug)]
 pub struct EnsembleAbout {
-    /// Name in texts.
+    /// Display name of the ensemble.
     pub words: &'static str,
     /// Whether the first m measurements of a larger projection are the measurements of the projection of size m.
     pub is_prefix_nested: bool,
@@ -32,9 +32,9 @@ pub struct EnsembleAbout {
     pub is_whole_frame: bool,
     /// Whether the ensemble needs rows and columns; other layouts do not support it.
     pub needs_rows: bool,
-    /// Returns the memory of a map from n taxels to m measurements, bytes; the arguments are m and n.
+    /// Function that returns the memory of a map from n taxels to m measurements, bytes; its arguments are m and n.
     pub bytes: fn(f64, f64) -> f64,
-    /// Origin of the map.
+    /// Origin of the map: drawn or learned.
     pub source: Source,
 }
 
@@ -52,9 +52,9 @@ impl EnsembleAbout {
     }
 }
 
-/// Linear map y = Φx.
+/// Linear map y = Φx from frames to measurements.
 pub trait Operator: Debug + Send + Sync {
-    /// Measures frames (n_frames × n) and overwrites `out` (n_frames × m). A row has equal bits in any batch.
+    /// Measures frames (n_frames × n) and overwrites `out` (n_frames × m). The measurements of a frame have equal bits in any batch.
     fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>);
 
     /// Calls `visit` with measurement, taxel and value of each entry of Φ that can be nonzero, always in one order.
@@ -63,12 +63,12 @@ pub trait Operator: Debug + Send + Sync {
     /// Returns the root mean square norm of the rows of Φ.
     fn row_norm(&self) -> f64;
 
-    /// Returns Φ if it is stored.
+    /// Returns the matrix Φ if it is stored.
     fn stored(&self) -> Option<&Array2<f64>> {
         None
     }
 
-    /// Returns ΦΦᵀ if it is known without Φ.
+    /// Returns the Gram matrix ΦΦᵀ if it is known without computing Φ.
     fn known_gram(&self) -> Option<Array2<f64>> {
         None
     }
@@ -94,12 +94,12 @@ impl Ensemble {
     }
 }
 
-/// Declares the ensembles and the module of each.
+/// Declares the ensembles, and the module that contains each.
 macro_rules! ensembles {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(mod $file;)*
 
-        /// Ensemble of measurements of a frame.
+        /// Ensemble of measurements, by which a frame is compressed.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Ensemble {
@@ -107,10 +107,10 @@ macro_rules! ensembles {
         }
 
         impl Ensemble {
-            /// All ensembles.
+            /// List of all ensembles.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// Names in a study and names in texts.
+            /// Names of the ensembles in a study, and their display names.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
             /// Returns the description of the ensemble.

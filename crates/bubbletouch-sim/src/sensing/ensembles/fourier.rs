@@ -1,8 +1,8 @@
 //! The lowest Fourier coefficients of a frame, as real numbers.
 //!
-//! Rows are cos and sin of 2π (u x / nx + v y / ny) with norm 1, ordered by increasing (u/nx)² + (v/ny)²: frequency 0 first, then a cosine and a sine of each
-//! pair ± (u, v). The rows are orthonormal; all n of them form a rotation. Low frequencies contain most of a smooth contact. Its placement, which varies from
-//! touch to touch, is in the phases of all frequencies.
+//! Rows are cos and sin of 2π (u x / nx + v y / ny) with norm 1, ordered by increasing (u/nx)² + (v/ny)². Frequency 0 comes first, then a cosine and a sine of
+//! each pair ± (u, v). The rows are orthonormal; all n of them form a rotation. Low frequencies contain most of a smooth contact. The position of the contact,
+//! which varies from touch to touch, is encoded in the phases of all frequencies.
 
 use super::dense::{Dense, about};
 use super::ensemble::EnsembleAbout;
@@ -16,7 +16,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     })
 };
 
-/// Returns one of each pair of frequencies ± (u, v), lowest first: its cosine, and its sine unless this is 0 on every taxel.
+/// Returns one frequency of each pair ± (u, v), lowest first: its cosine, and its sine unless this is 0 on every taxel.
 fn waves((ny, nx): (usize, usize)) -> Vec<(usize, usize, bool)> {
     let mut waves = Vec::with_capacity(ny * nx);
     for v in 0..ny {

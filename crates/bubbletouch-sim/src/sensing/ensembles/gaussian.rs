@@ -1,4 +1,4 @@
-//! Independent Gaussian entries: N(0, 1/n).
+//! Gaussian ensemble: independent entries N(0, 1/n).
 
 use super::dense::{Dense, about, by_rows};
 use super::ensemble::EnsembleAbout;

@@ -1,4 +1,4 @@
-//! The frame itself, for any m.
+//! Identity ensemble: the frame itself, for any m.
 
 use super::ensemble::EnsembleAbout;
 use super::subsample::Taxels;

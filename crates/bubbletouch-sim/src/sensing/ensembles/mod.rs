@@ -1,4 +1,4 @@
-//! Ensembles of measurements, one module and one line below for each.
+//! Ensembles of measurements: one module, and one line below, for each ensemble.
 
 mod dense;
 #[macro_use]

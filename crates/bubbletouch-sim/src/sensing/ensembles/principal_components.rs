@@ -1,4 +1,4 @@
-//! First principal components of frames of training touches.
+//! Ensemble of the first principal components of training frames.
 //!
 //! Row r of Φ is the unit direction, orthogonal to earlier rows, with the largest variance of the frames about their mean. Among
 //! all m × n matrices, Φ preserves the most variance of these frames. Test touches are not used. A skin with this ensemble

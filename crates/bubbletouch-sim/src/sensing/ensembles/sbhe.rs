@@ -1,6 +1,6 @@
 //! The scrambled block Hadamard ensemble \[SBHE\], by fast transforms.
 //!
-//! Φ = Q W P: P permutes the taxels, W is block diagonal with Walsh–Hadamard matrices H/√B, Hᵢⱼ = (−1)^popcount(i & j), and
+//! The map is Φ = Q W P. P permutes the taxels, W is block diagonal with Walsh–Hadamard matrices H/√B, Hᵢⱼ = (−1)^popcount(i & j), and
 //! Q selects m coefficients in random order. If B does not divide n, zeros are added to complete the last block before the permutation, so
 //! they are also scattered. Without them the rows of Φ are orthonormal.
 
@@ -15,7 +15,7 @@ pub(crate) const BLOCK: usize = 32;
 /// Number of frames transformed at a time, one per lane of a vector register.
 const LANES: usize = 8;
 
-/// One value of each of several frames.
+/// Values of one taxel or coefficient in several frames.
 type Lanes = [f64; LANES];
 
 /// Permutation P and selection Q, with Q sorted so that each required block is transformed once.
@@ -23,9 +23,9 @@ type Lanes = [f64; LANES];
 pub(crate) struct ScrambledHadamard {
     n_taxels: usize,
     block: usize,
-    /// Taxel at each position before W; indices n and above are zeros.
+    /// Taxel at each position before W; indices n and above denote added zeros.
     taxels: Vec<usize>,
-    /// Pairs of coefficient after W and measurement that uses it, ascending.
+    /// Pairs of a coefficient after W and the measurement that uses it, ascending.
     picks: Vec<(usize, usize)>,
 }
 
@@ -110,7 +110,7 @@ impl Operator for ScrambledHadamard {
         }
     }
 
-    /// Returns a value below 1 if zeros were added to the taxels.
+    /// Returns the root mean square norm of the rows of Φ, which is below 1 if zeros were added to the taxels.
     fn row_norm(&self) -> f64 {
         let in_block = |coefficient: usize| {
             let first = coefficient / self.block * self.block;
@@ -146,7 +146,7 @@ mod tests {
     use super::*;
     use ndarray::Array2;
 
-    /// Returns Φ by its definition, entry by entry.
+    /// Returns the matrix Φ by its definition, entry by entry.
     fn dense(hadamard: &ScrambledHadamard) -> Array2<f64> {
         let mut matrix = Array2::zeros((hadamard.picks.len(), hadamard.n_taxels));
         hadamard.each_entry(&mut |measurement, taxel, value| matrix[[measurement, taxel]] = value);

@@ -11,15 +11,15 @@ use rand::Rng;
 
 /// Number of frames measured at a time, one per lane of a vector register.
 const LANES: usize = 8;
-/// Number of taxels from which on only nonzero entries are drawn. Drawing every entry takes a minute on a body with millions of taxels; smaller arrays
-/// keep this method for compatibility with earlier results.
+/// Minimum number of taxels for which only nonzero entries are drawn. Drawing every entry takes a minute on a body with millions of taxels. Smaller arrays keep
+/// this method for compatibility with earlier results.
 const BY_GAPS_FROM: usize = 1 << 17;
 
 /// Matrix Φ with entries ±√(s/n) at a density of 1/s, s = √n.
 #[derive(Clone, Debug)]
 pub(crate) struct VerySparse {
     n_taxels: usize,
-    /// Magnitude √(s/n) of an entry, which makes the mean square of an entry 1/n.
+    /// Magnitude √(s/n) of the nonzero entries, which makes the mean square of an entry 1/n.
     scale: f64,
     rows: Vec<Row>,
 }
@@ -40,7 +40,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 };
 
 impl VerySparse {
-    /// Draws m rows. Row r depends only on child r of the stream, so a larger m keeps the rows of a smaller one.
+    /// Draws m rows of Φ. Row r depends only on child r of the stream, so a larger m keeps the rows of a smaller one.
     pub(crate) fn new(m: usize, n: usize, stream: &Seed) -> Self {
         let s = (n as f64).sqrt();
         let rows = (0..m as u64).map(|row| Row::draw(n, 1.0 / s, &stream.numbered(row)));
@@ -99,7 +99,7 @@ impl Row {
         }
     }
 
-    /// Draws for every taxel whether it is added, subtracted or neither.
+    /// Draws for every taxel whether the measurement adds, subtracts or ignores it.
     fn draw_each(n: usize, density: f64, stream: &Seed) -> Self {
         let mut rng = stream.rng();
         let mut row = Self::default();
@@ -114,8 +114,8 @@ impl Row {
         row
     }
 
-    /// Draws only the nonzero entries, with the distribution of `draw_each`: the number of zeros before the next one is geometric, at
-    /// least g with probability (1 − density)^g.
+    /// Draws only the nonzero entries, with the distribution of `draw_each`. The number of zeros before the next entry is geometric: it is at least g with
+    /// probability (1 − density)^g.
     fn draw_by_gaps(n: usize, density: f64, stream: &Seed) -> Self {
         let mut rng = stream.rng();
         let log_zero = (-density).ln_1p();
@@ -136,7 +136,7 @@ impl Row {
         }
     }
 
-    /// Returns the signed sum of the row in each lane.
+    /// Returns the signed sum of the row's taxels in each lane.
     fn sums(&self, values: &[[f64; LANES]]) -> [f64; LANES] {
         let mut sums = [0.0; LANES];
         for &taxel in &self.plus {
@@ -160,8 +160,8 @@ mod tests {
     const N: usize = 20_000;
     const ROWS: u64 = 400;
 
-    /// Returns statistics of many drawn rows: entries per row (mean, variance), fraction of positive entries, entries in each tenth of the taxels,
-    /// and the number of adjacent pairs of entries.
+    /// Returns statistics of many drawn rows: entries per row (mean, variance), fraction of positive entries, entries in each tenth of the taxels, and number
+    /// of adjacent pairs of entries.
     fn counts(draw: fn(usize, f64, &Seed) -> Row) -> ([f64; 4], [f64; 10]) {
         let density = 1.0 / (N as f64).sqrt();
         let (mut sizes, mut n_plus, mut n_pairs, mut tenths) = (Vec::new(), 0, 0, [0.0; 10]);

@@ -1,4 +1,4 @@
-//! Random subset of taxels, drawn without replacement.
+//! Subsample ensemble: a random subset of taxels, drawn without replacement.
 
 use super::ensemble::{EnsembleAbout, Operator};
 use crate::random::Seed;
@@ -11,7 +11,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout::new("subsample", |(ny, nx
     Box::new(Taxels(order))
 });
 
-/// Taxel of each measurement.
+/// Index of the taxel that each measurement reads.
 #[derive(Debug)]
 pub(crate) struct Taxels(pub(crate) Vec<usize>);
 
@@ -38,7 +38,7 @@ impl Operator for Taxels {
     }
 }
 
-/// Returns 0 … n − 1 in random order; every order has equal probability.
+/// Returns 0 … n − 1 in random order; every order is equally likely.
 pub(crate) fn permutation(n: usize, stream: &Seed) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
     order.shuffle(&mut stream.rng());

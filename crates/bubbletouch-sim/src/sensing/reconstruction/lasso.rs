@@ -1,6 +1,6 @@
 //! The ℓ1 solver: min ½‖y − Aα‖² + λ‖α‖₁ by accelerated proximal gradient steps, many frames at a time.
 //!
-//! FISTA (Beck and Teboulle 2009): a gradient step of length 1/L from a point extrapolated along the last change, then
+//! FISTA (Beck and Teboulle 2009). A step is a gradient step of length 1/L from a point extrapolated along the last change, then
 //! soft thresholding by λ/L, where L is the largest eigenvalue of AᵀA. The momentum restarts if it points uphill
 //! (O'Donoghue and Candès 2015). The dual value at θ = s·(y − Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is a lower bound of the objective. A frame is solved if the
 //! gap between objective and dual value is small (Kim et al. 2007).
@@ -10,10 +10,9 @@ use crate::sensing::{SensedDictionary, Solved};
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Axis, Zip};
 
-/// Number of steps between two checks of the gap; a check costs about a quarter of a step.
+/// Number of steps between two checks of the duality gap; a check costs about a quarter of a step.
 const CHECK_EVERY: usize = 5;
-/// Number of power iterations for L, and the safety margin; after this number the error of the estimate is far smaller (Kuczyński and
-/// Woźniakowski 1992).
+/// Number of power iterations for L. With this number the error of the estimate is far smaller than the safety margin (Kuczyński and Woźniakowski 1992).
 const POWER_STEPS: usize = 60;
 const MARGIN: f64 = 1.02;
 
@@ -29,9 +28,8 @@ pub struct Lasso {
 }
 
 impl Lasso {
-    /// Returns λ = σ a √(2 ln k), a the root mean square norm of the k columns of A. Noise of standard deviation σ on each measurement
-    /// alone then almost surely gives no nonzero coefficient (the universal threshold of Donoho and Johnstone 1994, as in Chen,
-    /// Donoho and Saunders 1998).
+    /// Returns λ = σ a √(2 ln k), where a is the root mean square norm of the k columns of A. Noise of standard deviation σ on each measurement alone then
+    /// almost surely gives no nonzero coefficient. This is the universal threshold of Donoho and Johnstone (1994), as used by Chen, Donoho and Saunders (1998).
     pub fn universal_lambda(sensed: &SensedDictionary, noise_std: f64) -> f64 {
         let atoms = sensed.atoms();
         let k = atoms.nrows() as f64;
@@ -56,7 +54,7 @@ impl Lasso {
         self.solve_with(&Curvature::new(sensed), sensed, measurements)
     }
 
-    /// Solves like [`solve`](Self::solve), with a [`Curvature`] that was computed before.
+    /// Computes the coefficients of each row of measurements with a [`Curvature`] that was computed before.
     pub(crate) fn solve_with(
         &self,
         curvature: &Curvature,
@@ -114,21 +112,21 @@ impl Curvature {
     }
 }
 
-/// Frames that are not solved yet, one per row of each matrix.
+/// Frames that have not converged yet, one per row of each matrix.
 struct Open<'a> {
     sensed: &'a SensedDictionary<'a>,
-    /// Upper bound L.
+    /// Upper bound L of the largest eigenvalue of AᵀA.
     curvature: f64,
-    /// Indices of the frames.
+    /// Indices of the unsolved frames.
     frames: Vec<usize>,
     /// Squared norm ‖y‖² of each frame.
     square: Vec<f64>,
     /// Momentum parameter t of each frame.
     momentum: Vec<f64>,
-    /// Aᵀy, one row per frame.
+    /// Products Aᵀy, one row per frame.
     b: Array2<f64>,
     alpha: Array2<f64>,
-    /// Extrapolated points.
+    /// Extrapolated points, one row per frame.
     ahead: Array2<f64>,
 }
 
@@ -148,7 +146,7 @@ impl<'a> Open<'a> {
         }
     }
 
-    /// Returns AᵀAα − Aᵀy, with the smaller of AᵀA and A.
+    /// Returns the gradient AᵀAα − Aᵀy, using the smaller of AᵀA and A.
     fn gradient(&self, alpha: &Array2<f64>) -> Array2<f64> {
         let atoms = self.sensed.atoms();
         let mut gradient = self.b.clone();
@@ -177,7 +175,7 @@ impl<'a> Open<'a> {
         }
     }
 
-    /// Stores the frames whose gap is small enough (all of them at the last step) and keeps the others.
+    /// Stores the frames whose duality gap is small enough (all frames at the last step) and keeps the others.
     fn retire(&mut self, rule: &Lasso, is_last: bool, solved: &mut Solved) {
         let gradient = self.gradient(&self.alpha);
         let mut kept = Vec::new();

@@ -16,15 +16,15 @@ use ndarray::{Array1, Array2, ArrayView2};
 /// Smallest noise variance relative to the mean variance of the measurements; without noise A E Aᵀ may be singular.
 const LEAST_NOISE: f64 = 1e-12;
 
-/// Matrix of the estimate, prepared for any number of frames.
+/// Linear map of the LMMSE estimate, prepared for any number of frames.
 #[derive(Clone, Debug)]
 pub struct Lmmse {
     form: Form,
-    /// Constant part x₀ − M Φx₀, shape (n,), where M is the linear map; the estimate of y is this plus M y.
+    /// Constant part x₀ − M Φx₀, shape (n,), where M is the linear map. The estimate for y is this constant plus M y.
     constant: Array1<f64>,
 }
 
-/// Form of the linear map with fewer operations per frame.
+/// Factorisation of the linear map with fewer operations per frame.
 #[derive(Clone, Debug)]
 enum Form {
     /// Matrix from measurements to frames, shape (m, n).
@@ -42,10 +42,10 @@ impl Lmmse {
         Self::shrunk(sensed, noise_std, None)
     }
 
-    /// Prepares the estimate with each coefficient (k) multiplied by a factor from 0 to 1.
+    /// Prepares the estimate with each of the k coefficients multiplied by a factor from 0 to 1.
     ///
     /// # Errors
-    /// If [`new`](Self::new) would fail.
+    /// If `new` would fail for these arguments.
     pub(crate) fn shrunk(
         sensed: &SensedDictionary,
         noise_std: f64,
@@ -78,7 +78,7 @@ impl Lmmse {
                 "training frames and rows of Φ that are not zero",
             )
         })?;
-        // Shape (m, k): a row of measurements times this matrix is a row of coefficients.
+        // Shape (m, k). A row of measurements times this matrix is a row of coefficients.
         let mut to_coefficients = factor.solve(weighted.t());
         if let Some(shrinkage) = shrinkage {
             to_coefficients *= shrinkage;
@@ -115,7 +115,7 @@ impl Lmmse {
         frames
     }
 
-    /// Returns the linear part of the estimate, without the estimate of zero measurements.
+    /// Returns the linear part of the estimate, without the constant (the estimate for zero measurements).
     pub(crate) fn linear(&self, measurements: ArrayView2<f64>) -> Array2<f64> {
         match &self.form {
             Form::Direct(matrix) => measurements.dot(matrix),

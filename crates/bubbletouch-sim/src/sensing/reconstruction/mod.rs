@@ -1,4 +1,4 @@
-//! Reconstruction: measurements → frames.
+//! Reconstruction: computes frames from measurements.
 //!
 //! | file | solver |
 //! |---|---|

@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 use crate::sensing::{SensedDictionary, Solved};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Zip};
 
-/// Smallest squared norm of an atom's part outside the span of the chosen atoms; below it the atom is linearly dependent.
+/// Smallest squared norm of an atom's part outside the span of the chosen atoms; an atom with a smaller norm is linearly dependent.
 const DEPENDENT: f64 = 1e-10;
-/// Smallest correlation relative to ‖y‖; smaller ones are rounding errors.
+/// Smallest correlation relative to ‖y‖; smaller correlations are rounding errors.
 const ROUNDING: f64 = 1e-13;
 
 /// Stopping rule of orthogonal matching pursuit.
@@ -24,7 +24,7 @@ pub struct Omp {
 }
 
 impl Omp {
-    /// Stops at the residual that noise of standard deviation σ on each measurement causes: σ√m.
+    /// Creates the rule that stops at the residual σ√m, which noise of standard deviation σ on each measurement causes.
     pub fn for_noise(most_atoms: usize, noise_std: f64, n_measurements: usize) -> Self {
         Self {
             most_atoms,
@@ -81,23 +81,23 @@ fn inverse_norms(sensed: &SensedDictionary) -> Array1<f64> {
     norms.mapv(|norm| if norm > least { 1.0 / norm } else { 0.0 })
 }
 
-/// Pursuit of one frame, in units of atoms of norm 1.
+/// State of the pursuit of one frame, in units of atoms of norm 1.
 struct Pursuit<'a> {
     gram: &'a Array2<f64>,
     /// Scale 1 / ‖aⱼ‖; 0 for atoms with zero columns, so that their correlation is always 0.
     scale: &'a Array1<f64>,
-    /// Correlations aⱼ·y / ‖aⱼ‖.
+    /// Correlations aⱼ·y / ‖aⱼ‖ of the atoms with the measurements.
     b: Array1<f64>,
-    /// Correlations with the residual, aⱼ·(residual) / ‖aⱼ‖.
+    /// Correlations aⱼ·(residual) / ‖aⱼ‖ of the atoms with the residual.
     correlation: Array1<f64>,
-    /// Squared norm ‖residual‖².
+    /// Squared norm ‖residual‖² of the residual.
     left: f64,
     rounding: f64,
     chosen: Vec<usize>,
     is_chosen: Vec<bool>,
-    /// Rows of L, one after the other: row i has i + 1 entries.
+    /// Rows of the Cholesky factor L, one after the other: row i has i + 1 entries.
     factor: Vec<f64>,
-    /// L⁻¹ b of the chosen atoms.
+    /// Solution L⁻¹ b of the forward substitution for the chosen atoms.
     forward: Vec<f64>,
     /// Coefficients α of the chosen atoms, scaled to norm 1.
     solution: Vec<f64>,
@@ -151,7 +151,7 @@ impl<'a> Pursuit<'a> {
         best.1
     }
 
-    /// Adds a row to L and an entry to L⁻¹b. Returns false if the atom depends linearly on the chosen ones.
+    /// Adds a row to L and an entry to L⁻¹b. Returns false if the atom depends linearly on the chosen atoms.
     fn add(&mut self, atom: usize) -> bool {
         let start = self.factor.len();
         let mut square = 1.0;
@@ -179,7 +179,7 @@ impl<'a> Pursuit<'a> {
         true
     }
 
-    /// Solves Lᵀα = L⁻¹b by back substitution.
+    /// Solves Lᵀα = L⁻¹b for the coefficients by back substitution.
     fn solve_chosen(&mut self) {
         self.solution.clone_from(&self.forward);
         for i in (0..self.solution.len()).rev() {

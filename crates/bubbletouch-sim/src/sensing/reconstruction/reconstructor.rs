@@ -1,4 +1,4 @@
-//! Reconstruction of frames from measurements, with any solver.
+//! Reconstruction of frames from measurements with any of the solvers.
 
 use super::lasso::Curvature;
 use crate::error::Result;
@@ -6,7 +6,7 @@ use crate::sensing::{Lasso, Lmmse, Omp, SensedDictionary};
 use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 
-/// Solver for the coefficients of measurements.
+/// Method that computes the coefficients of measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Solver {
@@ -14,18 +14,18 @@ pub enum Solver {
     Omp,
     /// The ℓ1 problem by FISTA ([`Lasso`]).
     L1,
-    /// The linear estimate of least mean square error ([`Lmmse`]).
+    /// Linear estimate of least mean square error ([`Lmmse`]).
     Lmmse,
 }
 
 /// Limits of the solvers' work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
-    /// Maximum number of atoms per frame in matching pursuit.
+    /// Maximum number of atoms per frame in orthogonal matching pursuit.
     pub most_atoms: usize,
-    /// Factor from [`Lasso::universal_lambda`] to λ of the ℓ1 problem; positive.
+    /// Factor between the universal threshold ([`Lasso::universal_lambda`]) and λ of the ℓ1 problem; positive.
     pub lambda_scale: f64,
-    /// Relative duality gap at which an ℓ1 problem is solved; positive.
+    /// Relative duality gap at which an ℓ1 problem counts as solved; positive.
     pub tolerance: f64,
     /// Maximum number of steps of the ℓ1 solver per frame.
     pub most_steps: usize,
@@ -34,7 +34,7 @@ pub struct Effort {
 /// Reconstructed frames, with convergence information.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reconstruction {
-    /// Frames, shape (n_frames, n).
+    /// Reconstructed frames, shape (n_frames, n).
     pub frames: Array2<f64>,
     /// Number of nonzero coefficients of each frame; k for the linear estimate.
     pub n_atoms: Vec<usize>,
@@ -87,12 +87,12 @@ const LEAST_NOISE: f64 = 1e-3;
 impl<'a> Reconstructor<'a> {
     /// Prepares a solver for noise of standard deviation σ (in the unit of the frames, zero or positive) on each taxel.
     ///
-    /// All solvers also count the part outside the span of the atoms as noise: √(σ² + τ) per taxel, τ from training frames
-    /// ([`Energy::rest`](crate::sensing::Energy)). Matching pursuit and the ℓ1 problem multiply this noise by the root mean square norm of a row of Φ to
-    /// obtain the noise of a measurement. The linear estimate uses ΦΦᵀ itself.
+    /// All solvers also count the part of a frame outside the span of the atoms as noise. The noise is √(σ² + τ) per taxel, with τ from training frames
+    /// (`Energy::rest`). Matching pursuit and the ℓ1 problem multiply this noise by the root mean square norm of a row of Φ to obtain the noise of a
+    /// measurement. The linear estimate uses ΦΦᵀ itself.
     ///
     /// # Errors
-    /// If [`Lmmse::new`] fails. Limits of `effort` are checked by [`reconstruct`](Self::reconstruct).
+    /// If [`Lmmse::new`] fails. The limits in `effort` are checked by [`reconstruct`](Self::reconstruct).
     pub fn new(
         solver: Solver,
         sensed: &'a SensedDictionary<'a>,
@@ -127,7 +127,7 @@ impl<'a> Reconstructor<'a> {
     /// Reconstructs frames from rows of measurements (n_frames × m).
     ///
     /// # Errors
-    /// If limits are out of range; see [`Omp::solve`] and [`Lasso::solve`].
+    /// If a limit in `effort` is out of its range.
     ///
     /// # Panics
     /// If a row does not have m values.
