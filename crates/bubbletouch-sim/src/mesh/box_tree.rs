@@ -17,7 +17,7 @@ pub struct BoxTree {
 const STACK: usize = DEEPEST + 1;
 
 impl BoxTree {
-    /// Builds the tree of boxes, metres; `None` if there are none.
+    /// Builds the tree of the given boxes, metres; `None` if there are no boxes.
     pub fn new(boxes: Vec<Aabb>) -> Option<Self> {
         let root = Aabb::around(boxes.iter().copied())?;
         let (nodes, order) = build(boxes, root);
@@ -54,9 +54,8 @@ impl BoxTree {
         self.nodes[node].places()
     }
 
-    /// Visits leaves by branch and bound: all leaves whose nodes up to the root have `bound` below the limit, the child with the lower bound
-    /// first. `visit` receives the leaf's positions in the tree's [order](Self::order) and the limit, and returns the new
-    /// limit.
+    /// Visits leaves by branch and bound. A leaf is visited if all nodes above it have a `bound` below the limit; the child with the lower bound comes first.
+    /// `visit` receives the leaf's positions in the tree's [order](Self::order) and the limit, and returns the new limit.
     pub fn search(
         &self,
         limit: f64,
@@ -66,7 +65,7 @@ impl BoxTree {
         self.search_unless(limit, bound, |_, _| false, visit);
     }
 
-    /// Visits leaves like [`search`](Self::search), but skips nodes for which `rules_out` returns true. The arguments of `rules_out` are the node and
+    /// Visits leaves by branch and bound, as `search` does, but skips nodes for which `rules_out` returns true. The arguments of `rules_out` are the node and
     /// the current limit.
     pub(super) fn search_unless(
         &self,

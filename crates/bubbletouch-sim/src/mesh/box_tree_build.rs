@@ -4,7 +4,7 @@ use crate::geometry::Aabb;
 use glam::DVec3;
 use std::ops::Range;
 
-/// Node of the tree.
+/// Node of the tree of boxes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     pub bounds: Aabb,
@@ -21,11 +21,11 @@ impl Node {
     }
 }
 
-/// Maximum number of boxes in a leaf. If the value is larger, more boxes are tested; if the value is smaller, there are more nodes.
+/// Maximum number of boxes in a leaf. If larger, more boxes are tested; if smaller, the tree has more nodes.
 const LEAF: usize = 4;
-/// Number of candidate cuts per axis. If the value is larger, the tree is better and takes longer to build.
+/// Number of candidate cuts per axis. A larger number improves the tree but takes longer to build.
 const BINS: usize = 16;
-/// Depth from which on nodes are cut at the median, at any cost.
+/// Depth beyond which nodes are cut at the median, whatever the cost.
 const BALANCED_FROM: usize = 24;
 /// Maximum depth of a tree: 32 levels halve 2³² boxes.
 pub(super) const DEEPEST: usize = BALANCED_FROM + 32;
@@ -53,7 +53,7 @@ struct Builder {
     centers: Vec<DVec3>,
     order: Vec<u32>,
     nodes: Vec<Node>,
-    /// Workspace for a cut.
+    /// Scratch memory for a cut: the boxes of the second part.
     right: Vec<u32>,
 }
 
@@ -85,8 +85,8 @@ impl Builder {
         Aabb::around(boxes).expect("no part of the tree is empty")
     }
 
-    /// Reorders a range, and returns the start of its second part and the bounding boxes of both. The cut has the lowest expected cost (surface area
-    /// heuristic, cuts at equal distances). The median is used if there is no such cut or the tree is deep.
+    /// Reorders a range of boxes, and returns the start of its second part and the bounding boxes of both parts. The cut has the lowest expected cost (surface
+    /// area heuristic, cuts at equal distances). The median is used if there is no such cut or the tree is deep.
     fn partition(&mut self, range: Range<usize>, depth: usize) -> (usize, [Aabb; 2]) {
         let centers = &self.centers;
         let order = &mut self.order[range.clone()];
@@ -119,7 +119,7 @@ impl Builder {
     }
 }
 
-/// Plane across one axis between two bins of centres.
+/// Plane that cuts a node across one axis, between two bins of centres.
 struct Cut {
     axis: usize,
     low: f64,
@@ -179,10 +179,10 @@ impl Cut {
     }
 }
 
-/// Boxes with centres between two cuts.
+/// Bin of boxes whose centres lie between two candidate cuts.
 #[derive(Clone, Copy)]
 struct Bin {
-    /// Bounding box; inverted if the bin is empty.
+    /// Bounding box of the boxes in the bin; inverted if the bin is empty.
     bounds: Aabb,
     n_boxes: usize,
 }
@@ -208,7 +208,7 @@ impl Bin {
         self.n_boxes += other.n_boxes;
     }
 
-    /// Returns area · number of boxes; `None` if the bin is empty.
+    /// Returns the cost of the bin, its surface area times its number of boxes; `None` if the bin is empty.
     fn cost(&self) -> Option<f64> {
         let s = self.bounds.size();
         let area = s.x * s.y + s.y * s.z + s.z * s.x;
@@ -216,7 +216,7 @@ impl Bin {
     }
 }
 
-/// Returns the lowest total cost of both sides and the first bin on the right; `None` if one bin contains all boxes.
+/// Returns the lowest total cost of both sides of a plane, and the first bin on the right; `None` if one bin contains all boxes.
 fn cheapest_plane(bins: &[Bin; BINS]) -> Option<(f64, usize)> {
     let mut right_costs = [None; BINS];
     let mut right = Bin::EMPTY;

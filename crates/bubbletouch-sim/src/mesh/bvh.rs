@@ -12,31 +12,31 @@ pub struct Bvh {
     tree: BoxTree,
     /// Triangles in the order of the tree.
     triangles: Vec<Triangle>,
-    /// Planes of the triangles.
+    /// Planes of the triangles, in the order of the tree.
     planes: Vec<Plane>,
-    /// Slab of each node.
+    /// Slab (two parallel planes) around the triangles of each node.
     slabs: Vec<Slab>,
 }
 
-/// Nearest point of a mesh.
+/// Nearest point of a mesh to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// Distance, metres, not negative.
+    /// Distance from the query point, metres, not negative.
     pub distance: f64,
-    /// Nearest point, metres.
+    /// Nearest point of the mesh, metres.
     pub point: DVec3,
-    /// Index of the triangle in the mesh.
+    /// Index of the triangle that contains the nearest point.
     pub triangle: usize,
-    /// Part of the triangle that contains the point.
+    /// Part of the triangle that contains the nearest point.
     pub feature: Feature,
 }
 
 /// Intersection of a line and a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Position along the line, in lengths of its direction vector.
+    /// Position along the line, as a multiple of its direction vector.
     pub along: f64,
-    /// Index of the triangle in the mesh.
+    /// Index of the intersected triangle in the mesh.
     pub triangle: usize,
 }
 
@@ -47,7 +47,7 @@ impl Bvh {
         Self::from_triangles(triangles.collect()).expect("a mesh has triangles")
     }
 
-    /// Builds the tree of triangles, whose indices are their positions in the vector; `None` if there are none.
+    /// Builds the tree of triangles, whose indices are their positions in the vector; `None` if there are no triangles.
     pub fn from_triangles(triangles: Vec<Triangle>) -> Option<Self> {
         let tree = BoxTree::new(triangles.iter().map(Triangle::bounds).collect())?;
         let in_order = tree.order().iter().map(|&t| triangles[t as usize]);
@@ -60,7 +60,7 @@ impl Bvh {
         })
     }
 
-    /// Returns the tree of boxes.
+    /// Returns the tree of the triangles' bounding boxes.
     pub(super) fn tree(&self) -> &BoxTree {
         &self.tree
     }
@@ -75,7 +75,7 @@ impl Bvh {
         &self.triangles[self.tree.leaf(node)]
     }
 
-    /// Returns the nearest point of the mesh that is closer than `within` metres (infinity: no limit).
+    /// Returns the nearest point of the mesh that is closer than `within` metres; no limit if `within` is infinite.
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         let mut found = None;
         let mut visit = |place: usize, limit| {
@@ -154,9 +154,8 @@ impl Bvh {
         );
     }
 
-    /// Visits triangles by branch and bound: in all leaves whose nodes up to the root have `bound` below the limit, the child with the lower bound
-    /// first. `visit` receives a triangle's index in the mesh, its corners and the limit, and returns the new
-    /// limit.
+    /// Visits triangles by branch and bound. A leaf is visited if all nodes above it have a `bound` below the limit; the child with the lower bound comes
+    /// first. `visit` receives a triangle's index in the mesh, its corners and the limit, and returns the new limit.
     pub fn search(
         &self,
         limit: f64,
@@ -168,7 +167,7 @@ impl Bvh {
         });
     }
 
-    /// Returns the index in the mesh of the triangle at a position in the order of the tree, where neighbours are adjacent.
+    /// Returns the index in the mesh of the triangle at a given position in the order of the tree.
     pub fn number(&self, place: usize) -> usize {
         self.tree.order()[place] as usize
     }
@@ -178,7 +177,7 @@ impl Bvh {
         &self.triangles
     }
 
-    /// Visits triangles like [`search`](Self::search), with positions in the order of the tree instead of indices in the mesh.
+    /// Visits triangles by branch and bound, as `search` does, with positions in the order of the tree instead of indices in the mesh.
     pub fn search_places(
         &self,
         limit: f64,
@@ -195,13 +194,13 @@ impl Bvh {
     }
 }
 
-/// Plane of a triangle, a lower bound of the distance. If all parts of a mesh are about equally far from a point, such as the
-/// middle of a ball, boxes exclude few triangles and planes nearly all.
+/// Plane of a triangle, from which a lower bound of the distance is computed. If all parts of a mesh are about equally far from a point, such as the middle of
+/// a ball, boxes exclude few triangles and planes nearly all.
 #[derive(Clone, Debug)]
 struct Plane {
-    /// Unit normal; zero if the triangle is too thin.
+    /// Unit normal of the plane; zero if the triangle is too thin.
     normal: DVec3,
-    /// Position along the normal.
+    /// Position of the plane along the normal, metres.
     offset: f64,
 }
 

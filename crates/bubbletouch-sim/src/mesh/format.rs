@@ -17,20 +17,20 @@ pub enum MeshFormat {
     Stl,
 }
 
-/// Length unit of the numbers in a mesh file; the supported formats do not contain it.
+/// Length unit of the numbers in a mesh file; the supported formats do not store their unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LengthUnit {
-    /// m
+    /// Metre (m).
     #[default]
     #[serde(rename = "m")]
     Metre,
-    /// cm
+    /// Centimetre (cm).
     #[serde(rename = "cm")]
     Centimetre,
-    /// mm
+    /// Millimetre (mm).
     #[serde(rename = "mm")]
     Millimetre,
-    /// in
+    /// Inch (in).
     #[serde(rename = "in")]
     Inch,
 }
@@ -39,7 +39,7 @@ impl MeshFormat {
     /// Returns the format of a file by its extension, ignoring case.
     ///
     /// # Errors
-    /// If no format has this extension.
+    /// If no supported format has this extension.
     pub fn from_path(path: &Path) -> Result<Self> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         match ending.to_ascii_lowercase().as_str() {
@@ -54,7 +54,7 @@ impl MeshFormat {
         }
     }
 
-    /// Reads a file of this format and unit, converted to metres.
+    /// Reads a file of this format and converts it from the given unit to metres.
     ///
     /// # Errors
     /// If the file is invalid; errors begin with `place`, the name of the file.
@@ -72,7 +72,7 @@ impl MeshFormat {
 }
 
 impl LengthUnit {
-    /// Unit names as users type them.
+    /// Names of the units in options and files.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("m", Self::Metre),
         ("cm", Self::Centimetre),
@@ -80,13 +80,13 @@ impl LengthUnit {
         ("in", Self::Inch),
     ];
 
-    /// Returns the name as users type it.
+    /// Returns the name of the unit in options and files.
     pub fn name(self) -> &'static str {
         let named = Self::NAMES.iter().find(|(_, unit)| *unit == self);
         named.expect("every unit has a name").0
     }
 
-    /// Returns the length of one unit, metres.
+    /// Returns the length of the unit, metres.
     pub fn metres(self) -> f64 {
         match self {
             Self::Metre => 1.0,

@@ -10,9 +10,9 @@ use std::fmt;
 /// Connected part of the border of a mesh: edges with one face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hole {
-    /// Edges in the direction of their faces, from corner to corner.
+    /// Border edges in the direction of their faces, from corner to corner.
     pub border: Vec<[u32; 2]>,
-    /// Length of the border, metres.
+    /// Length of the hole's border, metres.
     pub length: f64,
     /// Largest distance between two corners of the border, metres.
     pub width: f64,
@@ -51,7 +51,7 @@ impl Hole {
         }
     }
 
-    /// Returns whether the border enters every corner as often as it leaves it, so that a cone closes the hole.
+    /// Returns whether the border enters every corner as often as it leaves it. In this case a cone closes the hole.
     fn is_circuit(&self) -> bool {
         let mut balance: BTreeMap<u32, i32> = BTreeMap::new();
         for &[from, to] in &self.border {
@@ -65,7 +65,7 @@ impl Hole {
 /// Returns the largest distance between two points.
 fn width(mut points: Vec<DVec3>) -> f64 {
     let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
-    // Far points first: two points closer to the middle than half the width cannot be farther apart.
+    // Far points come first: two points closer to the middle than half the width cannot be farther apart.
     points.sort_by(|a, b| {
         let [a, b] = [a, b].map(|point| point.distance_squared(middle));
         b.total_cmp(&a)
@@ -82,7 +82,7 @@ fn width(mut points: Vec<DVec3>) -> f64 {
     widest
 }
 
-/// Result of closing holes.
+/// Result of closing the holes of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedHoles {
     /// Mesh with a cone over each closed hole: one triangle per border edge, to the mean of the border's corners.
@@ -121,7 +121,7 @@ impl TriangleMesh {
 }
 
 impl fmt::Display for ClosedHoles {
-    /// Writes `closed 2 holes, at most 0.93 mm wide`.
+    /// Formats the result as a sentence: `closed 2 holes, at most 0.93 mm wide`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.widths[..] {
             [] => write!(f, "closed no hole"),

@@ -28,10 +28,10 @@ impl TriangleMesh {
         }
     }
 
-    /// Returns the enclosed volume, m³ (negative if the triangles face inwards), and its centroid, metres.
+    /// Returns the enclosed volume, m³ (negative if the triangles face inwards), and the volume's centroid, metres.
     ///
-    /// Computed by tetrahedra from the centroid of the surface: exact for a closed mesh; a hole counts as closed by a
-    /// cone to this centroid.
+    /// The volume is computed by tetrahedra from the centroid of the surface, which is exact for a closed mesh. A hole counts as closed by a cone to this
+    /// centroid.
     pub fn volume_and_centroid(&self) -> (f64, DVec3) {
         let apex = self.surface_centroid();
         let (mut volume, mut moment) = (0.0, DVec3::ZERO);

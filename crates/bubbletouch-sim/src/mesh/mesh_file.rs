@@ -5,7 +5,7 @@ use super::triangle_mesh::check_vertices;
 use crate::error::{Error, Result};
 use glam::DVec3;
 
-/// Vertices and polygons of a file. A file without polygons is a point cloud, which suffices for spheres around vertices.
+/// Vertices and polygons of a mesh file. A file without polygons is a point cloud, which suffices for spheres around vertices.
 ///
 /// Invariant: at least one vertex, all finite; three or more corners per polygon, each index below the number of vertices.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Checks the invariant. Vertices are in metres.
+    /// Creates the contents of a file and checks the invariant. Vertices are in metres.
     ///
     /// # Errors
     /// If the invariant does not hold; errors begin with `place` and count from 1.
@@ -40,13 +40,13 @@ impl MeshFile {
         Ok(Self { vertices, polygons })
     }
 
-    /// Returns the file with every coordinate multiplied by a factor.
+    /// Returns the contents with every coordinate multiplied by a factor.
     pub(super) fn scaled(self, place: &str, factor: f64) -> Result<Self> {
         let vertices = self.vertices.into_iter().map(|v| v * factor).collect();
         Self::new(place, vertices, self.polygons)
     }
 
-    /// Returns the vertices, metres.
+    /// Returns the vertices of the file, metres.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
@@ -56,7 +56,7 @@ impl MeshFile {
         &self.polygons
     }
 
-    /// Converts the file to a triangle mesh; polygons of more than three corners become fans around their first corner: 0 1 2, 0 2 3, 0 3 4, …
+    /// Converts the file to a triangle mesh. Polygons of more than three corners become fans around their first corner: 0 1 2, 0 2 3, 0 3 4, …
     ///
     /// # Errors
     /// If there are no polygons, or if a fan would overlap itself because its polygon is not convex or not planar.

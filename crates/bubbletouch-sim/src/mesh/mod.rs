@@ -1,4 +1,4 @@
-//! Meshes: a file of triangles → distances, inside and outside, and a report of its faults.
+//! Meshes: reads files of triangles, computes distances and inside or outside, and reports faults.
 //!
 //! | from | by | gives |
 //! |---|---|---|
@@ -14,8 +14,8 @@
 //! d(x) = ± min_y |x − y|,   y on a triangle
 //! ```
 //!
-//! On a closed mesh the sign equals the sign of `(x − y)·n`, where n is the angle-weighted pseudonormal of the face, edge or vertex that contains y
-//! \[BA\]. The sign is exact if the mesh does not intersect itself.
+//! On a closed mesh the sign equals the sign of `(x − y)·n`, where n is the angle-weighted pseudonormal at y \[BA\]. The sign is exact if the mesh does not
+//! intersect itself.
 //!
 //! # The solid of a mesh
 //!

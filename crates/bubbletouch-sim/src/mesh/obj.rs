@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use glam::DVec3;
 use std::io::BufRead;
 
-/// Marks a vertex that no face has used yet.
+/// Marks a vertex that no face has used.
 const UNUSED: u32 = u32::MAX;
 
 /// Reads the mesh in an OBJ file; all objects and groups of the file form one mesh.
@@ -18,7 +18,7 @@ const UNUSED: u32 = u32::MAX;
 /// exist. The error begins with `place` and the line.
 pub fn read_obj(place: &str, source: impl BufRead) -> Result<MeshFile> {
     let mut vertices: Vec<DVec3> = Vec::new();
-    // Each face with its line; indices count from 1. A face may precede its vertices.
+    // Corners of each face with the line of the face; indices count from 1. A face may precede its vertices.
     let mut faces: Vec<(usize, Vec<usize>)> = Vec::new();
     each_line(place, source, |number, line| {
         let line = line.split('#').next().unwrap_or_default();

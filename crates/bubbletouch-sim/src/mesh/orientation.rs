@@ -1,4 +1,4 @@
-//! Turns the closed parts of a mesh outwards, and decides whether the faces of open ones face outwards.
+//! Orientation of meshes: turns closed parts outwards, and decides whether the faces of open parts face outwards.
 //!
 //! Let w be the winding number of the space around a closed part, and s = ±1 the sign of the part's signed volume. If
 //! w + s < 0, the outside of the part is not enclosed by the mesh, so the triangles of the part are turned. A part that faces inwards inside a part that
@@ -14,24 +14,25 @@ use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Maximum number of triangles from which rays are sent to find the outside of an open part. If the value is larger, the test is slower; if the value is
-/// smaller, parts with narrow openings are tested by few rays.
+/// Maximum number of triangles from which rays are sent to find the outside of an open part. If larger, the test is slower; if smaller, parts with narrow
+/// openings are tested by few rays.
 const MAX_RAYS: usize = 2000;
 
 /// Number of points of a part that are tested against another part; the majority decides, so the number is odd.
 const N_POINTS: usize = 9;
 
-/// Smallest volume of a part relative to its area to the power 3/2. Parts below it enclose nothing: they are both sides of a sheet.
+/// Smallest volume of a part relative to its area to the power 3/2. Parts with less volume enclose nothing: they are the two sides of a surface without
+/// thickness.
 const MIN_VOLUME: f64 = 1e-9;
 
-/// Fraction of the area of an open part that may face inwards. Above it, the orientation of the part is undecided. If the value is smaller, scans with a few flipped triangles are rejected; if the
-/// value is larger, a skin on the part may point both ways.
+/// Fraction of the area of an open part that may face inwards; above it, the orientation of the part is undecided. If smaller, scans with a few flipped
+/// triangles are rejected. If larger, a skin on the part may point both ways.
 const MAX_DISAGREEING: f64 = 0.05;
 
 /// Orientation of the triangles of a mesh, after [`TriangleMesh::turned_outwards`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Orientation {
-    /// The triangles faced outwards as given. Flat sheets and open parts without an outside count as outwards if their faces are consistent.
+    /// The triangles faced outwards as given. Flat surfaces and open parts without an outside count as outwards if their faces are consistent.
     Outwards,
     /// The triangles face outwards after triangles of closed parts were turned.
     Turned {
@@ -40,15 +41,15 @@ pub enum Orientation {
         /// Number of triangles of the mesh.
         n_all: usize,
     },
-    /// An open part faces inwards, or its faces are inconsistent; nothing was turned.
+    /// The orientation is undecided: an open part faces inwards, or its faces are inconsistent. No triangle was turned.
     NotConverged(&'static str),
 }
 
 impl Orientation {
-    /// Returns an error if the outside is unknown.
+    /// Returns an error if the outside of the mesh is unknown.
     ///
     /// # Errors
-    /// If the mesh is [`NotConverged`](Self::NotConverged); the error begins with `place`.
+    /// If the orientation is undecided ([`NotConverged`](Self::NotConverged)); the error begins with `place`.
     pub fn require(&self, place: &str) -> Result<()> {
         match self {
             Self::NotConverged(given) => {
@@ -66,7 +67,7 @@ impl Orientation {
 }
 
 impl fmt::Display for Orientation {
-    /// Writes `12 of 12 triangles faced inwards and were turned outwards`.
+    /// Formats the orientation as a sentence: `12 of 12 triangles faced inwards and were turned outwards`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Outwards => write!(f, "faces outwards"),
@@ -89,7 +90,7 @@ impl TriangleMesh {
         parts.make_neighbours_agree();
         parts.turn_closed_parts();
         if let Some(given) = parts.unsettled() {
-            // A partly turned mesh with an unsettled part is useless, so the original is returned.
+            // A partly turned mesh with an undecided part is useless, so the original is returned.
             return (self, Orientation::NotConverged(given));
         }
         let n_triangles = parts.is_turned.iter().filter(|&&turned| turned).count();
@@ -107,9 +108,9 @@ impl TriangleMesh {
 struct Parts<'a> {
     mesh: &'a TriangleMesh,
     welded: &'a Welded,
-    /// Triangles of each part, ascending.
+    /// Indices of the triangles of each part, ascending.
     triangles: Vec<Vec<u32>>,
-    /// Part of each triangle.
+    /// Index of the part of each triangle.
     part_of: Vec<u32>,
     /// Whether each triangle must be turned.
     is_turned: Vec<bool>,
@@ -149,12 +150,12 @@ impl<'a> Parts<'a> {
         parts
     }
 
-    /// Returns the direction of a side's triangle along the edge, after turning.
+    /// Returns the direction in which the triangle of a side passes the edge, after turning.
     fn is_forward(&self, side: &Side) -> bool {
         side.is_forward != self.is_turned[side.triangle as usize]
     }
 
-    /// Returns for each part whether its edges are balanced.
+    /// Returns for each part whether it is closed: every edge has equally many triangles in both directions.
     fn closed(&self) -> Vec<bool> {
         // Triangles with a repeated corner have no edges of their own; they are parts that enclose nothing.
         let mut is_closed = vec![true; self.triangles.len()];
@@ -219,7 +220,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Returns the corners of a triangle after turning.
+    /// Returns the corners of a triangle, after turning if the triangle is marked.
     fn triangle(&self, triangle: u32) -> Triangle {
         let [a, b, c] = self.mesh.triangle(triangle as usize).0;
         match self.is_turned[triangle as usize] {
@@ -261,7 +262,7 @@ impl<'a> Parts<'a> {
             let around = Aabb::around(triangles.iter().map(Triangle::bounds));
             let bounds = around.expect("a part has triangles");
             let mut outside = 0;
-            // The smallest part around this one comes last.
+            // The smallest part that encloses this part comes last.
             let mut is_turned = false;
             for other in placed.iter_mut().filter(|other| other.may_hold(&bounds)) {
                 let winding = other.winding_around(&triangles);
@@ -331,7 +332,7 @@ impl<'a> Parts<'a> {
 /// Closed part that may contain other parts.
 struct Enclosure {
     bounds: Aabb,
-    /// Triangles before the part was turned.
+    /// Triangles of the part before it was turned.
     triangles: Vec<Triangle>,
     bvh: Option<Bvh>,
     is_turned: bool,
@@ -342,7 +343,7 @@ impl Enclosure {
         self.bounds.min.cmple(bounds.min).all() && self.bounds.max.cmpge(bounds.max).all()
     }
 
-    /// Returns the winding number, before turning, of the majority of several points of another part; 0 outside.
+    /// Returns the winding number of this part around another part, before turning. The majority of several points decides; the number is 0 outside.
     fn winding_around(&mut self, triangles: &[Triangle]) -> i32 {
         let bvh = self.bvh.get_or_insert_with(|| {
             Bvh::from_triangles(self.triangles.clone()).expect("a part has triangles")

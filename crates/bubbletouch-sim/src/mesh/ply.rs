@@ -1,7 +1,7 @@
 //! Meshes from PLY files, ASCII or binary with either byte order.
 //!
-//! The file needs an element `vertex` with scalar properties x, y, z (metres). The element `face` is read if its list has the name
-//! `vertex_indices` or `vertex_index`. Other elements and properties are skipped.
+//! A file must have an element `vertex` with scalar properties x, y, z (metres). The element `face` is read if its list has the name `vertex_indices` or
+//! `vertex_index`. Other elements and properties are skipped.
 
 use super::MeshFile;
 use super::text_lines::BYTE_ORDER_MARK;
@@ -16,8 +16,7 @@ use std::io::{BufRead, ErrorKind};
 /// Reads the mesh in a PLY file; errors begin with `place`, the name of the file.
 ///
 /// # Errors
-/// If the file is not a complete PLY file: another format, a truncated file, no vertices, a coordinate that is
-/// not finite, or an invalid vertex index.
+/// If the file has another format, is truncated, has no vertices, or contains a coordinate that is not finite or an invalid vertex index.
 pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     check_magic(place, &mut source)?;
     let mut reader = Reader::new(source);
@@ -50,7 +49,7 @@ pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     MeshFile::new(place, vertices, polygons(place, &faces)?)
 }
 
-/// Converts indices, which are read as signed numbers. Invalid ones are rejected here or when the surface is created.
+/// Converts vertex indices, which are read as signed numbers. Invalid indices are rejected here or when the surface is created.
 fn polygons(place: &str, faces: &[Face]) -> Result<Vec<Vec<u32>>> {
     let index = |face: usize, corner: i64| {
         u32::try_from(corner).map_err(|_| {
@@ -93,7 +92,7 @@ fn check_magic(place: &str, source: &mut impl BufRead) -> Result<()> {
 fn check_header<'a>(place: &str, elements: impl Iterator<Item = &'a ElementDef>) -> Result<()> {
     let mut has_vertices = false;
     for element in elements {
-        // The number of elements without content is otherwise not limited by the size of the file.
+        // Otherwise the size of the file would not limit the number of elements without content.
         if element.properties.is_empty() && element.count > 0 {
             return Err(Error::input(
                 place,
@@ -222,7 +221,7 @@ impl PropertyAccess for Face {
     }
 }
 
-/// Element that is skipped.
+/// Element of a file that is skipped.
 struct Skipped;
 
 impl PropertyAccess for Skipped {

@@ -4,12 +4,12 @@ use super::welded::Welded;
 use super::{Feature, TriangleMesh};
 use glam::DVec3;
 
-/// For each feature of a mesh, the sum of the normals of the faces around it, weighted by their angle there.
+/// Pseudonormals of all features of a mesh: the sum of the normals of the faces around a feature, weighted by their angle there.
 ///
 /// A triangle too thin to have a normal has no weight.
 #[derive(Clone, Debug)]
 pub(super) struct Pseudonormals {
-    /// Pseudonormals of the faces, shape (n_triangles,), unit or zero.
+    /// Pseudonormals of the faces, shape (n_triangles,), unit vectors or zero.
     faces: Vec<DVec3>,
     /// Pseudonormals of the edges, shape (n_triangles, 3).
     edges: Vec<[DVec3; 3]>,
@@ -49,7 +49,7 @@ impl Pseudonormals {
         }
     }
 
-    /// Returns the pseudonormal of a feature; it points outwards and has any length.
+    /// Returns the pseudonormal of a feature, which points outwards and has any length.
     pub fn at(&self, triangle: usize, feature: Feature) -> DVec3 {
         match feature {
             Feature::Face => self.faces[triangle],

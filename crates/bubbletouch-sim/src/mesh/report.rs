@@ -1,4 +1,4 @@
-//! Report of the faults and measures of a mesh. The mesh is not repaired.
+//! Report of the faults and measures of a mesh, which itself stays unchanged.
 
 use super::welded::{Joined, has_equal};
 use super::{Hole, Side, TriangleMesh, Welded};
@@ -6,7 +6,7 @@ use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Counts and measures of a mesh after welding corners with identical coordinates.
+/// Counts and measures of a mesh, after corners with identical coordinates were welded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshReport {
     /// Number of distinct corners of triangles.
@@ -15,7 +15,7 @@ pub struct MeshReport {
     pub n_triangles: usize,
     /// Number of edges, each counted once.
     pub n_edges: usize,
-    /// Number of parts that share no corner.
+    /// Number of components (parts that share no corner).
     pub n_components: usize,
     /// Number of triangles with a repeated corner.
     pub n_collapsed: usize,
@@ -25,7 +25,7 @@ pub struct MeshReport {
     pub n_duplicates: usize,
     /// Number of edges with three or more triangles.
     pub n_crowded_edges: usize,
-    /// Number of corners at which several fans of triangles touch only there.
+    /// Number of pinched corners, at which several fans of triangles meet in one point only.
     pub n_pinched_vertices: usize,
     /// Number of edges with two inconsistently oriented triangles.
     pub n_flipped_edges: usize,

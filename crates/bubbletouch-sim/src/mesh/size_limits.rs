@@ -4,23 +4,22 @@ use super::LengthUnit;
 use crate::error::{Error, Result};
 use glam::DVec3;
 
-/// Limits of the longest side of an object's bounding box if the unit of its file is not given, metres.
+/// Plausible range for the longest side of an object's bounding box, used if the unit of its file is not given; metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimits {
-    /// Lower limit.
+    /// Lower limit of the longest side, metres.
     pub smallest: f64,
-    /// Upper limit.
+    /// Upper limit of the longest side, metres.
     pub largest: f64,
 }
 
-/// Maximum length of an object in sides of an array; a touch on a longer object covers less than a hundredth of a face.
+/// Maximum length of an object, in multiples of the array's side; a touch on a longer object covers less than a hundredth of a face.
 const MAX_SIDES: f64 = 10.0;
 /// Length that is always allowed, because small arrays also touch furniture or a person's arm; metres.
 const ALWAYS_ALLOWED: f64 = 1.0;
 
 impl SizeLimits {
-    /// Limits without a known array: 0.1 mm, which is below the pitch of every tactile sensor, to 10 m, ten sides of an array of one
-    /// square metre.
+    /// Limits for an unknown array: 0.1 mm, which is below the pitch of every tactile sensor, to 10 m, ten sides of an array of one square metre.
     pub const ANY: Self = Self {
         smallest: 1e-4,
         largest: 10.0,

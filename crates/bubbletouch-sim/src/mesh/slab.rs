@@ -7,7 +7,7 @@ use super::{BoxTree, Triangle};
 use glam::DVec3;
 use std::ops::Range;
 
-/// Set of points x with `normal · x` in a range.
+/// Slab between two parallel planes: the points x with `normal · x` in a range.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slab {
     /// Mean unit normal; zero if the triangles have no normal.

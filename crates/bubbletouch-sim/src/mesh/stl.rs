@@ -8,15 +8,15 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::io::BufRead;
 
-/// Bytes before the triangles of a binary file: a header of 80 bytes and the number of triangles.
+/// Number of bytes before the triangles of a binary file: a header of 80 bytes and the number of triangles.
 const HEADER: usize = 84;
-/// Bytes per triangle in a binary file: normal, three corners, two bytes of attributes.
+/// Number of bytes per triangle in a binary file: normal, three corners, two bytes of attributes.
 const TRIANGLE: usize = 50;
 
 /// Reads the mesh in an STL file; all solids of an ASCII file form one mesh.
 ///
 /// # Errors
-/// If the file is truncated, or is neither kind of STL. The error begins with `place`.
+/// If the file is truncated or is not an STL file. The error begins with `place`.
 pub fn read_stl(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     let mut content = Vec::new();
     source
@@ -72,7 +72,7 @@ fn binary_corners(content: &[u8]) -> Vec<DVec3> {
 /// Returns three corners per facet of all solids of an ASCII file. Keywords may be in upper case.
 fn ascii_corners(place: &str, content: &[u8]) -> Result<Vec<DVec3>> {
     let mut corners = Vec::new();
-    // Whether a solid and a facet are open, and the number of corners of the current facet.
+    // State of the reader: whether a solid and a facet are open, and the number of corners of the current facet.
     let (mut in_solid, mut in_facet, mut n_corners) = (false, false, 0);
     each_line(place, content, |number, line| {
         let mut words = line.split_whitespace();

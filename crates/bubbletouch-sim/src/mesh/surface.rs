@@ -1,4 +1,4 @@
-//! Mesh with queries for the nearest point and for inside and outside.
+//! Mesh with queries for the nearest point, and for inside and outside.
 
 use super::crossings::winding;
 use super::pseudonormals::Pseudonormals;
@@ -8,7 +8,7 @@ use super::{Bvh, Closest, Triangle, TriangleMesh};
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// Mesh, with the data structures for its queries.
+/// Triangle mesh with the data structures for distance and inside queries.
 #[derive(Clone, Debug)]
 pub struct Surface {
     mesh: TriangleMesh,
@@ -19,12 +19,12 @@ pub struct Surface {
     is_balanced: bool,
 }
 
-/// Smallest cosine between a pseudonormal and the direction to the point for which its sign is used, because thin triangles have no weight
-/// in it. Below it the winding number decides.
+/// Smallest cosine between a pseudonormal and the direction to the point for which the pseudonormal's sign is used. Below this cosine the winding number
+/// decides, because thin triangles have no weight in a pseudonormal.
 const FLAT: f64 = 0.05;
 
 impl Surface {
-    /// Prepares a mesh; takes a few microseconds per triangle.
+    /// Prepares a mesh for queries; takes a few microseconds per triangle.
     pub fn new(mesh: TriangleMesh) -> Self {
         let bvh = Bvh::new(&mesh);
         let welded = Welded::new(&mesh);
@@ -38,17 +38,17 @@ impl Surface {
         }
     }
 
-    /// Returns the mesh.
+    /// Returns the mesh of the surface.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.mesh
     }
 
-    /// Returns the tree of bounding boxes.
+    /// Returns the tree of the triangles' bounding boxes.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }
 
-    /// Returns the bounding box, metres.
+    /// Returns the bounding box of the mesh, metres.
     pub fn bounds(&self) -> Aabb {
         self.bvh.bounds()
     }
@@ -58,7 +58,7 @@ impl Surface {
         self.is_closed
     }
 
-    /// Returns the nearest point that is closer than `within` metres (infinity: no limit).
+    /// Returns the nearest point of the mesh that is closer than `within` metres; no limit if `within` is infinite.
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         self.bvh.closest(point, within)
     }
@@ -73,8 +73,8 @@ impl Surface {
         self.winding.winding_number(&self.bvh, point)
     }
 
-    /// Returns whether a point is in the [solid](crate::mesh#the-solid-of-a-mesh) of the mesh: its winding number exceeds one half. The result is exact
-    /// if every edge has equally many faces in both directions.
+    /// Returns whether a point is in the [solid](crate::mesh#the-solid-of-a-mesh) of the mesh, that is, whether its winding number exceeds one half. The result
+    /// is exact if every edge has equally many faces in both directions.
     pub fn contains(&self, point: DVec3) -> bool {
         match self.is_balanced {
             true => winding(&self.bvh, point) > 0,
@@ -82,7 +82,7 @@ impl Surface {
         }
     }
 
-    /// Returns whether a face of the mesh may intersect this triangle; false if all are certainly [apart](Triangle::is_apart) from it.
+    /// Returns whether a face of the mesh may intersect this triangle; false if a plane separates the triangle from every face.
     pub fn may_cross(&self, triangle: &Triangle) -> bool {
         let bounds = triangle.bounds();
         let mut is_crossed = false;
@@ -98,9 +98,10 @@ impl Surface {
         is_crossed
     }
 
-    /// Returns the distance to the nearest point, metres, negative inside: by pseudonormals on a closed mesh, otherwise by winding number.
+    /// Returns the signed distance to the nearest point of the mesh, metres, negative inside. The sign is determined by pseudonormals on a closed mesh,
+    /// otherwise by the winding number.
     ///
-    /// On a closed mesh that intersects itself the sign refers to the nearest surface; use [`contains`](Self::contains) there.
+    /// On a closed mesh that intersects itself the sign refers to the nearest surface; use [`contains`](Self::contains) instead.
     pub fn signed_distance(&self, point: DVec3) -> f64 {
         let Some(closest) = self.closest(point, f64::INFINITY) else {
             // Squared distances overflow beyond 1e154 m; such points are outside.
@@ -113,7 +114,7 @@ impl Surface {
         }
     }
 
-    /// Returns whether a point with a known nearest point is outside.
+    /// Returns whether a point is outside the mesh, given its nearest point.
     pub fn is_outside(&self, point: DVec3, closest: &Closest) -> bool {
         if self.is_closed {
             let normal = self.pseudonormal(closest);

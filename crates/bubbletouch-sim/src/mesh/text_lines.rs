@@ -1,9 +1,9 @@
-//! Lines of text formats: numbered, without byte order mark, for any encoding and line ends.
+//! Numbered lines of text files in any encoding, with any line ends, without the byte order mark.
 
 use crate::error::{Error, Result};
 use std::io::BufRead;
 
-/// The UTF-8 byte order mark.
+/// Byte order mark of UTF-8.
 pub(super) const BYTE_ORDER_MARK: [u8; 3] = [0xEF, 0xBB, 0xBF];
 
 /// Calls `visit` with the number (from 1) and the text of each non-empty line.

@@ -3,28 +3,27 @@
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// Triangle with three corners, metres.
+/// Triangle, given by its three corners, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle(pub [DVec3; 3]);
 
-/// Part of a triangle that contains a point.
+/// Part of a triangle that contains a point: the face, an edge or a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Feature {
-    /// The interior.
+    /// Interior of the triangle.
     Face,
-    /// The edge from corner k (0, 1 or 2) to the next corner.
+    /// Edge from corner k (0, 1 or 2) to the next corner.
     Edge(u8),
-    /// The corner k (0, 1 or 2).
+    /// Corner k (0, 1 or 2).
     Vertex(u8),
 }
 
 /// Smallest height of a triangle relative to its longest edge. A thinner triangle is replaced by its three edges, because the direction of its plane has a
-/// relative error of 1e-16 / 1e-8. If the value is larger, faces that taxels can touch are replaced by edges; if the value is smaller, distances to such
-/// planes are rounding errors.
+/// relative error of 1e-16 / 1e-8. If larger, faces that taxels can touch are replaced by edges; if smaller, distances to such planes are rounding errors.
 const SLIVER: f64 = 1e-8;
 
 impl Triangle {
-    /// Returns the bounding box.
+    /// Returns the bounding box of the triangle, metres.
     pub fn bounds(&self) -> Aabb {
         let [a, b, c] = self.0;
         Aabb {
@@ -33,31 +32,31 @@ impl Triangle {
         }
     }
 
-    /// Returns the mean of the corners.
+    /// Returns the centroid of the triangle, the mean of its corners, metres.
     pub fn middle(&self) -> DVec3 {
         let [a, b, c] = self.0;
         (a + b + c) / 3.0
     }
 
-    /// Returns twice the area along the normal, m²; the normal points outwards if the corners are counter-clockwise seen from outside.
+    /// Returns the unnormalised normal, whose length is twice the area, m². The normal points outwards if the corners are counter-clockwise seen from outside.
     pub fn double_area(&self) -> DVec3 {
         let [a, b, c] = self.0;
         (b - a).cross(c - a)
     }
 
-    /// Returns the area, m².
+    /// Returns the area of the triangle, m².
     pub fn area(&self) -> f64 {
         0.5 * self.double_area().length()
     }
 
-    /// Returns the unit normal; `None` if the triangle is too thin.
+    /// Returns the unit normal of the triangle; `None` if the triangle is too thin.
     pub fn normal(&self) -> Option<DVec3> {
         let n = self.double_area();
         let longest2 = self.longest_edge_squared();
         (n.length_squared() > (SLIVER * longest2).powi(2)).then(|| n.normalize())
     }
 
-    /// Returns the squared length of the longest edge.
+    /// Returns the squared length of the longest edge, m².
     pub fn longest_edge_squared(&self) -> f64 {
         let [a, b, c] = self.0;
         let ab = a.distance_squared(b);
@@ -83,7 +82,7 @@ impl Triangle {
         [Self([from, middle, apex]), Self([middle, to, apex])]
     }
 
-    /// Returns the nearest point to `point`, and the part of the triangle that contains it.
+    /// Returns the point of the triangle nearest to `point`, and the part of the triangle that contains it.
     pub fn closest(&self, point: DVec3) -> (DVec3, Feature) {
         let [a, b, c] = self.0;
         let n = self.double_area();
@@ -109,8 +108,8 @@ impl Triangle {
         (point - n * ((point - a).dot(n) / n2), Feature::Face)
     }
 
-    /// Returns the position `along` at which the line `origin + along · direction` crosses the triangle; `None` if it does not, or is parallel to
-    /// the plane of the triangle. \[MT\]
+    /// Returns the position `along` at which the line `origin + along · direction` crosses the triangle. Returns `None` if the line misses the triangle or is
+    /// parallel to its plane. \[MT\]
     pub fn crossed_at(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
         let [a, b, c] = self.0;
         let (ab, ac, from_a) = (b - a, c - a, origin - a);

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::DVec3;
 
-/// Triangles with shared corners, in the frame of the object. The mesh may have holes and any orientation.
+/// Triangle mesh with shared corners, in the frame of the object. The mesh may have holes and any orientation.
 ///
 /// Invariant: at least one triangle; every vertex finite; every index below the number of vertices.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl TriangleMesh {
         Self::new(place, (0..8).map(corner).collect(), halves.concat())
     }
 
-    /// Checks the invariant. Vertices are in metres.
+    /// Creates a mesh and checks the invariant. Vertices are in metres.
     ///
     /// # Errors
     /// If the invariant does not hold; errors begin with `place` and count from 1.
@@ -60,7 +60,7 @@ impl TriangleMesh {
         })
     }
 
-    /// Returns the vertices, metres.
+    /// Returns the vertices of the mesh, metres.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
@@ -86,7 +86,7 @@ impl TriangleMesh {
         Aabb::around(boxes).expect("a mesh has at least one triangle")
     }
 
-    /// Returns the mesh with the marked triangles turned: their second and third corners are exchanged.
+    /// Returns the mesh with the marked triangles turned, which exchanges their second and third corners.
     pub(super) fn with_turned(mut self, is_turned: &[bool]) -> Self {
         for (triangle, _) in self
             .triangles
@@ -99,7 +99,7 @@ impl TriangleMesh {
         self
     }
 
-    /// Returns the mesh after a rigid motion.
+    /// Returns the mesh moved by a rigid motion.
     pub fn moved(&self, pose: &Pose) -> Self {
         let vertices = self.vertices.iter().map(|&v| pose.transform_point(v));
         Self {
@@ -109,7 +109,7 @@ impl TriangleMesh {
     }
 }
 
-/// Checks that there is at least one vertex and that all are finite.
+/// Checks that there is at least one vertex and that all coordinates are finite.
 pub(super) fn check_vertices(place: &str, vertices: &[DVec3]) -> Result<()> {
     if vertices.is_empty() {
         return Err(Error::input(place, "no vertices", "at least one vertex"));

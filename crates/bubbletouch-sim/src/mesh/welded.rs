@@ -1,4 +1,4 @@
-//! Shared edges of triangles, found by welding: vertices with identical coordinates are one, independent of the file's indices.
+//! Shared edges of triangles, found by welding vertices with identical coordinates, independent of the file's indices.
 
 use super::TriangleMesh;
 use crate::geometry::place_bits;
@@ -9,11 +9,11 @@ use std::collections::HashMap;
 pub struct Welded {
     /// Corners of each triangle; a corner has the index of the first vertex with its coordinates.
     pub corners: Vec<[u32; 3]>,
-    /// Sides of the triangles with three different corners, sorted by edge.
+    /// Sides of all triangles with three different corners, sorted by edge.
     pub sides: Vec<Side>,
 }
 
-/// Side of a triangle.
+/// Side of a triangle, with the edge of the mesh on which it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Side {
     /// Corners of the side, the smaller index first.
@@ -54,13 +54,12 @@ impl Welded {
         Self { corners, sides }
     }
 
-    /// Returns the sides of each edge, one edge after another.
+    /// Returns the sides of the triangles, grouped by edge.
     pub fn edges(&self) -> impl Iterator<Item = &[Side]> {
         self.sides.chunk_by(|a, b| a.edge == b.edge)
     }
 
-    /// Returns the number of edges with unequally many triangles in both directions: at holes, and between inconsistently oriented
-    /// faces.
+    /// Returns the number of edges with unequally many triangles in both directions. Such edges occur at holes and between inconsistently oriented faces.
     pub fn n_unbalanced(&self) -> usize {
         let sign = |side: &Side| if side.is_forward { 1 } else { -1 };
         let is_unbalanced = |sides: &&[Side]| sides.iter().map(sign).sum::<i32>() != 0;

@@ -1,6 +1,6 @@
 //! Generalised winding number of an open or closed surface around a point.
 //!
-//! The winding number is the sum of the solid angles of all triangles divided by 4π \[GWN\]: 1 inside a closed mesh, 0 outside, and
+//! The winding number is the sum of the solid angles of all triangles divided by 4π \[GWN\]. It is 1 inside a closed mesh, 0 outside, and
 //! intermediate near a hole. A distant part of the mesh is approximated by one dipole, its area vector A at its centre c
 //! \[FWN\]: `A·(c − x) / (4π |c − x|³)`.
 
@@ -8,7 +8,7 @@ use super::{Bvh, Triangle};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Distance in radii of a part from which on the dipole is used. If the value is larger, queries are slower; if the value is smaller, the error exceeds a
+/// Distance, in multiples of a part's radius, beyond which the part is replaced by its dipole. If larger, queries are slower; if smaller, the error exceeds a
 /// tenth on real meshes.
 const FAR: f64 = 2.5;
 
@@ -20,11 +20,11 @@ pub(super) struct WindingTree {
 
 #[derive(Clone, Copy, Debug)]
 struct Dipole {
-    /// Mean of the triangles' centroids, weighted by their areas.
+    /// Mean of the triangles' centroids, weighted by their areas, metres.
     center: DVec3,
-    /// Area vector Σ area · normal.
+    /// Area vector Σ area · normal of the triangles, m².
     area: DVec3,
-    /// Squared distance from which on the dipole replaces the triangles.
+    /// Squared distance beyond which the dipole replaces the triangles, m².
     far2: f64,
 }
 
@@ -86,9 +86,9 @@ impl WindingTree {
 #[derive(Clone, Copy, Debug, Default)]
 struct Moments {
     area: f64,
-    /// Sum Σ area · centroid.
+    /// Sum of the triangles' areas times centroids.
     first: DVec3,
-    /// Sum Σ area · normal.
+    /// Sum of the triangles' areas times normals.
     vector: DVec3,
 }
 

@@ -9,9 +9,9 @@ use glam::{DVec2, DVec3};
 /// Axis-aligned box about the origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
-    /// Half edge lengths.
+    /// Half edge lengths, metres.
     pub half: DVec3,
-    /// Radius of edges and corners, from zero to the smallest half edge length.
+    /// Radius of edges and corners, from zero to the smallest half edge length, metres.
     pub rounding: f64,
 }
 
@@ -22,13 +22,13 @@ impl Block {
         outside + beyond.max_element().min(0.0) - self.rounding
     }
 
-    /// Returns the largest p·direction over the box.
+    /// Returns the support function of the box: the largest p·direction over its points p, metres.
     pub fn support(&self, direction: DVec3) -> f64 {
         let core = self.half - DVec3::splat(self.rounding);
         core.dot(direction.abs()) + self.rounding * direction.length()
     }
 
-    /// Packs the corners, then rows along each edge, then rows on each face that become wider towards its middle.
+    /// Packs the box with spheres: the corners, then rows along each edge, then rows on each face that become wider towards its middle.
     ///
     /// An enlarged ball of tangent radius r covers a flat face to sqrt(h(2r + h)) around its foot: a square cell of half side
     /// sqrt(h(r + h/2)).
@@ -70,7 +70,7 @@ impl Block {
         }
     }
 
-    /// Returns six faces and, for a rounded box, twelve edges and eight corners.
+    /// Returns the surface patches of the box: six faces and, if it is rounded, twelve edges and eight corners.
     pub fn patches(&self) -> Vec<SurfacePatch> {
         const SIGNS: [f64; 2] = [-1.0, 1.0];
         let core = self.half - DVec3::splat(self.rounding);
@@ -124,7 +124,7 @@ impl Block {
         }
     }
 
-    /// Moves a point of the sharp box to the nearest point of the rounded one.
+    /// Moves a point of the sharp box to the nearest point of the rounded box.
     fn onto_surface(&self, point: DVec3) -> DVec3 {
         let core = self.half - DVec3::splat(self.rounding);
         let nearest = point.clamp(-core, core);
@@ -138,7 +138,7 @@ impl Block {
 
 /// Balls along the edges and in the corners of a box.
 struct EdgeRow {
-    /// Tangent radius; the centres lie at this distance inside both faces.
+    /// Tangent radius of the balls; their centres lie at this distance inside both faces.
     radius: f64,
     /// Whether the edge is round, so that the balls fill it.
     is_round: bool,
@@ -150,12 +150,12 @@ struct EdgeRow {
     half_spacing: f64,
 }
 
-/// Fraction of the squared reach that a ball in a round edge uses across the faces. If the value is smaller, the faces need more spheres; if the value is
-/// larger, the edge needs more spheres and protrudes.
+/// Fraction of the squared reach that a ball in a round edge uses across the faces. If smaller, the faces need more spheres; if larger, the edge needs more
+/// spheres and protrudes.
 const ACROSS: f64 = 0.1;
 
 impl EdgeRow {
-    /// At a sharp edge r = h covers the most: sqrt(2)·h in both directions along the edge (2r² + y² ≤ (r + h)²), and 2h on the faces.
+    /// Places balls along an edge. At a sharp edge r = h covers the most: √2·h in either direction along the edge (2r² + y² ≤ (r + h)²), and 2h on the faces.
     fn new(block: &Block, fit: Fit) -> Self {
         let h = fit.reach();
         if block.rounding >= h {
@@ -185,12 +185,12 @@ impl EdgeRow {
     }
 }
 
-/// Two opposite faces of a box.
+/// Pair of opposite faces of a box.
 struct Face {
     axis: usize,
     /// Half of the box along the axis, the maximum radius of a ball.
     depth: f64,
-    /// Half sides of the face.
+    /// Half side lengths of the face, metres.
     half: [f64; 2],
 }
 
@@ -203,8 +203,8 @@ impl Face {
         }
     }
 
-    /// Places rectangular rows from the border inwards. A plain grid is used if balls are as large as the box is thick, or if
-    /// fewer than two rows remain. `covered` is the width of the border that the rows of the edges cover.
+    /// Places rectangular rows of balls from the border inwards. A plain grid is used if balls are as large as the box is thick, or if fewer than two rows
+    /// remain. `covered` is the width of the border that the rows of the edges cover.
     fn pack(&self, mut covered: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         let h = fit.reach();
         loop {
@@ -212,7 +212,7 @@ impl Face {
             if left[0] <= 0.0 || left[1] <= 0.0 || spheres.len() > MAX_SPHERES {
                 return;
             }
-            // The row whose balls touch the side faces: inset = covered + sqrt(h(inset + h/2)).
+            // Inset of the row whose balls touch the side faces: inset = covered + sqrt(h(inset + h/2)).
             let inset = covered + 0.5 * h + (covered * h + 0.75 * h * h).sqrt();
             let cell = inset - covered;
             if inset >= self.depth || left[0] <= cell || left[1] <= cell {
@@ -237,7 +237,7 @@ impl Face {
         }
     }
 
-    /// Packs equal cells; their number follows from the outermost and therefore smallest balls.
+    /// Packs a face by equal cells; the outermost and therefore smallest balls determine their number.
     fn pack_grid(&self, covered: f64, left: [f64; 2], fit: Fit, spheres: &mut Vec<Sphere>) {
         let largest = (0.5 * fit.disc_squared(self.depth)).sqrt();
         let mut counts = left.map(|l| (l / largest).ceil());
@@ -271,7 +271,7 @@ impl Face {
     }
 }
 
-/// Returns the middles of equal cells, no wider than 2 × `largest_half`, that cover −half … half; none if half ≤ 0.
+/// Returns the middles of equal cells that cover −half … half and are no wider than 2 × `largest_half`; none if half ≤ 0.
 fn cells(half: f64, largest_half: f64) -> Vec<f64> {
     // A remainder below a billionth of a cell is a rounding error, not a missing cell.
     let n = (half / largest_half - 1e-9).ceil().max(0.0);
@@ -281,7 +281,7 @@ fn cells(half: f64, largest_half: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns `x` and `−x`. If `x` is zero, returns zero once.
+/// Returns `x` and `−x`, or zero once if `x` is zero.
 fn both_signs(x: f64) -> impl Iterator<Item = f64> {
     let second = (x != 0.0).then_some(-x);
     std::iter::once(x).chain(second)

@@ -1,4 +1,4 @@
-//! The catalogue: named objects, as parametric solids with real dimensions.
+//! Catalogue of named objects, given as parametric solids with real dimensions.
 //!
 //! A catalogue file is a list of objects. Each object is a union of parts minus subtracted shapes
 //! ([all shapes and keys](crate::guide::own_objects)):
@@ -18,8 +18,7 @@
 //!   position_mm = [0, 0, 35]
 //! ```
 //!
-//! After reading, each object is moved so that it rests on z = 0 with the middle of its bounding box on the z axis, for any positions of its
-//! parts.
+//! After reading, each object is moved so that it rests on z = 0 with the middle of its bounding box on the z axis, wherever its parts were.
 
 use super::solid_toml::WrittenPart;
 use super::{Hand, Object, Part, Solid, pack};
@@ -34,7 +33,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use toml::Spanned;
 
-/// Files of `objects/`, by the name of their set.
+/// Built-in catalogue files: the name of the set, and the text of the file.
 const BUILTIN: [(&str, &str); 4] = [
     ("balls", include_str!("../../objects/balls.toml")),
     ("boxes", include_str!("../../objects/boxes.toml")),
@@ -53,19 +52,19 @@ pub struct Catalogue {
 pub struct Entry {
     /// Name of the set: `balls`, `household`.
     pub set: String,
-    /// Name, unique within the set.
+    /// Name of the object, unique within its set.
     pub name: String,
     /// Source of the dimensions.
     pub source: String,
-    /// Shape, resting on z = 0 with the middle of its bounding box on the z axis.
+    /// Shape of the object, resting on z = 0 with the middle of its bounding box on the z axis.
     pub solid: Solid,
 }
 
 impl Entry {
-    /// Packs the shape with spheres, with a surface error in metres; see [`pack`].
+    /// Packs the object's shape with spheres, with a surface error of at most `surface_error` metres.
     ///
     /// # Errors
-    /// If [`pack`] fails.
+    /// If the packing fails, for example because the surface error is too small ([`pack`]).
     pub fn build(&self, surface_error: f64) -> Result<Object> {
         Ok(Object {
             name: self.name.clone(),
@@ -205,7 +204,7 @@ struct WrittenObject {
 }
 
 impl WrittenObject {
-    /// Formats `FILE, line LINE, object NAME` with the line of the object's name.
+    /// Formats the location `FILE, line LINE, object NAME`, with the line of the object's name.
     fn place(&self, place: &str, text: &str) -> String {
         let line = line_of(text, self.name.span().start);
         format!("{place}, line {line}, object `{}`", self.name.get_ref())
@@ -246,7 +245,7 @@ impl WrittenObject {
     }
 }
 
-/// Converts an error of a part to an error at the position of its key.
+/// Converts an error in a part to an error at the position of its key.
 fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
     match error {
         Error::Input {
@@ -264,7 +263,7 @@ fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
     }
 }
 
-/// Converts an error of the TOML reader, with line and object.
+/// Converts an error of the TOML reader to an error with line and object.
 fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
     let place = match error.span() {
         Some(Range { start, .. }) => {
@@ -284,7 +283,7 @@ fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
     )
 }
 
-/// Returns the quoted name of the `[[object]]` that contains this byte.
+/// Returns the quoted name of the `[[object]]` that contains the given byte of the text.
 fn object_around(text: &str, byte: usize) -> Option<&str> {
     let mut starts = text.match_indices("[[object]]").map(|(at, _)| at);
     let start = starts.clone().take_while(|&at| at <= byte).last()?;
@@ -296,7 +295,7 @@ fn object_around(text: &str, byte: usize) -> Option<&str> {
     Some(value.trim())
 }
 
-/// Returns whether one name contains the other, or both have the first three letters in common.
+/// Returns whether two names are similar: one contains the other, or their first three letters are equal.
 fn resemble(a: &str, b: &str) -> bool {
     let (a, b) = (a.to_lowercase(), b.to_lowercase());
     let head = |s: &str| s.chars().take(3).collect::<String>();

@@ -1,9 +1,9 @@
-//! Packing of solids with cuts.
+//! Packing of solids from which shapes are subtracted (cuts).
 //!
-//! The surface of A minus B consists of a part of A's surface and a part of B's surface. Both surfaces are divided into cells. A cell is halved until one of
-//! three facts is proved: the cell lies in an empty ball, the cell lies in a solid ball, or one sphere covers the cell. In the first two cases the cell
-//! contains no surface. The depth inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside, and
-//! after enlargement it reaches outside by at most the enlargement.
+//! The surface of A minus B consists of a part of A's surface and a part of B's surface. The two surfaces are divided into cells. A cell is halved until one of
+//! three facts is proved: the cell lies in an empty ball, it lies in a solid ball, or one sphere covers it. In the first two cases the cell contains no
+//! surface. The depth inside A minus B is the minimum of the depth in A and the distance from B. A ball of this radius therefore lies inside, and after
+//! enlargement it reaches outside by at most the enlargement.
 //!
 //! A cut that ends exactly at the surface of a part would leave a membrane of zero thickness that passes all tests. Cuts are therefore
 //! enlarged by [`GROWTH`], and walls thinner than this beside a cut are lost.
@@ -13,15 +13,15 @@ use super::surface_patch::{PatchCell, SurfacePatch};
 use super::{Part, Solid, Sphere};
 use glam::DVec3;
 
-/// Enlargement of cuts, in allowed gaps. If the value is larger, thin walls beside cuts are lost; if the value is smaller, cells where a cut ends in the
-/// surface of a part must be divided further before they are proved to be empty.
+/// Enlargement of cuts, relative to the allowed gap. If larger, thin walls beside cuts are lost. If smaller, cells where a cut ends in the surface of a part
+/// must be divided further before they are proved to be empty.
 const GROWTH: f64 = 0.01;
 /// Maximum number of tested cells: four per allowed sphere.
 const MAX_CELLS: usize = 4 * MAX_SPHERES;
 /// Number of recent spheres that are tested for covering another cell.
 const LAST_SPHERES: usize = 24;
 
-/// Returns the spheres; `None` if there are more than [`MAX_SPHERES`], or if too many cells are needed for the proof.
+/// Returns the spheres that approximate a solid with cuts; `None` if there are more than [`MAX_SPHERES`], or if the proof needs too many cells.
 pub(super) fn pack_difference(solid: &Solid, fit: Fit) -> Option<Vec<Sphere>> {
     let growth = GROWTH * fit.inside;
     let mut covering = Covering {
@@ -57,17 +57,17 @@ struct Covering<'a> {
     solid: &'a Solid,
     growth: f64,
     fit: Fit,
-    /// Maximum radius of a ball.
+    /// Maximum radius of a ball, metres.
     size: f64,
     balls: Vec<InnerBall>,
-    /// Cells smaller than the enlargement without a proof.
+    /// Cells for which there is no proof although they are smaller than the enlargement.
     doubtful: Vec<PatchCell>,
     n_cells: usize,
 }
 
 impl Covering<'_> {
-    /// Covers the surface within a patch; the solid is in the direction of `inwards` times the normal. Returns `None` if too many spheres or cells are
-    /// needed.
+    /// Covers the surface within a patch by spheres; the solid is in the direction of `inwards` times the normal. Returns `None` if too many spheres or cells
+    /// are needed.
     fn cover(&mut self, patch: &SurfacePatch, inwards: f64) -> Option<()> {
         let mut cells = patch.cells();
         while let Some(cell) = cells.pop() {
@@ -104,7 +104,7 @@ impl Covering<'_> {
         self.solid.depth_with_cuts_grown(point, self.growth)
     }
 
-    /// Returns whether some ball centred on the normal through the middle contains the cell and is entirely solid or entirely empty.
+    /// Returns whether a ball that is entirely solid or entirely empty contains the cell; the ball is centred on the normal through the cell's middle.
     fn is_no_surface(&self, cell: &PatchCell, (middle, normal): (DVec3, DVec3)) -> bool {
         let holds = |away: f64| {
             let center = middle + away * normal;

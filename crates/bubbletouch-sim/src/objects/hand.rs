@@ -1,7 +1,7 @@
-//! Human hand with posed fingers: palm and fingers are balls of varying size swept along the bones.
+//! Human hand with posed fingers; palm and fingers are balls of varying size swept along the bones.
 //!
-//! The hand is a right hand, palm down, on the plane z = 0: fingers along +y, the thumb towards −x, the middle of the wrist at the
-//! origin. A flat hand touches the plane with palm, fingers and thumb; bent fingers extend below the plane.
+//! The hand is a right hand, palm down, on the plane z = 0. Fingers point along +y and the thumb towards −x; the middle of the wrist is at the origin. A flat
+//! hand touches the plane with palm, fingers and thumb; bent fingers extend below the plane.
 //!
 //! Bone lengths are mean values of adults \[BK\]. Breadths are estimates for the fingers of an average man, to about half a
 //! millimetre. The skin of the hand is rigid, as every object is.
@@ -14,20 +14,20 @@ use glam::{DQuat, DVec3};
 /// Joint angles of a finger, radians; 0 is straight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FingerPose {
-    /// Abduction towards the little finger, −0.5 to 0.5.
+    /// Abduction angle towards the little finger, −0.5 to 0.5 rad.
     pub spread: f64,
-    /// Flexion of the knuckle (the thumb's metacarpophalangeal joint), −0.5 to 1.7.
+    /// Flexion angle of the knuckle (the thumb's metacarpophalangeal joint), −0.5 to 1.7 rad.
     pub knuckle: f64,
-    /// Flexion of the middle joint (the thumb's last joint), −0.1 to 2.0.
+    /// Flexion angle of the middle joint (the thumb's last joint), −0.1 to 2.0 rad.
     pub middle: f64,
-    /// Flexion of the last joint (unused for the thumb), −0.1 to 1.5.
+    /// Flexion angle of the last joint (unused for the thumb), −0.1 to 1.5 rad.
     pub end: f64,
 }
 
 /// Size and pose of a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hand {
-    /// Length from the wrist to the tip of the straight middle finger, metres; 0.16 to 0.21 for adults.
+    /// Length of the hand from the wrist to the end of the straight middle finger, metres; 0.16 to 0.21 for adults.
     pub length: f64,
     /// Poses of the index, middle, ring and little finger.
     pub fingers: [FingerPose; 4],
@@ -39,17 +39,17 @@ pub struct Hand {
 
 /// Digit with the lengths of its bones and the diameters at its joints, mm, for a hand of [`MODEL_LENGTH`].
 struct Digit {
-    /// Position of the start of the metacarpal.
+    /// Position of the start of the metacarpal, mm.
     base: [f64; 2],
     /// Angle of the metacarpal from +y towards +x, radians.
     angle: f64,
-    /// Lengths of the metacarpal and the phalanges; the last one includes its pulp.
+    /// Lengths of the metacarpal and the phalanges, mm; the last phalanx includes its pulp.
     bones: [f64; 4],
-    /// Diameters at the start of the metacarpal and at the end of each bone.
+    /// Diameters at the start of the metacarpal and at the end of each bone, mm.
     diameters: [f64; 5],
 }
 
-/// Index, middle, ring and little finger.
+/// Model of the index, middle, ring and little finger.
 const FINGERS: [Digit; 4] = [
     Digit {
         base: [-14.0, 20.0],
@@ -77,7 +77,7 @@ const FINGERS: [Digit; 4] = [
     },
 ];
 
-/// Thumb; it has no third phalanx.
+/// Model of the thumb, which has no third phalanx.
 const THUMB: Digit = Digit {
     base: [-17.0, 12.0],
     angle: -0.75,
@@ -85,11 +85,11 @@ const THUMB: Digit = Digit {
     diameters: [28.0, 25.0, 20.5, 15.0, 15.0],
 };
 
-/// Distance from the origin to the tip of the middle finger in this model, mm.
+/// Distance from the origin to the end of the middle finger in this model, mm.
 const MODEL_LENGTH: f64 = 183.1;
 
 impl Hand {
-    /// Index of the thumb in [`strands`](Self::strands).
+    /// Index of the thumb in the sphere chains of a hand.
     pub const THUMB: usize = 7;
 
     /// Returns a hand with straight fingers.
@@ -102,7 +102,7 @@ impl Hand {
         }
     }
 
-    /// Returns a hand bent around a round object: 0 is flat, 1 is a fist.
+    /// Returns a hand bent around a round object; `share` is 0 for a flat hand and 1 for a fist.
     pub fn curled(share: f64) -> Self {
         let finger = FingerPose {
             spread: 0.0,
@@ -156,9 +156,8 @@ impl Hand {
         Solid::new(parts.collect::<Result<_>>()?)
     }
 
-    /// Returns chains of balls at the joints, metres; the hand is the union of the convex hulls of consecutive balls. First the index, middle, ring and
-    /// little finger (from the wrist: start of the metacarpal, then the end of each bone), then the palm between their metacarpals, then
-    /// [the thumb](Self::THUMB), and the ball of the thumb.
+    /// Returns chains of balls at the joints, metres; the hand is the union of the convex hulls of consecutive balls. The chains are the index, middle, ring
+    /// and little finger (start of the metacarpal, then the end of each bone); the palm between the metacarpals; the thumb; and the ball of the thumb.
     pub fn strands(&self) -> [Vec<Sphere>; 9] {
         // Scale from the model's millimetres to the metres of this hand.
         let scale = self.length / MODEL_LENGTH;
@@ -225,7 +224,7 @@ impl FingerPose {
 }
 
 impl Digit {
-    /// Returns the five joints of a digit, mm. Each bone is rotated down from the previous one; the underside of a straight digit is on z = 0.
+    /// Returns the five joints of a digit, mm. Each bone is rotated down from the previous bone; the underside of a straight digit is on z = 0.
     fn joints(&self, pose: &FingerPose, opposition: f64) -> [DVec3; 5] {
         let [base_x, base_y] = self.base;
         let mut joints = [DVec3::new(base_x, base_y, 0.5 * self.diameters[0]); 5];
@@ -241,7 +240,7 @@ impl Digit {
                 .cross(DVec3::Z)
                 .normalize();
             forward = DQuat::from_axis_angle(hinge, -bend) * forward;
-            // Straight digits become thinner towards the tip, so their joints become lower.
+            // Straight digits become thinner towards their ends, so their joints become lower.
             let sinks = 0.5 * (self.diameters[bone] - self.diameters[bone + 1]);
             let length = self.bones[bone];
             let up = forward.cross(hinge).normalize();

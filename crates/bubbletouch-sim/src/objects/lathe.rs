@@ -1,4 +1,4 @@
-//! Solid of revolution: a polygon in the half plane (distance from the axis, height), rotated about z.
+//! Solid of revolution: a polygon in the half plane (distance from the axis, height) that is rotated about z.
 //!
 //! The nearest surface point of a solid of revolution lies in the half plane of the query point, so the distance equals the distance to the polygon.
 
@@ -9,7 +9,7 @@ use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Rotated polygon.
+/// Solid of revolution, given by a polygon that is rotated about z.
 #[derive(Clone, Debug)]
 pub(super) struct Lathe {
     outline: Outline,
@@ -18,20 +18,20 @@ pub(super) struct Lathe {
 /// Balls of one radius, equally spaced on a circle about the axis.
 #[derive(Clone, Copy, Debug)]
 struct Ring {
-    /// Distance from the axis and height of the ball centres.
+    /// Distance from the axis and height of the ball centres, metres.
     center: DVec2,
-    /// Tangent radius, before enlargement.
+    /// Tangent radius of the balls before enlargement, metres.
     radius: f64,
     n: f64,
 }
 
-/// Intervals of each edge, as distances from its start, that no ring covers yet.
+/// Intervals of each edge that no ring covers yet, as distances from the edge's start.
 struct Uncovered {
     intervals: Vec<Vec<[f64; 2]>>,
 }
 
 impl Lathe {
-    /// Creates a lathe from a profile of (distance from the axis ≥ 0, height). Sides on the axis are not surface.
+    /// Creates a solid of revolution from a profile of (distance from the axis ≥ 0, height), metres. Sides on the axis do not belong to the surface.
     pub fn new(profile: &[DVec2]) -> Self {
         Self {
             outline: Outline::new(profile, |a, b| a.x > 0.0 || b.x > 0.0),
@@ -43,7 +43,7 @@ impl Lathe {
             .distance(DVec2::new(point.truncate().length(), point.z))
     }
 
-    /// Returns the largest p·direction over the solid.
+    /// Returns the support function of the solid: the largest p·direction over its points p, metres.
     pub fn support(&self, direction: DVec3) -> f64 {
         let across = direction.truncate().length();
         let corners = self.outline.vertices().iter();
@@ -52,7 +52,7 @@ impl Lathe {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Adds rings until every point of the profile is covered all around.
+    /// Packs the solid: adds rings of balls until every point of the profile is covered all around.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let mut uncovered = Uncovered::new(&self.outline);
         while let Some(ring) = self.next_ring(&uncovered, fit) {
@@ -74,7 +74,7 @@ impl Lathe {
         }
     }
 
-    /// Returns the ring that covers an end of the first uncovered interval and the largest length of all edges per sphere.
+    /// Returns the best next ring: it covers an end of the first uncovered interval, and the largest length of all edges per sphere.
     fn next_ring(&self, uncovered: &Uncovered, fit: Fit) -> Option<Ring> {
         let (edge, target, step) = uncovered.first_end(&self.outline)?;
         let available = if step > 0.0 {
@@ -112,7 +112,7 @@ impl Lathe {
         best.map(|(.., ring)| ring)
     }
 
-    /// Returns rings of the largest ball that touches an edge at a point, with several numbers of balls.
+    /// Returns candidate rings of the largest ball that touches an edge at a point, with several numbers of balls.
     fn rings(&self, edge: usize, along: f64, fit: Fit) -> impl Iterator<Item = Ring> {
         let foot = self.outline.edges[edge].point(along);
         let inward = self.outline.edges[edge].inward;
@@ -141,8 +141,8 @@ impl Lathe {
 
     /// Returns the interval of an edge that a ring covers all around.
     ///
-    /// Half-way between two balls the squared distance of the profile point (ρ, z) from both centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`.
-    /// This squared distance is quadratic along an edge, and the point is covered if it is at most `(r + h)²`.
+    /// Half-way between two balls the squared distance of the profile point (ρ, z) from the two centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. It is
+    /// quadratic along an edge, and the point is covered if it is at most `(r + h)²`.
     fn covered(&self, ring: &Ring, edge: usize, fit: Fit) -> Option<[f64; 2]> {
         let edge = &self.outline.edges[edge];
         let from_center = edge.start - ring.center;
@@ -199,13 +199,13 @@ impl Lathe {
 }
 
 impl Ring {
-    /// Returns the distance of a profile point, half-way between two balls, to their centres.
+    /// Returns the distance from a profile point, half-way between two balls, to the balls' centres, metres.
     fn distance(&self, point: DVec2) -> f64 {
         let apart = 4.0 * point.x * self.center.x * (0.5 * PI / self.n).sin().powi(2);
         ((point - self.center).length_squared() + apart).sqrt()
     }
 
-    /// Adds the spheres that cover profile points up to `farthest` from their centres.
+    /// Adds the spheres of a ring that cover profile points up to `farthest` from their centres.
     fn push_spheres(&self, farthest: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         spheres.extend((0..self.n as usize).take(MAX_SPHERES + 1).map(|i| {
             let (sin, cos) = (TAU * i as f64 / self.n).sin_cos();
@@ -237,7 +237,7 @@ impl Uncovered {
     }
 }
 
-/// Removes an interval. Remainders shorter than a billionth of it are rounding errors and are also removed.
+/// Removes an interval from a list of intervals. Remainders shorter than a billionth of the interval are rounding errors and are also removed.
 fn subtract(intervals: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
     let slack = 1e-9 * (high - low);
     *intervals = intervals
@@ -247,7 +247,7 @@ fn subtract(intervals: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
         .collect();
 }
 
-/// Returns the intersection of an interval with others.
+/// Returns the intersections of an interval with a list of intervals.
 fn common(intervals: &[[f64; 2]], [low, high]: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + '_ {
     let cut = move |[start, end]: &[f64; 2]| [start.max(low), end.min(high)];
     intervals.iter().map(cut).filter(|[start, end]| start < end)

@@ -5,7 +5,7 @@ use crate::mesh::{Bvh, TriangleMesh, Welded};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
-/// Mesh that taxels can touch exactly; both sides of a triangle are solid. Clones share their data.
+/// Mesh that taxels can touch exactly; each triangle is solid from either side. Clones share their data.
 #[derive(Clone, Debug)]
 pub struct MeshModel {
     data: Arc<Data>,
@@ -22,20 +22,20 @@ struct Data {
 /// Contact data of one triangle: its face, and the edges and corners that no earlier triangle owns.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactFace {
-    /// Unit normal; zero if the triangle is too thin.
+    /// Unit normal of the triangle; zero if the triangle is too thin.
     pub normal: DVec3,
-    /// For each side, the unit normal of the neighbour, with the neighbour's corners ordered as if it passed the side in the direction of this triangle. On
-    /// a smooth surface this normal is approximately minus the normal of this triangle. The normal is zero if there is not exactly one neighbour, or if the
+    /// Unit normal of the neighbour across each side. The neighbour's corners are ordered as if it passed the side in the direction of this triangle, so on a
+    /// smooth surface this normal is approximately minus the normal of this triangle. The normal is zero if there is not exactly one neighbour, or if the
     /// neighbour is too thin.
     pub across: [DVec3; 3],
-    /// Whether this triangle owns the side from corner k to the next.
+    /// Whether this triangle owns the side from each corner to the next.
     pub has_edge: [bool; 3],
-    /// Whether this triangle owns the corner.
+    /// Whether this triangle owns each corner.
     pub has_corner: [bool; 3],
 }
 
 impl MeshModel {
-    /// Prepares a mesh; takes a few microseconds per triangle.
+    /// Prepares a mesh for contacts; takes a few microseconds per triangle.
     pub fn new(mesh: TriangleMesh) -> Self {
         let bvh = Bvh::new(&mesh);
         let faces = contact_faces(&mesh, &Welded::new(&mesh));
@@ -46,12 +46,12 @@ impl MeshModel {
         }
     }
 
-    /// Returns the mesh, metres.
+    /// Returns the triangle mesh, metres.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.data.mesh
     }
 
-    /// Returns the tree of bounding boxes.
+    /// Returns the tree of the triangles' bounding boxes.
     pub fn bvh(&self) -> &Bvh {
         &self.data.bvh
     }
@@ -61,12 +61,12 @@ impl MeshModel {
         &self.data.faces
     }
 
-    /// Returns the bounding box, metres.
+    /// Returns the bounding box of the mesh, metres.
     pub fn bounds(&self) -> Aabb {
         self.data.bvh.bounds()
     }
 
-    /// Returns the bounding box of the mesh after a rotation about its origin.
+    /// Returns the bounding box of the mesh after a rotation about its origin, metres.
     pub fn turned_bounds(&self, rotation: DQuat) -> Aabb {
         let rotation = DMat3::from_quat(rotation);
         let corners = self.corners().map(|corner| rotation * corner);
@@ -77,7 +77,7 @@ impl MeshModel {
         Aabb::around(points).expect("a mesh has at least one triangle")
     }
 
-    /// Returns each vertex of a triangle, once.
+    /// Returns each vertex that belongs to a triangle, once.
     pub fn corners(&self) -> impl Iterator<Item = DVec3> {
         let Data { bvh, faces, .. } = &*self.data;
         let triangles = bvh.triangles().iter().zip(faces);
@@ -95,7 +95,7 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
         .map(|number| ContactFace {
             normal: mesh.triangle(number).normal().unwrap_or(DVec3::ZERO),
             across: [DVec3::ZERO; 3],
-            // All sides, until shared ones are removed below. The sides of a triangle with a repeated corner are not shared.
+            // Initially all sides; shared ones are removed below. The sides of a triangle with a repeated corner are not shared.
             has_edge: [true; 3],
             has_corner: welded.corners[number].map(&mut own_corner),
         })

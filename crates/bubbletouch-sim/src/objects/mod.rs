@@ -1,4 +1,4 @@
-//! Objects: a shape, a mesh, or spheres → a [`Model`]: a [`SphereUnion`] or a [`MeshModel`].
+//! Objects: creates contact models ([`Model`]) from shapes, meshes or spheres.
 //!
 //! | from | by | gives |
 //! |---|---|---|
@@ -53,9 +53,9 @@ pub use vertex_spheres::vertex_spheres;
 /// Named object that a patch can touch.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Name, unique within its set: `mug`, `can_68x40`.
+    /// Name of the object, unique within its set: `mug`, `can_68x40`.
     pub name: String,
-    /// Shape in the object's frame: z up, resting on z = 0, centred in x and y unless its source defines another frame.
+    /// Contact model in the object's frame: z up, resting on z = 0, centred in x and y unless its source defines another frame.
     pub model: Model,
     /// Number of solids of the object (1 for a mesh).
     pub n_parts: usize,

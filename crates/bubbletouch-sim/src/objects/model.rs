@@ -3,7 +3,7 @@
 use super::{MeshModel, SphereUnion};
 use crate::geometry::Aabb;
 
-/// Shape that taxels can touch, in the frame of the object.
+/// Contact model: shape that taxels can touch, in the frame of the object.
 #[derive(Clone, Debug)]
 pub enum Model {
     /// Union of spheres.
@@ -13,7 +13,7 @@ pub enum Model {
 }
 
 impl Model {
-    /// Returns the spheres; `None` for a mesh.
+    /// Returns the spheres of the model; `None` for a mesh.
     pub fn spheres(&self) -> Option<&SphereUnion> {
         match self {
             Self::Spheres(spheres) => Some(spheres),
@@ -21,12 +21,12 @@ impl Model {
         }
     }
 
-    /// Returns the number of spheres; 0 for a mesh.
+    /// Returns the number of spheres of the model; 0 for a mesh.
     pub fn n_spheres(&self) -> usize {
         self.spheres().map_or(0, SphereUnion::n_spheres)
     }
 
-    /// Returns the number of triangles; 0 for spheres.
+    /// Returns the number of triangles of the model; 0 for spheres.
     pub fn n_triangles(&self) -> usize {
         match self {
             Self::Spheres(_) => 0,
@@ -34,14 +34,14 @@ impl Model {
         }
     }
 
-    /// Computes the [clusters](SphereUnion::clusters) of the spheres now instead of at the first touch; the tree of a mesh already exists.
+    /// Computes the clusters of the spheres now instead of at the first touch; the tree of a mesh already exists.
     pub fn prepare(&self) {
         if let Self::Spheres(spheres) = self {
             spheres.clusters();
         }
     }
 
-    /// Returns the bounding box, metres.
+    /// Returns the bounding box of the model, metres.
     pub fn bounds(&self) -> Aabb {
         match self {
             Self::Spheres(spheres) => spheres.bounds(),

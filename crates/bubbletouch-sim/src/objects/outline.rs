@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-/// Straight edge of an outline, with the inside on its left.
+/// Straight edge of a polygon; the inside is on its left.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     pub start: DVec2,
@@ -25,7 +25,7 @@ impl Edge {
         }
     }
 
-    /// Returns the point at a distance from the start.
+    /// Returns the point of the edge at a distance from its start.
     pub fn point(&self, distance: f64) -> DVec2 {
         self.start + distance * self.along
     }
@@ -43,7 +43,7 @@ impl Edge {
         (point - self.nearest(point)).length()
     }
 
-    /// Returns the radius at which a disc growing from `foot` along `inward` first touches this edge; infinite if it never does.
+    /// Returns the radius at which a disc that grows from `foot` along `inward` first touches this edge; infinite if the disc never does.
     ///
     /// The disc through a point q has radius |q − foot|² / 2 n·(q − foot). Along a line this radius is quasi-convex, so its
     /// minimum on the edge lies where the disc is tangent to the line, or at an end.
@@ -99,7 +99,7 @@ impl Outline {
         }
     }
 
-    /// Returns the surface edge nearest to a point, and the nearest point on it.
+    /// Returns the index of the surface edge nearest to a point, and the nearest point on this edge.
     pub fn nearest(&self, point: DVec2) -> (usize, DVec2) {
         let mut best = (f64::INFINITY, 0, point);
         for (index, edge) in self.edges.iter().enumerate() {
@@ -112,12 +112,12 @@ impl Outline {
         (best.1, best.2)
     }
 
-    /// Returns the corners, counter-clockwise.
+    /// Returns the corners of the polygon, counter-clockwise.
     pub fn vertices(&self) -> &[DVec2] {
         &self.vertices
     }
 
-    /// Returns the radius of the largest inscribed disc that touches the edge `edge` at `foot`.
+    /// Returns the radius of the largest inscribed disc that touches the edge with the index `edge` at `foot`.
     pub fn tangent_radius(&self, edge: usize, foot: DVec2) -> f64 {
         let inward = self.edges[edge].inward;
         let others = self.edges.iter().enumerate().filter(|&(i, _)| i != edge);
@@ -126,7 +126,7 @@ impl Outline {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Even-odd rule along a ray towards +x.
+    /// Returns whether the polygon contains a point, by the even-odd rule along a ray towards +x.
     fn contains(&self, point: DVec2) -> bool {
         let crossed = closed_pairs(&self.vertices).filter(|(a, b)| {
             (a.y > point.y) != (b.y > point.y)

@@ -1,11 +1,10 @@
 //! Packing of a solid with spheres, within a stated surface error.
 //!
-//! Let e be the tolerance. Each sphere is the largest ball inside the solid that touches its surface at some point (the foot),
-//! with radius r, enlarged by e/2. No point of it lies more than e/2 outside. The sphere comes within e of every surface point p
-//! with |p − c| ≤ r + h, h = 3e/2. The feet are chosen so that the spheres cover the whole surface. On a flat face a ball
-//! covers sqrt(h(2r + h)) around its foot, so few large balls suffice. At a right-angled edge a ball needs r ≤ h/(√2 − 1) to
-//! reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `sphere_sweep`, `torus`), or cells that are divided
-//! until they are covered (`prism`).
+//! Let e be the tolerance. Each sphere is the largest ball inside the solid that touches its surface at some point (the foot), with radius r, enlarged by e/2.
+//! No point of it lies more than e/2 outside. The sphere comes within e of every surface point p with |p − c| ≤ r + h, h = 3e/2. The feet are chosen so that
+//! the spheres cover the whole surface. On a flat face a ball covers a disc of radius sqrt(h(2r + h)) around its foot, so few large balls suffice. At a
+//! right-angled edge a ball needs r ≤ h/(√2 − 1) to reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `sphere_sweep`, `torus`), or
+//! cells that are divided until they are covered (`prism`).
 //!
 //! If shapes are subtracted, cells of all surfaces are divided in this way (`difference`).
 //!
@@ -63,16 +62,16 @@ pub fn pack(solid: &Solid, tolerance: f64) -> Result<SphereUnion> {
 }
 
 impl Solid {
-    /// Packs the solid like [`pack`].
+    /// Packs the solid with spheres within `tolerance` (metres), as the function `pack` does.
     ///
     /// # Errors
-    /// If [`pack`] fails.
+    /// If the tolerance is invalid or too small.
     pub fn pack(&self, tolerance: f64) -> Result<SphereUnion> {
         pack(self, tolerance)
     }
 }
 
-/// Packs a solid with cuts.
+/// Packs a solid from which shapes are subtracted.
 fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
     match pack_difference(solid, fit) {
         Some(spheres) => SphereUnion::new(spheres),
@@ -87,7 +86,7 @@ fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
     }
 }
 
-/// Returns whether the whole surface that a sphere covers lies inside another part.
+/// Returns whether the whole surface that a sphere covers lies inside another part, so that the sphere is not needed.
 ///
 /// A sphere covers surface points within its radius plus the allowed gap. If two parts are equal, the later one is buried.
 fn is_buried(sphere: &Sphere, part: usize, solid: &Solid, fit: Fit) -> bool {

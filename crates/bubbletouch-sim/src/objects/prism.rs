@@ -6,11 +6,11 @@ use super::outline::Outline;
 use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 
-/// Polygon in the plane z = 0, extended by half the thickness in both directions.
+/// Polygon in the plane z = 0, extended by half the thickness along +z and −z.
 #[derive(Clone, Debug)]
 pub(super) struct Prism {
     outline: Outline,
-    /// Half thickness.
+    /// Half the thickness, metres.
     half: f64,
 }
 
@@ -29,17 +29,17 @@ impl Prism {
         outside + across.max(above).min(0.0)
     }
 
-    /// Returns the largest p·direction over the prism.
+    /// Returns the support function of the prism: the largest p·direction over its points p, metres.
     pub fn support(&self, direction: DVec3) -> f64 {
         let corners = self.outline.vertices().iter();
         let across = corners.map(|v| v.dot(direction.truncate()));
         across.fold(f64::NEG_INFINITY, f64::max) + self.half * direction.z.abs()
     }
 
-    /// Packs the walls by cells of each wall, then the uncovered rest of the two faces by cells of a square around the outline.
+    /// Packs the prism with spheres: the walls by cells of each wall, then the uncovered rest of the two faces by cells of a square around the outline.
     ///
-    /// The ball of a cell touches the surface in the middle of the cell. The cell is divided until the enlarged ball covers its
-    /// farthest point: |p − c| ≤ r + h, which is |p − foot|² ≤ (r + h)² − r² on a plane.
+    /// The ball of a cell touches the surface in the middle of the cell. The cell is divided until the enlarged ball covers its farthest point: |p − c| ≤ r +
+    /// h. On a plane this condition is |p − foot|² ≤ (r + h)² − r².
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         for edge in 0..self.outline.edges.len() {
             let length = self.outline.edges[edge].length;
@@ -108,8 +108,8 @@ impl Prism {
         }
     }
 
-    /// Returns the centre and radius of a disc inside, at most `largest`, that touches the outline at its nearest point to a point outside. At a
-    /// corner it is the corner itself with radius 0.
+    /// Returns the centre and radius of a disc inside the outline, with a radius of at most `largest`. The disc touches the outline at the point nearest to a
+    /// point outside. At a corner the disc is the corner itself, with radius 0.
     fn border_disc(&self, point: DVec2, largest: f64) -> (DVec2, f64) {
         let (edge, foot) = self.outline.nearest(point);
         let step = self
@@ -126,7 +126,7 @@ impl Prism {
         }
     }
 
-    /// Returns each wall, and a rectangle around each face; beside the outline, the rectangle lies outside the prism.
+    /// Returns the patches of the prism's surface: each wall, and a rectangle around each face. Beside the outline, the rectangle lies outside the prism.
     pub fn patches(&self) -> Vec<SurfacePatch> {
         let walls = self.outline.edges.iter().map(|edge| {
             let middle = edge.point(0.5 * edge.length).extend(0.0);
@@ -179,7 +179,7 @@ struct Cell {
 }
 
 impl Cell {
-    /// Returns two halves, cut across the longer side.
+    /// Returns two halves of a cell, cut across the longer side.
     fn split(&self) -> [Self; 2] {
         let mut half = self.half;
         let mut step = DVec2::ZERO;

@@ -7,28 +7,28 @@ use glam::{DVec2, DVec3};
 /// Shape in its own frame. All lengths are positive, in metres; shapes are centred on the origin unless stated otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// Ball.
+    /// Ball, given by its diameter.
     Ball {
-        /// Diameter.
+        /// Diameter of the ball.
         diameter: f64,
     },
-    /// Box.
+    /// Box with sharp or rounded edges.
     Box {
         /// Edge lengths along x, y, z.
         size: DVec3,
         /// Radius of edges and corners: 0 (sharp) to half the smallest edge length.
         rounding: f64,
     },
-    /// Cylinder about z.
+    /// Cylinder about the z axis.
     Cylinder {
-        /// Diameter.
+        /// Diameter of the cylinder.
         diameter: f64,
-        /// Height along z.
+        /// Height of the cylinder along z.
         height: f64,
     },
-    /// Cylinder about z with a half ball at each end.
+    /// Cylinder about z with a half ball at either end.
     Capsule {
-        /// Diameter.
+        /// Diameter of the cylinder and of the half balls.
         diameter: f64,
         /// Length along z including both half balls: at least the diameter.
         length: f64,
@@ -39,23 +39,23 @@ pub enum Shape {
         bottom_diameter: f64,
         /// Diameter of the upper end.
         top_diameter: f64,
-        /// Height along z.
+        /// Height of the cone frustum along z.
         height: f64,
     },
-    /// Torus about z.
+    /// Torus about the z axis.
     Torus {
-        /// Diameter of the circle in the middle of the tube: at least the tube diameter.
+        /// Diameter of the circle in the middle of the tube, at least the tube diameter.
         ring_diameter: f64,
         /// Diameter of the tube.
         tube_diameter: f64,
     },
     /// Cylinder about z with a hole along its axis.
     Tube {
-        /// Outer diameter.
+        /// Outer diameter of the tube.
         outer_diameter: f64,
         /// Diameter of the hole.
         inner_diameter: f64,
-        /// Height along z.
+        /// Height of the tube along z.
         height: f64,
     },
     /// Polygon rotated about z: cups, bowls, bottles.
@@ -67,14 +67,14 @@ pub enum Shape {
     Prism {
         /// Corners (x, y) in either direction; the outline is closed automatically.
         outline: Vec<DVec2>,
-        /// Thickness along z.
+        /// Thickness of the prism along z.
         thickness: f64,
     },
     /// Hexagonal bar along z with two corners on the x axis: nuts, bolt heads, pencils.
     HexagonalPrism {
         /// Distance between opposite sides (the spanner size).
         across_flats: f64,
-        /// Height along z.
+        /// Height of the bar along z.
         height: f64,
     },
     /// Ball swept along a polyline; its diameter changes linearly between points: handles, rings, bananas.
@@ -86,12 +86,12 @@ pub enum Shape {
     },
 }
 
-/// Format of dimension names and lengths in errors.
+/// Format of dimension names and lengths in error messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Wording {
-    /// `height: -0.002 m`
+    /// Field names and metres: `height: -0.002 m`.
     Metres,
-    /// `height_mm: -2`, like the keys of object files.
+    /// Keys of object files, in millimetres: `height_mm: -2`.
     MillimetreKeys,
 }
 
@@ -103,11 +103,11 @@ impl Wording {
         }
     }
 
-    /// Formats a length given in metres.
+    /// Formats a length, given in metres, for an error message.
     fn length(self, metres: f64) -> String {
         match self {
             Self::Metres => format!("{metres} m"),
-            // The written value, without the rounding errors of the conversion to metres and back.
+            // The value as written, without the rounding errors of the conversion to metres and back.
             Self::MillimetreKeys => format!("{}", (metres * 1e12).round() / 1e9),
         }
     }
@@ -120,7 +120,7 @@ impl Wording {
         Err(Error::input(self.name(name), self.length(metres), allowed))
     }
 
-    /// Checks low ≤ metres ≤ high; `high` may be infinite.
+    /// Checks that a dimension is in its range, low ≤ metres ≤ high; `high` may be infinite.
     fn between(self, name: &str, metres: f64, low: f64, high: f64) -> Result<()> {
         if metres.is_finite() && (low..=high).contains(&metres) {
             return Ok(());
@@ -180,7 +180,7 @@ impl Wording {
 }
 
 impl Shape {
-    /// Checks that all dimensions are in range.
+    /// Checks that all dimensions of the shape are in range.
     ///
     /// # Errors
     /// If a dimension is out of range; the error names the first one.
@@ -188,7 +188,7 @@ impl Shape {
         self.check_worded(Wording::Metres)
     }
 
-    /// Checks the dimensions. The place of the error is the name of the dimension.
+    /// Checks the dimensions of the shape. The location of the error is the name of the dimension.
     pub(super) fn check_worded(&self, wording: Wording) -> Result<()> {
         let positive = |name, metres| wording.positive(name, metres);
         let at_least = |name, metres, low| wording.between(name, metres, low, f64::INFINITY);

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::{DVec2, DVec3};
 
-/// Shape with a pose in the frame of the object.
+/// Shape at a pose in the frame of the object.
 #[derive(Clone, Debug)]
 pub struct Part {
     shape: Shape,
@@ -21,7 +21,7 @@ pub struct Part {
     pose: Pose,
 }
 
-/// Union of parts minus other shapes. Invariant: there is at least one part.
+/// Union of shapes minus other shapes. Invariant: there is at least one part.
 #[derive(Clone, Debug)]
 pub struct Solid {
     parts: Vec<Part>,
@@ -31,11 +31,11 @@ pub struct Solid {
     seam: f64,
 }
 
-/// Enlargement of cuts, relative to the diagonal of the box around the parts. The enlargement removes membranes of zero thickness where a cut ends in a
-/// part's surface. If the value is smaller, rounding leaves such membranes; if the value is larger, walls beside cuts become thinner.
+/// Enlargement of cuts, relative to the diagonal of the box around the parts. The enlargement removes membranes of zero thickness where a cut ends in a part's
+/// surface. If smaller, rounding leaves such membranes; if larger, walls beside cuts become thinner.
 const SEAM: f64 = 4e-6;
 
-/// Five basic forms that represent all shapes.
+/// Basic form of a shape; five forms represent all shapes.
 #[derive(Clone, Debug)]
 enum Kernel {
     Block(Block),
@@ -46,8 +46,7 @@ enum Kernel {
 }
 
 /// Smallest gap of a turned polygon relative to its size, because intervals on its edges have an accuracy of 1e-9 of an edge. The rim of a sharp edge reaches
-/// the limit of spheres long before. If the value is larger, fine packings are rejected; if the value is smaller, edges count as covered that no sphere
-/// reaches.
+/// the limit of spheres long before. If larger, fine packings are rejected; if smaller, edges count as covered that no sphere reaches.
 const MIN_REACH: f64 = 1e-8;
 
 impl Part {
@@ -72,7 +71,7 @@ impl Part {
         })
     }
 
-    /// Returns the shape.
+    /// Returns the shape of the part.
     pub fn shape(&self) -> &Shape {
         &self.shape
     }
@@ -89,7 +88,7 @@ impl Part {
         }
     }
 
-    /// Returns the largest p·direction over the part, in the object's frame.
+    /// Returns the support function of the part in the object's frame: the largest p·direction over its points p, metres.
     fn support(&self, direction: DVec3) -> f64 {
         let inside = self.pose.rotation.conjugate() * direction;
         let support = match &self.kernel {
@@ -109,7 +108,7 @@ impl Part {
         !matches!(self.kernel, Kernel::Lathe(_)) || fit.reach() >= MIN_REACH * size
     }
 
-    /// Returns spheres whose union approximates the part.
+    /// Returns spheres whose union approximates the part within the tolerances.
     pub(super) fn pack(&self, fit: Fit) -> Vec<Sphere> {
         let mut spheres = Vec::new();
         match &self.kernel {
@@ -125,7 +124,7 @@ impl Part {
         spheres
     }
 
-    /// Returns patches of the whole surface of the part, in the object's frame.
+    /// Returns patches that cover the whole surface of the part, in the object's frame.
     pub(super) fn patches(&self) -> Vec<SurfacePatch> {
         let patches = match &self.kernel {
             Kernel::Block(block) => block.patches(),
@@ -156,7 +155,7 @@ impl Part {
 }
 
 impl Solid {
-    /// Creates a solid from parts.
+    /// Creates a solid as the union of parts.
     ///
     /// # Errors
     /// If there are no parts.
@@ -195,12 +194,12 @@ impl Solid {
     /// Creates a solid of one shape in its own frame.
     ///
     /// # Errors
-    /// If [`Part::new`] fails.
+    /// If a dimension of the shape is out of range.
     pub fn from_shape(shape: Shape) -> Result<Self> {
         Self::new(vec![Part::new(shape, Pose::IDENTITY)?])
     }
 
-    /// Returns the parts in the order in which they were given.
+    /// Returns the parts of the solid in the order in which they were given.
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
@@ -210,20 +209,20 @@ impl Solid {
         &self.cuts
     }
 
-    /// Returns the signed distance from a point to the surface, metres, negative inside.
+    /// Returns the signed distance from a point to the surface of the solid, metres, negative inside.
     ///
-    /// Outside, the distance is exact without cuts; with cuts it is a lower bound. Inside, the depth is exact for a single part of any shape except a
-    /// sphere sweep, otherwise a lower bound. Cuts are enlarged by 4 millionths of the diagonal of the bounding box.
+    /// Outside, the distance is exact without cuts and a lower bound with cuts. Inside, the depth is exact for a single part of any shape except a sphere
+    /// sweep, otherwise a lower bound. Cuts are enlarged by 4 millionths of the diagonal of the bounding box.
     pub fn distance(&self, point: DVec3) -> f64 {
         nearest(&self.parts, point).max(self.seam - nearest(&self.cuts, point))
     }
 
-    /// Returns minus the signed distance, with all cuts enlarged by `growth` (metres).
+    /// Returns the depth of a point (minus the signed distance), metres, with all cuts enlarged by `growth` (metres).
     pub(super) fn depth_with_cuts_grown(&self, point: DVec3, growth: f64) -> f64 {
         (-nearest(&self.parts, point)).min(nearest(&self.cuts, point) - growth)
     }
 
-    /// Returns the exact bounding box of the parts without cuts, metres.
+    /// Returns the exact bounding box of the parts, ignoring cuts, metres.
     pub fn bounds(&self) -> Aabb {
         let support = |direction: DVec3| {
             let supports = self.parts.iter().map(|part| part.support(direction));
@@ -239,7 +238,7 @@ impl Solid {
         }
     }
 
-    /// Returns the solid after a rigid motion.
+    /// Returns the solid moved by a rigid motion.
     pub fn moved(&self, motion: &Pose) -> Self {
         let mut solid = self.clone();
         for part in solid.parts.iter_mut().chain(&mut solid.cuts) {
@@ -248,14 +247,14 @@ impl Solid {
         solid
     }
 
-    /// Returns the solid moved so that it rests on z = 0 with the middle of its bounding box on the z axis.
+    /// Returns the solid, moved so that it rests on z = 0 with the middle of its bounding box on the z axis.
     pub fn resting(&self) -> Self {
         let bounds = self.bounds();
         let middle = bounds.center().truncate();
         self.moved(&Pose::from_translation(-middle.extend(bounds.min.z)))
     }
 
-    /// Returns points of the surface of the union, at most about `spacing` (metres) apart.
+    /// Returns points on the surface of the solid, at most about `spacing` (metres) apart.
     pub fn surface_points(&self, spacing: f64) -> Vec<DVec3> {
         // A point of a part's surface inside another part, or inside its own sphere sweep, is not on the surface.
         let rounding = 1e-9 * self.bounds().size().length();
@@ -270,7 +269,7 @@ impl Solid {
     }
 }
 
-/// Returns the signed distance to the nearest of several shapes, metres, negative inside one; infinite if there are none.
+/// Returns the signed distance to the nearest of several parts, metres, negative inside one of them; infinite if there are no parts.
 fn nearest(parts: &[Part], point: DVec3) -> f64 {
     let distances = parts.iter().map(|part| part.distance(point));
     distances.fold(f64::INFINITY, f64::min)

@@ -1,4 +1,4 @@
-//! Parts as written in object files: millimetres and degrees.
+//! Parts of objects as written in object files, in millimetres and degrees.
 
 use super::shape::Wording;
 use super::{Part, Shape};
@@ -9,14 +9,14 @@ use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
 
-/// One `[[object.part]]` or `[[object.subtract]]`: the name of a shape, its position, and the lengths of this shape only.
+/// Part `[[object.part]]` or cut `[[object.subtract]]` of an object: the name of a shape, its position, and the lengths of this shape only.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WrittenPart {
     shape: Spanned<ShapeName>,
-    /// Position of the shape's origin.
+    /// Position of the shape's origin in the object's frame, mm.
     position_mm: Option<Spanned<[f64; 3]>>,
-    /// Rotation, applied before the position: about the object's fixed x axis, then y, then z (URDF's roll, pitch, yaw).
+    /// Rotation in degrees, applied before the position: about the object's fixed x axis, then y, then z (URDF's roll, pitch, yaw).
     rotation_deg: Option<Spanned<[f64; 3]>>,
     size_mm: Option<Spanned<[f64; 3]>>,
     diameter_mm: Option<Spanned<f64>>,
@@ -31,7 +31,7 @@ pub(super) struct WrittenPart {
     across_flats_mm: Option<Spanned<f64>>,
     thickness_mm: Option<Spanned<f64>>,
     rounding_mm: Option<Spanned<f64>>,
-    /// Corners (diameter, height) of a turned part, as in its drawing.
+    /// Corners (diameter, height) of a turned part, as in its drawing, mm.
     profile_mm: Option<Spanned<Vec<[f64; 2]>>>,
     outline_mm: Option<Spanned<Vec<[f64; 2]>>>,
     points_mm: Option<Spanned<Vec<[f64; 3]>>>,
@@ -56,7 +56,7 @@ enum ShapeName {
 }
 
 impl WrittenPart {
-    /// Converts the part to metres and checks it. The place of an error is a key.
+    /// Converts the part to metres and checks it. The location of an error is a key.
     pub fn part(mut self) -> Result<Part> {
         let moved = |value: &mut Option<Spanned<[f64; 3]>>, key: &str| {
             let value = value.take().map_or([0.0; 3], Spanned::into_inner);
@@ -84,14 +84,14 @@ impl WrittenPart {
         Part::new(shape, Pose::new(rotation, metres3(position)))
     }
 
-    /// Returns the byte range of the value of `key` in the file. Returns that of the whole shape if the key is missing.
+    /// Returns the byte range of the value of `key` in the file, or the range of the whole shape if the key is missing.
     pub fn place(&self, key: &str) -> Range<usize> {
         let keys = self.keys().into_iter();
         let mut named = keys.filter_map(|(name, place)| (name == key).then_some(place));
         named.next().flatten().unwrap_or(self.shape.span())
     }
 
-    /// Returns the name of the shape as it is written in the file.
+    /// Returns the name of the shape, as written in the file.
     pub fn name(&self) -> &'static str {
         match self.shape.get_ref() {
             ShapeName::Ball => "ball",

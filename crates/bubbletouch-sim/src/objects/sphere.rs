@@ -1,19 +1,19 @@
-//! Rigid spheres.
+//! Rigid spheres, of which object models consist.
 
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// Rigid sphere.
+/// Rigid sphere, given by centre and radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Centre, metres.
+    /// Centre of the sphere, metres.
     pub center: DVec3,
-    /// Radius, metres, positive.
+    /// Radius of the sphere, metres, positive.
     pub radius: f64,
 }
 
 impl Sphere {
-    /// Returns the bounding box, metres.
+    /// Returns the bounding box of the sphere, metres.
     pub fn bounds(&self) -> Aabb {
         Aabb {
             min: self.center - DVec3::splat(self.radius),

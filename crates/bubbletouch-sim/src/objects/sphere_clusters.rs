@@ -1,9 +1,9 @@
-//! Spheres of an object in clusters of neighbours, so that distant spheres can be skipped in groups.
+//! Spheres of an object, grouped into clusters of neighbours so that distant spheres can be skipped together.
 
 use super::Sphere;
 use glam::{DVec3, DVec4};
 
-/// Maximum number of spheres in a cluster. If the value is larger, more distant spheres are tested; if the value is smaller, more clusters are tested.
+/// Maximum number of spheres in a cluster. If larger, more distant spheres are tested; if smaller, more clusters are tested.
 pub(crate) const MAX_IN_CLUSTER: usize = 16;
 
 /// Spheres of an object in clusters of similar position and size. Equal spheres give equal clusters.
@@ -19,21 +19,20 @@ pub struct SphereClusters {
     /// Index of the first sphere of each cluster, followed by the total number of spheres.
     starts: Vec<u32>,
     bounds: ClusterBounds,
-    /// Ball around all spheres.
+    /// Ball around all spheres, metres.
     ball: Sphere,
 }
 
-/// Bounds of each cluster, stored by coordinate for vectorised tests; metres,
-/// in the frame of the object.
+/// Bounds of all clusters, stored by coordinate for vectorised tests; metres, in the frame of the object.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClusterBounds {
-    /// Middles of the boxes around the centres of the spheres: x, y, z.
+    /// Middles of the boxes around the centres of each cluster's spheres: x, y, z, metres.
     pub middle: [Vec<f64>; 3],
-    /// Half sides of these boxes.
+    /// Half sides of the boxes around the centres of each cluster's spheres, metres.
     pub half: [Vec<f64>; 3],
-    /// Radii of the largest spheres.
+    /// Radius of the largest sphere of each cluster, metres.
     pub largest: Vec<f64>,
-    /// Radii of balls around the middles that contain the spheres.
+    /// Radius of the ball around each middle that contains the cluster's spheres, metres.
     pub radius: Vec<f64>,
 }
 
@@ -71,7 +70,7 @@ impl SphereClusters {
         }
     }
 
-    /// Returns the number of spheres.
+    /// Returns the number of spheres in all clusters.
     pub fn n_spheres(&self) -> usize {
         self.starts[self.starts.len() - 1] as usize
     }
@@ -104,13 +103,13 @@ impl SphereClusters {
     }
 }
 
-/// Spheres of a cluster; unused lanes contain arbitrary spheres.
+/// Spheres of one cluster; unused lanes contain arbitrary spheres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster<'a> {
     pub n_spheres: usize,
-    /// Centres x, y, z in the frame of the object, metres.
+    /// Centres x, y, z of the spheres in the frame of the object, metres.
     pub centers: [&'a [f64; MAX_IN_CLUSTER]; 3],
-    /// Radii, metres.
+    /// Radii of the spheres, metres.
     pub radii: &'a [f64; MAX_IN_CLUSTER],
 }
 
@@ -143,7 +142,7 @@ impl ClusterBounds {
         self.radius.push(ball.radius);
     }
 
-    /// Returns the ball around a cluster.
+    /// Returns the bounding ball of a cluster, metres.
     pub fn ball(&self, cluster: usize) -> Sphere {
         Sphere {
             center: DVec3::from_array([0, 1, 2].map(|axis| self.middle[axis][cluster])),
@@ -157,7 +156,7 @@ impl ClusterBounds {
     }
 }
 
-/// Minimum and maximum of the centres and radii (component w) of spheres.
+/// Minimum and maximum of the centres and radii (component w) of several spheres.
 struct CenterBounds {
     low: DVec4,
     high: DVec4,
@@ -187,7 +186,7 @@ impl CenterBounds {
     }
 }
 
-/// Divides spheres in halves until a cluster is small enough, along the coordinate of the centres or the radius with the largest range.
+/// Divides spheres into halves until each cluster is small enough. The cut is along the coordinate of the centres, or the radius, with the largest range.
 fn cut(spheres: &mut [(u32, Sphere)], sizes: &mut Vec<usize>) {
     if spheres.len() <= MAX_IN_CLUSTER {
         sizes.push(spheres.len());

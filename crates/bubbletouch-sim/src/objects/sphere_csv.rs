@@ -1,4 +1,4 @@
-//! Sphere unions as CSV: columns x, y, z, r in metres.
+//! Sphere unions in CSV files with the columns x, y, z, r in metres.
 
 use super::{Sphere, SphereUnion};
 use crate::error::{Error, Result};
@@ -6,10 +6,11 @@ use crate::text::numbers_csv::{check_width, finite, line_of, rows_of, unreadable
 use glam::DVec3;
 use std::io::{self, Read, Write};
 
-/// Columns in order.
+/// Column names, in order.
 const COLUMNS: [&str; 4] = ["x", "y", "z", "r"];
 
-/// Reads spheres from `x,y,z,r` in metres, with a header (columns in any order, others ignored) or without one (exactly four columns).
+/// Reads spheres from CSV with the columns `x,y,z,r` in metres. With a header, columns may have any order and others are ignored; without one there must be
+/// exactly four columns.
 ///
 /// # Errors
 /// If the file is invalid; errors begin with `place`, the name of the file, and contain line and column.
@@ -45,7 +46,7 @@ pub fn read_spheres(place: &str, source: impl Read) -> Result<SphereUnion> {
 /// Writes a header and one row per sphere with 17 significant digits; [`read_spheres`] restores equal bits.
 ///
 /// # Errors
-/// If the sink cannot be written.
+/// If writing to the sink fails.
 pub fn write_spheres(union: &SphereUnion, mut sink: impl Write) -> io::Result<()> {
     writeln!(sink, "{}", COLUMNS.join(","))?;
     for Sphere { center, radius } in union.spheres() {
@@ -71,7 +72,7 @@ impl Row<'_> {
             .all(|field| field.parse::<f64>().is_err())
     }
 
-    /// Returns the indices of x, y, z, r, and the number of columns.
+    /// Returns the indices of the columns x, y, z, r, and the number of columns.
     fn header(&self) -> Result<([usize; 4], usize)> {
         let mut columns = [0; 4];
         for (column, name) in columns.iter_mut().zip(COLUMNS) {

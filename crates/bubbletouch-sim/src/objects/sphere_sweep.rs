@@ -1,4 +1,4 @@
-//! Ball of varying size swept along a polyline: balls, capsules, handles, bananas.
+//! Ball of varying size swept along a polyline, which represents balls, capsules, handles and bananas.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
@@ -18,12 +18,12 @@ struct Hull {
     first: Sphere,
     along: DVec3,
     length: f64,
-    /// Change of the radius per metre along the axis; the sine of the cone's half angle, negative if it becomes narrower.
+    /// Change of the radius per metre along the axis. The value is the sine of the cone's half angle, negative if the cone becomes narrower.
     slope: f64,
 }
 
 impl Hull {
-    /// Returns `None` if one ball contains the other; then the larger ball is the hull.
+    /// Creates the hull; `None` if one ball contains the other, because the larger ball is then the hull.
     fn new(first: Sphere, last: Sphere) -> Option<Self> {
         let axis = last.center - first.center;
         let length = axis.length();
@@ -47,7 +47,7 @@ impl Hull {
         (1.0 - self.slope * self.slope).sqrt()
     }
 
-    /// Returns the minimum over t of |p − c(t)| − r(t), which is convex in t.
+    /// Returns the signed distance to the hull, metres: the minimum over t of |p − c(t)| − r(t), which is convex in t.
     fn distance(&self, point: DVec3) -> f64 {
         let from_first = point - self.first.center;
         let x = from_first.dot(self.along);
@@ -56,7 +56,7 @@ impl Hull {
         y.hypot(x - t) - self.first.radius - t * self.slope
     }
 
-    /// Packs balls between the two ends, each as far ahead as possible without a gap behind it.
+    /// Packs balls between the two ends of a hull, each as far ahead as possible without leaving a gap behind it.
     ///
     /// A ball at t touches the hull at u = t·cos along its side and covers u ± sqrt((r + h)² − r²). The balls of the ends are not enlarged and cover less.
     fn pack_between(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
@@ -91,7 +91,7 @@ impl SphereSweep {
             .filter_map(|pair| Hull::new(pair[0], pair[1]))
     }
 
-    /// Returns the signed distance; exact outside, and a lower bound of the depth inside.
+    /// Returns the signed distance to the sweep, metres; exact outside, and a lower bound of the depth inside.
     pub fn distance(&self, point: DVec3) -> f64 {
         let to_balls = self
             .balls
@@ -101,7 +101,7 @@ impl SphereSweep {
         to_balls.chain(to_hulls).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the largest p·direction over the sweep.
+    /// Returns the support function of the sweep: the largest p·direction over its points p, metres.
     pub fn support(&self, direction: DVec3) -> f64 {
         let length = direction.length();
         let supports = self
@@ -111,7 +111,7 @@ impl SphereSweep {
         supports.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Packs the balls themselves, and a row of enlarged balls along each hull.
+    /// Packs the sweep with spheres: the balls themselves, and a row of enlarged balls along each hull.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let closed = self.balls.len() > 1 && self.balls.first() == self.balls.last();
         let ends = &self.balls[usize::from(closed)..];
@@ -121,7 +121,7 @@ impl SphereSweep {
         }
     }
 
-    /// Returns the surface of each ball and the side of each hull.
+    /// Returns patches that cover the surface of each ball and the side of each hull.
     pub fn patches(&self) -> Vec<SurfacePatch> {
         let balls = self.balls.iter();
         let balls = balls.map(|ball| SurfacePatch::ball(ball.center, ball.radius));
@@ -166,7 +166,7 @@ impl SphereSweep {
     }
 }
 
-/// Adds points of a sphere on a Fibonacci spiral, about `spacing` apart.
+/// Adds points on a sphere along a Fibonacci spiral, about `spacing` apart, metres.
 pub(super) fn sphere_points(sphere: &Sphere, spacing: f64, points: &mut Vec<DVec3>) {
     let ratio = sphere.radius / spacing;
     let n = (4.0 * std::f64::consts::PI * ratio * ratio)

@@ -1,4 +1,4 @@
-//! Union of rigid spheres.
+//! Unions of rigid spheres.
 
 use super::{Sphere, SphereClusters};
 use crate::error::{Error, Result};
@@ -6,7 +6,7 @@ use crate::geometry::{Aabb, Pose};
 use glam::DVec3;
 use std::sync::OnceLock;
 
-/// Union of rigid spheres in the frame of the object.
+/// Union of rigid spheres in the frame of the object, metres.
 ///
 /// Invariant: at least one sphere, every centre finite, every radius finite and positive.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ impl PartialEq for SphereUnion {
 }
 
 impl SphereUnion {
-    /// Checks the invariant.
+    /// Creates a union of spheres and checks the invariant.
     ///
     /// # Errors
     /// If a sphere violates the invariant; the error names the first one.
@@ -60,7 +60,7 @@ impl SphereUnion {
         Self { spheres, clusters }
     }
 
-    /// Returns the spheres in their order of construction.
+    /// Returns the spheres of the union in their order of construction.
     pub fn spheres(&self) -> &[Sphere] {
         &self.spheres
     }
@@ -71,7 +71,7 @@ impl SphereUnion {
         self.clusters.get_or_init(sort)
     }
 
-    /// Returns the number of spheres.
+    /// Returns the number of spheres of the union.
     pub fn n_spheres(&self) -> usize {
         self.spheres.len()
     }
@@ -88,7 +88,7 @@ impl SphereUnion {
         self.spheres.iter().map(reach).fold(0.0, f64::max)
     }
 
-    /// Returns the union after a rigid motion.
+    /// Returns the union moved by a rigid motion.
     pub fn moved(&self, pose: &Pose) -> Self {
         let spheres = self
             .spheres

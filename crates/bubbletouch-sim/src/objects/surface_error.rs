@@ -7,15 +7,15 @@ use glam::DVec3;
 /// Largest measured distances between the surfaces of a solid and of its spheres, metres; never negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceError {
-    /// Largest distance that a sphere reaches outside the solid.
+    /// Largest distance by which a sphere reaches outside the solid, metres.
     pub protrusion: f64,
-    /// Largest distance of the solid's surface outside all spheres.
+    /// Largest distance of the solid's surface outside all spheres, metres.
     pub gap: f64,
     /// Number of tested points of the solid's surface.
     pub n_surface_points: usize,
 }
 
-/// Measures at points of the solid's surface, at most about `spacing` (metres) apart, and at points all over each sphere.
+/// Measures the surface error at points of the solid's surface, at most about `spacing` (metres) apart, and at points all over each sphere.
 pub fn surface_error(solid: &Solid, union: &SphereUnion, spacing: f64) -> SurfaceError {
     let points = solid.surface_points(spacing);
     SurfaceError {
@@ -29,7 +29,7 @@ fn protrusion(solid: &Solid, spheres: &[Sphere]) -> f64 {
     let mut largest = 0.0f64;
     let mut points = Vec::new();
     for sphere in spheres {
-        // An upper bound for all points of a sphere; most spheres cannot increase the maximum by more than rounding.
+        // Upper bound for all points of a sphere; most spheres cannot increase the maximum by more than rounding.
         let bound = solid.distance(sphere.center) + sphere.radius;
         if bound <= largest + 1e-9 * sphere.radius {
             continue;
@@ -53,7 +53,7 @@ fn outermost_point(solid: &Solid, sphere: &Sphere) -> DVec3 {
     sphere.center + sphere.radius * gradient.normalize_or(DVec3::Z)
 }
 
-/// Returns the maximum over the points of the smallest distance to a sphere.
+/// Returns the maximum, over the points, of the distance to the nearest sphere, metres.
 ///
 /// The search for a point ends as soon as a sphere is nearer than the largest gap so far. Neighbours in
 /// the list are neighbours on the surface, so the sphere that ended the previous search is tested first.

@@ -1,29 +1,30 @@
-//! Patches of the surfaces of forms, each a map from a rectangle; they are divided into cells if no closed layout of spheres is known.
+//! Patches of the surfaces of forms, each a map from a rectangle of parameters. Forms without a closed layout of spheres are packed by dividing their patches
+//! into cells.
 
 use crate::geometry::Pose;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Patch of the surface of a form.
+/// Patch of the surface of a basic form, parametrised by a rectangle.
 #[derive(Clone, Debug)]
 pub(super) struct SurfacePatch {
     form: PatchForm,
     /// Pose of the patch, in the frame of its form.
     pose: Pose,
-    /// Offset of the points outside the form, metres.
+    /// Offset by which the patch lies outside the form, metres.
     offset: f64,
-    /// Corners of the rectangle of parameters.
+    /// Lower corner of the rectangle of parameters.
     pub low: DVec2,
     pub high: DVec2,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum PatchForm {
-    /// Parameters x, y: the plane z = 0; the outside is above.
+    /// Plane z = 0 with the parameters x and y; the outside is above.
     Flat,
-    /// Parameters: distance along a line of the half plane (distance from the axis, height), and angle about z.
+    /// Surface of revolution of a line in the half plane (distance from the axis, height). Parameters: distance along the line, and angle about z.
     Turned { start: DVec2, along: DVec2 },
-    /// Parameters: latitude on the tube, and angle about z; a torus, or a ball if `ring` is 0.
+    /// Torus about z, or a ball if `ring` is 0. Parameters: latitude on the tube, and angle about z.
     Round { ring: f64, tube: f64 },
 }
 
@@ -38,7 +39,7 @@ pub(super) struct PatchCell {
 }
 
 impl SurfacePatch {
-    /// Returns a rectangle about the origin of a plane with orthogonal unit axes `x` and `y`; x × y points outside.
+    /// Creates a rectangle about the origin of a plane with orthogonal unit axes `x` and `y`; x × y points outside.
     pub fn flat(origin: DVec3, [x, y]: [DVec3; 2], half: DVec2) -> Self {
         Self {
             form: PatchForm::Flat,
@@ -49,7 +50,7 @@ impl SurfacePatch {
         }
     }
 
-    /// Returns a line of the half plane (distance from the axis, height), rotated about z by `angles`; the outside is on its right.
+    /// Creates a patch from a line of the half plane (distance from the axis, height), rotated about z by `angles`; the outside is on its right.
     pub fn turned(start: DVec2, end: DVec2, angles: [f64; 2]) -> Self {
         let length = (end - start).length();
         let along = (end - start) / length;
@@ -62,7 +63,7 @@ impl SurfacePatch {
         }
     }
 
-    /// Returns the surface of a torus about z.
+    /// Creates the surface of a torus about z.
     pub fn torus(ring: f64, tube: f64) -> Self {
         Self {
             form: PatchForm::Round { ring, tube },
@@ -73,7 +74,7 @@ impl SurfacePatch {
         }
     }
 
-    /// Returns the surface of a ball.
+    /// Creates the surface of a ball.
     pub fn ball(center: DVec3, radius: f64) -> Self {
         Self {
             pose: Pose::from_translation(center),
@@ -83,7 +84,7 @@ impl SurfacePatch {
         }
     }
 
-    /// Returns the octant of a ball on the given sides (1 or −1) of its centre.
+    /// Creates the octant of a ball on the given sides (1 or −1) of its centre.
     pub fn eighth_of_ball(center: DVec3, radius: f64, sides: DVec3) -> Self {
         let axes = [sides.x * DVec3::X, sides.y * DVec3::Y];
         let is_up = sides.x * sides.y * sides.z > 0.0;
@@ -96,19 +97,19 @@ impl SurfacePatch {
         }
     }
 
-    /// Returns the patch after a rigid motion, which may also change the direction of its z axis.
+    /// Returns the patch moved by a rigid motion, which may also change the direction of its z axis.
     pub fn moved(mut self, motion: &Pose) -> Self {
         self.pose = motion.compose(&self.pose);
         self
     }
 
-    /// Returns the patch moved outside by an offset.
+    /// Returns the patch moved outwards by an offset, metres.
     pub fn grown(mut self, offset: f64) -> Self {
         self.offset = offset;
         self
     }
 
-    /// Returns the surface point at parameters, with the outward unit normal.
+    /// Returns the surface point at the given parameters, with the outward unit normal.
     pub fn at(&self, place: DVec2) -> (DVec3, DVec3) {
         let turned = |flat: DVec2, angle: f64| {
             let (sin, cos) = angle.sin_cos();
@@ -208,7 +209,7 @@ impl PatchCell {
         distances.into_iter().fold(0.0, f64::max) + self.bulge
     }
 
-    /// Returns the parameters of the middle and of the corners.
+    /// Returns the parameters of the cell's middle and corners.
     pub fn places(&self) -> [DVec2; 5] {
         let (low, high) = (self.low, self.high);
         let middle = 0.5 * (low + high);

@@ -1,11 +1,11 @@
-//! Torus about z: distance, surface and packing.
+//! Torus about the z axis: distance, surface and packing.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};
 use super::surface_patch::SurfacePatch;
 use glam::DVec3;
 
-/// Points within `tube` of the circle of radius `ring` about z.
+/// Torus: the points within `tube` of the circle of radius `ring` about z, metres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Torus {
     pub ring: f64,
@@ -18,16 +18,15 @@ impl Torus {
         (from_axis - self.ring).hypot(point.z) - self.tube
     }
 
-    /// Returns the largest p·direction over the torus.
+    /// Returns the support function of the torus: the largest p·direction over its points p, metres.
     pub fn support(&self, direction: DVec3) -> f64 {
         self.ring * direction.truncate().length() + self.tube * direction.length()
     }
 
-    /// Packs one ring of n balls with the radius of the tube.
+    /// Packs the torus with one ring of n balls that have the radius of the tube.
     ///
-    /// Half-way between two balls the squared distance of a point of the tube from both centres is `tube² + 4 ρ ring sin²(π/2n)`, where ρ is its distance
-    /// from the axis.
-    /// This distance is largest on the outer equator and must not exceed `(tube + h)²`.
+    /// Half-way between two balls the squared distance of a point of the tube from the two centres is `tube² + 4 ρ ring sin²(π/2n)`. Here ρ is the point's
+    /// distance from the axis. The distance is largest on the outer equator and must not exceed `(tube + h)²`.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let (ring, tube) = (self.ring, self.tube);
         let sine = (0.25 * fit.disc_squared(tube) / (ring * (ring + tube)))

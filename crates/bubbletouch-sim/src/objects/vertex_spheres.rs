@@ -1,4 +1,4 @@
-//! One sphere per mesh vertex: the object model of the original \[BT\].
+//! Object model of the original \[BT\]: one sphere per mesh vertex.
 
 use super::{Sphere, SphereUnion};
 use crate::error::{Error, Result};
@@ -27,7 +27,7 @@ pub fn vertex_spheres(place: &str, vertices: &[DVec3]) -> Result<SphereUnion> {
     SphereUnion::new(spheres.collect())
 }
 
-/// Returns, for each point, the distance to the nearest other one. There must be at least two points, all distinct.
+/// Returns, for each point, the distance to the nearest other point, metres. There must be at least two points, all distinct.
 ///
 /// The points lie in the cells of a uniform grid. Rings of cells around a point's own cell are searched until no remaining
 /// cell can contain a nearer point.
@@ -41,7 +41,7 @@ struct PointGrid<'a> {
     low: DVec3,
     cell: f64,
     n: [usize; 3],
-    /// Points of cell k: `order[starts[k]..starts[k + 1]]`.
+    /// Start of each cell's points; the points of cell k are `order[starts[k]..starts[k + 1]]`.
     starts: Vec<usize>,
     order: Vec<usize>,
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Tree of axis-aligned planes (k-d tree).
+/// Partition of space by a tree of axis-aligned planes (k-d tree).
 pub(super) struct Cells {
     nodes: Vec<Node>,
     n_cells: usize,
@@ -12,14 +12,14 @@ enum Node {
     Plane {
         axis: usize,
         at: f64,
-        /// Index of the child below the plane; the child above has the next index.
+        /// Index of the child below the plane; the child above the plane has the next index.
         below: usize,
     },
     Cell(usize),
 }
 
 impl Cells {
-    /// Builds cells of at most `most` points. Each cut divides the points along the longest axis, with the fraction `share` below it.
+    /// Builds cells of at most `most` points. Each cut divides the points along the longest axis; the fraction `share` of them lies below the cut.
     pub fn new(points: &[DVec3], most: usize, share: f64) -> Self {
         let mut cells = Self {
             nodes: vec![Node::Cell(0)],

@@ -4,7 +4,7 @@
 //!
 //! - one ball contains the piece (proved),
 //! - the piece lies inside the solid (it is no outer surface),
-//! - the middle of the piece is on the outer surface, and no ball contains it (a gap),
+//! - the middle of the piece is on the outer surface, and no ball contains the piece (a gap),
 //! - the piece is smaller than a limit (counted as a gap).
 //!
 //! If parts overlap, a triangle can lie partly inside another part. Testing a few points cannot show this; pieces are only classified
@@ -16,15 +16,15 @@ use super::target::Target;
 use crate::mesh::{Bvh, Triangle};
 use glam::DVec3;
 
-/// Pieces smaller than this fraction of the tolerance count as gaps if no single ball contains them.
+/// Size, relative to the tolerance, below which a piece counts as a gap if no single ball contains it.
 const SMALLEST: f64 = 0.02;
 
-/// Places where the surface is farther than `e` from the spheres, or not proved to be closer.
+/// Places where the surface is farther than `e` from the spheres, or is not proved to be closer.
 #[derive(Debug, Default)]
 pub(super) struct Gaps {
     /// Middles of the pieces, with their sizes; empty if the tolerance is proved.
     pub places: Vec<Sample>,
-    /// Triangles that contain the places.
+    /// Indices of the triangles that contain the places.
     pub triangles: Vec<usize>,
 }
 

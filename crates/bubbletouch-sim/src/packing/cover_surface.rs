@@ -1,4 +1,4 @@
-//! Covering of the outer surface with few balls: cell by cell, then repeatedly with other cells, until no gap remains.
+//! Covering of the outer surface with few balls, cell by cell; repeated with other cells until no gap remains.
 
 use super::ball::Ball;
 use super::cells::Cells;
@@ -11,14 +11,13 @@ use crate::random::Seed;
 use glam::DVec3;
 use rand::Rng;
 
-/// Maximum number of samples per cell. If the value is larger, there are fewer borders between cells, but the data of the search exceed the processor's
-/// cache.
+/// Maximum number of samples per cell. If larger, there are fewer borders between cells, but the data of the search exceed the processor's cache.
 const CELL: usize = 24_000;
 
 /// Fraction of the total time that sampling takes, for progress reports.
 const SAMPLING_TIME: f64 = 0.2;
 
-/// Parameters of one pass over all cells.
+/// Parameters of one optimisation pass over all cells.
 struct Pass {
     /// Fraction of the points below each cut. Passes with different fractions have different cell borders.
     cut: f64,
@@ -28,7 +27,7 @@ struct Pass {
     moves: f64,
 }
 
-/// Passes that reduce the number of balls; after each one the gaps become samples.
+/// Passes that reduce the number of balls; after each pass the remaining gaps become samples.
 const PASSES: [Pass; 3] = [
     Pass {
         cut: 0.5,
@@ -88,11 +87,11 @@ struct Covering<'a> {
     chosen: Vec<Ball>,
     /// Number of chosen balls that cover each sample.
     counts: Vec<u32>,
-    /// Workspace: row of each sample in the current cell; [`NOT_HERE`] for samples that do not belong to it.
+    /// Row of each sample in the current cell; [`NOT_HERE`] for samples that do not belong to the cell.
     row_of: Vec<u32>,
 }
 
-/// Value that replaces a row number.
+/// Value for samples that do not belong to the current cell.
 const NOT_HERE: u32 = u32::MAX;
 
 impl<'a> Covering<'a> {
@@ -116,7 +115,7 @@ impl<'a> Covering<'a> {
         gaps(self.target, triangles, &self.chosen)
     }
 
-    /// Optimises one cell after another.
+    /// Optimises the cells one after another in one pass.
     fn pass(&mut self, pass: &Pass, number: u64, watch: &mut dyn FnMut(f64)) {
         let positions: Vec<DVec3> = self.sampling.samples.iter().map(|s| s.position).collect();
         let cells = Cells::new(&positions, CELL, pass.cut);
@@ -142,7 +141,7 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Chooses the balls of one cell again, so that they cover its samples and all samples that only the removed balls covered.
+    /// Chooses the balls of one cell again, so that they cover the cell's samples and all samples that only the removed balls covered.
     fn work_on(
         &mut self,
         freed: Vec<Ball>,
@@ -207,7 +206,7 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Returns shifted copies of balls, about `n_moves` per ball, each shifted by up to half of its covered radius.
+    /// Returns shifted copies of balls, about `n_moves` per ball, each shifted by up to half of the radius that it covers.
     fn moved(&self, balls: &[Ball], n_moves: f64, rng: &mut impl Rng) -> Vec<Ball> {
         let n_moves = n_moves * balls.len() as f64;
         let mut moved = Vec::new();
@@ -220,7 +219,7 @@ impl<'a> Covering<'a> {
         moved
     }
 
-    /// Returns one ball per gap that covers it.
+    /// Returns for each gap one ball that covers it.
     fn balls_at(&self, gaps: &[Sample]) -> Vec<Ball> {
         let ball = |gap: &Sample| {
             let normal = self.target.normal_at(gap.position);
@@ -244,7 +243,7 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Adds few balls that cover the gaps. Gaps that no ball with its centre in the solid covers remain.
+    /// Adds a small number of balls that cover the gaps. A gap remains if no ball with its centre in the solid covers it.
     fn fill(&mut self, gaps: &[Sample]) {
         let target = self.target;
         let held = |ball: Ball| ball.has_center_in(target).then_some(ball);

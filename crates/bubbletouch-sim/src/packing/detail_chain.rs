@@ -1,4 +1,4 @@
-//! One object at several levels of detail.
+//! Packings of one object at several levels of detail.
 
 use super::pack::{Packing, pack_mesh};
 use super::target::Body;
@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use rayon::prelude::*;
 
-/// Packings of one mesh, from coarse to fine.
+/// Packings of one mesh, ordered from coarse to fine.
 ///
 /// Invariant: there is at least one packing, and the tolerances strictly decrease.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +15,7 @@ pub struct DetailChain {
 }
 
 impl DetailChain {
-    /// Packs a mesh to each tolerance (metres, in any order; repeated values count once).
+    /// Packs a mesh to each of several tolerances (metres, in any order; repeated values count once).
     ///
     /// # Errors
     /// If there are no tolerances, or if [`pack_mesh`] fails.
@@ -48,7 +48,7 @@ impl DetailChain {
         Ok(Self { packings })
     }
 
-    /// Returns the packings from coarse to fine.
+    /// Returns the packings, ordered from coarse to fine.
     pub fn packings(&self) -> &[Packing] {
         &self.packings
     }

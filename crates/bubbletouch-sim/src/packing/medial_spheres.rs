@@ -7,11 +7,11 @@ use crate::error::Result;
 use crate::mesh::Surface;
 use crate::objects::{Sphere, SphereUnion};
 
-/// Smallest radius of a sphere relative to the size of the mesh. Smaller spheres are left out; they occur at sharp edges.
+/// Smallest radius of a sphere relative to the size of the mesh. Smaller spheres, which occur at sharp edges, are omitted.
 const THINNEST: f64 = 1e-6;
 
-/// Returns the largest spheres inside a closed mesh that touch it at `n` points distributed uniformly over its area, as in Ma, Bae and Choi (2012).
-/// Points at which no sphere fits are left out.
+/// Returns the largest spheres inside a closed mesh that touch it at `n` points distributed uniformly over its area, as in Ma, Bae and Choi (2012). Points at
+/// which no sphere fits are omitted.
 ///
 /// The spheres lie inside the mesh and touch it; the distance of the surface between the points is not bounded. Stolpner, Kry and Siddiqi
 /// (2011) approximate shapes by such spheres.

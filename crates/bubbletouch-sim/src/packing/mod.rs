@@ -1,4 +1,4 @@
-//! Sphere packing: a mesh and a tolerance → a union of few spheres.
+//! Sphere packing: approximates a mesh by a union of few spheres within a tolerance.
 //!
 //! | from | by | gives |
 //! |---|---|---|
@@ -17,16 +17,16 @@
 //! the solid. The sphere (c, d + e/2) reaches at most e/2 outside it, and is within e of exactly those points that are within
 //! **d + 3e/2** of c. Two properties follow:
 //!
-//! - **protrusion**: no point of a sphere is more than e/2 outside the solid. This holds by construction for any choice of spheres.
-//!   Whether c lies in the solid is tested exactly, by counting the crossings of a ray;
-//! - **gap**: no point of the outer surface is more than e outside the spheres. This is proved: a ball that contains the corners of
-//!   a triangle contains the whole triangle. Triangles are halved until one ball contains each piece, or until a piece is proved to lie
-//!   inside the solid (`certificate`). If the proof fails, packing returns an error.
+//! - **protrusion**: no point of a sphere is more than e/2 outside the solid. This holds by construction for any choice of spheres. Whether c lies in the solid
+//!   is tested exactly, by counting the crossings of a ray.
+//! - **gap**: no point of the outer surface is more than e outside the spheres. The proof uses that a ball that contains the corners of a triangle contains the
+//!   whole triangle. Triangles are halved until one ball contains each piece, or until a piece is proved to lie inside the solid (`certificate`). If the proof
+//!   fails, packing returns an error.
 //!
 //! The two surfaces need not be within e of each other everywhere. Spheres may close clefts narrower than e, and may leave hollows inside the solid, where
 //! nothing touches.
 //!
-//! Thin walls, edges and tips need no special treatment: a ball around a surface point (d = 0) always contains the surface
+//! Thin walls, edges and thin ends need no special treatment: a ball around a surface point (d = 0) always contains the surface
 //! within 3e/2 of this point.
 //!
 //! Spheres that reach a full e outside would be fewest, but the middle of their surface would lie e/2 outside the mesh. With

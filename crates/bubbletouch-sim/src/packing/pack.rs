@@ -7,12 +7,12 @@ use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::{MAX_SPHERES, SphereUnion};
 
-/// Spheres that approximate a mesh, with their proved tolerance.
+/// Spheres that approximate a mesh, with the proved tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
     /// Spheres, in the frame of the mesh.
     pub spheres: SphereUnion,
-    /// Proved maximum distance between the two surfaces, metres.
+    /// Proved maximum distance between the surfaces of the mesh and the spheres, metres.
     pub tolerance: f64,
 }
 
@@ -29,7 +29,7 @@ pub fn pack_mesh(surface: &Surface, body: Body, tolerance: f64) -> Result<Packin
     pack_mesh_watched(surface, body, tolerance, &mut |_| {})
 }
 
-/// Packs a mesh like [`pack_mesh`], and calls `watch` with the approximate completed fraction of the work, 0 to 1.
+/// Packs a mesh with few spheres, as [`pack_mesh`] does, and calls `watch` with the approximate completed fraction of the work, 0 to 1.
 ///
 /// # Errors
 /// If [`pack_mesh`] fails.
@@ -58,8 +58,8 @@ pub fn pack_mesh_watched(
     })
 }
 
-/// Number of spheres from which on [`slow_packing`] returns a sentence: about half a minute on one processor. If the value is larger, long packings start
-/// without a notice; if the value is smaller, packings of a few seconds are announced.
+/// Minimum number of spheres for which [`slow_packing`] returns a sentence: about half a minute on one processor. If larger, long packings start without a
+/// notice; if smaller, packings of a few seconds are announced.
 const MANY_SPHERES: f64 = 5_000.0;
 
 /// Approximate computing time per sphere on one processor, milliseconds: 13 s for 2201 spheres of a scan.
@@ -79,7 +79,7 @@ pub fn slow_packing(surface: &Surface, body: Body, tolerance: f64) -> Option<Str
     })
 }
 
-/// Adds the name of the file and `advice` to an error of [`pack_mesh`] about the mesh. Returns other errors unchanged.
+/// Adds the name of the file and `advice` to an error of [`pack_mesh`] about the mesh. Other errors are returned unchanged.
 pub fn error_of_file(error: Error, file: &str, advice: &str) -> Error {
     match error {
         Error::Input {

@@ -1,4 +1,4 @@
-//! Measured distances between spheres and their mesh at sample points; unlike the tolerance of a packing they are not proved.
+//! Distances between spheres and their mesh, measured at sample points; unlike the tolerance of a packing they are not proved.
 
 use super::target::Body;
 use crate::geometry::Aabb;
@@ -8,23 +8,23 @@ use crate::random::Seed;
 use glam::DVec3;
 use rand::Rng;
 
-/// Mean, 95th percentile and maximum of distances, metres.
+/// Mean, 95th percentile and maximum of some distances, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Mean over all points, zeros included.
+    /// Mean distance over all points, zeros included, metres.
     pub mean: f64,
-    /// 95th percentile over all points.
+    /// 95th percentile of the distances over all points, metres.
     pub p95: f64,
-    /// Maximum over all points.
+    /// Largest distance over all points, metres.
     pub max: f64,
 }
 
 /// Distances between the surfaces of a mesh and of spheres, at points distributed uniformly over the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PackingError {
-    /// Distance of the spheres' surface outside the mesh, along the normal of the mesh; 0 where it lies inside.
+    /// Distance of the spheres' surface outside the mesh, along the normal of the mesh; 0 where the spheres' surface lies inside.
     pub protrusion: Spread,
-    /// Distance of the mesh's surface outside the spheres; 0 where it lies inside.
+    /// Distance of the mesh's surface outside the spheres; 0 where the mesh's surface lies inside.
     pub gap: Spread,
     /// Number of tested points of the outer surface.
     pub n_points: usize,
@@ -64,7 +64,7 @@ pub fn packing_error(
     }
 }
 
-/// Returns the distance from the mesh to the end of the spheres along the normal, starting at a point inside the spheres.
+/// Returns the distance from a point of the mesh, along its normal, to the end of the spheres, metres. The point must be inside the spheres.
 fn protrusion(surface: &Surface, tree: &SphereTree, point: DVec3, normal: DVec3) -> f64 {
     let end = tree.end(point, normal);
     match surface.closest(end, f64::INFINITY) {
@@ -118,7 +118,7 @@ fn spread(mut values: Vec<f64>) -> Spread {
     }
 }
 
-/// Tree of spheres.
+/// Bounding volume tree of spheres.
 struct SphereTree {
     tree: BoxTree,
     /// Spheres, in the order of the tree.
@@ -136,7 +136,7 @@ impl SphereTree {
         }
     }
 
-    /// Returns the distance from a point to the spheres; 0 inside.
+    /// Returns the distance from a point to the spheres, metres; 0 inside.
     fn distance(&self, point: DVec3) -> f64 {
         let mut least = f64::INFINITY;
         let bound = |bounds: &Aabb| bounds.distance_squared(point).sqrt();

@@ -1,4 +1,4 @@
-//! Samples of the outer surface, denser where balls are small, and candidate balls that touch it.
+//! Samples of the outer surface, denser where balls are small, and candidate balls that touch the surface.
 
 use super::ball::{Ball, relief};
 use super::target::Target;
@@ -12,38 +12,37 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub position: DVec3,
-    /// Radius of the represented surface, metres.
+    /// Radius of the represented surface around the point, metres.
     pub radius: f64,
 }
 
 /// Samples to cover, and candidate balls.
 pub(super) struct Sampling {
     pub effort: Effort,
-    /// Triangles that are not proved to lie inside the solid.
+    /// Indices of the triangles that are not proved to lie inside the solid.
     pub outer: Vec<usize>,
     pub samples: Vec<Sample>,
     pub balls: Vec<Ball>,
 }
 
-/// Distance, relative to the radius covered by a ball, up to which its size is reused. If the value is larger, edges and tips have too few samples; if the
-/// value is smaller, sampling is slower.
+/// Distance up to which the size of a ball is reused, relative to the radius that the ball covers. If larger, edges and thin ends have too few samples; if
+/// smaller, sampling is slower.
 const NEAR: f64 = 0.3;
-/// Area per disc in the best covering of a plane by discs of unit radius: 3·√3/2, a hexagon.
+/// Area per disc in the best covering of a plane by discs of unit radius: 3·√3/2, the area of a hexagon.
 const HEXAGON: f64 = 2.598_076_211_353_316;
 
 /// Effort of a packing; the effort per sphere decreases with the number of spheres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// Number of samples in the area that one ball covers in the best covering of a plane. If the value is larger, sampling is slower and leaves fewer gaps
-    /// to repair; if the
-    /// value is smaller, the local search overlooks gaps.
+    /// Number of samples in the area that one ball covers in the best covering of a plane. If larger, sampling is slower and leaves fewer gaps to repair; if
+    /// smaller, the local search overlooks gaps.
     pub samples_a_ball: f64,
-    /// Number of candidate balls in the area that one ball covers in the best covering of a plane. If the value is larger, the covering needs fewer balls
-    /// and takes longer.
+    /// Number of candidate balls in the area that one ball covers in the best covering of a plane. A larger number reduces the number of spheres and takes
+    /// longer.
     pub feet_a_ball: f64,
-    /// Exchanges of the local search per chosen ball.
+    /// Number of exchanges of the local search per chosen ball.
     pub steps_a_ball: f64,
-    /// Shifted copies per chosen ball that the next search may choose instead.
+    /// Number of shifted copies per chosen ball that the next search may choose instead.
     pub moves_a_ball: f64,
     /// Number of passes over all cells.
     pub n_passes: usize,
@@ -73,7 +72,7 @@ impl Effort {
     }
 }
 
-/// Samples the surface. Equal meshes give equal samples.
+/// Samples the outer surface and computes candidate balls. Equal meshes give equal samples.
 ///
 /// Returns an error if the tolerance needs more than about [`MAX_SPHERES`] spheres.
 pub(super) fn sample(target: &Target) -> Result<Sampling> {
@@ -135,14 +134,14 @@ pub(super) fn estimated_spheres(target: &Target) -> f64 {
 
 /// Approximate number of balls that cover a surface.
 struct Demand {
-    /// Number of balls if each covers as much as on a plane.
+    /// Number of balls if each ball covers as much as on a plane.
     flat: f64,
-    /// Number of balls by the area that each actually covers; lower where the surface curves like the balls.
+    /// Number of balls if each ball covers its actual area; lower where the surface is curved as much as the balls.
     bent: f64,
 }
 
 impl Demand {
-    /// Estimates the number from every eighth triangle; in large meshes from about 4,000 triangles.
+    /// Estimates the number of balls from every eighth triangle; in large meshes from about 4,000 triangles.
     fn new(target: &Target) -> Self {
         let mesh = target.surface.mesh();
         let every = (mesh.n_triangles() / 4096).max(8);
@@ -180,13 +179,13 @@ impl Demand {
 struct Sampler<'a> {
     sizes: Sizes<'a>,
     effort: Effort,
-    /// Fraction of the next sample; a sample is placed whenever this value reaches one, so samples are uniform for any triangulation.
+    /// Accumulated fraction of the next sample; a sample is placed whenever this value reaches one, so samples are uniform for any triangulation.
     due_samples: f64,
     due_feet: f64,
     sampling: Sampling,
 }
 
-/// Area of the surface per ball, as a function of position.
+/// Area of the surface per ball, computed as a function of position.
 struct Sizes<'a> {
     target: &'a Target<'a>,
     /// Last result: the normal, and the largest ball that covers the position, which is its foot.
@@ -269,8 +268,8 @@ pub(super) struct SampleTree {
     tree: BoxTree,
 }
 
-/// Fraction of a sample's radius that must also be covered, times the slope of the ball there. If the value is larger, more spheres are needed; if the value
-/// is smaller, more gaps must be repaired, which needs more spheres in the end.
+/// Fraction of a sample's radius that must also be covered, times the slope of the ball there. If larger, more spheres are needed; if smaller, more gaps must
+/// be repaired, which needs more spheres in the end.
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {

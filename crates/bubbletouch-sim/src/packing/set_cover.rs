@@ -1,14 +1,14 @@
 //! Set cover: few sets that cover all rows, by a greedy choice and a local search with row weights \[RWLS\].
 //!
-//! Whenever all rows are covered, the search removes a set. Single exchanges follow until all rows are covered again.
-//! Each exchange removes the set whose loss uncovers the least weight. It adds the set of most weight that contains a randomly chosen
+//! Whenever all rows are covered, the search removes a set. Single exchanges follow until all rows are covered again. Each exchange removes the set whose loss
+//! uncovers the least weight. Then the search adds the set of most weight that contains a randomly chosen
 //! uncovered row. The weights of rows that stay uncovered increase, which lets the search leave local minima.
 
 use rand::RngCore;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
 
-/// Lists of numbers, stored one after another.
+/// Lists of numbers, stored one after another in one array.
 pub(super) struct Lists {
     starts: Vec<usize>,
     items: Vec<u32>,
@@ -35,7 +35,7 @@ impl Lists {
         &self.items[self.starts[list]..self.starts[list + 1]]
     }
 
-    /// Returns, for each of `n` numbers, the lists that contain it, in ascending order.
+    /// Returns the transposed relation: for each of `n` numbers, the lists that contain it, ascending.
     pub fn transposed(&self, n: usize) -> Self {
         let mut starts = vec![0; n + 1];
         for &item in &self.items {
@@ -101,15 +101,15 @@ pub(super) struct Cover<'a> {
     weights: Vec<i32>,
     /// Number of chosen sets that contain each row.
     counts: Vec<u32>,
-    /// Exclusive or of the indices of these sets; if there is one set, its index.
+    /// Exclusive or of the indices of the chosen sets that contain each row; if there is one such set, its index.
     holders: Vec<u32>,
-    /// Score of each set. Not chosen: the weight that it would cover. Chosen: minus the weight that only this set covers.
+    /// Score of each set. For a set that is not chosen: the weight that it would cover. For a chosen set: minus the weight that only this set covers.
     scores: Vec<i32>,
     /// Step at which each set was last added or removed.
     moved_at: Vec<u32>,
 }
 
-/// Number of randomly drawn chosen sets among which the removed set is selected. If the value is larger, the search is greedier and slower.
+/// Number of randomly drawn chosen sets among which the removed set is selected. If larger, the search is greedier and slower.
 const TRIED: usize = 64;
 
 impl<'a> Cover<'a> {
@@ -139,7 +139,7 @@ impl<'a> Cover<'a> {
         &self.chosen.members
     }
 
-    /// Adds a set to the chosen ones.
+    /// Adds a set to the chosen sets.
     pub fn add(&mut self, set: usize) {
         self.chosen.insert(set);
         self.scores[set] = -self.scores[set];
@@ -176,7 +176,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// Adds `by` to the scores of all sets but `set` that contain a row.
+    /// Adds `by` to the scores of all sets, except `set`, that contain a row.
     fn raise_all_but(&mut self, set: usize, row: usize, by: i32) {
         for &other in self.sets_of.list(row) {
             if other as usize != set {
@@ -185,7 +185,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// Adds the set that covers the most weight until all rows are covered, then removes redundant sets.
+    /// Completes the cover greedily: adds the set that covers the most weight until all rows are covered, then removes redundant sets.
     pub fn complete(&mut self) {
         let candidates = (0..self.rows_of.len()).filter(|&set| !self.chosen.contains(set));
         let entry = |set: usize, score: i32| (score, Reverse(set));

@@ -1,27 +1,27 @@
-//! Target of a packing: a mesh, the body that it represents, and the tolerance.
+//! Target of a packing: a mesh, the kind of body that it represents, and the tolerance.
 
 use crate::error::{Error, Result};
 use crate::mesh::{Hole, Surface, Triangle, TriangleMesh, Welded};
 use glam::DVec3;
 
-/// Name of the mesh in errors if its file is not known.
+/// Name of the mesh in error messages if its file is not known.
 pub(super) const MESH: &str = "mesh";
 
 /// Height above a face, as a fraction of the tolerance, at which the code tests whether the face lies inside the solid; narrower clefts count as closed. If
-/// the value is larger, wider clefts are closed; if the value is smaller, rounding decides where faces coincide.
+/// larger, wider clefts are closed; if smaller, rounding decides where faces coincide.
 const LIFT: f64 = 1e-3;
 
-/// Body that a mesh represents.
+/// Kind of body that a mesh represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
     /// [Solid](crate::mesh#the-solid-of-a-mesh) that the mesh encloses; the union of closed parts that overlap. The mesh must have no
     /// holes.
     Solid,
-    /// Surface of the mesh without thickness: many spheres as small as the tolerance, centred on the surface. Holes stay open.
+    /// Surface of the mesh without thickness, covered by many spheres as small as the tolerance, centred on the surface. Holes stay open.
     Sheet,
 }
 
-/// Mesh that can be packed.
+/// Mesh to be packed, with the body that it represents and the tolerance.
 pub(super) struct Target<'a> {
     pub surface: &'a Surface,
     pub body: Body,
@@ -30,7 +30,7 @@ pub(super) struct Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// Checks that the mesh meets the requirements of the body.
+    /// Creates the target and checks that the mesh meets the requirements of the body.
     pub fn new(surface: &'a Surface, body: Body, tolerance: f64) -> Result<Self> {
         if !(tolerance.is_finite() && tolerance > 0.0) {
             return Err(Error::input(
