@@ -1,15 +1,15 @@
-//! `[axes]`: keys of a study with the values that they take, in all combinations.
+//! Table `[axes]` of a study: keys with the values that they take, in all combinations.
 //!
 //! ```toml
 //! [axes]
 //! "touches.depth_mm" = [1.0, 2.0, 4.0]
 //! "skin.stiffness_n_per_m" = [500.0, 2000.0]
 //! ```
-//! A key in `[axes]` replaces the key in its own table. Each combination is a study of its own and is checked like any study. A key that accepts a list in its
-//! own table is an axis there, too, and may be written in either place. `"touches.offset_{x,y}_mm"` sets two keys together.
+//! A key in `[axes]` replaces the same key in its own table. Each combination of values is a study of its own and is checked like any study. A key that accepts
+//! a list in its own table is also an axis there, and may be written in either place. `"touches.offset_{x,y}_mm"` sets two keys together.
 //!
-//! With `combine = "one_at_a_time"`, the first configuration has the values of the study's own tables. From there, each axis alone takes its values. The keys
-//! may then have values in their tables, too.
+//! With `combine = "one_at_a_time"`, the first configuration has the values of the study's own tables. In each further configuration, one axis alone takes
+//! another value. The keys may then also have values in their own tables.
 
 use crate::error::{Error, Result};
 use crate::inputs::check::MAX_VALUES;
@@ -25,12 +25,12 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Rules of a kind of study for keys in `[axes]`.
+/// Rules of a kind of study for the keys that may be axes.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisRules {
-    /// Returns whether a key accepts a list in its own table. Keys that do are moved from `[axes]` to their table.
+    /// Function that returns whether a key accepts a list in its own table. Such keys are moved from `[axes]` to their table.
     pub in_place: fn(&str) -> bool,
-    /// Keys that must be equal within a study, including all keys below them.
+    /// Keys that cannot be axes, because they must be equal within a study; includes all keys below them.
     pub refused: &'static [&'static str],
 }
 
@@ -38,47 +38,47 @@ pub struct AxisRules {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CombineSpec {
-    /// All combinations of their values.
+    /// All combinations of the axes' values.
     #[default]
     All,
-    /// A base configuration, and variants of it in which one axis alone takes its values. The base has the first values of all axes; for `[axes]`, the values
-    /// of the study's tables.
+    /// A base configuration, and variants of it in which one axis alone takes its other values. The base has the first values of all axes; for `[axes]`, it has
+    /// the values of the study's own tables.
     OneAtATime,
 }
 
-/// Axes in `[axes]`; the last axis changes fastest.
+/// Axes of the table `[axes]`; the last axis changes fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudyAxes {
-    /// Axes, in the order in which they are written.
+    /// Axes in the order in which they are written in the file.
     pub axes: Vec<StudyAxis>,
-    /// Rule that combines the values of the axes.
+    /// Rule that combines the values of several axes.
     pub combine: CombineSpec,
 }
 
-/// One axis: a key and its values.
+/// Axis of a study: a key and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyAxis {
-    /// Path of the key: `touches.depth_mm`, or `touches.offset_{x,y}_mm` for two keys.
+    /// Path of the key, such as `touches.depth_mm`, or `touches.offset_{x,y}_mm` for two keys.
     pub key: String,
-    /// Whether the tables already have a column with these values.
+    /// Whether the result tables already have a column with these values.
     pub has_column: bool,
-    /// Distinct values, at least one.
+    /// Distinct values of the axis, at least one.
     pub values: Vec<toml::Value>,
-    /// Line of the file on which the key stands; `None` if the axis does not come from a file.
+    /// Line number of the key in the study file; `None` if the axis does not come from a file.
     pub line: Option<usize>,
 }
 
-/// Values of a configuration on the axes of its study.
+/// Values of one configuration on all axes of its study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AxisValues {
-    /// Number of the combination, from 0.
+    /// Number of the combination of values, from 0.
     pub number: usize,
-    /// Value on each axis.
+    /// Value of each axis.
     pub values: Arc<[AxisValue]>,
 }
 
 impl AxisValues {
-    /// Returns the values of a combination for tables with these [columns](StudyAxes::columns).
+    /// Returns the axis values of a combination, for tables with these [columns](StudyAxes::columns).
     pub fn new(
         number: usize,
         (axes, columns): (&StudyAxes, &[Column]),
@@ -102,17 +102,17 @@ impl AxisValues {
     }
 }
 
-/// Value on one axis, as written in tables.
+/// Value of one axis, as written in result tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisValue {
-    /// Column of the axis.
+    /// Table column of the axis.
     pub column: Column,
-    /// A number, a truth value, or a text; lists and tables are written as text. `None` if another axis is varied and the key has no such value.
+    /// Number, truth value, or text; lists and tables are converted to text. `None` if another axis is varied and the key has no such value.
     pub value: Option<toml::Value>,
 }
 
-/// Returns the table that contains the last key of a path, and that key. Missing tables along the path are created. Returns `None` if a part of the path is
-/// not a table.
+/// Returns the table that contains the last key of a path, and that key. Missing tables along the path are created. Returns `None` if a part of the path is not
+/// a table.
 fn table_at<'t, 'k>(
     table: &'t mut toml::Table,
     path: &'k str,
@@ -143,11 +143,11 @@ pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<
     }
 }
 
-/// Reads a study and its axes. In the returned study, each key of an axis has its first value; keys that accept lists have all values.
+/// Reads a study file and its axes. In the returned study, each axis key has its first value; keys that accept lists have all values.
 ///
 /// # Errors
-/// If the study is invalid. If an axis has no values, has a value twice, has a key that is also given elsewhere, or has a key that cannot be an axis.
-/// The error names the file, the line and the key.
+/// If the study is invalid. If an axis has no values, a repeated value, a key that is also given elsewhere, or a key that cannot be an axis. The error names
+/// the file, the line and the key.
 pub fn read<S: DeserializeOwned>(
     place: &str,
     text: &str,
@@ -216,7 +216,7 @@ pub fn read<S: DeserializeOwned>(
     Ok((study, axes))
 }
 
-/// Returns the lists below a table, with their paths and the positions at which they begin.
+/// Returns all lists below a table, with their key paths and their start positions in the text.
 fn leaves<'i>(
     prefix: String,
     table: DeTable<'i>,
@@ -246,7 +246,7 @@ fn take_combine(
     CombineSpec::deserialize(value).map_err(|error| Error::toml(place, text, &error))
 }
 
-/// Returns the values of a list; an empty list for any other value.
+/// Returns the values of a TOML list; an empty list for any other value.
 fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::Value>> {
     let DeValue::Array(values) = value.get_ref() else {
         return Ok(Vec::new());
@@ -258,7 +258,7 @@ fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::V
     values.collect()
 }
 
-/// Returns the value at a path.
+/// Returns the TOML value at a key path; `None` if it does not exist.
 fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t DeValue<'i>> {
     match key.split_once('.') {
         None => table.get(key).map(Spanned::get_ref),
@@ -266,7 +266,7 @@ fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t DeValue<'i>> {
     }
 }
 
-/// Inserts a value at a path, with `start` as its position in the text. Returns `None` if the path has a value or a part of it is not a table.
+/// Inserts a TOML value at a key path, with `start` as its position in the text. Returns `None` if the path has a value or a part of it is not a table.
 fn insert<'i>(
     table: &mut DeTable<'i>,
     key: &str,
@@ -324,7 +324,7 @@ impl StudyAxis {
         Err(self.error(place, given, allowed))
     }
 
-    /// Returns the paths of the keys that take each value: more than one if the key lists several in braces.
+    /// Returns the paths of the keys that take each value: more than one if the axis key lists several in braces.
     pub fn keys(&self) -> Vec<String> {
         let parts = self.key.split_once('{').and_then(|(start, rest)| {
             let (names, end) = rest.split_once('}')?;
@@ -339,7 +339,7 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the path without braces, and without a suffix that only describes a distribution.
+    /// Returns the key path without braces, and without a suffix that only describes a distribution.
     fn path(&self) -> String {
         let path = self.key.replace(['{', '}', ',', ' '], "");
         path.strip_suffix(".within").unwrap_or(&path).to_owned()
@@ -380,14 +380,14 @@ impl StudyAxis {
         Column::new(name, self.role(), words, unit, scale(numbers)).optional()
     }
 
-    /// Returns the value of the key in a study; `None` if the study has no value, or a value of another type than the axis.
+    /// Returns the value of the axis key in a study; `None` if the study has no value, or a value of another type than the axis.
     fn own(&self, study: &toml::Table) -> Option<toml::Value> {
         let own = value_at(study, self.keys().first()?)?;
         let is_number = self.values.iter().all(|value| number(value).is_some());
         (!is_number || number(own).is_some()).then(|| own.clone())
     }
 
-    /// Returns whether a study has this value at all keys of the axis.
+    /// Returns whether a study has the given value at all keys of the axis.
     fn is_at(&self, study: &toml::Table, value: &toml::Value) -> bool {
         let has = |key: &String| value_at(study, key).is_some_and(|own| is_same(own, value));
         self.keys().iter().all(has)
@@ -399,17 +399,17 @@ impl StudyAxis {
     }
 }
 
-/// Prefix of keys that apply to test touches only.
+/// Prefix of keys that apply only to test touches.
 const OF_TESTS: &str = "test.";
 
-/// Descriptions of keys whose last part is not clear by itself.
+/// Names in words of keys whose last part is not clear by itself.
 const WORDS: [(&str, &str); 3] = [
     ("skin.sensed", "sensed quantity"),
     ("recognition.group_by", "group held out"),
     ("recognition.split", "poses held out"),
 ];
 
-/// Units by suffix of the key, longer suffixes first.
+/// Units of keys by their suffix, longer suffixes first.
 const UNITS: [(&str, &str); 15] = [
     ("_n_s_per_m", "N·s/m"),
     ("_mm_per_s", "mm/s"),
@@ -428,8 +428,8 @@ const UNITS: [(&str, &str); 15] = [
     ("_g", "g"),
 ];
 
-/// Roles by prefix of the key; all other keys are choices. Depth, slide, number and speed of presses are choices. Pose and friction of the object are
-/// conditions. The split, its groups and recorded data are conditions of the experiment: as a choice, the easiest split would always win.
+/// Roles of keys by their prefix; all other keys are choices. Depth, slide, number and speed of presses are choices. Pose and friction of the object are
+/// conditions. The split, its groups and recorded data are conditions of the experiment; as a choice, the easiest split would always be the best.
 const ROLES: [(&str, Role); 19] = [
     (OF_TESTS, Role::Condition),
     ("seed", Role::Subject),
@@ -452,11 +452,11 @@ const ROLES: [(&str, Role); 19] = [
     ("objects.", Role::Condition),
 ];
 
-/// Ratio of the largest to the smallest value from which an axis is logarithmic. If it is larger, the small values of a sweep by powers of two overlap on a
-/// linear axis. If it is smaller, evenly spaced values are drawn unevenly. Zero is drawn separately.
+/// Minimum ratio of the largest to the smallest value for a logarithmic axis. If larger, the small values of a sweep by powers of two overlap on a linear axis;
+/// if smaller, evenly spaced values are drawn unevenly. Zero is drawn separately.
 const LOG_FROM: f64 = 16.0;
 
-/// Returns whether two values are equal; 1 and 1.0 are equal.
+/// Returns whether two TOML values are equal; 1 and 1.0 are equal.
 fn is_same(one: &toml::Value, other: &toml::Value) -> bool {
     match (number(one), number(other)) {
         (Some(one), Some(other)) => one == other,
@@ -490,7 +490,7 @@ impl StudyAxes {
         axes.any(|axis| axis.keys().iter().any(|own| own == key))
     }
 
-    /// Returns the columns of the axes that have no column of their own yet; `is_taken` returns whether another column uses a name.
+    /// Returns the columns of all axes that have no column of their own yet; `is_taken` returns whether another column uses a name.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {
             let alike = self.axes.iter().filter(|other| other.name() == axis.name());
@@ -501,7 +501,7 @@ impl StudyAxes {
         shown.map(column).collect()
     }
 
-    /// Returns the number of combinations of values.
+    /// Returns the number of combinations of axis values.
     pub fn n_combinations(&self) -> f64 {
         let lengths = self.axes.iter().map(|axis| axis.values.len() as f64);
         match self.combine {
@@ -510,7 +510,7 @@ impl StudyAxes {
         }
     }
 
-    /// Returns the combinations of values, the last axis changing fastest. `None` means that the axis keeps its value in `study`.
+    /// Returns all combinations of axis values; the last axis changes fastest. `None` means that the axis keeps its value in `study`.
     fn combinations(&self, study: &toml::Table) -> Vec<Vec<Option<toml::Value>>> {
         if self.combine == CombineSpec::OneAtATime {
             let mut all = vec![vec![None; self.axes.len()]];
@@ -535,8 +535,8 @@ impl StudyAxes {
         all
     }
 
-    /// Returns each combination of values with the study that results from it: `study` with the values at the axes' keys. If an axis keeps its value, the
-    /// listed value is that of the study.
+    /// Returns each combination of axis values with the resulting study: `study` with the values at the axes' keys. If an axis keeps its value, the listed
+    /// value is the value in `study`.
     ///
     /// # Errors
     /// If a value is invalid for the study; the error names the axis.
@@ -568,7 +568,7 @@ impl StudyAxes {
         all.collect()
     }
 
-    /// Returns the error for a combination that a check rejects. The error lists the axes whose keys the message mentions, or all axes.
+    /// Returns the error for a combination that a check rejects. The error names the axes whose keys the message mentions, or all axes.
     pub fn refused(&self, place: &str, values: &[Option<toml::Value>], said: &str) -> Error {
         let all = || {
             let axes = self.axes.iter().zip(values);
@@ -590,7 +590,7 @@ impl StudyAxes {
     }
 }
 
-/// Returns a study as TOML, without the keys of its axes, followed by the table `[axes]` in its original order.
+/// Returns a study as TOML without the keys of its axes, followed by the table `[axes]` in its original order.
 pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
     const HAS_FORM: &str = "every field of a study has a TOML form";
     if axes.is_empty() {

@@ -1,4 +1,4 @@
-//! An axis of a sweep in a study file: one value or a list of values.
+//! Axis of a sweep in a study file: one value or a list of values.
 
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
@@ -6,18 +6,18 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// An axis: one value or a list of values.
+/// Axis of a sweep: one value or a list of values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Axis<T> {
-    /// One value: `key = 2.0`.
+    /// Single value, such as `key = 2.0`.
     One(T),
-    /// List of values: `key = [2.0, 4.0]`.
+    /// List of values, such as `key = [2.0, 4.0]`.
     Many(Vec<T>),
 }
 
 impl<T: Clone> Axis<T> {
-    /// Returns the values, in their order.
+    /// Returns the values of the axis, in their order.
     pub fn values(&self) -> Vec<T> {
         match self {
             Self::One(value) => vec![value.clone()],
@@ -25,14 +25,14 @@ impl<T: Clone> Axis<T> {
         }
     }
 
-    /// Returns the values of an optional key; a missing key counts as the single value `None`.
+    /// Returns the values of an optional axis key; a missing key counts as the single value `None`.
     pub fn optional_values(axis: &Option<Self>) -> Vec<Option<T>> {
         let values = axis.as_ref().map(Self::values);
         values.map_or(vec![None], |values| values.into_iter().map(Some).collect())
     }
 }
 
-/// Implemented by hand, because an untagged enum loses which value was wrong and what is allowed.
+/// Implemented manually, because an untagged enum does not report which value is wrong and what is allowed.
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Axis<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
         deserializer.deserialize_any(AxisVisitor(PhantomData))

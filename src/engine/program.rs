@@ -1,7 +1,7 @@
-//! Identity of the program that computes results.
+//! Identity of the program that computed the results.
 
-/// Name and version of the program.
+/// Name and version of this program.
 pub const PROGRAM: &str = concat!("bubbletouch ", env!("CARGO_PKG_VERSION"));
 
-/// Hash of the source code from which the program was built. Programs with equal hashes compute equal results.
+/// Hash of the source code of this program. Programs with equal hashes compute equal results.
 pub const SOURCE: &str = env!("BUBBLETOUCH_SOURCE");

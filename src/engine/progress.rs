@@ -1,20 +1,20 @@
-//! Progress of a running study: the current stage and the number of finished steps.
+//! Progress of a running study: the current stage and the number of completed steps.
 
 /// Receiver of progress reports. `stage` and `finish` are called by one thread at a time, `advance` by any thread.
 pub trait Progress: Sync {
-    /// Begins a stage of `total` steps and ends the previous stage.
+    /// Starts a stage of `total` steps and ends the previous stage.
     fn stage(&self, name: &str, total: u64);
-    /// Advances the stage by `n` steps.
+    /// Advances the current stage by `n` steps.
     fn advance(&self, n: u64);
-    /// Sets the number of work items of a run; called once, before the first stage.
+    /// Sets the number of work items of the run; called once, before the first stage.
     fn expect(&self, _n_items: usize) {}
     /// Counts one work item as finished; may be called by any thread.
     fn item_finished(&self) {}
-    /// Ends the last stage; the message describes the result of the run.
+    /// Ends the last stage; `message` describes the result of the run.
     fn finish(&self, message: &str);
 }
 
-/// Ignores all progress reports: for tests, libraries and `--quiet`.
+/// Receiver that ignores all progress reports, for tests, libraries and `--quiet`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Commit of the last change of the source code; `…-changed` if the sources were modified after it, `unknown` outside a repository.
+/// Commit of the last change of the source code: `…-changed` if the sources were modified after it, `unknown` outside a repository.
 const COMMIT: &str = env!("BUBBLETOUCH_COMMIT");
 
 /// Compiler that built the program.
@@ -22,13 +22,13 @@ const TARGET: &str = env!("BUBBLETOUCH_TARGET");
 
 pub use crate::files::MANIFEST_FILE;
 
-/// Version of the names and meanings of the tables' columns. It increases when a column is renamed or changes its meaning.
+/// Version of the names and meanings of all table columns. It increases when a column is renamed or changes its meaning.
 pub const SCHEMA: u32 = 1;
 
-/// Subcommand in the manifest of a folder without a run whose charts and page were made again.
+/// Subcommand in the manifest of a folder that `bubbletouch report` wrote without a run.
 pub const REPORT: &str = "report";
 
-/// `manifest.json`: provenance of the files of a result folder.
+/// Contents of `manifest.json`: provenance of the files of a result folder.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Name of the study; empty in manifests of earlier versions.
@@ -37,13 +37,13 @@ pub struct Manifest {
     /// Command that reproduces the folder; empty in manifests of earlier versions.
     #[serde(default)]
     pub command: String,
-    /// Folder of the study file, to which paths in the study are relative; empty in manifests of earlier versions.
+    /// Folder of the study file; paths in the study are relative to it. Empty in manifests of earlier versions.
     #[serde(default)]
     pub paths_from: PathBuf,
-    /// Version of the tables' format: [`SCHEMA`]. 0 in folders of versions whose columns had other names.
+    /// Version of the table columns, see [`SCHEMA`]; 0 in folders of versions with other column names.
     #[serde(default)]
     pub schema: u32,
-    /// Name and version of the program.
+    /// Name and version of the program that computed the results.
     pub program: String,
     /// Hash of the program's source code.
     pub source: String,
@@ -55,16 +55,16 @@ pub struct Manifest {
     pub target: String,
     /// Name of the processor, or `unknown`.
     pub cpu: String,
-    /// Widest vector instructions of the processor, which affect the rounding of matrix products in learning. `None` in manifests of earlier versions.
+    /// Widest vector instructions of the processor, which affect the rounding of matrix products. `None` in manifests of earlier versions.
     #[serde(default)]
     pub instructions: Option<Instructions>,
     /// Number of hardware threads of the machine.
     pub cores: usize,
-    /// Number of threads of the last run.
+    /// Number of threads that the last run used.
     pub threads: usize,
-    /// Start of the last run, UTC.
+    /// Start time of the last run, UTC.
     pub started: String,
-    /// End of the last run, UTC.
+    /// End time of the last run, UTC.
     pub ended: String,
     /// Peak memory of the last run, bytes; `None` if the system does not report it.
     #[serde(default)]
@@ -79,25 +79,25 @@ pub struct Manifest {
     pub n_trials: usize,
     /// Number of failed configurations, counted once per trial.
     pub n_failed: usize,
-    /// SHA-256 of `study.toml`, the study with all defaults written out.
+    /// SHA-256 hash of `study.toml`, which contains the study with all defaults written out.
     pub study_sha256: String,
-    /// SHA-256 of each object's content, by the name of the object.
+    /// SHA-256 hash of each object's content, by the object's name.
     pub objects_sha256: BTreeMap<String, String>,
-    /// SHA-256 of the tables without times, by file name.
+    /// SHA-256 hash of each table without times, by file name.
     pub tables_sha256: BTreeMap<String, String>,
-    /// SHA-256 of the tables with times, which differ between runs; empty in manifests of earlier versions.
+    /// SHA-256 hash of each table with times, by file name; they differ between runs. Empty in manifests of earlier versions.
     #[serde(default)]
     pub times_sha256: BTreeMap<String, String>,
-    /// SHA-256 of all other files of the folder except this one, by name: charts, pictures and the page. `None` in manifests of earlier versions.
+    /// SHA-256 hash of each other file of the folder except the manifest, by name: charts, pictures and the page. `None` in manifests of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub files_sha256: Option<BTreeMap<String, String>>,
-    /// Methods by which the intervals and p-values of the tables are computed, by table and columns.
+    /// Methods that compute the intervals and p-values of the tables, by table and columns.
     #[serde(default)]
     pub methods: BTreeMap<String, String>,
 }
 
 impl Manifest {
-    /// Returns the manifest of a run on this machine that began at `started` and ends now. Fields that describe the study's results are empty.
+    /// Returns the manifest of a run on this machine from `started` until now. Fields that describe the study's results are empty.
     pub fn ended(identity: &Identity, started: SystemTime) -> Self {
         Self {
             schema: SCHEMA,
@@ -119,7 +119,7 @@ impl Manifest {
         }
     }
 
-    /// Reads the manifest of a result folder. Returns `None` if there is no manifest, or only the manifest of a page made by `bubbletouch report`.
+    /// Reads the manifest of a result folder. Returns `None` if there is no manifest, or only one written by `bubbletouch report`.
     ///
     /// # Errors
     /// If the file cannot be read, was not written by this program, or belongs to tables of another [`SCHEMA`].
@@ -160,7 +160,7 @@ impl Manifest {
     }
 }
 
-/// Returns the name of the processor if the system reports it.
+/// Returns the name of the processor, or `unknown` if the system does not report it.
 fn cpu() -> String {
     let of_system = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = of_system.lines().find_map(|line| {
@@ -170,7 +170,7 @@ fn cpu() -> String {
     name.unwrap_or_else(|| "unknown".to_owned())
 }
 
-/// Returns a time in the form `2026-11-22T06:30:00.250Z`.
+/// Formats a time as `2026-11-22T06:30:00.250Z`.
 fn time(time: SystemTime) -> String {
     DateTime::<Utc>::from(time).to_rfc3339_opts(SecondsFormat::Millis, true)
 }

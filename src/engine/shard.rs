@@ -1,32 +1,32 @@
-//! Shard: the part of a study's work that one process computes, independently of the other processes.
+//! Shard of a study: the part of its work that one process computes, independently of other processes.
 
 use crate::error::{Error, Result};
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-/// Shard `index` of `count`, written `3/8`.
+/// Shard number `index` of `count` shards, written `3/8`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Index of the shard, from 1 to `count`.
+    /// Number of this shard, from 1 to `count`.
     index: usize,
-    /// Number of shards, at least 1.
+    /// Total number of shards, at least 1.
     count: usize,
 }
 
 impl Shard {
-    /// Returns all shards, first to last.
+    /// Iterates over all `count` shards, from first to last.
     pub fn all(count: usize) -> impl Iterator<Item = Self> {
         (1..=count).map(move |index| Self { index, count })
     }
 
-    /// Returns the index of the shard, from 1.
+    /// Returns the number of this shard, from 1.
     pub fn index(&self) -> usize {
         self.index
     }
 
-    /// Returns whether this shard contains a work item, given the number of its group and its number among all items.
+    /// Returns whether this shard computes a work item, given the number of its group and its number among all items.
     ///
-    /// Items of a group share preparatory work. Whole groups are therefore distributed if there are at least as many groups as shards.
+    /// Items of a group share preparatory work. If there are at least as many groups as shards, whole groups are therefore assigned to shards.
     pub fn takes(&self, (group, n_groups): (usize, usize), piece: usize) -> bool {
         let number = match n_groups >= self.count {
             true => group,
@@ -35,7 +35,7 @@ impl Shard {
         number % self.count == self.index - 1
     }
 
-    /// Returns the name of this shard's variant of a file: `journal.jsonl` becomes `journal.3-of-8.jsonl`.
+    /// Returns the file name for this shard: `journal.jsonl` becomes `journal.3-of-8.jsonl`.
     pub fn file_name(&self, whole: &str) -> String {
         let (stem, ending) = whole.rsplit_once('.').unwrap_or((whole, ""));
         format!("{stem}.{}-of-{}.{ending}", self.index, self.count)

@@ -1,4 +1,4 @@
-//! Checks of single keys. Each error contains the file, the key, the given value, and the allowed values.
+//! Checks of the values of keys. Each error contains the file, the key, the given value, and the allowed values.
 
 use crate::error::{Error, Result};
 use crate::inputs::memory::{check_memory, machine_memory};
@@ -8,7 +8,7 @@ use crate::world::MAX_TOUCHES;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// Smallest positive value of a key. Squares and reciprocals of smaller values approach the limits of f64; no quantity is measured in such small values.
+/// Minimum positive value of a key. Squares and reciprocals of smaller values approach the limits of f64; no quantity has such small values.
 pub const MIN_POSITIVE: f64 = 1e-12;
 
 pub fn positive(value: f64) -> bool {
@@ -22,16 +22,16 @@ pub fn not_negative(value: f64) -> bool {
 /// Maximum number of values of one axis. A larger number indicates a mistake, and every value is compared with all others.
 pub const MAX_VALUES: usize = 10_000;
 
-/// Maximum value of keys that count something. Larger counts exceed memory or take too long.
+/// Maximum value of keys that are counts. Larger counts exceed the memory or take too long.
 const MAX_COUNTED: usize = 100_000_000;
 
-/// Maximum number of readings of a training touch. All are in memory at once, and further readings do not improve training.
+/// Maximum number of readings per training touch. All are in memory together, and more readings do not improve training.
 const MAX_READINGS: usize = 100;
 
 /// Maximum number of configurations of a study; all are created before the first one runs.
 const MAX_CONFIGURATIONS: f64 = 1e6;
 
-/// Allowed numbers of a key.
+/// Range of allowed numbers for a key.
 #[derive(Clone, Copy)]
 pub enum Range {
     /// Numbers above zero.
@@ -55,7 +55,7 @@ pub enum Range {
 }
 
 impl Range {
-    /// Returns whether a number is allowed, and a description of the allowed numbers.
+    /// Returns whether a number is in the range, and a description of the range.
     fn allows(self, value: f64) -> (bool, Cow<'static, str>) {
         let (is_allowed, words) = match self {
             Self::Positive => (positive(value), "a positive number, at least 1e-12"),
@@ -79,32 +79,32 @@ impl Range {
     }
 }
 
-/// Maximum number of copies of a touch; further copies do not improve a classifier.
+/// Maximum number of copies per touch; more copies do not improve a classifier.
 const MAX_COPIES: usize = 1000;
-/// Tilt angles, degrees. Much larger tilts add no plane.
+/// Allowed tilt angles of copies, degrees. For much larger tilts, the change of the readings is not a plane.
 const TILT: Range = Range::Of(|deg| deg > 0.0 && deg <= 45.0, "above 0, at most 45");
-/// Slide distances, mm. A slide of 1 km has far fewer steps than it passes taxels; the square of 1e160 mm would be infinite.
+/// Allowed slide distances, mm. A slide of 1 km passes far more taxels than it has steps, and the square of 1e160 mm would be infinite.
 const SLIDE: Range = Range::Of(|mm| (0.0..=1e6).contains(&mm), "0 to 1000000");
 pub const COUNT: Range = Range::Count(1, MAX_COUNTED);
 
-/// Allowed distances of spheres from a surface, mm. Below a nanometre, rounding errors of coordinates are equally large.
+/// Allowed distances between spheres and a surface, mm. Below a nanometre, the rounding errors of coordinates are as large.
 pub const SURFACE_ERROR: Range = Range::Of(|mm| mm >= 1e-6, "at least 1e-6 mm");
-/// Noise as a fraction of full scale. At the upper bound, nothing of the signal remains, and squares of features still fit into f32.
+/// Allowed noise as a fraction of full scale. At the upper bound, no signal remains, and squares of features still fit into f32.
 pub const NOISE: Range = Range::Of(
     |share| not_negative(share) && share <= 1000.0,
     "0, or 1e-12 to 1000",
 );
-/// Penalty C. At the bounds, no margin or no slack remains.
+/// Allowed penalties C. At the bounds, no margin or no slack remains.
 const PENALTY: Range = Range::Of(|c| positive(c) && c <= 1e12, "above 0, 1e-12 to 1e12");
-/// Kernel width γ. At the upper bound, a kernel of degree 20 over 10,000 features is finite in f64.
+/// Allowed kernel parameters γ. At the upper bound, a kernel of degree 20 over 10,000 features is finite in f64.
 const GAMMA: Range = Range::Of(|c| positive(c) && c <= 1e9, "above 0, 1e-12 to 1e9");
-/// Constant c₀ of the polynomial kernel; the largest degree is 20.
+/// Allowed constants c₀ of the polynomial kernel, whose maximum degree is 20.
 const COEF0: Range = Range::Of(|c| (0.0..=1e6).contains(&c), "0 to 1e6");
 
 /// Allowed numbers of touches per object.
 pub const TOUCHES: Range = Range::Count(1, MAX_TOUCHES);
 
-/// Keys of the tables common to several kinds of studies, with their allowed numbers. A list must contain values and no duplicates.
+/// Keys of the tables that several kinds of studies share, with their allowed numbers. A list must contain values and no duplicates.
 const KEYS: [(&str, Range); 59] = [
     ("objects.surface_error_mm", SURFACE_ERROR),
     ("objects.close_holes_mm", Range::Positive),
@@ -170,9 +170,9 @@ const KEYS: [(&str, Range); 59] = [
     ("recognition.group_by_deg", Range::Positive),
 ];
 
-/// Checks of the keys of one file.
+/// Checker of the keys of one file.
 pub struct Check<'a> {
-    /// Name of the study file, for error messages.
+    /// Name of the study file in error messages.
     pub place: &'a str,
 }
 
@@ -181,7 +181,7 @@ impl Check<'_> {
         Error::input(format!("{}, key {key}", self.place), given, allowed)
     }
 
-    /// Checks the keys of a table common to several kinds of studies; returns the keys that the table contains.
+    /// Checks the keys of a table that several kinds of studies share; returns the keys that the table contains.
     pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
         let key = |path: &'static str| path.strip_prefix(name)?.strip_prefix('.');
         let keys = KEYS
@@ -210,7 +210,7 @@ impl Check<'_> {
             let numbers: Vec<f64> = values.iter().filter_map(number).collect();
             match words.is_empty() {
                 false => self.list(path, words).map(drop)?,
-                // Two values with equal text in tables would be mistaken for each other.
+                // Two values with equal text in tables would be indistinguishable.
                 true if path.ends_with("_mm") => {
                     let shown = numbers.iter().map(|&mm| millimetres(mm * MM));
                     self.list(path, shown.collect()).map(drop)?;
@@ -239,7 +239,7 @@ impl Check<'_> {
         Err(self.error(key, value, allowed))
     }
 
-    /// Checks that a count is from 1 to `most`.
+    /// Checks that a count is between 1 and `most`.
     pub fn count(&self, key: &str, count: usize, most: usize) -> Result<usize> {
         match count {
             0 => Err(self.error(key, 0, "at least 1")),
@@ -248,7 +248,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks that the number of configurations, the product of all axes, is within the limit.
+    /// Checks that the number of configurations (the product of all axis lengths) is within the limit.
     pub fn configurations(&self, n: f64) -> Result<()> {
         if n <= MAX_CONFIGURATIONS {
             return Ok(());
@@ -265,13 +265,13 @@ impl Check<'_> {
         Err(Error::input(self.place, given, allowed))
     }
 
-    /// Checks that a number of bytes is within the machine's memory; `what` describes the data.
+    /// Checks that a number of bytes fits into the machine's memory; `what` describes the data in the error.
     pub fn memory(&self, key: &str, given: impl ToString, bytes: f64, what: &str) -> Result<()> {
         check_memory(bytes, machine_memory(), what)
             .map_err(|allowed| self.error(key, given, allowed))
     }
 
-    /// Checks that an axis contains values and no duplicates; a duplicate would repeat configurations.
+    /// Checks that an axis has values and no duplicates; a duplicate would repeat configurations.
     pub fn list<T: Clone + PartialEq + std::fmt::Debug>(
         &self,
         key: &str,

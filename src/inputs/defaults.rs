@@ -1,11 +1,11 @@
-//! Default values of keys, declared at the key: `#[serde(default = "number::<4>")]`.
+//! Default values of keys. A key declares its default by `#[serde(default = "number::<4>")]`.
 
-/// Integer default of a fractional key.
+/// Returns the integer N as the default of a fractional key.
 pub(crate) fn number<const N: u32>() -> f64 {
     f64::from(N)
 }
 
-/// Default of a count.
+/// Returns N as the default of a count.
 pub(crate) fn count<const N: usize>() -> usize {
     N
 }

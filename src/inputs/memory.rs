@@ -1,12 +1,12 @@
-//! Memory sizes: available, used and required bytes, and their display.
+//! Memory sizes in bytes: available, used and required memory, and their display.
 
 use std::{fmt, fs};
 
 /// Number of bytes in a gibibyte.
 pub const GIB: f64 = (1u64 << 30) as f64;
 
-/// Returns the memory available to this process, bytes: the machine's memory, or its control group's limit if that is less. Returns `None` if the system does
-/// not report it.
+/// Returns the memory available to this process, bytes: the machine's memory, or the limit of its control group if that is less. Returns `None` if the system
+/// does not report it.
 pub fn machine_memory() -> Option<u64> {
     let of_machine = kilobytes("/proc/meminfo", "MemTotal")?;
     let group = fs::read_to_string("/sys/fs/cgroup/memory.max").ok();
@@ -19,7 +19,7 @@ pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM")
 }
 
-/// Checks a memory requirement against a limit (`None` for no limit); the error describes what is allowed.
+/// Checks a memory requirement against a limit (`None` for no limit); the error states the limit.
 pub(crate) fn check_memory(
     bytes: f64,
     ceiling: Option<u64>,
@@ -35,7 +35,7 @@ pub(crate) fn check_memory(
     }
 }
 
-/// Reads a line `Key:  123 kB` of a file; returns the value in bytes.
+/// Reads a line `Key:  123 kB` of a file, and returns the value in bytes.
 fn kilobytes(path: &str, key: &str) -> Option<u64> {
     let text = fs::read_to_string(path).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;
@@ -43,7 +43,7 @@ fn kilobytes(path: &str, key: &str) -> Option<u64> {
     Some(number.trim().parse::<u64>().ok()? * 1024)
 }
 
-/// A number of bytes, displayed with a unit: 12 MiB, 1.5 GiB.
+/// Number of bytes that is displayed with a unit, such as 12 MiB or 1.5 GiB.
 pub struct Bytes(pub f64);
 
 impl fmt::Display for Bytes {

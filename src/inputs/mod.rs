@@ -1,4 +1,4 @@
-//! Inputs common to studies and scenes: objects, arrays of numbers, values of keys and their checks.
+//! Inputs that studies and scenes share: objects, arrays of numbers, and keys with their checks.
 
 pub mod arrays;
 pub(crate) mod check;

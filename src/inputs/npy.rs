@@ -1,7 +1,7 @@
-//! Row-by-row writing of NumPy's `.npy` files, for arrays larger than memory. A header is followed by the elements; the last index changes fastest.
+//! Writing of NumPy's `.npy` files row by row, for arrays larger than memory. The header is followed by the elements; the last index changes fastest.
 //!
-//! Arrays in memory are written by ndarray-npy ([`write_npy`]), which cannot write a header alone. [`arrays`](crate::inputs::arrays) reads files of other
-//! programs.
+//! Arrays in memory are written by ndarray-npy ([`write_npy`]), which cannot write a header alone. The module [`arrays`](crate::inputs::arrays) reads array
+//! files.
 
 use crate::error::Result;
 use crate::files::{WholeFile, write_whole};
@@ -10,10 +10,10 @@ use ndarray_npy::WriteNpyExt;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// First bytes of a file, before the length of the header. Version 1, which NumPy writes for all arrays of numbers and texts.
+/// First bytes of a `.npy` file of version 1, which NumPy writes for all arrays of numbers and texts. The length of the header follows.
 const MAGIC: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
-/// Returns the text of a header: `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
+/// Returns the text of a `.npy` header, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
 fn dictionary(descr: &str, shape: &[usize]) -> String {
     let lengths: Vec<String> = shape.iter().map(usize::to_string).collect();
     let comma = if shape.len() == 1 { "," } else { "" };
@@ -21,7 +21,7 @@ fn dictionary(descr: &str, shape: &[usize]) -> String {
     format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({lengths}), }}")
 }
 
-/// Returns the header of an array with elements such as `<f4`; the length is a multiple of 64 bytes.
+/// Returns the `.npy` header of an array with elements such as `<f4`; its length is a multiple of 64 bytes.
 pub(crate) fn npy_header(descr: &str, shape: &[usize]) -> Vec<u8> {
     let mut text = dictionary(descr, shape);
     let n_before = MAGIC.len() + 2;
@@ -32,7 +32,7 @@ pub(crate) fn npy_header(descr: &str, shape: &[usize]) -> Vec<u8> {
     [&MAGIC[..], &length, text.as_bytes()].concat()
 }
 
-/// Reads a header; returns its text and its length in bytes.
+/// Reads a `.npy` header; returns its text and its length in bytes.
 pub(crate) fn read_npy_header(reader: &mut impl Read) -> io::Result<(String, usize)> {
     let mut start = [0; MAGIC.len() + 2];
     reader.read_exact(&mut start)?;
@@ -45,7 +45,7 @@ pub(crate) fn read_npy_header(reader: &mut impl Read) -> io::Result<(String, usi
     Ok((String::from_utf8_lossy(&text).trim().to_owned(), n_bytes))
 }
 
-/// Returns an error if the header's element type or shape differs from the expectation; commas and spaces are ignored.
+/// Returns an error if the element type or shape in a header differs from the expectation; commas and spaces are ignored.
 pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::Result<()> {
     let plain = |text: &str| {
         let letters = text.chars().filter(|letter| !letter.is_whitespace());
@@ -59,11 +59,11 @@ pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::
     }
 }
 
-/// Array written element by element; the file appears at its path when it is complete.
+/// Array file that is written element by element; it appears at its path when it is complete.
 pub(crate) struct NpyFile(WholeFile);
 
 impl NpyFile {
-    /// Creates an array with elements such as `<f4`.
+    /// Creates an array file with elements such as `<f4`.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -73,7 +73,7 @@ impl NpyFile {
         Ok(Self(file))
     }
 
-    /// Writes the next elements, of `N` bytes each.
+    /// Writes the next elements of the array, `N` bytes each.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -85,7 +85,7 @@ impl NpyFile {
         self.0.write(|file| file.write_all(&bytes))
     }
 
-    /// Moves the complete file to its path.
+    /// Moves the complete array file to its path.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -94,7 +94,7 @@ impl NpyFile {
     }
 }
 
-/// Writes an array as a whole `.npy` file.
+/// Writes an array in memory as a `.npy` file.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -102,7 +102,7 @@ pub fn write_npy(path: &Path, array: &impl WriteNpyExt) -> Result<()> {
     write_whole(path, |file| array.write_npy(file).map_err(io::Error::other))
 }
 
-/// Writes class or row numbers as a whole `.npy` file of int64.
+/// Writes class or row numbers as a `.npy` file of type int64.
 ///
 /// # Errors
 /// If the file cannot be written.
@@ -111,7 +111,7 @@ pub fn write_integers(path: &Path, numbers: impl IntoIterator<Item = usize>) -> 
     write_npy(path, &Array1::from_iter(numbers))
 }
 
-/// Writes texts as a whole `.npy` file of NumPy's type U.
+/// Writes texts as a `.npy` file of NumPy's type U.
 ///
 /// # Errors
 /// If the file cannot be written.

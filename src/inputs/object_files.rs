@@ -1,4 +1,4 @@
-//! Loading of objects: built-in sets, TOML files, and folders of meshes.
+//! Loading of objects from built-in sets, TOML files, and folders of meshes.
 
 use crate::error::{Error, Result};
 use crate::files::SetName;
@@ -26,22 +26,22 @@ use std::path::{Path, PathBuf};
 /// missed.
 const N_ERROR_POINTS: usize = 2000;
 
-/// Mesh of a study.
+/// Mesh of a study, with its name and path.
 #[derive(Clone, Debug)]
 pub struct NamedMesh {
     /// Name of the mesh file without extension.
     pub name: String,
     /// Path of the mesh file, for error messages.
     pub place: String,
-    /// The mesh, in metres.
+    /// Triangle mesh, in metres.
     pub mesh: TriangleMesh,
 }
 
-/// Builds the objects of a study: sets first, in their order, then meshes by file name. Packed meshes are read from and written to the folder `packings`, if
-/// given.
+/// Builds the objects of a study: sets first, in their order, then meshes by file name. If the folder `packings` is given, packed meshes are read from it or
+/// written to it.
 ///
 /// # Errors
-/// If a set, name or file does not exist, two sources contain one object, a mesh cannot be packed, or the selection is empty.
+/// If a set, name or file does not exist, an object is given twice, a mesh cannot be packed, or the selection is empty.
 pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<Object>> {
     let tolerance = spec.surface_error();
     let mut objects = Vec::new();
@@ -70,7 +70,7 @@ pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
     Catalogue::parse(&place, &place, &text)
 }
 
-/// Returns the SHA-256 of the source of each object of a study, by object name: the file of a mesh, the parts of a solid.
+/// Returns the SHA-256 hash of each object's source (the mesh file or the parts of the solid), by object name.
 ///
 /// # Errors
 /// Returns the errors of [`load_objects`].
@@ -89,7 +89,7 @@ pub fn objects_content(spec: &ObjectsSpec) -> Result<BTreeMap<String, String>> {
     Ok(content)
 }
 
-/// Returns the SHA-256 of a file.
+/// Returns the SHA-256 hash of a file's content.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -98,7 +98,7 @@ pub fn file_content(path: &Path) -> Result<String> {
     Ok(sha256(bytes))
 }
 
-/// Reads a PLY, OBJ or STL file; the result is in metres. Without a unit, the numbers are metres, and the size must be within `sizes`.
+/// Reads a PLY, OBJ or STL file, and converts it to metres. Without a unit, the numbers are metres, and the size must be within `sizes`.
 ///
 /// # Errors
 /// If the file cannot be read, has an unknown extension, or contains no such mesh.
@@ -124,7 +124,7 @@ pub fn read_mesh_file(
     Ok(mesh)
 }
 
-/// Reads the spheres of a CSV file with columns x, y, z, r. Without a unit, the numbers are metres, and the size must be within `sizes`.
+/// Reads spheres from a CSV file with columns x, y, z, r. Without a unit, the numbers are metres, and the size must be within `sizes`.
 ///
 /// # Errors
 /// If the file cannot be read or contains no such spheres.
@@ -167,8 +167,8 @@ fn check_regular(path: &Path) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// Builds an object from a mesh file as specified in `spec`; its name is the file name without extension. Packings are read from and written to the folder
-/// `packings`, if given. Vertex spheres that are far from the mesh are reported on standard error.
+/// Builds an object from a mesh file as specified in `spec`; its name is the file name without extension. If the folder `packings` is given, packings are read
+/// from it or written to it. If vertex spheres are far from the mesh, a note is printed on standard error.
 ///
 /// # Errors
 /// If the file cannot be read, the size is outside the allowed range, or the mesh cannot be converted to the requested model.
@@ -178,10 +178,10 @@ pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
     Ok(built.object)
 }
 
-/// Object built from a mesh.
+/// Object that was built from a mesh.
 struct BuiltMesh {
     object: Object,
-    /// Largest distance of vertex spheres from the mesh, metres; `None` for other models, and for files without faces.
+    /// Maximum distance between vertex spheres and the mesh, metres; `None` for other models, and for files without faces.
     vertex_error: Option<f64>,
 }
 
@@ -211,8 +211,8 @@ fn build_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Resul
     })
 }
 
-/// Returns the largest measured distance between the surface of a mesh and of spheres around its vertices, metres. Returns `None` if the file has no faces,
-/// or faces that are not convex.
+/// Returns the maximum measured distance between the surface of a mesh and spheres around its vertices, metres. Returns `None` if the file has no faces, or
+/// faces that are not convex.
 fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
     let (mesh, _) = file.into_mesh("").ok()?.turned_outwards();
     let is_closed = Welded::new(&mesh).n_unbalanced() == 0;
@@ -221,7 +221,7 @@ fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
     Some(error.protrusion.max.max(error.gap.max))
 }
 
-/// Reports on standard error, in one line, the distance of vertex spheres from their meshes if it exceeds half a pitch.
+/// Prints a note on standard error if the distance between vertex spheres and their meshes exceeds half a pitch.
 fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
     let Some(pitch) = spec.pitch else { return };
     let errors = built
@@ -243,8 +243,8 @@ fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
     ));
 }
 
-/// Reads the triangles of a mesh file, and turns its closed parts outwards. Returns the mesh and its orientation. Holes of up to `close_holes` metres are
-/// closed first. Both changes are reported on standard error.
+/// Reads the triangles of a mesh file, and orients the faces of closed parts outwards. Returns the mesh and its orientation. Holes of up to `close_holes`
+/// metres are closed first. Both changes are reported on standard error.
 ///
 /// # Errors
 /// If [`read_mesh_file`] fails, a face is not convex, or the width is negative.
@@ -258,7 +258,7 @@ pub fn read_mesh(
     outward_mesh(read_mesh_file(path, unit, sizes)?, &place, close_holes)
 }
 
-/// Converts a file to triangles, as [`read_mesh`] does.
+/// Converts a mesh file to outward-oriented triangles, as [`read_mesh`] does.
 fn outward_mesh(
     file: MeshFile,
     place: &str,
@@ -282,7 +282,7 @@ fn outward_mesh(
     Ok((mesh, orientation))
 }
 
-/// Reads the meshes of a study as triangles, ordered by file name.
+/// Reads all meshes of a study as triangles, ordered by file name.
 ///
 /// # Errors
 /// If a mesh cannot be read.
@@ -302,7 +302,7 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     Ok(meshes)
 }
 
-/// Returns the selected objects of a set, built-in or from a TOML file, as solids.
+/// Returns the selected objects of a set as solids; the set is built-in or a TOML file.
 pub(crate) fn set_entries(set: &SetName, names: Option<&[String]>) -> Result<Vec<Entry>> {
     let mut entries: Vec<Entry> = match set {
         SetName::File(path) => load_catalogue(path)?.entries().to_vec(),
@@ -335,7 +335,7 @@ fn stem(path: &Path) -> String {
     stem.to_string_lossy().into_owned()
 }
 
-/// Returns the selected mesh files of a folder, ordered by name.
+/// Returns the paths of the selected mesh files in a folder, ordered by name.
 fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
     let listing = std::fs::read_dir(folder).map_err(|e| {
         let given = format!("cannot be read ({e})");

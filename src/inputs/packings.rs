@@ -1,7 +1,7 @@
-//! Packed meshes (spheres within a tolerance), stored in a folder beside the results. Each is a CSV file, named after the hash of its inputs.
+//! Packed meshes (spheres within a tolerance), cached in a folder beside the results. Each is a CSV file, named after the hash of its inputs.
 //!
-//! The last line of a file, 80 bytes, is its seal: `# bubbletouch <method>, crc32 <of all bytes before the line>`. If a file is truncated, changed or of
-//! another version, the mesh is packed again; this is reported in one line on standard error.
+//! The last line of a file is a seal of 80 bytes: `# bubbletouch <method>, crc32 <of all bytes before the line>`. If a file is truncated, changed or of another
+//! version, the mesh is packed again, and a note is printed on standard error.
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
@@ -14,23 +14,23 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Version of the packing method; changes whenever [`pack_mesh`] returns other spheres for a mesh.
+/// Version of the packing method; it changes whenever [`pack_mesh`] returns other spheres for a mesh.
 const METHOD: &str = "packing 4";
 
-/// Length of a seal including its end of line, bytes.
+/// Length of the seal including its line break, bytes.
 const SEAL: usize = 80;
 
-/// Spheres of a packed mesh, and their origin.
+/// Spheres of a packed mesh, and whether they come from the cache.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
-    /// The spheres.
+    /// Spheres that approximate the mesh.
     pub spheres: SphereUnion,
-    /// Whether the spheres were read from the folder.
+    /// Whether the spheres were read from the cache folder.
     pub cached: bool,
 }
 
-/// Packs a closed mesh within `tolerance` (metres), or reads the stored packing from `folder`. The folder is created if it is missing; without a folder,
-/// nothing is stored.
+/// Packs a closed mesh within `tolerance` (metres), or reads the cached packing from `folder`. The folder is created if it is missing; without a folder,
+/// nothing is cached.
 ///
 /// # Errors
 /// If the mesh cannot be packed, or the folder cannot be written; the error begins with `place`.
@@ -65,7 +65,7 @@ pub fn pack_within(
     })
 }
 
-/// Returns the path of the stored packing of a mesh within a tolerance (metres).
+/// Returns the path of the cached packing of a mesh within a tolerance (metres).
 pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathBuf {
     let made_from = [
         format!("{METHOD}{:?}", Body::Solid).into_bytes(),
@@ -75,7 +75,7 @@ pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathB
     folder.join(format!("{}.csv", sha256(made_from.concat())))
 }
 
-/// Reads the spheres of a complete file; `None` if there is none.
+/// Reads the spheres of a complete packing file; `None` if there is none.
 fn read_packing(path: &Path) -> Result<Option<SphereUnion>> {
     match fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),

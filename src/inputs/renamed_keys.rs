@@ -1,10 +1,10 @@
-//! Keys of study files that have a new name.
+//! Keys of study files that have been renamed.
 
 use crate::error::{Error, Result};
 use crate::toml_lines::line_of;
 use toml::de::{DeTable, DeValue};
 
-/// Former names of keys and columns, with today's names.
+/// Former names of keys and columns, with the current names.
 const RENAMED: [(&str, &str); 15] = [
     ("choose_c", "c_grid"),
     ("choose_folds", "cv_folds"),
@@ -26,7 +26,7 @@ const RENAMED: [(&str, &str); 15] = [
 /// Checks that no key of a study, at any depth, has a former name. A key may be a path, as in `[axes]`.
 ///
 /// # Errors
-/// If a key has a former name; the error contains its line and today's name.
+/// If a key has a former name; the error contains its line and the current name.
 pub fn check_renamed(place: &str, text: &str, table: &DeTable) -> Result<()> {
     for (key, value) in table {
         let former = |name: &str| RENAMED.iter().find(|(former, _)| *former == name);

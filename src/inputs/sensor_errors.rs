@@ -1,4 +1,4 @@
-//! Sensor errors of a study: their strengths, and the sensor used for testing.
+//! Strengths of a study's sensor errors, and the skin of the test touches.
 
 use crate::random::Seed;
 use crate::signal::{MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
@@ -6,14 +6,14 @@ use crate::table::{Column, Role, Scale};
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
-/// Sensor whose touches test a classifier.
+/// Skin on which the test touches are made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TestSensor {
-    /// The sensor used for training: its individual errors may be learned.
+    /// Skin of the training touches; a classifier may learn its individual errors.
     #[default]
     SameSkin,
-    /// Another sensor of equal make, new in each trial: gains, drift and faults are drawn anew.
+    /// Another skin of the same type in each trial: gains, drift and faults are drawn again.
     AnotherSkin,
 }
 
@@ -27,7 +27,7 @@ const N_STRENGTHS: usize = {
     n
 };
 
-/// Returns every strength of every sensor error, in the order of table columns: material first, electronics last.
+/// Iterates over all strengths of all sensor errors, in the order of table columns: errors of the material first, of the electronics last.
 pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
     let errors = SENSOR_ERRORS.iter();
     errors.flat_map(|error| {
@@ -36,7 +36,7 @@ pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)>
     })
 }
 
-/// Returns the table columns of all strengths, in the order of [`all_strengths`].
+/// Returns the table columns of all sensor-error strengths, in the order of [`all_strengths`].
 pub fn strength_columns() -> &'static [Column] {
     static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
         let column = |(_, strength): (SensorError, &'static Strength)| {
@@ -53,18 +53,18 @@ pub fn strength_columns() -> &'static [Column] {
     &COLUMNS
 }
 
-/// Values of all strengths, in the units of their keys; `None` for strengths that a study does not set.
+/// Values of all sensor-error strengths, in the units of their keys; `None` for strengths that a study does not set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strengths([Option<f64>; N_STRENGTHS]);
 
 impl Strengths {
-    /// Returns the strength of a key; `None` if the study does not set it.
+    /// Returns the strength with this key; `None` if the study does not set it.
     pub fn get(&self, key: &str) -> Option<f64> {
         let mut all = all_strengths().zip(self.0);
         all.find_map(|((_, strength), value)| value.filter(|_| strength.key == key))
     }
 
-    /// Returns a copy with another value for the strength of a key.
+    /// Returns a copy with another value for the strength with this key.
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
         let place = all_strengths().position(|(_, strength)| strength.key == key);
         if let Some(place) = place {
@@ -73,18 +73,18 @@ impl Strengths {
         self
     }
 
-    /// Iterates over the strengths that the study sets.
+    /// Iterates over the sensor-error strengths that the study sets.
     pub fn given(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
         let all = all_strengths().zip(self.0);
         all.filter_map(|((error, strength), value)| Some((error, strength, value?)))
     }
 
-    /// Iterates over the strengths that are not zero.
+    /// Iterates over the sensor-error strengths that are not zero.
     pub fn present(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
         self.given().filter(|(_, _, value)| *value != 0.0)
     }
 
-    /// Returns the signal step of an error with these strengths.
+    /// Returns the signal step of a sensor error with these strengths.
     pub(crate) fn step(&self, error: SensorError, skin: &Seed) -> SignalStep {
         let mut strengths = [0.0; MAX_STRENGTHS];
         for (to, strength) in strengths.iter_mut().zip(error.about().strengths) {
@@ -94,7 +94,7 @@ impl Strengths {
     }
 }
 
-/// Keys of the noise strength, and their units.
+/// Keys for the noise standard deviation, and their units.
 pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
     ("noise_std_full_scale", NoiseUnit::FullScale),
     ("noise_std_mm", NoiseUnit::Mm),

@@ -1,19 +1,19 @@
-//! Access to values of a TOML table by key path.
+//! Access to the values of a TOML table by key path.
 
-/// Returns the value at a path of keys; `None` if it does not exist.
+/// Returns the TOML value at a path of keys; `None` if it does not exist.
 pub(crate) fn value_at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Value> {
     let mut names = path.split('.');
     let first = table.get(names.next()?)?;
     names.try_fold(first, |value, name| value.get(name))
 }
 
-/// Returns a number, integer or float; `None` for another value.
+/// Returns a TOML integer or float as a number; `None` for another value.
 pub(crate) fn number(value: &toml::Value) -> Option<f64> {
     let integer = || value.as_integer().map(|integer| integer as f64);
     value.as_float().or_else(integer)
 }
 
-/// Returns whether a key equals a name or lies below it.
+/// Returns whether a key path equals a name or lies below it.
 pub(crate) fn is_at(key: &str, name: &str) -> bool {
     let rest = key.strip_prefix(name);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

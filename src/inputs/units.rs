@@ -1,12 +1,12 @@
-//! Units of the keys of studies and scenes, and bounds of sizes that several of them share.
+//! Units of keys in studies and scenes, and common bounds of sizes.
 
-/// Metres in a millimetre.
+/// Number of metres per millimetre.
 pub(crate) const MM: f64 = 1e-3;
 
 /// Maximum number of frames per touch; a larger number indicates a rate or a wrong unit.
 pub(crate) const MAX_FRAMES: usize = 10_000;
 
-/// Converts metres to millimetres, rounded for display: 2, not 2.0000000000000004.
+/// Converts metres to millimetres and rounds for display: 2 instead of 2.0000000000000004.
 pub fn millimetres(metres: f64) -> f64 {
     (metres * 1e9).round() / 1e6
 }

@@ -1,10 +1,10 @@
-//! Machine learning on labelled rows: classifiers and scores. This module is independent of touch.
+//! Machine learning on labelled rows: classifiers and scores. This module does not depend on touch data.
 //!
 //! | module | input → output |
 //! |---|---|
 //! | [`data`] | labelled rows → checked data sets, splits, one scale |
 //! | [`classifiers`] | training rows → trained classifiers of any kind |
-//! | [`evaluation`] | predicted labels → confusion matrices, fused decisions, the next touch |
+//! | [`evaluation`] | predicted labels → confusion matrices, decisions on several touches, the next touch |
 
 pub mod data;
 pub mod evaluation;

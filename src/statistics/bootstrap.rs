@@ -9,14 +9,14 @@ use rand::Rng;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::collections::BTreeMap;
 
-/// Minimum number of trials for an interval: the resamples of four trials are too few to cover 95 %.
+/// Minimum number of trials for an interval; the resamples of four trials are too few for a coverage of 95 %.
 pub const FEWEST: usize = 5;
 
-/// Number of resamples. If fewer distinct resamples exist (five trials), each of them is used once and nothing is drawn.
+/// Number of bootstrap resamples. If fewer distinct resamples exist (five trials), each of them is used once and nothing is drawn.
 const RESAMPLES: usize = 4000;
 
-/// Returns the true coverage of the 95 % interval for `n_trials` trials, rounded to 0.01; `None` if there is no interval. The value is the lowest coverage
-/// among normal scores and accuracies of 0.9 and 0.98 at 100 test rows (20,000 draws each). Source: the test `print_the_table_of_the_guide`.
+/// Returns the true coverage of the 95 % bootstrap interval for `n_trials` trials, rounded to 0.01; `None` if there is no interval. The value is the lowest
+/// coverage among normal scores and accuracies of 0.9 and 0.98 at 100 test rows (20,000 draws each). Source: the test `print_the_table_of_the_guide`.
 pub fn coverage_of_95(n_trials: usize) -> Option<f64> {
     match n_trials {
         0..FEWEST => None,
@@ -27,16 +27,16 @@ pub fn coverage_of_95(n_trials: usize) -> Option<f64> {
     }
 }
 
-/// Bootstrap with cached resamples, which are drawn once for each number of trials. The draws do not depend on a study's seed, so equal scores always have
-/// equal intervals.
+/// Bootstrap with cached resamples, drawn once for each number of trials. The draws do not depend on a study's seed, so equal scores always have equal
+/// intervals.
 #[derive(Debug, Default)]
 pub struct Bootstrap {
     drawn: BTreeMap<(&'static str, usize), Vec<u32>>,
 }
 
 impl Bootstrap {
-    /// Returns the bootstrap interval of the mean of `scores`. The shape is (n_trials, 1), or splits × projections for crossed trials. Returns `None` for
-    /// fewer than [`FEWEST`] rows, or for 2 to 4 columns.
+    /// Returns the bootstrap interval of the mean of `scores`. The shape of `scores` is (n_trials, 1), or splits × projections for crossed trials. Returns
+    /// `None` for fewer than [`FEWEST`] rows, or for 2 to 4 columns.
     ///
     /// Rows are drawn with replacement. If there are several columns, columns are drawn too, independently of the rows (Owen, *The pigeonhole bootstrap*,
     /// Annals of Applied Statistics 2007).
@@ -84,7 +84,7 @@ impl Bootstrap {
         }))
     }
 
-    /// Returns the resamples of `n` trials: consecutive blocks of `n` trial indices.
+    /// Returns the resamples of `n` trials as consecutive blocks of `n` trial indices.
     fn drawn(&mut self, what: &'static str, n: usize) -> &[u32] {
         self.drawn.entry((what, n)).or_insert_with(|| {
             let n_different = (n as u128).checked_pow(n as u32);
@@ -101,7 +101,7 @@ impl Bootstrap {
     }
 }
 
-/// Returns every resample of `n` trials once: all numbers with n digits in base n.
+/// Returns every possible resample of `n` trials once: all numbers with n digits in base n.
 fn all_of(n: usize) -> Vec<u32> {
     let digit = |number: usize, place: usize| (number / n.pow(place as u32) % n) as u32;
     (0..n.pow(n as u32))
@@ -130,7 +130,7 @@ fn means_of_blocks(scores: ArrayView2<f64>, rows: &[u32], columns: &[u32]) -> Ve
     resamples.map(mean).collect()
 }
 
-/// Returns the fraction of resamples cut off at each end.
+/// Returns the fraction of resamples that is cut off at each end.
 fn tail(n: usize, confidence: f64) -> Result<f64> {
     let n = n as f64;
     let student = StudentsT::new(0.0, 1.0, n - 1.0)
@@ -180,7 +180,7 @@ mod tests {
         assert_expected("high", found.high, mean + half, of_quantile);
     }
 
-    /// Returns how often the interval of the scores of `draw` contains their expectation.
+    /// Returns the fraction of intervals that contain the expectation of the scores drawn by `draw`.
     fn coverage(
         n_draws: usize,
         expected: f64,

@@ -10,22 +10,22 @@ use ndarray::ArrayView2;
 /// Difference between the scores of two configurations over common trials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
-    /// Mean of `a − b`.
+    /// Mean difference `a − b` over the trials.
     pub mean_difference: f64,
     /// Confidence interval of the mean difference.
     pub interval: Interval,
-    /// Two-sided p-value of the null hypothesis 'no difference'.
+    /// Two-sided p-value of the null hypothesis that there is no difference.
     pub p_value: f64,
-    /// Number of trials.
+    /// Number of common trials.
     pub n_trials: usize,
 }
 
-/// Numbers of training and test touches of a trial.
+/// Numbers of training and test rows of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrialSize {
-    /// Number of training rows.
+    /// Number of training rows of the trial.
     pub n_train: usize,
-    /// Number of test rows.
+    /// Number of test rows of the trial.
     pub n_test: usize,
 }
 
@@ -36,12 +36,12 @@ pub struct TrialSize {
 ///
 /// `t = mean(d) / sqrt((1/J + n_test/n_train) s²)` with J − 1 degrees of freedom.
 ///
-/// If trials differ in their numbers of rows (splits by unequal groups), n_test/n_train is the mean over trials. `sizes` contains one size per trial, or
-/// one size for all trials.
+/// If trials differ in their numbers of rows (splits by unequal groups), n_test/n_train is the mean over trials. `sizes` contains one size per trial, or a
+/// single size for all trials.
 ///
 /// All trials split one set of touches, so their scores are not independent. The plain paired t-test (1/J alone) would find differences that do not exist.
 /// Scores are multiples of about 1/n_test, so s² is at least the variance of such rounding, `1/(12 n_test²)`. Equal differences in a few trials are therefore
-/// no proof.
+/// not significant.
 ///
 /// # Errors
 /// If `a` and `b` differ in length, a score is not finite, a trial has no training or no test rows, or the confidence is outside 0..1.
@@ -118,17 +118,17 @@ pub fn compare_crossed(
     estimate.test(a.len(), confidence).map(Some)
 }
 
-/// Size of a difference, in standard deviations between trials, on which practically every trial agrees.
+/// Size of a difference, in standard deviations between trials, for which practically all trials have a difference of the same sign.
 const AGREED: f64 = 3.0;
-/// Upper bound of the number of trials that [`trials_needed`] searches.
+/// Maximum number of trials that [`trials_needed`] considers.
 const MAX_TRIALS: usize = 1000;
 
 /// Returns the smallest number of trials J (for crossed trials: splits) that can give a significant result. With J trials, [`compare`] finds a difference of
-/// three standard deviations between trials significant; practically every trial agrees on such a difference. The condition is
+/// three standard deviations between trials significant. Practically all trials agree on the sign of such a difference. The condition is
 ///
 /// `t(J − 1) · sqrt(1/J + n_test/n_train) ≤ 3`
 ///
-/// with Student's two-sided quantile t. With three training rows for each test row, J is 4: three trials would need 3.5 standard deviations, two 11.6.
+/// with Student's two-sided quantile t. With three training rows for each test row, J is 4; three trials would need 3.5 standard deviations, two trials 11.6.
 /// Returns `None` if 1,000 trials are not enough, because there are more than twice as many test rows as training rows.
 ///
 /// # Errors
@@ -153,12 +153,12 @@ pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usiz
     Ok(Some(MAX_TRIALS))
 }
 
-/// Returns the mean of n_test / n_train: the correction of the variance for trials that share touches.
+/// Returns the mean of n_test / n_train over the trials, the variance correction for trials that share touches.
 fn overlap(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| size.n_test as f64 / size.n_train as f64)
 }
 
-/// Returns the mean variance of rounding to multiples of 1 / n_test.
+/// Returns the mean variance of rounding scores to multiples of 1 / n_test.
 fn rounding(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| {
         let n_test = size.n_test as f64;
@@ -166,14 +166,14 @@ fn rounding(sizes: &[TrialSize]) -> f64 {
     })
 }
 
-/// Returns the mean of a value over trials; exact, without rounding, if all values are equal.
+/// Returns the mean of a quantity over trials; exact, without rounding, if all values are equal.
 fn mean_of(sizes: &[TrialSize], value: impl Fn(&TrialSize) -> f64) -> f64 {
     let first = value(&sizes[0]);
     let above: f64 = sizes.iter().map(|size| value(size) - first).sum();
     first + above / sizes.len() as f64
 }
 
-/// A mean difference, its variance, and the degrees of freedom of the variance.
+/// Mean difference, its variance, and the degrees of freedom of the variance.
 struct Estimate {
     mean: f64,
     variance: f64,

@@ -1,8 +1,10 @@
-//! Confidence intervals of an accuracy whose test rows are held out in groups: all rows of a pose, a yaw, a grasp or a day.
+//! Confidence intervals of an accuracy whose test rows are held out in groups, such as all rows of a pose, a yaw, a grasp or a day.
 //!
 //! Outcomes of one group are correlated, so n rows of few groups contain less information than n independent rows. The interval describes how the accuracy
 //! differs between groups. Source: Abadie et al., *When should you adjust standard errors for clustering?*, Quarterly Journal of Economics 138, 2023 (whole
-//! groups are sampled). The accuracy over T tests is θ = 1/T Σ_t c_t/n_t. In test t, group g has n_gt rows, of which c_gt are correct. Then
+//! groups are sampled).
+//!
+//! The accuracy over T tests is θ = 1/T Σ_t c_t/n_t. In test t, group g has n_gt rows, of which c_gt are correct. Then
 //!
 //! ```text
 //! w_g = 1/T Σ_t n_gt/n_t     e_g = 1/T Σ_t (c_gt − θ n_gt)/n_t
@@ -30,22 +32,22 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
-/// Number of groups below which an interval is uninformative: Student's t of three degrees of freedom is 3.2, where the normal quantile is 2.
+/// Minimum number of groups for an informative interval. With four groups, Student's t is 3.2, whereas the normal quantile is 2.
 pub const FEW_GROUPS: usize = 5;
 
-/// Counts of the rows of one group in one test.
+/// Number of rows and of correct rows of one group in one test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "[usize; 3]", into = "[usize; 3]")]
 pub struct GroupCount {
     /// Number of the group.
     pub group: usize,
-    /// Number of the group's test rows. A row of several groups (a decision on touches of several groups) counts in each group, which widens intervals.
+    /// Number of the group's test rows. A decision on touches of several groups counts as a row of each group, which widens intervals.
     pub n_rows: usize,
-    /// Number of correctly recognised rows.
+    /// Number of the group's correctly recognised rows.
     pub n_correct: usize,
 }
 
-/// Serialises a count as an array, to save space: there may be as many counts as touches.
+/// Serialises a count as an array to save space, because there may be as many counts as touches.
 impl From<GroupCount> for [usize; 3] {
     fn from(count: GroupCount) -> Self {
         [count.group, count.n_rows, count.n_correct]
@@ -62,12 +64,12 @@ impl From<[usize; 3]> for GroupCount {
     }
 }
 
-/// A test on whole groups of rows.
+/// Test on whole groups of rows.
 #[derive(Clone, Copy, Debug)]
 pub struct GroupedTest<'a> {
-    /// Number of test rows.
+    /// Number of test rows of the test.
     pub n_rows: usize,
-    /// Number of correctly recognised rows.
+    /// Number of correctly recognised rows of the test.
     pub n_correct: usize,
     /// Counts of each group; each group appears once.
     pub groups: &'a [GroupCount],
@@ -113,7 +115,7 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
     Ok((interval, n_groups))
 }
 
-/// Pooled statistics of all tests; the symbols are defined in the module documentation.
+/// Pooled statistics of all tests; the module documentation defines the symbols.
 struct Clustered {
     /// Mean accuracy θ.
     share: f64,
@@ -179,8 +181,8 @@ fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {
     })
 }
 
-/// Returns the interval of an accuracy and the number of groups. Without grouped tests, the interval is Wilson's for `n_correct` of `n_rows` and the number
-/// is `None`. With grouped tests, [`interval_of_groups`] computes both.
+/// Returns the interval of an accuracy and the number of groups. Without grouped tests, the interval is Wilson's for `n_correct` of `n_rows`, and the number of
+/// groups is `None`. With grouped tests, [`interval_of_groups`] computes both.
 ///
 /// # Errors
 /// Returns the errors of [`Interval::wilson`] and [`interval_of_groups`].
@@ -291,7 +293,7 @@ mod tests {
         (0..n_groups).map(group).collect()
     }
 
-    /// Returns the coverage and the mean width of intervals by groups and of intervals by rows.
+    /// Returns the coverage and the mean width of intervals over groups and of intervals over rows.
     fn coverage(sizes: (usize, usize), of: (f64, f64), rng: &mut ChaCha8Rng) -> [(f64, f64); 2] {
         let mut found = [(0.0, 0.0); 2];
         for _ in 0..N_DRAWS {

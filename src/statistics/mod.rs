@@ -1,4 +1,4 @@
-//! Uncertainty of scores: confidence intervals, comparisons, and variance components.
+//! Uncertainty of scores: confidence intervals, significance tests, and variance components.
 
 pub mod bootstrap;
 pub mod comparison;

@@ -2,18 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Confidence level of every interval in the tables.
+/// Confidence level of every interval in the result tables.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Status of the p-value of a comparison.
+/// Status of a comparison's p-value: present, or the reason why it is missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PStatus {
-    /// The comparison has a p-value. Default, because tables of earlier versions contain no status.
+    /// The comparison has a p-value. This is the default, because tables of earlier versions contain no status.
     #[default]
     Tested,
-    /// Too few trials: hardly any difference could be significant.
+    /// There are too few trials; hardly any difference could be significant.
     TooFewTrials,
-    /// Some of the crossed trials failed.
+    /// Some of the crossed trials are missing because they failed.
     TrialsMissing,
 }

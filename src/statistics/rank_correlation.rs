@@ -1,7 +1,7 @@
 //! Rank correlation of two runs over the same configurations: Kendall's τ and its confidence interval.
 //!
-//! τ_b = (C − D) / √((P − T_x)(P − T_y)). Of the P = n (n − 1) / 2 pairs, C are ordered alike in both runs and D in opposite order. T_x and T_y pairs are
-//! tied in the first and second run. τ_b is 1 if all pairs are ordered alike, and −1 if all are in opposite order.
+//! τ_b = (C − D) / √((P − T_x)(P − T_y)). Among the P = n (n − 1) / 2 pairs, C have the same order in both runs and D the opposite order. T_x and T_y pairs are
+//! tied in the first and second run. τ_b is 1 if all pairs have the same order, and −1 if all have the opposite order.
 //!
 //! Sources: Kendall, *The treatment of ties in ranking problems*, Biometrika 33, 1945. The O(n log n) algorithm: Knight, *A computer method for calculating
 //! Kendall's tau with ungrouped data*, Journal of the American Statistical Association 61, 1966.
@@ -14,7 +14,7 @@ use rand::Rng;
 /// Number of bootstrap resamples. With another random stream, the ends of the interval move by 1 % of its width.
 const RESAMPLES: usize = 4000;
 
-/// Returns τ_b of pairs of values, one pair per configuration. Returns `None` for fewer than two pairs, or if one run has equal values throughout.
+/// Returns Kendall's τ_b of pairs of values, one pair per configuration. Returns `None` for fewer than two pairs, or if all values of one run are equal.
 pub fn kendall(pairs: &[[f64; 2]]) -> Option<f64> {
     let mut sorted = pairs.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
@@ -30,8 +30,8 @@ pub fn kendall(pairs: &[[f64; 2]]) -> Option<f64> {
     (scale > 0.0).then(|| difference / scale)
 }
 
-/// Minimum number of configurations for a correct coverage of [`kendall_interval`]. With five configurations, the 95 % interval covers a τ of 0 in 98 %, of
-/// 0.6 in 87 %, and of 0.8 in 63 % of cases. The reason: resamples of few configurations in nearly equal order hardly differ.
+/// Minimum number of configurations for a correct coverage of [`kendall_interval`]. With five configurations, the 95 % interval covers a τ of 0 in 98 %, of 0.6
+/// in 87 %, and of 0.8 in 63 % of cases, because resamples of few configurations in nearly equal order hardly differ.
 pub const SUFFICIENT_SETTINGS: usize = 10;
 
 /// Returns the percentile bootstrap interval of Kendall's τ_b over configurations; `None` if no resample has a τ_b. Source: Efron and Tibshirani, *An
@@ -58,7 +58,7 @@ fn ties<T>(sorted: &[T], is_same: impl Fn(&T, &T) -> bool) -> f64 {
     runs.map(|n| 0.5 * n * (n - 1.0)).sum()
 }
 
-/// Sorts the values by merging; returns the number of pairs in wrong order.
+/// Sorts the values by merging; returns the number of pairs that were in the wrong order.
 fn sort_counting(values: &mut [f64]) -> f64 {
     let middle = values.len() / 2;
     if middle == 0 {
@@ -88,7 +88,7 @@ mod tests {
     use crate::standard_errors::{assert_at_least, assert_expected, of_share};
     use rand_distr::{Distribution, StandardNormal};
 
-    /// Computes τ_b over all pairs, in O(n²).
+    /// Computes τ_b over all pairs of configurations, in O(n²).
     fn slow(pairs: &[[f64; 2]]) -> Option<f64> {
         let (mut sum, mut untied) = (0.0, [0.0; 2]);
         for (i, a) in pairs.iter().enumerate() {
@@ -156,7 +156,7 @@ mod tests {
         assert_eq!(kendall_interval(&[], 0.95), None);
     }
 
-    /// Returns how often the interval of normal numbers with correlation ρ contains τ = 2/π asin ρ.
+    /// Returns the fraction of intervals that contain τ = 2/π asin ρ, for normal numbers with correlation ρ.
     fn coverage(n_draws: usize, n: usize, correlation: f64) -> f64 {
         let mut rng = Seed::new(7).rng();
         let tau = correlation.asin() * std::f64::consts::FRAC_2_PI;

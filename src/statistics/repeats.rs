@@ -1,4 +1,4 @@
-//! Scores of repeated trials. A trial draws a split and a projection of its own, or the trials combine every split with every projection.
+//! Scores of repeated trials. Each trial draws its own split and projection, or the trials combine every split with every projection.
 
 use crate::error::Result;
 use crate::statistics::comparison::{
@@ -9,29 +9,29 @@ use bubbletouch_sim::statistics::interval::Interval;
 use ndarray::Array2;
 use std::collections::{BTreeSet, HashMap};
 
-/// A score of one trial.
+/// Score of one trial, with the trial's split and projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repeat {
     /// Number of the trial, from 0.
     pub trial: usize,
-    /// Number of the split: equal for trials with equal training and test touches.
+    /// Number of the split; equal for trials with equal training and test touches.
     pub split: usize,
     /// Number of the projection, if the trials combine every split with every projection.
     pub projection: Option<usize>,
-    /// Score of the trial.
+    /// Score of the trial, for example its accuracy.
     pub score: f64,
-    /// Numbers of training and test touches, if known.
+    /// Numbers of training and test rows, if known.
     pub size: Option<TrialSize>,
 }
 
 impl Repeat {
-    /// Returns the split and the projection, which distinguish this trial from others.
+    /// Returns the split and the projection, which identify the trial.
     fn place(&self) -> (usize, Option<usize>) {
         (self.split, self.projection)
     }
 }
 
-/// Averages the scores of trials with equal split and projection. A repeated split contains no information about other splits, so it counts as one trial.
+/// Averages the scores of trials with equal split and projection. A repeated split contains no new information, so it counts as one trial.
 fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) -> Vec<Repeat> {
     let mut known: HashMap<_, usize> = HashMap::new();
     let mut groups: Vec<Vec<Repeat>> = Vec::new();
@@ -54,8 +54,8 @@ fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) ->
     groups.collect()
 }
 
-/// Returns the scores of a configuration. If the trials are crossed, the shape is splits × projections, and the result is `None` if some trials are missing.
-/// Otherwise the shape is (n_splits, 1); repeated splits are averaged.
+/// Returns the scores of a configuration as a matrix. If the trials are crossed, the shape is splits × projections, and the result is `None` if some trials are
+/// missing. Otherwise, the shape is (n_splits, 1), and repeated splits are averaged.
 pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
     let mut ordered = merged(trials, |number| trials[number].place());
     if ordered.iter().any(|trial| trial.projection.is_none()) {
@@ -73,21 +73,21 @@ pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
 pub struct Tested {
     /// Status of the p-value.
     pub p_status: PStatus,
-    /// The p-value of the null hypothesis 'no difference'.
+    /// p-value of the null hypothesis that there is no difference; `None` if the test is not possible.
     pub p_value: Option<f64>,
-    /// Confidence interval of the difference.
+    /// Confidence interval of the difference; `None` for a single trial.
     pub interval: Option<Interval>,
-    /// Number of trials needed for a p-value. For crossed trials, the number of splits needed times the number of projections.
+    /// Number of trials that a p-value requires. For crossed trials, this is the required number of splits times the number of projections.
     pub n_needed: Option<usize>,
 }
 
-/// Scores of two configurations in the trials that both have; trials with equal split and projection are averaged.
+/// Scores of two configurations in their common trials; trials with equal split and projection are averaged.
 pub struct Paired {
     ours: Vec<Repeat>,
     theirs: Vec<Repeat>,
     /// Sizes of the paired trials of the first configuration, or of all its trials if none is paired; `None` if a size is unknown.
     sizes: Option<Vec<TrialSize>>,
-    /// Whether several trials share a split.
+    /// Whether several trials have the same split.
     has_repeats: bool,
 }
 
@@ -136,7 +136,7 @@ impl Paired {
         (mean(&self.ours), mean(&self.theirs))
     }
 
-    /// Tests whether the configurations differ. Returns `None` if the sizes of the trials are unknown.
+    /// Tests whether the two configurations differ. Returns `None` if the sizes of the trials are unknown.
     ///
     /// # Errors
     /// If a trial has no training or no test rows.
@@ -165,7 +165,7 @@ impl Paired {
         }))
     }
 
-    /// Compares the first configuration with the second; `None` for a single trial, or if crossed trials are missing.
+    /// Compares the first configuration with the second; returns `None` for a single trial, or if crossed trials are missing.
     fn test(&self, sizes: &[TrialSize]) -> Result<Option<Comparison>> {
         let (Some(ours), Some(theirs)) = (scores(&self.ours), scores(&self.theirs)) else {
             return Ok(None);

@@ -9,17 +9,17 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 /// Contribution of one random source to the variance of a score.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Component {
-    /// Number of levels drawn (splits or projections); for the residual, the number of scores.
+    /// Number of random levels (splits or projections); for the residual, the number of scores.
     pub n_levels: usize,
     /// Degrees of freedom of the mean square.
     pub degrees_of_freedom: usize,
-    /// Mean square of the source.
+    /// Mean square of the source in the analysis of variance.
     pub mean_square: f64,
-    /// Unbiased estimate of the variance; negative by chance if the variance is small.
+    /// Unbiased estimate of the variance; may be negative by chance if the variance is small.
     pub estimate: f64,
     /// Confidence interval of the variance, at least 0.
     pub interval: Interval,
-    /// p-value of the null hypothesis 'the variance is 0'; `None` for the residual.
+    /// p-value of the null hypothesis that the variance is 0; `None` for the residual.
     pub p_value: Option<f64>,
 }
 
@@ -30,14 +30,14 @@ impl Component {
     }
 }
 
-/// Variance components of scores where every split is combined once with every projection.
+/// Variance components of scores when every split is combined once with every projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components {
-    /// Component of the rows: splits.
+    /// Component of the matrix rows (splits).
     pub rows: Component,
-    /// Component of the columns: projections.
+    /// Component of the matrix columns (projections).
     pub columns: Component,
-    /// Residual: independent noise of each score, and the interaction of row and column.
+    /// Residual component: independent noise of each score, and the interaction of row and column.
     pub rest: Component,
 }
 
@@ -71,7 +71,7 @@ pub fn components(scores: ArrayView2<f64>, confidence: f64) -> Result<Components
 }
 
 impl MeanSquares {
-    /// Returns the component of an effect with mean square `mean_square` and `n_levels` levels, each in `n_each` scores.
+    /// Returns the variance component of an effect with mean square `mean_square` and `n_levels` levels, each of which has `n_each` scores.
     fn effect(
         &self,
         mean_square: f64,
@@ -111,9 +111,8 @@ impl MeanSquares {
     }
 }
 
-/// Returns the confidence interval of the difference of two expected mean squares, which are independent. The method is modified large samples, in the
-/// notation of
-/// Burdick and Graybill, *Confidence intervals on variance components*, 1992, section 3.3.
+/// Returns the confidence interval of the difference of two independent expected mean squares. The method is modified large samples, in the notation of Burdick
+/// and Graybill, *Confidence intervals on variance components*, 1992, section 3.3.
 fn difference_interval(
     (first, second): (f64, f64),
     freedom: (usize, usize),

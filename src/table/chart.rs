@@ -1,40 +1,40 @@
-//! Specification of a chart: the columns that it shows, and the form of their marks.
+//! Specification of a chart: the columns that it shows, and the form of its marks.
 
 use super::{Column, Table, Value};
 
-/// Specification of a chart. One renderer draws it as SVG and PNG, and the page contains the SVG.
+/// Specification of a chart. One renderer draws it as SVG and PNG, and the result page contains the SVG.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChartSpec {
     /// File name of the chart, without extension.
     pub name: String,
     /// Title of the chart.
     pub title: String,
-    /// Explanation for the reader, one or two sentences. Empty if the chart needs none.
+    /// Explanation for the reader, one or two sentences; may be empty.
     pub note: String,
-    /// File name of the chart's [table](super::Table).
+    /// File name of the [table](super::Table) that the chart shows.
     pub table: &'static str,
-    /// Filters: only rows with these values are drawn.
+    /// Filters of the rows: only rows with these values are drawn.
     pub shown: Vec<Shown>,
-    /// Column along x. The column defines the scale of the axis.
+    /// Name of the column along x; the column defines the scale of the axis.
     pub x: String,
-    /// Replacement for the words, unit and scale of the x axis, if the x column contains several quantities.
+    /// Description of the x axis that replaces the column's own, if the x column contains several quantities.
     pub x_is: Option<Column>,
-    /// Column along y. If it has an interval, the chart shows a band or error bars.
+    /// Name of the column along y. If the column has an interval, the chart shows a band or error bars.
     pub y: String,
-    /// Columns whose combinations of values have one line or point colour each. In a chart of tiles: one row of panels each.
+    /// Columns whose combinations of values have one line or point colour each. In a chart of tiles, each combination has one row of panels.
     pub lines: Vec<String>,
-    /// Column whose values have one panel each.
+    /// Column whose values have one panel each; `None` for a single panel.
     pub panels: Option<String>,
     /// Form of the marks: lines, points or tiles.
     pub mark: Mark,
-    /// Reference lines across the chart: chance level, a limit, a published value.
+    /// Reference lines across the chart, such as the chance level, a limit, or a published value.
     pub rules: Vec<Rule>,
-    /// Draws the Pareto front of the points if true. The cost is x, and the [role](super::Role) of y defines the better direction.
+    /// Whether the Pareto front of the points is drawn. The cost is x, and the [role](super::Role) of y defines the better direction.
     pub front: bool,
 }
 
 impl Table {
-    /// Returns a line chart of y against x, with the table's note.
+    /// Creates a line chart of y against x, with the note of the table.
     pub fn chart(
         &self,
         name: impl Into<String>,
@@ -54,7 +54,7 @@ impl Table {
 }
 
 impl Rule {
-    /// Reference line at a value of an axis.
+    /// Creates a reference line at a value of an axis.
     pub fn at(along: Along, value: f64, words: impl Into<String>) -> Self {
         Self {
             along,
@@ -64,26 +64,26 @@ impl Rule {
     }
 }
 
-/// Filter: rows with a given value in a column.
+/// Filter that selects the rows with a given value in a column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     /// Name of the column that is filtered.
     pub column: String,
-    /// Value in the column; an empty word selects absent values.
+    /// Value that the rows must have; an empty word selects absent values.
     pub value: Value,
 }
 
 /// Form of a chart's marks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Mark {
-    /// Points joined by lines along x; only points if x contains words.
+    /// Points joined by lines along x; only points if the x column contains words.
     #[default]
     Line,
-    /// Points without lines.
+    /// Points that are not joined by lines.
     Points,
-    /// One tile for each pair of x and y.
+    /// One coloured tile for each pair of x and y values.
     Tiles {
-        /// Column that fills the tile: an outcome by colour and letter, a number by a sequential colour scale.
+        /// Column that determines the tile's colour: an outcome by colour and letter, or a number by a sequential colour scale.
         fill: String,
         /// Column whose value is written on the tile. If the value is absent, the letter or number of `fill` is written.
         sign: Option<String>,
@@ -93,7 +93,7 @@ pub enum Mark {
 /// Reference line across the chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Axis that contains the line's value.
+    /// Axis on which the line has its value.
     pub along: Along,
     /// Position of the line on its axis.
     pub at: At,
@@ -106,7 +106,7 @@ pub struct Rule {
 pub enum At {
     /// Constant position on the axis.
     Value(f64),
-    /// Position from a column, for each panel and each place along the other axis. Examples: a chance level that depends on the number of objects, or a limit
+    /// Position given by a column, for each panel and each value of the other axis. Examples: a chance level that depends on the number of objects, or a limit
     /// that depends on the mass.
     Column(String),
 }
@@ -114,8 +114,8 @@ pub enum At {
 /// Axis of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
-    /// Horizontal axis.
+    /// Horizontal axis (x).
     X,
-    /// Vertical axis.
+    /// Vertical axis (y).
     Y,
 }

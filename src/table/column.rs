@@ -1,46 +1,46 @@
-//! Description of a table column: name, words, unit, scale and role.
+//! Description of a table column: name, display name, unit, scale and role.
 
 use super::value::Value;
 use bubbletouch_sim::text::numbers::{short_number, time_words};
 use std::borrow::Cow;
 
-/// Static text, or text made at run time for axes that a study names itself.
+/// Static text, or text created at run time for the axes that a study defines.
 pub type Words = Cow<'static, str>;
 
-/// Role of a column. Reports, pages, advice and comparisons depend only on the roles.
+/// Role of a table column. Reports, pages, advice and comparisons depend only on the roles of columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Choice of the designer: pitch, ensemble, C. Advice and every "best" choose among these, within a condition.
+    /// Choice of the designer, such as pitch, ensemble or C. Advice and the best configuration are selected among choices, within a condition.
     Choice,
-    /// Condition of the world: noise, sensor errors, friction. Advice is stated for a condition.
+    /// Condition of the world, such as noise, sensor errors or friction. Advice is given for a condition.
     Condition,
-    /// Subject of a measurement: an object, a trial, a touch.
+    /// Subject of a measurement, such as an object, a trial or a touch.
     Subject,
     /// Measured result, with the direction that is better.
     Value(Better),
-    /// Cost: time, memory, spheres. Smaller values are better.
+    /// Cost, such as time, memory or number of spheres. Smaller values are better.
     Cost,
-    /// Outcome of a row: right, diverged, refused.
+    /// Outcome of a row in words, such as right, diverged or refused.
     Outcome,
-    /// Auxiliary column: a count, a bound of an interval, or a note.
+    /// Auxiliary column, such as a count, a bound of an interval, or a note.
     Note,
 }
 
-/// Direction in which a value is better.
+/// Direction in which a measured value is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
     /// Larger values are better.
     More,
     /// Smaller values are better.
     Less,
-    /// No direction is better.
+    /// Neither direction is better.
     Neither,
 }
 
-/// Scale of a column's values along an axis.
+/// Scale on which the values of a column are drawn along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Words, in the order of their first rows.
+    /// Words, in the order in which they first occur.
     Words,
     /// Numbers on a linear scale.
     Linear,
@@ -53,28 +53,28 @@ pub enum Scale {
 /// Description of a table column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Name in the CSV header: `pitch_mm`.
+    /// Name in the CSV header, such as `pitch_mm`.
     pub name: Words,
-    /// Name in text and charts, without unit: `taxel pitch`.
+    /// Display name in text and charts, without unit, such as `taxel pitch`.
     pub words: Words,
-    /// Unit of the numbers: `mm`; empty if there is none. Unit `%`: fractions of one, shown times 100. Unit `:1`: ratios. Times (`s`, `ms`, `us`) on a
-    /// logarithmic scale are shown in the unit that suits each value.
+    /// Unit of the numbers, such as `mm`; empty if there is none. Fractions of one with the unit `%` are shown times 100. The unit `:1` marks ratios. Times
+    /// (`s`, `ms`, `us`) on a logarithmic scale are shown in the unit that suits each value.
     pub unit: Words,
     /// Scale of the values along an axis.
     pub scale: Scale,
     /// Role of the column in reports and advice.
     pub role: Role,
-    /// Names of the columns with the lower and upper bound, for a value with an interval.
+    /// Names of the columns with the lower and upper bound; `None` for a value without an interval.
     pub interval: Option<[Words; 2]>,
-    /// Display names of codes: `rbf_svm`, `RBF SVM`. For other words, underscores are shown as spaces. Numbers with a special meaning can have
-    /// names, too: `0` bits, `none`.
+    /// Display names of codes, such as `RBF SVM` for `rbf_svm`. For other words, underscores are shown as spaces. Numbers with a special meaning can also have
+    /// names, such as `none` for `0` bits.
     pub names: &'static [(&'static str, &'static str)],
-    /// Whether the column may be missing from a file, because only some studies have it.
+    /// Whether the column may be missing in a file, because only some studies have it.
     pub is_optional: bool,
 }
 
 impl Column {
-    /// Creates a column that every study of its kind has.
+    /// Creates a column that exists in every study of its kind.
     pub fn new(
         name: impl Into<Words>,
         role: Role,
@@ -94,25 +94,25 @@ impl Column {
         }
     }
 
-    /// Sets the names of the columns with the lower and upper bound.
+    /// Sets the names of the columns with the lower and upper bound of the value.
     pub fn between(mut self, low: impl Into<Words>, high: impl Into<Words>) -> Self {
         self.interval = Some([low.into(), high.into()]);
         self
     }
 
-    /// Marks the column as optional: only some studies have it.
+    /// Marks the column as optional, because only some studies have it.
     pub fn optional(mut self) -> Self {
         self.is_optional = true;
         self
     }
 
-    /// Sets the display names of the codes.
+    /// Sets the display names of the column's codes.
     pub fn named(mut self, names: &'static [(&'static str, &'static str)]) -> Self {
         self.names = names;
         self
     }
 
-    /// Returns the title of an axis: `taxel pitch (mm)`.
+    /// Returns the axis title with the unit, such as `taxel pitch (mm)`.
     pub fn title(&self) -> String {
         match (self.unit.as_ref(), self.is_time()) {
             ("" | ":1", _) | (_, true) => self.words.to_string(),
@@ -120,12 +120,12 @@ impl Column {
         }
     }
 
-    /// Returns whether some numbers have names. A chart does not join the points of named numbers by lines.
+    /// Returns whether some numbers of the column have names. A chart does not join the points of named numbers by lines.
     pub fn has_named_numbers(&self) -> bool {
         self.scale != Scale::Words && self.names.iter().any(|(code, _)| !code.is_empty())
     }
 
-    /// Returns the display name of a code or a number.
+    /// Returns the display name of a code or a number; `None` if it has no name.
     fn name_of(&self, code: &str) -> Option<&'static str> {
         let mut names = self.names.iter();
         names.find_map(|(known, name)| (*known == code).then_some(*name))
@@ -136,7 +136,7 @@ impl Column {
         self.scale == Scale::Log && matches!(self.unit.as_ref(), "s" | "ms" | "us" | "µs")
     }
 
-    /// Formats a number without its unit: `10`, `64:1`, `20 µs`.
+    /// Formats a number for an axis tick, such as `10`, `64:1` or `20 µs`.
     pub fn tick(&self, number: f64) -> String {
         if let Some(name) = self.name_of(&short_number(number)) {
             return name.to_owned();
@@ -152,7 +152,7 @@ impl Column {
         }
     }
 
-    /// Formats a number with its unit: `10 %`, `64:1`.
+    /// Formats a number with its unit, such as `10 %` or `64:1`.
     pub fn number_words(&self, number: f64) -> String {
         let tick = self.tick(number);
         match self.unit.as_ref() {
@@ -163,13 +163,13 @@ impl Column {
         }
     }
 
-    /// Returns the display name of a word.
+    /// Returns the display name of a word of the column.
     pub fn word(&self, code: &str) -> String {
         let name = self.name_of(code);
         name.map_or_else(|| code.replace('_', " "), str::to_owned)
     }
 
-    /// Formats a value for a sentence: `10 %`, `RBF SVM`.
+    /// Formats a value for a sentence, such as `10 %` or `RBF SVM`.
     pub fn value_words(&self, value: &Value) -> String {
         match value {
             Value::Number(number) => self.number_words(*number),
@@ -177,7 +177,7 @@ impl Column {
         }
     }
 
-    /// Formats name and value: `noise 10 %`, `m = 64`.
+    /// Formats the display name and a value, such as `noise 10 %` or `m = 64`.
     pub fn phrase(&self, value: &Value) -> String {
         let is_symbol = self.words.chars().count() == 1;
         let between = if is_symbol { " = " } else { " " };
@@ -185,9 +185,9 @@ impl Column {
     }
 }
 
-/// Row type whose fields are columns, in their order.
+/// Type of table rows whose fields are columns, in their order.
 pub trait Columns {
-    /// Returns all columns, including the optional ones.
+    /// Returns all columns of the row type, including the optional ones.
     fn columns() -> Vec<Column>;
 }
 
@@ -203,7 +203,7 @@ impl<A: Columns, B: Columns, C: Columns> Columns for (A, B, C) {
     }
 }
 
-/// Returns the column name for a short name: `noise` stands for `noise_std`.
+/// Returns the column name for a key; `noise` is short for `noise_std`.
 pub fn column_name(key: &str) -> &str {
     match key {
         "noise" => "noise_std",

@@ -1,4 +1,4 @@
-//! Specification of a table file, independent of its rows.
+//! Specification of a table file, independent of the rows in it.
 
 use super::{Column, Columns, Table};
 use crate::error::{Error, Result};
@@ -34,19 +34,19 @@ impl<R: Columns> File<R> {
         self.name
     }
 
-    /// Marks a table of times, whose bytes differ between runs.
+    /// Marks the table as a table of times, whose bytes differ between runs.
     pub const fn of_times(mut self) -> Self {
         self.repeats = false;
         self
     }
 
-    /// Marks a summary, which is computed from the rows of all work items.
+    /// Marks the table as a summary, which is computed from the rows of all work items.
     pub const fn summary(mut self) -> Self {
         self.is_summary = true;
         self
     }
 
-    /// Returns the table of the given rows. Numbers have the shortest form that reads back as the same bits.
+    /// Creates the table of the given rows. Numbers are written in the shortest form that reads back as the same bits.
     ///
     /// # Errors
     /// If a row cannot be serialised as CSV; the error names the file.
@@ -57,10 +57,10 @@ impl<R: Columns> File<R> {
         self.of_columns(R::columns(), rows)
     }
 
-    /// Returns the table of rows with the given columns, for studies that name their own axes.
+    /// Creates the table of rows with the given columns, for studies that define their own axes.
     ///
     /// # Errors
-    /// As for [`table`](Self::table). Also if a row has other columns.
+    /// Returns the errors of [`table`](Self::table), or an error if a row has other columns.
     pub fn of_columns(&self, columns: Vec<Column>, rows: &[impl Serialize]) -> Result<Table> {
         let csv = csv_of(rows, &columns);
         let csv = csv.map_err(|e| Error::io(self.name, "write", std::io::Error::other(e)))?;
@@ -75,10 +75,10 @@ impl<R: Columns> File<R> {
         self.read_columns(R::columns(), folder)
     }
 
-    /// Reads a table with the given columns from a folder.
+    /// Reads the table from a folder, with the given columns instead of those of the row type.
     ///
     /// # Errors
-    /// As for [`read`](Self::read).
+    /// Returns the errors of [`read`](Self::read).
     pub fn read_columns(&self, columns: Vec<Column>, folder: &Path) -> Result<Table> {
         let path = folder.join(self.name);
         let csv = crate::files::read(&path)
@@ -86,10 +86,10 @@ impl<R: Columns> File<R> {
         self.parse(columns, &path, csv)
     }
 
-    /// Reads the table of an optional part of a study. Returns `None` if the file does not exist.
+    /// Reads a table that only some studies have. Returns `None` if the file does not exist.
     ///
     /// # Errors
-    /// As for [`read`](Self::read).
+    /// Returns the errors of [`read`](Self::read).
     pub fn read_if_there(&self, folder: &Path) -> Result<Option<Table>> {
         let is_there = folder.join(self.name).exists();
         is_there.then(|| self.read(folder)).transpose()
@@ -106,7 +106,7 @@ impl<R: Columns> File<R> {
     }
 }
 
-/// Returns the CSV bytes. Without rows, the header contains the columns that are not optional.
+/// Returns the rows as CSV bytes. Without rows, the header contains the columns that are not optional.
 fn csv_of<R: Serialize>(
     rows: &[R],
     columns: &[Column],

@@ -1,8 +1,8 @@
-//! The Pareto front of points with a cost and a value.
+//! Pareto front of points with a cost and a value.
 
 /// Returns for each point (cost, value) whether it is on the Pareto front, in O(n log n) time.
 ///
-/// A point is on the front if no other point beats it. Point p beats q if p is at most as costly and at least as good, and better in one of both.
+/// A point is on the front if no other point dominates it. Point p dominates q if p is at most as costly and at least as good, and better in one of both.
 /// `is_better(a, b)` returns whether value a is better than value b. A point with a NaN is never on the front.
 pub fn front(points: &[(f64, f64)], is_better: impl Fn(f64, f64) -> bool) -> Vec<bool> {
     let is_number = |&place: &usize| !(points[place].0.is_nan() || points[place].1.is_nan());

@@ -1,4 +1,4 @@
-//! A table: columns of numbers and words, and the bytes of its file.
+//! Result table: columns of numbers and words, and the bytes of its file.
 
 use super::{Better, Column, Role, Scale};
 use crate::error::{Error, Result};
@@ -7,18 +7,18 @@ use std::collections::HashMap;
 use std::fmt;
 use std::path::Path;
 
-/// Table of results of a study.
+/// Result table of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Name of the CSV file: `accuracy.csv`.
+    /// Name of the CSV file, such as `accuracy.csv`.
     pub file: &'static str,
-    /// Title for a heading: `Accuracy of every trial`.
+    /// Title for a heading, such as `Accuracy of every trial`.
     pub title: &'static str,
-    /// Explanation for the reader, one or two sentences. Empty if the columns need none.
+    /// Explanation for the reader, one or two sentences; may be empty.
     pub note: String,
     /// Whether equal studies give equal bytes; false for tables of times.
     pub repeats: bool,
-    /// Whether the rows are computed from all work items, so that some of the items alone give other rows.
+    /// Whether the rows are summaries over all work items; a part of the items would give other rows.
     pub is_summary: bool,
     /// Columns of the file, in their order.
     pub columns: Vec<Column>,
@@ -26,18 +26,18 @@ pub struct Table {
     pub data: Vec<Data>,
     /// Number of rows of the table.
     pub n_rows: usize,
-    /// Content of the CSV file. Empty for a table without a file.
+    /// Content of the CSV file; empty for a table without a file.
     pub csv: Vec<u8>,
 }
 
-/// Values of a column, one for each row.
+/// Values of a column, one per row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
-    /// Column of numbers; NaN if absent.
+    /// Numbers; NaN for an absent value.
     Numbers(Vec<f64>),
-    /// Words, stored as codes. An absent word is the empty word.
+    /// Words, stored as codes; the empty word for an absent value.
     Words {
-        /// Distinct words, in the order of their first rows.
+        /// Distinct words, in the order in which they first occur.
         levels: Vec<String>,
         /// Index into `levels` for each row.
         codes: Vec<u32>,
@@ -66,8 +66,8 @@ impl fmt::Display for Value {
     }
 }
 
-/// Relative tolerance, with respect to the larger number, for equal settings. Example: a ratio of 100 on 4,096 taxels gives 41 measurements,
-/// which is a ratio of 99.90:1. A larger tolerance would merge neighbouring settings; a smaller one would reject this ratio.
+/// Relative tolerance for equal settings, with respect to the larger number. Example: a ratio of 100 on 4,096 taxels gives 41 measurements, which is a ratio of
+/// 99.90:1. If larger, neighbouring settings are merged; if smaller, this ratio is rejected.
 const SAME_SETTING: f64 = 1e-3;
 
 impl Value {
@@ -83,14 +83,14 @@ impl Value {
 }
 
 impl Data {
-    /// Returns whether the given rows have different values.
+    /// Returns whether the given rows have different values in this column.
     pub fn varies(&self, rows: impl IntoIterator<Item = usize>) -> bool {
         let mut keys = rows.into_iter().map(|row| self.key(row));
         keys.next()
             .is_some_and(|first| keys.any(|key| key != first))
     }
 
-    /// Returns a key of the value in a row; equal values, and only these, have equal keys.
+    /// Returns a key of the value in a row: two rows have equal keys if and only if their values are equal.
     pub fn key(&self, row: usize) -> u64 {
         match self {
             Self::Numbers(numbers) => numbers[row].to_bits(),
@@ -98,7 +98,7 @@ impl Data {
         }
     }
 
-    /// Returns the value of a row, or `None` if it is absent.
+    /// Returns the value in a row, or `None` if it is absent.
     pub fn value(&self, row: usize) -> Option<Value> {
         match self {
             Self::Numbers(numbers) => Some(numbers[row])
@@ -112,7 +112,7 @@ impl Data {
 }
 
 impl Table {
-    /// Sets the note, an explanation for the reader.
+    /// Returns the table with another note, the explanation for the reader.
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
@@ -131,18 +131,18 @@ impl Table {
         has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
     }
 
-    /// Returns the index of a column, by name.
+    /// Returns the index of the column with this name.
     pub fn place(&self, column: &str) -> Option<usize> {
         self.columns.iter().position(|known| known.name == column)
     }
 
-    /// Returns a column and its values, by name.
+    /// Returns the column with this name, and its values.
     pub fn column(&self, column: &str) -> Option<(&Column, &Data)> {
         let place = self.place(column)?;
         Some((&self.columns[place], &self.data[place]))
     }
 
-    /// Returns the numbers of a column, or `None` if there is no numeric column of this name.
+    /// Returns the numbers of a column, or `None` if there is no numeric column with this name.
     pub fn numbers(&self, column: &str) -> Option<&[f64]> {
         match self.column(column)? {
             (_, Data::Numbers(numbers)) => Some(numbers),
@@ -150,7 +150,7 @@ impl Table {
         }
     }
 
-    /// Returns a table with additional columns. The new table has no file: its content is empty.
+    /// Returns a copy of the table with additional columns. The copy has no file: its content is empty.
     pub fn with(
         &self,
         (file, title): (&'static str, &'static str),
@@ -170,8 +170,8 @@ impl Table {
         table
     }
 
-    /// Returns a column of another table for the rows of this table. The numeric column `key` of both tables relates the rows. Values are absent for rows
-    /// that the other table lacks.
+    /// Returns a column of another table, matched to the rows of this table by the numeric column `key` of both tables. Values are absent for rows that the
+    /// other table lacks.
     pub fn look_up(&self, other: &Self, key: &str, column: &str) -> Option<(Column, Data)> {
         let ((_, known), (_, wanted)) = (other.column(key)?, self.column(key)?);
         let (column, data) = other.column(column)?;
@@ -250,7 +250,7 @@ impl Table {
     }
 }
 
-/// Returns the path and line number of a file, for an error message.
+/// Returns the path and line number of a place in a file, for an error message.
 pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
     match line {
         Some(line) => format!("{}: line {line}", path.display()),

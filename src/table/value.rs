@@ -6,8 +6,8 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// A number, in the unit of its column.
+    /// Number in the unit of its column.
     Number(f64),
-    /// A word or code, as in the file.
+    /// Word or code, as written in the file.
     Word(String),
 }

@@ -1,4 +1,4 @@
-//! The content on which a study's results depend.
+//! Identity of a study: all content on which its results depend.
 
 use super::line::Records;
 use crate::engine::work_items::WorkItem;
@@ -9,29 +9,29 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::sync::Arc;
 
-/// Everything that determines the bytes of a study's tables.
+/// Identity of a study: everything that determines the bytes of its tables.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Name and version of the program.
     pub program: String,
     /// Hash of the program's source code.
     pub source: String,
-    /// The study as TOML, with all defaults written out.
+    /// Study as TOML, with all defaults written out.
     pub study: String,
-    /// SHA-256 of each object's content, by the name of the object.
+    /// SHA-256 hash of each object's content, by the object's name.
     pub objects: BTreeMap<String, String>,
-    /// Rule that decides which other studies may share a journal; not stored in journals.
+    /// Rule that decides which other studies may share a journal; not stored in the journal.
     #[serde(skip)]
     same: SameStudy,
 }
 
-/// Rule that decides which studies of the same program and objects may resume each other's work.
+/// Rule that decides which studies of the same program and objects may resume each other's runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SameStudy {
-    /// Studies that differ only in these keys and the keys below them.
+    /// Studies that differ only in these keys and the keys below them may share a journal.
     ButFor(&'static [&'static str]),
-    /// Studies whose journal has a result of one of these work items. The names of the items are derived from all inputs, so results cannot be mixed up. A
-    /// study that shares no result is rejected, because its tables would replace all existing ones.
+    /// Studies whose journal contains a result of one of these work items may share it. The names of the items are derived from all inputs, so results cannot
+    /// be confused. A study that shares no result is rejected, because its tables would replace all existing tables.
     SharesWork(Arc<[WorkItem]>),
 }
 
@@ -42,7 +42,7 @@ impl Default for SameStudy {
 }
 
 impl SameStudy {
-    /// Returns the test whether a study with a journal may differ from this one in a key.
+    /// Returns a function that tests whether a study with a journal may differ from this one in a key.
     fn may_differ(&self, records: &Records) -> Box<dyn Fn(&str) -> bool> {
         match self {
             Self::ButFor(keys) => Box::new(|key| keys.iter().any(|name| is_at(key, name))),
@@ -72,7 +72,7 @@ impl Identity {
         }
     }
 
-    /// Returns the differences between the study that started a journal and this one, one per line.
+    /// Returns the differences between the study that started a journal and this study, one per line.
     pub fn differences(&self, (begun, records): (&Self, &Records)) -> Vec<String> {
         let may_differ = self.same.may_differ(records);
         let [theirs, ours] = [begun, self].map(|identity| identity.facts(&may_differ));
@@ -86,7 +86,7 @@ impl Identity {
         names.into_iter().map(line).collect()
     }
 
-    /// Checks that this study may resume a journal at `place`.
+    /// Checks that this study may resume the journal at `place`.
     ///
     /// # Errors
     /// If the journal was started by another study; the error lists the differences.
@@ -103,7 +103,7 @@ impl Identity {
         ))
     }
 
-    /// Returns the parts of the identity by name: the program, the objects, and the study's keys except those that may differ.
+    /// Returns the parts of the identity by name: the program, the objects, and all keys of the study except those that may differ.
     fn facts(&self, may_differ: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
         let mut facts = BTreeMap::new();
         if let Some(table) = toml_text::table(&self.study) {
@@ -118,7 +118,7 @@ impl Identity {
     }
 }
 
-/// Adds every value of a table by its dotted key.
+/// Adds every value of a TOML table to `values`, by its dotted key.
 fn add_keys(prefix: &str, table: &toml::Table, values: &mut BTreeMap<String, String>) {
     for (key, value) in table {
         match value {

@@ -1,4 +1,4 @@
-//! The journal of a run: one file with one writer at a time.
+//! Journal of a run: one file with one writer at a time.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::line::{Decoded, NO_STUDY, Records, decode, encode};
@@ -15,18 +15,18 @@ use std::time::{Duration, Instant};
 /// Name of the journal in a result folder.
 pub const JOURNAL_FILE: &str = "journal.jsonl";
 
-/// Key of the first line.
+/// Key of the journal's first line.
 const HEADER: &str = "study";
 
-/// Interval at which lines are flushed to the disk. When [`Journal::keep`] returns, the operating system has the line, so it survives the end of the process.
-/// A larger interval loses more results in a power failure. A flush after each line would take longer than a work item of a millisecond.
+/// Time between flushes of journal lines to the disk. When [`Journal::keep`] returns, the operating system has the line, so it survives the end of the process.
+/// If larger, a power failure loses more results; a flush after each line would take longer than a work item of a millisecond.
 const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Finished results of a run on disk; or a journal that stores nothing.
+/// Journal of a run: finished results in a file. A journal may also store nothing.
 #[derive(Debug, Default)]
 pub struct Journal {
     path: PathBuf,
-    /// Records that the journal contained when it was opened, without its header.
+    /// Records that the journal contained when it was opened, without the header.
     before: Decoded,
     writer: Mutex<Option<Writer>>,
 }
@@ -35,7 +35,7 @@ pub struct Journal {
 struct Writer {
     file: File,
     synced: Instant,
-    /// Whether a write failed. The last line may then be incomplete, and no line may follow it.
+    /// Whether a write failed. The last line may then be incomplete, so no further line is written.
     is_broken: bool,
 }
 
@@ -87,7 +87,7 @@ impl Journal {
         Ok(identity.map(|identity| (identity, journal)))
     }
 
-    /// Returns the content of a file and the study that started it; `None` if no line is complete.
+    /// Returns the identity and the records in the bytes of a journal; the identity is `None` if no line is complete.
     fn of_bytes(path: &Path, bytes: &[u8]) -> Result<(Option<Identity>, Self)> {
         let damaged = |(line, given): (usize, &str)| {
             let allowed = "a journal as it was written; --fresh starts over and keeps the old results beside the new";
@@ -110,17 +110,17 @@ impl Journal {
         Ok((begun, journal))
     }
 
-    /// Returns the record that the journal had under `key` when it was opened. Returns `None` if there is none, or if it has another type.
+    /// Returns the record with this key, as it was when the journal was opened. Returns `None` if there is no such record, or if it has another type.
     pub fn get<R: DeserializeOwned>(&self, key: &str) -> Option<R> {
         serde_json::from_str(self.before.records.get(key)?.get()).ok()
     }
 
-    /// Returns the records that the journal had when it was opened, by key.
+    /// Returns all records that the journal contained when it was opened, by key.
     pub fn records(&self) -> &Records {
         &self.before.records
     }
 
-    /// Stores a record. After this function returns, the record survives the end of the process.
+    /// Writes a record to the journal. After this function returns, the record survives the end of the process.
     ///
     /// # Errors
     /// If the journal cannot be written.
@@ -128,7 +128,7 @@ impl Journal {
         self.append(key, record).map(|_| ())
     }
 
-    /// Appends a line and returns its checksum; returns 0 if this journal stores nothing.
+    /// Appends a line to the journal and returns its checksum; returns 0 if the journal stores nothing.
     fn append(&self, key: &str, record: &impl Serialize) -> Result<u32> {
         let Some(writer) = &mut *self.lock() else {
             return Ok(0);
@@ -138,8 +138,8 @@ impl Journal {
         kept.map_err(|e| Error::io(&self.path, "write", e))
     }
 
-    /// Adds the records of another journal of the same study that this one did not have when it was opened. If a work item failed in one journal and succeeded
-    /// in the other, the success is kept.
+    /// Copies the records of another journal of the same study that this journal did not contain when it was opened. If a work item failed in one journal and
+    /// succeeded in the other, the success is used.
     ///
     /// # Errors
     /// If this journal cannot be written.
@@ -154,7 +154,7 @@ impl Journal {
         Ok(())
     }
 
-    /// Flushes all lines to the disk.
+    /// Flushes all lines of the journal to the disk.
     ///
     /// # Errors
     /// If the journal cannot be written.
@@ -163,7 +163,7 @@ impl Journal {
         synced.map_err(|e| Error::io(&self.path, "write", e))
     }
 
-    /// Flushes all lines to the disk and blocks further writes, for a process that is about to end.
+    /// Flushes all lines to the disk and blocks further writes; used before the process ends.
     ///
     /// # Errors
     /// If the journal cannot be written.
@@ -203,7 +203,7 @@ impl Writer {
     }
 }
 
-/// Returns whether bytes begin like a first line: a checksum of 8 hexadecimal digits, a space and the key.
+/// Returns whether the bytes begin like a first line: a checksum of 8 hexadecimal digits, a space and the key.
 fn begins_header(bytes: &[u8]) -> bool {
     let expected = format!(" {{\"key\":\"{HEADER}\"");
     let is_digit = |byte: &u8| byte.is_ascii_hexdigit();
@@ -218,7 +218,7 @@ fn is_failure(record: &RawValue) -> bool {
     serde_json::from_str(record.get()).is_ok_and(|outcome: Outcome| outcome.is_err())
 }
 
-/// Locks a journal against other processes as long as the file is open.
+/// Locks a journal file against other processes until the file is closed.
 pub(crate) fn lock(path: &Path, file: &File) -> Result<()> {
     file.try_lock().map_err(|error| match error {
         TryLockError::WouldBlock => Error::input(
@@ -230,7 +230,7 @@ pub(crate) fn lock(path: &Path, file: &File) -> Result<()> {
     })
 }
 
-/// Opens or creates a journal for this process alone, and reads it.
+/// Opens or creates a journal file for this process alone, and reads it.
 fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
     let file = OpenOptions::new()
         .read(true)

@@ -1,20 +1,20 @@
-//! A line of a journal: a checksum, a space and JSON.
+//! Line of a journal: a checksum, a space and JSON.
 //!
 //! ```text
 //! 1c291ca3 {"key":"piece 0f3a, trial 0","record":{…}}
 //! ```
 //!
-//! The checksum of the first line, which identifies the study, is the CRC-32 of its JSON. Each other checksum continues the checksum of the first line, so
-//! that a line does not fit a journal of another study.
+//! The checksum of the first line, which identifies the study, is the CRC-32 of its JSON. Every other checksum continues the checksum of the first line, so
+//! that a line is invalid in a journal of another study.
 
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 
-/// Records by key, as JSON; the last record of a key counts.
+/// Journal records as JSON, by key; of several records with one key, the last is valid.
 pub type Records = BTreeMap<String, Box<RawValue>>;
 
-/// Message for a first line that does not identify a study.
+/// Error message for a first line that does not identify a study.
 pub const NO_STUDY: &str =
     "is no record of a study: nothing says which study the finished work is of";
 const CHANGED: &str = "does not match its checksum: it was changed, or is of another study than line 1 or of an earlier version";
@@ -31,7 +31,8 @@ struct Line {
     record: Box<RawValue>,
 }
 
-/// Returns a line with its line break, and its checksum. `first` is the checksum of the journal's first line, or 0 for the first line itself.
+/// Encodes a record as a journal line with its line break; also returns the checksum. `first` is the checksum of the journal's first line, or 0 for the first
+/// line itself.
 pub fn encode(first: u32, key: &str, record: &impl Serialize) -> serde_json::Result<(u32, String)> {
     let json = serde_json::to_string(&Written { key, record })?;
     let checksum = checksum(first, &json);
@@ -44,21 +45,21 @@ fn checksum(first: u32, json: &str) -> u32 {
     hasher.finalize()
 }
 
-/// Content of the complete lines of a file.
+/// Decoded content of the complete lines of a journal.
 #[derive(Debug, Default)]
 pub struct Decoded {
-    /// Record of the first line, if that line is complete.
+    /// Record of the first line; `None` if that line is incomplete.
     pub header: Option<Box<RawValue>>,
     /// Checksum of the first line, from which the checksums of all other lines continue.
     pub first: u32,
-    /// Records of the other lines.
+    /// Records of all lines after the first.
     pub records: Records,
     /// Number of bytes up to the end of the last complete line.
     pub n_whole: usize,
 }
 
-/// Decodes a file whose first line has the key `header`, up to an incomplete line at its end. An error contains the number, from 1, of a line that no
-/// interrupted write explains, and the defect.
+/// Decodes a journal whose first line has the key `header`, up to an incomplete line at its end. The error contains the number (from 1) of a line that no
+/// interrupted write can explain, and its defect.
 pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static str)> {
     let mut decoded = Decoded::default();
     for (number, line) in bytes.split_inclusive(|&byte| byte == b'\n').enumerate() {
@@ -89,7 +90,7 @@ fn decode_line(first: u32, line: &[u8]) -> Option<(u32, Line)> {
     (written == format!("{checksum:08x}")).then_some((checksum, line))
 }
 
-/// Returns the checksum, the JSON and the decoded content of a complete line.
+/// Splits a complete line into its checksum, its JSON and the decoded content.
 fn split(line: &[u8]) -> Option<(&str, &str, Line)> {
     let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
     let (written, json) = line.split_once(' ')?;

@@ -1,11 +1,12 @@
-//! Journal: finished results on disk, so that an interrupted run can be resumed.
+//! Journal of finished results on disk, so that an interrupted run can be resumed.
 //!
-//! A [`Journal`] is a text file beside the tables, with one line and one checksum for each finished work item. Its first line is the [`Identity`] of the
-//! study. A run of another study, with other objects or by another program, is rejected with a list of the differences. A journal without such a line, or with
+//! A [`Journal`] is a text file beside the tables, with one line and one checksum for each finished work item. Its first line is the [`Identity`] of the study.
+//! A run of another study, with other objects or by another program, is rejected with a list of the differences. A journal without such a line, or with lines
+//! of two studies, is also rejected.
 //! lines of two studies, is rejected, too.
 //!
-//! The key of a line depends on all inputs of the result. A study with more values on its axes, or more trials, therefore reuses the existing results. A
-//! process that is killed loses only the items that it was computing: an incomplete last line is detected and removed, and its item is computed again.
+//! The key of a line depends on all inputs of the result. A study with additional axis values or trials therefore reuses the existing results. If a process is
+//! killed, only the unfinished work items are lost. An incomplete last line is removed, and its item is computed again.
 
 pub(crate) mod identity;
 pub(crate) mod journal_file;

@@ -1,4 +1,4 @@
-//! Old results, kept beside new ones.
+//! Renaming of old result folders, so that new results do not replace them.
 
 use crate::engine::journal::journal_file::{JOURNAL_FILE, lock};
 use crate::error::{Error, Result};
@@ -6,11 +6,11 @@ use crate::files::{MANIFEST_FILE, OwnedFiles, RUN, input_within};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// Renames a folder of results to the first free name of `NAME.1`, `NAME.2`, … Returns the new name, or `None` if there is no folder. If `folder` is a
-/// symbolic link, its target is renamed, and the link remains.
+/// Renames a result folder to the first free name of `NAME.1`, `NAME.2`, … Returns the new name, or `None` if there is no folder. If `folder` is a symbolic
+/// link, its target is renamed, and the link remains.
 ///
 /// # Errors
-/// If the folder has files but no results, or contains a file that this command reads. If a run is still writing to it. If it cannot be renamed.
+/// If the folder contains files but no results, or a file that this command reads; if a run is still writing to it; or if it cannot be renamed.
 pub fn rename_old_results(folder: &Path) -> Result<Option<PathBuf>> {
     check_set_aside(folder)?;
     if !folder.exists() {
@@ -41,7 +41,7 @@ pub fn rename_old_results(folder: &Path) -> Result<Option<PathBuf>> {
     Ok(Some(free))
 }
 
-/// Checks that a folder can be renamed: it is absent, empty, or a result folder, and contains no file that this command reads.
+/// Checks that a folder can be renamed: it is missing, empty, or a result folder, and contains no file that this command reads.
 ///
 /// # Errors
 /// If the folder cannot be renamed.
@@ -67,7 +67,7 @@ pub fn check_set_aside(folder: &Path) -> Result<()> {
     })
 }
 
-/// Returns whether a folder has files, but neither a manifest nor a journal.
+/// Returns whether a folder contains files, but neither a manifest nor a journal.
 fn is_foreign(folder: &Path) -> Result<bool> {
     let mut entries = fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
     if entries.next().is_none() {

@@ -1,5 +1,5 @@
-//! Optional numbers in JSON that may be infinite or NaN: `#[serde(with = "any_number")]` for such fields of rows. Finite numbers are JSON numbers; all other
-//! values are texts as in CSV files.
+//! Serialisation of optional numbers that may be infinite or NaN: `#[serde(with = "any_number")]`. Finite numbers are JSON numbers; all other values are texts
+//! as in CSV files.
 
 use serde::de::{self, Deserialize, Deserializer};
 use serde::{Serialize, Serializer};
@@ -11,7 +11,7 @@ enum Written {
     Words(String),
 }
 
-/// Serializes an optional number.
+/// Serialises an optional number that may be infinite or NaN.
 ///
 /// # Errors
 /// If the serializer fails.
@@ -26,7 +26,7 @@ pub fn serialize<S: Serializer>(
     written.serialize(serializer)
 }
 
-/// Deserializes an optional number.
+/// Deserialises an optional number that may be infinite or NaN.
 ///
 /// # Errors
 /// If a text is not a number, or the deserializer fails.

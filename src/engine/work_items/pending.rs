@@ -1,4 +1,4 @@
-//! The work items that a run computes.
+//! Pending work items: the items that a run has to compute.
 
 use crate::engine::isolated::run_isolated;
 use crate::engine::progress::Progress;
@@ -9,20 +9,20 @@ use crate::error::Result;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// Pending work items of a run, identified by their number among all items.
+/// Pending work items of a run, identified by their numbers among all items.
 pub struct PendingItems<'a, R> {
     options: RunOptions<'a>,
-    /// Receiver of progress reports. Each finished item advances it by one.
+    /// Receiver of progress reports; each finished item advances it by one step.
     pub progress: &'a dyn Progress,
     items: &'a [WorkItem],
-    /// Whether each item is pending.
+    /// Whether each work item is pending.
     is_pending: Vec<bool>,
-    /// Results of finished items, by number.
+    /// Results of the finished items, by item number.
     results: Mutex<BTreeMap<usize, ItemResult<R>>>,
 }
 
 impl<'a, R: ItemRows> PendingItems<'a, R> {
-    /// Selects the pending ones among all items.
+    /// Creates the list of the work items that are pending among all items.
     pub(crate) fn new(
         options: &RunOptions<'a>,
         (items, is_pending): (&'a [WorkItem], Vec<bool>),
@@ -36,28 +36,28 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         }
     }
 
-    /// Returns the number of pending items.
+    /// Returns the number of pending work items.
     pub fn n(&self) -> usize {
         self.pending().count()
     }
 
-    /// Returns the numbers of the pending items.
+    /// Iterates over the numbers of the pending work items.
     fn pending(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.items.len()).filter(|&number| self.is_pending[number])
     }
 
-    /// Returns whether an item is pending.
+    /// Returns whether the work item with this number is pending.
     pub fn has(&self, number: usize) -> bool {
         self.is_pending[number]
     }
 
-    /// Returns the elements of `all` whose item is pending, with the numbers of their items. The items are numbered consecutively from `first`.
+    /// Returns the elements of `all` whose work item is pending, with their item numbers. The items are numbered consecutively from `first`.
     pub fn among<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
         let numbered = (first..).zip(all);
         numbered.filter(|(number, _)| self.has(*number)).collect()
     }
 
-    /// Computes an item with `measure` and stores its result; does nothing if the item is not pending.
+    /// Computes a work item with `measure` and stores its result; does nothing if the item is not pending.
     ///
     /// # Errors
     /// If the journal cannot be written, or if `measure` fails and the first failure ends the run.
@@ -69,7 +69,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.keep(number, result)
     }
 
-    /// Computes data that several items need. If `make` fails, all pending items in `numbers` are recorded as failed, and the result is `None`.
+    /// Computes data that several work items need. If `make` fails, all pending items in `numbers` are recorded as failed, and the result is `None`.
     ///
     /// # Errors
     /// If the journal cannot be written, or if `make` fails and the first failure ends the run.
@@ -107,7 +107,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         Ok(())
     }
 
-    /// Returns, for each item, whether it was pending, and the results of the finished items by number.
+    /// Returns whether each item was pending, and the results of the finished items by number.
     pub(crate) fn into_results(self) -> (Vec<bool>, BTreeMap<usize, ItemResult<R>>) {
         let results = self.results.into_inner();
         let results = results.unwrap_or_else(|poisoned| poisoned.into_inner());

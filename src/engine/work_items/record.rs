@@ -1,12 +1,12 @@
-//! Record of a work item in a journal.
+//! Record of a work item in the journal.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Rows of a study's tables and other data from which the tables are made. The journal stores them as JSON: fields that may be infinite or NaN need
+/// Result rows of a work item, and other data from which tables are made. The journal stores them as JSON; fields that may be infinite or NaN need
 /// `#[serde(with = "any_number")]`.
 pub trait ItemRows: Default + Serialize + DeserializeOwned + Send {
-    /// Appends the rows of the next item.
+    /// Appends the rows of the next work item.
     fn append(&mut self, next: Self);
 }
 

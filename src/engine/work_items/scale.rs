@@ -1,4 +1,4 @@
-//! Size of a study, known before it runs.
+//! Size of a study, estimated before it runs.
 
 use crate::inputs::memory::Bytes;
 use crate::spelling::counted;
@@ -6,28 +6,28 @@ use crate::spelling::counted;
 /// Approximate memory of the program, its objects and the pictures that it draws at the end, bytes.
 const PROGRAM_BYTES: f64 = 2e8;
 
-/// Size of a study: counts and memory.
+/// Size of a study: numbers of objects, touches and configurations, and memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scale {
-    /// Description of the touched objects.
+    /// Description of the touched objects in words.
     pub objects: String,
-    /// Description of the touches.
+    /// Description of the touches in words.
     pub touches: String,
-    /// Number of combinations of settings.
+    /// Number of configurations of the study.
     pub n_configurations: usize,
-    /// Approximate memory of the study's shared data, bytes, in addition to the memory of the program.
+    /// Approximate memory of the data that all work items share, bytes, in addition to the memory of the program.
     pub bytes: f64,
-    /// Approximate additional memory of each work item that is being computed, bytes.
+    /// Approximate memory of one work item while it is computed, bytes.
     pub item_bytes: f64,
 }
 
 impl Scale {
-    /// Returns the memory needed to compute one work item at a time, bytes.
+    /// Returns the memory for computing one work item at a time, bytes.
     pub fn least_bytes(&self) -> f64 {
         self.bytes_at_once(1)
     }
 
-    /// Returns the largest number of concurrent work items, up to the number of threads, that fits into `ceiling` bytes. Returns `None` if a single item does
+    /// Returns the maximum number of concurrent work items that fits into `ceiling` bytes, at most the number of threads. Returns `None` if a single item does
     /// not fit.
     pub fn n_at_once(&self, ceiling: f64) -> Option<usize> {
         let n_threads = (1..=rayon::current_num_threads()).rev();
@@ -35,7 +35,7 @@ impl Scale {
         within.next()
     }
 
-    /// Returns the lines of `bubbletouch plan` about a study of `n_items` work items that runs on `n_threads` threads.
+    /// Returns the text of `bubbletouch plan` about the size of a study of `n_items` work items on `n_threads` threads.
     pub fn describe(&self, n_items: usize, n_threads: usize) -> String {
         let (objects, touches) = (&self.objects, &self.touches);
         let configurations = counted(self.n_configurations, "configuration");

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use std::sync::OnceLock;
 
-/// Data computed by the first work item that needs them. Two items that need them at the same time may both compute them.
+/// Data that are computed by the first work item that needs them. Two items that need them at the same time may both compute them.
 #[derive(Debug)]
 pub struct Shared<T>(OnceLock<T>);
 
@@ -14,7 +14,7 @@ impl<T> Default for Shared<T> {
 }
 
 impl<T> Shared<T> {
-    /// Returns the data; computes them with `make` if they do not exist yet.
+    /// Returns the shared data; computes them with `make` if they do not exist yet.
     ///
     /// # Errors
     /// If `make` fails; the next call tries again.

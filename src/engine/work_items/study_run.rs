@@ -1,4 +1,4 @@
-//! A run of a study's work items.
+//! Run of a study's work items, with results from an existing journal.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::record::{ItemResult, ItemRows};
@@ -10,22 +10,22 @@ use crate::row;
 row! {
 /// Failed work item: a row of `failures.csv`.
 pub struct ItemFailure {
-    /// Description of the item.
+    /// Description of the work item in words.
     work_item: String => Subject "work item";
-    /// Error message.
+    /// Message of the error that ended the work item.
     error: String => Note;
 } }
 
-/// A run of a study's work items, created after the journal was read.
+/// Run of a study's work items; created after the journal was read.
 pub struct StudyRun<'a, R> {
     items: &'a [WorkItem],
-    /// The result of each item in the journal, if any.
+    /// Result of each work item in the journal; `None` if the journal has none.
     before: Vec<Option<ItemResult<R>>>,
     pending: PendingItems<'a, R>,
 }
 
 impl<'a, R: ItemRows> StudyRun<'a, R> {
-    /// Reads the results of all items of a study from the journal of the options.
+    /// Reads the results of all work items from the journal given in the options.
     pub fn new(items: &'a [WorkItem], options: &RunOptions<'a>) -> Self {
         let results = items.iter().map(|item| options.journal.get(&item.key()));
         let before: Vec<Option<ItemResult<R>>> = results.collect();
@@ -41,13 +41,13 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
         }
     }
 
-    /// Returns the number of items that the run computes.
+    /// Returns the number of work items that the run computes.
     pub fn n_pending(&self) -> usize {
         self.pending.n()
     }
 
-    /// Computes the pending items with `measure`. Returns the rows of all items that did not fail in this or an earlier run, in the order of items, and the
-    /// failed items. Except for times, the rows are the same as if all items were computed at once.
+    /// Computes the pending work items with `measure`. Returns the rows of all items that did not fail in this or an earlier run, in the order of items, and
+    /// the failed items. Except for times, the rows equal those of a run that computes all items at once.
     ///
     /// `place(number, rows)` sets the values that depend on an item's number, such as numbers of configurations. `words(number)` describes an item for
     /// failures.
@@ -91,7 +91,7 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
     }
 }
 
-/// Returns whether an item, given by its number, belongs to `part`.
+/// Returns a function that tests whether the work item with a given number belongs to `part`.
 fn is_in<'a>(items: &'a [WorkItem], part: Part<'a>) -> impl Fn(usize) -> bool + 'a {
     let groups = items.iter().map(|item| item.group);
     let n_groups = groups.max().map_or(0, |last| last + 1);

@@ -1,14 +1,14 @@
-//! A work item of a study.
+//! Work item: a named, independent part of a study's work.
 
 use crate::inputs::content_hash::short_hash;
 
-/// Number of hexadecimal digits of the hash of an item's content. With fewer digits, two items of one name may collide.
+/// Number of hexadecimal digits of the hash of an item's content. If smaller, two items with one name may collide.
 const CONTENT_DIGITS: usize = 16;
 
-/// A work item of a study.
+/// Work item of a study: a named part of its work that is computed on its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkItem {
-    /// Name of the item. Items with equal names have equal rows.
+    /// Name of the work item. Items with equal names have equal rows.
     pub name: String,
     /// Inputs of the rows that neither the name nor the fixed keys of the study describe; may be empty. The item's number is not an input, because a later
     /// study may have more items.
@@ -16,12 +16,12 @@ pub struct WorkItem {
     /// Number of the item's group, from 0 without gaps. Items of a group share preparatory work, so one shard computes all of them if there are enough groups
     /// for every shard.
     pub group: usize,
-    /// Whether the rows are results. Otherwise the item prepares data for results; studies that share only such items are different studies.
+    /// Whether the rows are results of the study. Otherwise the item prepares data for results; studies that share only such items are different studies.
     pub is_result: bool,
 }
 
 impl WorkItem {
-    /// Creates an item whose name describes all inputs of its rows.
+    /// Creates a work item whose name describes all inputs of its rows.
     pub fn new(name: String, group: usize) -> Self {
         Self {
             name,
@@ -31,7 +31,7 @@ impl WorkItem {
         }
     }
 
-    /// Returns the item's key in a journal.
+    /// Returns the key of the work item in the journal.
     pub(crate) fn key(&self) -> String {
         match self.content.is_empty() {
             true => format!("piece {}", self.name),
@@ -39,7 +39,7 @@ impl WorkItem {
         }
     }
 
-    /// Adds inputs on which the item's rows depend.
+    /// Adds inputs on which the rows of the work item depend.
     pub fn made_of(mut self, content: impl std::fmt::Debug) -> Self {
         self.content = short_hash(format!("{content:?}"), CONTENT_DIGITS);
         self

@@ -1,25 +1,25 @@
-//! Axes of recorded frames: touch, time, and position on the skin.
+//! Axis order of recorded frames: touches, time, and positions on the skin.
 //!
-//! An order is a string with one letter per axis of the file. `n` counts touches, `t` frames of a touch, `y` rows, and `x` columns. Beside `y` and `x`, `c`
-//! counts the values of a taxel; otherwise `c` counts the taxels of a skin without rows and columns. Several axes `c` without `y` and `x` are combined to one
-//! axis of taxels.
+//! An order is a string with one letter per axis of the file: `n` for touches, `t` for frames of a touch, `y` for rows, and `x` for columns. If the order
+//! contains `y` and `x`, `c` stands for the values of a taxel; otherwise `c` stands for the taxels of a skin without rows and columns. Several axes `c` without
+//! `y` and `x` are combined to one axis of taxels.
 
 use crate::error::{Error, Result};
 use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};
 use ndarray::{Array2, ArrayD};
 
-/// Aspect ratio of a grid above which two axes may be other than rows and columns. If larger, time may be mistaken for taxels; if smaller, the order must be
-/// given for more arrays.
+/// Maximum aspect ratio of a grid for which the last two axes are assumed to be rows and columns. If larger, time may be mistaken for taxels; if smaller, the
+/// order must be given for more arrays.
 const MAX_ASPECT: usize = 6;
-/// Maximum length of a last axis that counts the values of a taxel: three force components.
+/// Maximum length of a last axis that is assumed to contain the values of a taxel (three force components).
 const MAX_VALUES: usize = 3;
 
-/// Axes of frames as given in a study.
+/// Axis order of frames as given in a study.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameAxes<'a> {
-    /// One letter per axis; `None` for the default order of the number of axes.
+    /// Letters of the axes; `None` for the default order.
     pub order: Option<&'a str>,
-    /// Numbers of rows and columns that the axis `c` contains.
+    /// Numbers of rows and columns into which the axis `c` is divided.
     pub grid: Option<[usize; 2]>,
     /// Number of values per taxel.
     pub n_values: usize,
@@ -27,35 +27,35 @@ pub struct FrameAxes<'a> {
     pub key: &'a str,
 }
 
-/// Lengths of the axes of frames, and their order in the file.
+/// Axis lengths of recorded frames, and the axis order in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameShape {
     /// Number of touches n.
     pub n_touches: usize,
     /// Number of frames per touch, F.
     pub n_frames: usize,
-    /// Number of rows; 1 without a grid.
+    /// Number of rows of the grid; 1 without a grid.
     pub rows: usize,
-    /// Number of columns; without a grid, the number of taxels.
+    /// Number of columns of the grid; without a grid, the number of taxels.
     pub columns: usize,
-    /// Whether taxels have rows and columns.
+    /// Whether the taxels have rows and columns.
     pub has_grid: bool,
     /// Number of values per taxel.
     n_values: usize,
-    /// Axes of the file in the order n, t, c, y, x.
+    /// Axis numbers of the file in the order n, t, c, y, x.
     axes: Vec<usize>,
-    /// Letters of the axes of the file.
+    /// Letters of the file's axes.
     order: String,
 }
 
 impl FrameShape {
-    /// Returns the number of values of a frame.
+    /// Returns the number of values per frame.
     pub fn n_frame_values(&self) -> usize {
         self.n_values * self.rows * self.columns
     }
 
-    /// Returns the order and the lengths of a related array of shape `shape` with `n_values` values per taxel instead of one. The values are an axis c
-    /// before the axes of position.
+    /// Returns the axis order and the expected axis lengths of an additional array with `n_values` values per taxel. `shape` is the shape of the frames; the
+    /// additional axis c comes before the axes of position.
     pub fn beside(&self, shape: &[usize], n_values: usize) -> (String, Vec<usize>) {
         let (mut order, mut shape) = (self.order.clone(), shape.to_owned());
         let has_rows = order.contains('y');
@@ -70,11 +70,11 @@ impl FrameShape {
         (order, shape)
     }
 
-    /// Returns one number per taxel, row by row, shape (rows · columns). The input has the taxel axes of a file of frames of shape `frames`, or the shape
+    /// Arranges numbers as one per taxel, row by row, shape (rows · columns). The input has the taxel axes of a file of frames of shape `frames`, or the shape
     /// rows × columns, or is a list.
     ///
     /// # Errors
-    /// If the numbers do not fill a frame; the error is the expected shape.
+    /// If the numbers do not fill a frame; the error contains the expected shape.
     pub fn arrange_taxels(
         &self,
         numbers: ArrayD<f64>,
@@ -110,7 +110,7 @@ impl FrameShape {
         }
     }
 
-    /// Converts the numbers of a file to one row per frame, shape (n · F, values · rows · columns).
+    /// Arranges the numbers of a file as one row per frame, shape (n · F, values · rows · columns).
     ///
     /// # Panics
     /// If the axes of the numbers differ from the shape.
@@ -126,7 +126,7 @@ impl FrameShape {
     }
 }
 
-/// Reads the axes of an array of frames.
+/// Determines the axes of an array of frames.
 ///
 /// # Errors
 /// If the order does not fit the array, or no order is given and two orders are possible.
@@ -240,7 +240,7 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
     }
 }
 
-/// Returns the letters of an order without separators.
+/// Returns the letters of an axis order without separators, after checking them.
 fn checked_order(order: &str, key: &str) -> Result<String> {
     let parts = [' ', ',', '×', '-', '*'];
     let letters: String = order
@@ -266,7 +266,7 @@ fn checked_order(order: &str, key: &str) -> Result<String> {
     }
 }
 
-/// Returns another order that is as likely as the default; `None` if there is none.
+/// Returns another axis order that is as plausible as the default; `None` if there is none.
 fn other_order(shape: &[usize]) -> Option<&'static str> {
     let is_strip = |a: usize, b: usize| a.max(b) > MAX_ASPECT * a.min(b);
     match *shape {

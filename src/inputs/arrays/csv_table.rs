@@ -1,14 +1,14 @@
-//! Tables of comma-separated values, one row per line. Semicolons, tabs and spaces are also accepted as separators, and one line of column names is allowed.
+//! CSV tables with one row per line. Semicolons, tabs and spaces are also accepted as separators, and one header line is allowed.
 
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::path::Path;
 
-/// Reads a table of numbers or, if a cell is not a number, of texts. An empty cell among numbers is NaN. The first line contains names if a cell is not a
+/// Reads a CSV table of numbers or, if an entry is not a number, of texts. An empty entry among numbers is NaN. The first line is a header if an entry is not a
 /// number and the other lines contain numbers. A column without a name contains row numbers and is skipped.
 ///
 /// # Errors
-/// If the file cannot be read, is empty, or its lines differ in the number of cells.
+/// If the file cannot be read, is empty, or its lines differ in the number of entries.
 pub fn read(path: &Path) -> Result<FileArray> {
     let place = path.display().to_string();
     let text = crate::files::read(path).map_err(|e| Error::io(path, "read", e))?;
@@ -80,7 +80,7 @@ pub fn read(path: &Path) -> Result<FileArray> {
     })
 }
 
-/// Returns the numbers of a line separated by spaces, or the whole line as one text.
+/// Returns the numbers of a line that are separated by spaces, or the whole line as one text.
 fn numbers_or_text(line: &str) -> Vec<String> {
     let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
     match words.iter().all(|word| word.parse::<f64>().is_ok()) {
@@ -89,7 +89,7 @@ fn numbers_or_text(line: &str) -> Vec<String> {
     }
 }
 
-/// Returns the cells of a line without their quotes.
+/// Returns the entries of a line without their quotes.
 fn cells(line: &str, separator: char) -> Vec<String> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)

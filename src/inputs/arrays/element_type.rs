@@ -1,24 +1,24 @@
-//! Element types of NumPy files, and the decoding of elements.
+//! Element types of NumPy files, and decoding of the elements.
 
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements};
 
 const ALLOWED: &str = "numbers (float16 to float64, int8 to int64, uint8 to uint64, bool) or texts";
 
-/// Type of the elements.
+/// Type of the elements in a NumPy file.
 #[derive(Clone, Copy, Debug)]
 pub struct ElementType {
-    /// Kind of the elements.
+    /// Kind of the elements: number, truth value or text.
     pub kind: ElementKind,
     /// Size of an element, bytes.
     pub size: usize,
-    /// NumPy's type letter.
+    /// NumPy's letter for the type.
     letter: char,
     is_big_endian: bool,
 }
 
 impl ElementType {
-    /// Reads the value of `descr`, such as `'<f8', 'fortran_order': …`.
+    /// Parses the value of `descr` in a header, such as `'<f8', 'fortran_order': …`.
     ///
     /// # Errors
     /// If the elements are neither numbers nor texts; the error contains their type.
@@ -62,7 +62,7 @@ impl ElementType {
         })
     }
 
-    /// Returns an empty list of elements with capacity for `n`.
+    /// Returns an empty list with capacity for `n` elements.
     pub fn empty(&self, n: usize) -> Elements {
         match self.kind {
             ElementKind::Text => Elements::Texts(Vec::with_capacity(n)),
@@ -70,9 +70,9 @@ impl ElementType {
         }
     }
 
-    /// Decodes complete elements and appends them.
+    /// Decodes complete elements from bytes and appends them to `elements`.
     pub fn decode(&self, bytes: &[u8], elements: &mut Elements) {
-        /// Appends elements of `N` bytes, given in little-endian order.
+        /// Appends elements of `N` bytes that are given in little-endian order.
         fn numbers<const N: usize>(
             (bytes, is_big_endian): (&[u8], bool),
             numbers: &mut Vec<f64>,
@@ -108,7 +108,7 @@ impl ElementType {
         }
     }
 
-    /// Returns a text without its zero padding.
+    /// Decodes a text and removes its zero padding.
     fn text(&self, bytes: &[u8]) -> String {
         if self.letter != 'U' {
             let text = String::from_utf8_lossy(bytes);
@@ -126,7 +126,7 @@ impl ElementType {
     }
 }
 
-/// Converts an IEEE 754 binary16 number.
+/// Converts an IEEE 754 binary16 number to f64.
 fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));

@@ -1,9 +1,9 @@
-//! Arrays as stored in files.
+//! Arrays as stored in files: shape, element kind and elements.
 
-/// Kind of the elements of a file.
+/// Kind of the elements of an array file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ElementKind {
-    /// Floating-point numbers with this relative spacing.
+    /// Floating-point numbers with the given relative spacing.
     Float(f64),
     /// Integers.
     Integer,
@@ -13,10 +13,10 @@ pub enum ElementKind {
     Text,
 }
 
-/// Elements of a file in row-major order.
+/// Elements of an array file in row-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Elements {
-    /// Numbers; false is 0, and true is 1.
+    /// Numbers; false is stored as 0, and true as 1.
     Numbers(Vec<f64>),
     /// Texts without their padding.
     Texts(Vec<String>),
@@ -25,12 +25,12 @@ pub enum Elements {
 /// Array as stored in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileArray {
-    /// Name of the file, and of the member of an archive, for error messages.
+    /// Name of the file and of the archive member, for error messages.
     pub place: String,
-    /// Lengths of the axes.
+    /// Lengths of the array's axes.
     pub shape: Vec<usize>,
     /// Kind of the elements.
     pub kind: ElementKind,
-    /// The elements in row-major order.
+    /// Elements in row-major order.
     pub elements: Elements,
 }

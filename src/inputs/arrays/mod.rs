@@ -1,6 +1,6 @@
-//! Arrays in files: `.npy`, members of `.npz`, and `.csv`. All element types of NumPy for numbers and texts are supported.
+//! Reading of array files: `.npy`, members of `.npz`, and `.csv`. All NumPy element types for numbers and texts are supported.
 //!
-//! In a `.npz` archive, the member with the requested name (`frames`, `labels` …) is read, or its only member. A `.csv` file is a table of rows and columns.
+//! In a `.npz` archive, the member with the requested name (`frames`, `labels`, …) is read, or its only member. A `.csv` file is a table of rows and columns.
 //! Elements are converted to f64 (integers exactly up to 2⁵³), or kept as texts.
 
 use crate::inputs::arrays::file_array::{Elements, FileArray};
@@ -34,7 +34,7 @@ enum Format {
 const ALLOWED: &str = "an array of numbers in a .npy, .npz or .csv file";
 
 impl FileArray {
-    /// Reads the array `name` of a file; the name selects a member of an archive.
+    /// Reads the array `name` from a file; the name selects a member of an archive.
     ///
     /// # Errors
     /// If the file does not exist, contains no such array, or its elements are neither numbers nor texts.
@@ -51,7 +51,7 @@ impl FileArray {
         }
     }
 
-    /// Returns the lengths of the axes of the array `name` of a file. Of a `.npy` file, only the header is read.
+    /// Returns the axis lengths of the array `name` in a file. If the file is a `.npy` file, only the header is read.
     ///
     /// # Errors
     /// If the file does not exist, or contains no such array.
@@ -66,7 +66,7 @@ impl FileArray {
         }
     }
 
-    /// Returns the numbers as an array.
+    /// Converts the elements to an array of numbers.
     ///
     /// # Errors
     /// If the elements are texts.
@@ -101,7 +101,7 @@ pub fn read_matrix(path: &Path, name: &str) -> Result<Array2<f64>> {
     }
 }
 
-/// Returns whether a `.npz` archive contains the array `name` and other arrays; `false` for other files.
+/// Returns whether a file is a `.npz` archive that contains the array `name` and other arrays.
 pub fn is_member(path: &Path, name: &str) -> bool {
     let is_archive = || matches!(format_of(path), Ok(Format::Npz));
     is_archive()
@@ -127,7 +127,7 @@ fn open(path: &Path) -> Result<File> {
     }
 }
 
-/// Returns the format, determined by the first bytes of the file; for text files, by the extension.
+/// Determines the format of an array file from its first bytes; for text files, from the extension.
 fn format_of(path: &Path) -> Result<Format> {
     let mut start = [0; 6];
     let mut file = open(path)?;
@@ -150,7 +150,7 @@ fn format_of(path: &Path) -> Result<Format> {
     }
 }
 
-/// Reads a member of an archive with `read`, which receives the place, the bytes and their number.
+/// Reads a member of an archive with the function `read`, which receives the place, the bytes and their number.
 fn with_member<T>(
     path: &Path,
     name: &str,

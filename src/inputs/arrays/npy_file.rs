@@ -6,9 +6,9 @@ use crate::inputs::arrays::file_array::{Elements, FileArray};
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 use std::io::Read;
 
-/// Maximum size of a header, bytes. A longer header is damaged; NumPy rejects headers of more than 10,000 bytes by default.
+/// Maximum size of a header, bytes. A longer header indicates a damaged file; NumPy rejects headers above 10,000 bytes by default.
 const MAX_HEADER: usize = 1 << 20;
-/// Number of elements decoded at once; they fit into the processor's cache.
+/// Number of elements that are decoded together; they fit into the processor's cache.
 const BLOCK: usize = 1 << 13;
 
 /// Header of a `.npy` file.
@@ -17,13 +17,13 @@ pub struct Header {
     pub elements: ElementType,
     /// Whether the first index changes fastest (Fortran order).
     is_fortran: bool,
-    /// Lengths of the axes.
+    /// Lengths of the array's axes.
     pub shape: Vec<usize>,
-    /// Number of bytes before the elements.
+    /// Number of bytes before the first element.
     n_bytes: u64,
 }
 
-/// Reads a header.
+/// Reads the header of a `.npy` file.
 ///
 /// # Errors
 /// If the header is damaged, or the elements are neither numbers nor texts.
@@ -70,7 +70,7 @@ pub fn read_header(place: &str, reader: &mut (impl Read + ?Sized)) -> Result<Hea
     })
 }
 
-/// Reads an array of `length` bytes.
+/// Reads a `.npy` array that occupies `length` bytes.
 ///
 /// # Errors
 /// If the header is damaged, the elements are neither numbers nor texts, or their number differs from the header.

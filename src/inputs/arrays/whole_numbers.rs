@@ -1,33 +1,33 @@
-//! Classes, groups and row numbers in arrays: integers, texts, or one column per class.
+//! Classes, groups and row numbers read from arrays: integers, texts, or one column per class.
 
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-/// Largest integer that f64 represents uniquely, 2⁵³.
+/// Largest integer up to which f64 represents every integer exactly, 2⁵³.
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
-/// Value that identifies a class or a group.
+/// Value in a file that identifies a class or a group.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum KeyValue {
-    /// An integer.
+    /// Integer that identifies a class or group.
     Integer(i64),
-    /// A text.
+    /// Text that identifies a class or group.
     Text(String),
 }
 
-/// Class of every touch or row.
+/// Class of every touch or row of a data set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassLabels {
-    /// Class of every touch, from 0.
+    /// Class number of every touch or row, from 0.
     pub labels: Vec<usize>,
-    /// Value of each class in the file: integers ascending, texts in order of first occurrence.
+    /// Value of each class as written in the file: integers ascending, texts in the order of first occurrence.
     pub classes: Vec<KeyValue>,
 }
 
 impl ClassLabels {
-    /// Numbers the classes of the given values.
+    /// Assigns class numbers to the given values.
     pub fn new(values: &[KeyValue]) -> Self {
         let classes = distinct(values);
         let number: HashMap<&KeyValue, usize> = classes.iter().zip(0..).collect();
@@ -38,7 +38,7 @@ impl ClassLabels {
     }
 }
 
-/// Returns the distinct values: integers ascending, texts in order of first occurrence.
+/// Returns the distinct values: integers ascending, texts in the order of first occurrence.
 fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
     let all = values.iter().cloned();
     match values.first() {
@@ -62,10 +62,10 @@ pub fn read_class_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyVal
     )
 }
 
-/// Reads the class of each of `n_rows` rows of features, as [`read_class_values`] does. Integers must be at least 0.
+/// Reads the class of each of `n_rows` feature rows, as [`read_class_values`] does. Integers must be at least 0.
 ///
 /// # Errors
-/// Returns the errors of [`read_class_values`]. Also if there are no labels, or an integer is below 0; the error names its position.
+/// Returns the errors of [`read_class_values`], or an error if there are no labels or an integer is negative; the error names its position.
 pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<ClassLabels> {
     let values = read_class_values(path, name, n_rows)?;
     if values.is_empty() {
@@ -75,7 +75,7 @@ pub fn read_class_labels(path: &Path, name: &str, n_rows: usize) -> Result<Class
     Ok(ClassLabels::new(&values))
 }
 
-/// Reads one group for each of `n` touches: integers of any type from 0 on, or texts.
+/// Reads one group for each of `n` touches: non-negative integers of any type, or texts.
 ///
 /// # Errors
 /// If the file does not exist or contains other data, or an integer is below 0 or beyond 2⁵³; the error names its position.
@@ -94,7 +94,7 @@ pub fn read_group_values(path: &Path, name: &str, n: usize) -> Result<Vec<KeyVal
     Ok(values)
 }
 
-/// Reads one group number for each of `n` touches: integers unchanged, texts numbered in order of first occurrence.
+/// Reads one group number for each of `n` touches. Integers are unchanged; texts are numbered in the order of first occurrence.
 ///
 /// # Errors
 /// Returns the errors of [`read_group_values`].
@@ -102,7 +102,7 @@ pub fn read_group_keys(path: &Path, name: &str, n: usize) -> Result<Vec<usize>> 
     Ok(group_keys(&read_group_values(path, name, n)?))
 }
 
-/// Returns group numbers: integers unchanged, texts numbered in order of first occurrence.
+/// Converts group values to group numbers. Integers are unchanged; texts are numbered in the order of first occurrence.
 pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
     let mut numbers = HashMap::new();
     let keys = values.iter().map(|value| match value {
@@ -115,7 +115,7 @@ pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
     keys.collect()
 }
 
-/// Reads row numbers, or a mask with one bool per row.
+/// Reads row numbers from a file: integers, or a mask with one bool per row.
 ///
 /// # Errors
 /// If the file does not exist or contains other data, a row does not exist (the error names its position), or the length of the mask differs from the number
@@ -171,7 +171,7 @@ fn not_below_zero(path: &Path, values: &[KeyValue]) -> Result<()> {
     }
 }
 
-/// Returns the array without the line of names above its `n` rows, if it is a table of texts.
+/// Returns the array without its header line, if it is a table of texts with one line more than `n` rows.
 fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
     let is_table = path.extension().is_some_and(|ending| {
         ["csv", "tsv", "txt"]
@@ -188,7 +188,7 @@ fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
     array
 }
 
-/// Returns, for an array with one column per class, the number of the column that is 1 in each row.
+/// Converts an array with one 0/1 column per class to the number of the column that is 1 in each row.
 fn one_hot(mut array: FileArray) -> Result<FileArray> {
     let ([n, n_classes], Elements::Numbers(numbers)) = (&array.shape[..], &array.elements) else {
         return Ok(array);
@@ -215,7 +215,7 @@ fn one_hot(mut array: FileArray) -> Result<FileArray> {
     Ok(array)
 }
 
-/// Returns the values of an array of one dimension, one column, or one row.
+/// Returns the values of an array with one dimension, one column, or one row.
 fn values(array: FileArray, allowed: &str) -> Result<Vec<KeyValue>> {
     if array.shape.iter().filter(|&&length| length != 1).count() > 1 || array.shape.is_empty() {
         let given = format!("an array of shape {:?}", array.shape);

@@ -8,8 +8,8 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use std::collections::BTreeMap;
 
-/// Returns labels of which a given fraction (0 to 1) is wrong. In each class, the number of wrong labels is the fraction of its rows, rounded to whole rows.
-/// A wrong label is drawn uniformly from the other classes.
+/// Returns a copy of the labels in which a given fraction (0 to 1) is wrong. In each class, the number of wrong labels is the fraction of its rows, rounded to
+/// whole rows. A wrong label is drawn uniformly from the other classes.
 ///
 /// For one seed, the wrong labels of a smaller fraction are a subset of those of a larger fraction. With a single class, no label is changed.
 ///
@@ -41,8 +41,8 @@ pub fn mislabelled(labels: ArrayView1<usize>, fraction: f64, seed: &Seed) -> Res
     Ok(wrong)
 }
 
-/// Returns the split with long-tailed training classes (Cui et al., *Class-balanced loss based on effective number of samples*, 2019). The K classes are put
-/// in random order. Class r (from 0) keeps its first n · ratio^(−r / (K − 1)) training rows, rounded, where n is the smallest number of training rows of any
+/// Returns the split with long-tailed training classes (Cui et al., *Class-balanced loss based on effective number of samples*, 2019). The K classes are put in
+/// random order. Class r (from 0) keeps its first n · ratio^(−r / (K − 1)) training rows, rounded, where n is the smallest number of training rows of any
 /// class. The first class therefore has `ratio` times as many rows as the last class. The test rows are unchanged.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Temporal features: features of the sequence of measured frames of a touch.
+//! Temporal features of a touch, computed from its sequence of measured frames.
 //!
 //! A touch is a sequence of F frames y_t of m measurements each. Random measurements approximately preserve distances between frames (Johnson and
 //! Lindenstrauss). The strength, duration, number and steadiness of contacts can therefore be computed from measurements, without reconstructing taxels. The
@@ -29,27 +29,27 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum TemporalFeatures {
-    /// Frame of the highest level (the first, if several are equal): m numbers.
+    /// Measurements of the frame with the highest level (the first, if several are equal): m numbers.
     Deepest,
-    /// k frames at even intervals, including the first and the last (for k = 1, the middle frame): k · m numbers.
+    /// Measurements of k evenly spaced frames, including the first and the last (for k = 1, the middle frame): k · m numbers.
     Stacked(usize),
     /// Mean, standard deviation and largest absolute value of each measurement over time: 3 m numbers.
     Moments,
-    /// Course of the touch: ten numbers.
+    /// Course of the touch: ten numbers that describe contact strength, duration and change; see the module documentation.
     Course,
     /// Moments, followed by the course: 3 m + 10 numbers.
     Summarised,
 }
 
-/// Number of features of a course.
+/// Number of features of the course of a touch.
 const N_COURSE: usize = 10;
 
-/// Threshold of contact, as a fraction of the range from the lowest to the highest level. If lower, noise counts as contact; if higher, weak contacts are
-/// missed.
+/// Level above which a frame counts as in contact, as a fraction of the range from the lowest to the highest level. If lower, noise counts as contact; if
+/// higher, weak contacts are missed.
 const CONTACT_LEVEL: f64 = 0.5;
 
 impl TemporalFeatures {
-    /// Returns the number of features computed from F frames of m measurements.
+    /// Returns the number of temporal features for F frames of m measurements.
     pub fn n_features(self, n_frames: usize, m: usize) -> usize {
         match self {
             Self::Deepest => m,
@@ -60,7 +60,7 @@ impl TemporalFeatures {
         }
     }
 
-    /// Writes the features of one touch into `row`. `frames` has shape F × m, with F at least 1.
+    /// Writes the temporal features of one touch into `row`. `frames` has shape F × m, with F at least 1.
     ///
     /// # Panics
     /// If the length of `row` differs from [`n_features`](Self::n_features).
@@ -86,7 +86,7 @@ impl TemporalFeatures {
     }
 }
 
-/// Returns the index of frame number `part` of k evenly spaced frames.
+/// Returns the index of frame number `part` among k evenly spaced frames.
 fn evenly(part: usize, k: usize, n_frames: usize) -> usize {
     match k {
         1 => (n_frames - 1) / 2,
@@ -99,7 +99,7 @@ fn levels(frames: ArrayView2<f64>) -> Vec<f64> {
     rows.map(|frame| frame.dot(&frame).sqrt()).collect()
 }
 
-/// Returns the index of the highest level; the first, if several are equal.
+/// Returns the index of the highest level; the first index, if several are equal.
 fn highest(levels: &[f64]) -> usize {
     let mut best = 0;
     for (frame, &level) in levels.iter().enumerate() {
@@ -207,7 +207,7 @@ mod tests {
         row.to_vec()
     }
 
-    /// A touch whose frames have one non-zero measurement each, except the fourth frame.
+    /// Returns a touch whose frames have one non-zero measurement each, except the fourth frame.
     fn touch() -> Array2<f64> {
         array![
             [0.0, 0.0],

@@ -1,7 +1,7 @@
-//! Fusion of several touches of one object into one decision.
+//! Fusion: one decision on several touches of one object.
 //!
-//! The scores of k touches are summed, and one label is decided for the sum. If scores are log-probabilities, this is the decision for independent
-//! observations. If scores are decision values of an SVM, this is a vote weighted by margins.
+//! The scores of k touches are summed, and the sum determines one label. If scores are log-probabilities, this is the decision for independent observations. If
+//! scores are decision values of an SVM, this is a vote weighted by margins.
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,16 @@ use rand::seq::SliceRandom;
 
 use crate::random::Seed;
 
-/// Groups of rows with one decision per group.
+/// Groups of test rows with one decision per group.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FusedRows {
-    /// Groups of k row positions. All rows of a group have one class; groups are ordered by class and disjoint.
+    /// Groups of k row positions. All rows of a group have the same class; groups are disjoint and ordered by class.
     pub groups: Vec<Vec<usize>>,
-    /// Number of rows left over because they do not fill a whole group.
+    /// Number of rows that do not fill a whole group.
     pub n_left_out: usize,
 }
 
-/// Groups rows of equal label at random, k rows per group. For k = 1, each row is a group, in the order of the rows.
+/// Groups rows with equal labels at random, k rows per group. For k = 1, each row is a group, in the order of the rows.
 ///
 /// The rows of each class are shuffled by a separate stream of `seed` and cut into groups. The groups of a class therefore do not depend on other classes.
 ///
@@ -50,7 +50,7 @@ pub fn fuse_rows(labels: ArrayView1<usize>, k: usize, seed: &Seed) -> FusedRows 
     fused
 }
 
-/// Sums the scores of each group: shape (n_rows × n_scores) to shape (n_groups × n_scores).
+/// Sums the scores of each group: (n_rows × n_scores) to (n_groups × n_scores).
 pub fn fuse_scores(scores: ArrayView2<f64>, groups: &[Vec<usize>]) -> Array2<f64> {
     let mut sums = Array2::zeros((groups.len(), scores.ncols()));
     for (mut sum, group) in sums.outer_iter_mut().zip(groups) {

@@ -5,15 +5,15 @@ use ndarray::{Array1, Array2, ArrayView1, Axis};
 use crate::{Error, Result};
 use bubbletouch_svm::dataset::check_labels;
 
-/// Confusion matrix: the number of rows of each true class (row) predicted as each class (column).
+/// Confusion matrix: number of rows of each true class (matrix row) that are predicted as each class (matrix column).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConfusionMatrix {
-    /// Counts of test rows, n_classes × n_classes.
+    /// Number of test rows per true and predicted class, n_classes × n_classes.
     pub counts: Array2<usize>,
 }
 
 impl ConfusionMatrix {
-    /// Counts predictions.
+    /// Counts the predictions of all rows by true and predicted class.
     ///
     /// # Errors
     /// If there are no rows, the numbers of predictions and true labels differ, or a label is `n_classes` or above.
@@ -50,7 +50,7 @@ impl ConfusionMatrix {
         self.counts.diag().sum()
     }
 
-    /// Returns the fraction of correctly predicted rows, 0..=1.
+    /// Returns the fraction of correctly predicted rows, 0 to 1.
     pub fn accuracy(&self) -> f64 {
         self.n_correct() as f64 / self.n_rows() as f64
     }
@@ -72,7 +72,7 @@ impl ConfusionMatrix {
         shares(self.counts.diag(), &occurrences) * 2.0
     }
 
-    /// Returns the mean F1 score over the classes that occur, as truth or as prediction (scikit-learn's `f1_score(average="macro", zero_division=0)`).
+    /// Returns the mean F1 score over all classes that occur as truth or prediction (scikit-learn's `f1_score(average="macro", zero_division=0)`).
     pub fn macro_f1(&self) -> f64 {
         let occurrences = self.counts.sum_axis(Axis(0)) + self.counts.sum_axis(Axis(1));
         let n_occurring = occurrences.iter().filter(|&&count| count > 0).count();

@@ -1,17 +1,17 @@
 //! Choice of the next pose in which to touch an unknown object: random, farthest from the previous touches, or most informative.
 //!
-//! The pose can be commanded, but the object there is known only after the touch. A classifier assigns labels a₁ … a_t to touches in poses x₁ … x_t. The
+//! The robot can choose the pose, but the label of the touch is known only afterwards. A classifier assigns labels a₁ … a_t to touches in poses x₁ … x_t. The
 //! posterior probability (belief) of object o is
 //!
 //! P(o) ∝ Π P(a_i | o, x_i), with a uniform prior.
 //!
-//! The label probabilities of object o in pose x are estimated from training touches. Each is labelled by a classifier that was not trained on it:
+//! The label probabilities of object o in pose x are estimated from training touches. A classifier that was not trained on a touch labels it:
 //!
 //! P(a | o, x) = (Σ_i w_i [a_i = a] + s P(a | o)) / (Σ_i w_i + s), w_i = exp(−d²(x, x_i) / 2), over the training touches i of o,
 //! P(a | o) = (n_oa + 1/n) / (n_o + 1), for n objects and n_o touches of o, of which n_oa have the label a.
 //!
 //! The distance d² sums squared differences along the axes of a pose, each divided by the bandwidth of its axis. The bandwidths and s maximise the
-//! leave-one-out likelihood of the labels. The most informative pose has the least expected entropy of P(o) after the touch, that is the greatest
+//! leave-one-out likelihood of the labels. The most informative pose has the lowest expected entropy of P(o) after the touch, that is the greatest
 //! [information](PoseAnswers::information)
 //!
 //! I(O; A | x) = H(A | x) − Σ_o P(o) H(A | o, x), P(a | x) = Σ_o P(o) P(a | o, x) (Lindley, 1956).
@@ -20,25 +20,25 @@ use ndarray::{Array1, Array2, ArrayView1, Axis};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Strategy for the touches after the first.
+/// Policy that chooses the touches after the first one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NextTouch {
-    /// A random pose.
+    /// A randomly drawn pose.
     #[default]
     Random,
-    /// The pose with the largest distance to its nearest previous touch.
+    /// The pose with the largest distance to the nearest previous touch.
     Farthest,
-    /// The pose with the least expected entropy of the belief.
+    /// The pose with the lowest expected entropy of the belief over objects.
     MostInformative,
 }
 
-/// Poses of touches.
+/// Poses of touches in normalised coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Poses {
-    /// Coordinates, n_touches × n_axes, each axis in units of its range.
+    /// Coordinates of the poses, n_touches × n_axes, each axis in units of its range.
     pub coordinates: Array2<f64>,
-    /// For each axis that is a periodic angle, the size of a full turn in these units; `None` for other axes.
+    /// Size of a full turn on each axis that is a periodic angle, in units of the axis range; `None` for other axes.
     pub turns: Vec<Option<f64>>,
 }
 
@@ -51,7 +51,7 @@ impl Poses {
         }
     }
 
-    /// Returns the absolute difference of two touches along an axis; for a periodic axis, the shorter way round.
+    /// Returns the absolute difference of two poses along an axis; for a periodic axis, the smaller of the two differences.
     fn difference(&self, axis: usize, a: usize, b: usize) -> f64 {
         let apart = (self.coordinates[[a, axis]] - self.coordinates[[b, axis]]).abs();
         match self.turns[axis] {
@@ -63,7 +63,7 @@ impl Poses {
         }
     }
 
-    /// Returns the sum of squared differences of two touches, each axis in units of its bandwidth.
+    /// Returns the sum of squared differences of two poses, each axis in units of its bandwidth.
     fn squared_distance(&self, bandwidths: &[f64], a: usize, b: usize) -> f64 {
         let along = bandwidths.iter().enumerate();
         let along = along.map(|(axis, bandwidth)| self.difference(axis, a, b) / bandwidth);
@@ -89,23 +89,23 @@ impl Poses {
 #[derive(Clone, Debug)]
 pub struct AnswerModel<'a> {
     poses: &'a Poses,
-    /// For each object, its touches and their labels.
+    /// Touches of each object and their predicted labels.
     answered: Vec<Vec<(usize, usize)>>,
-    /// Bandwidth of each axis, in units of the range of the axis.
+    /// Bandwidth of each pose axis, in units of the axis range.
     bandwidths: Vec<f64>,
-    /// Strength s: weight of the pose-independent label frequencies, as a number of touches in the pose.
+    /// Strength s of the prior: weight of the pose-independent label frequencies, as a number of touches in the pose.
     strength: f64,
 }
 
-/// Candidate bandwidths. If narrower, a pose has no neighbours; beyond 1, an axis has little influence, and at infinity none.
+/// Candidate bandwidths, in units of the axis range. If smaller, a pose has no neighbours; above 1, an axis has little influence, at infinity none.
 const BANDWIDTHS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, f64::INFINITY];
-/// Candidate strengths: small values trust few touches in a pose, large values need many.
+/// Candidate strengths s of the prior. If small, few touches in a pose determine the probabilities; if large, many touches are needed.
 const STRENGTHS: [f64; 3] = [1.0, 5.0, 25.0];
-/// Number of passes over all parameters; each pass tunes every parameter again.
+/// Number of passes over all parameters; each pass optimises every parameter once.
 const PASSES: usize = 2;
 
 impl<'a> AnswerModel<'a> {
-    /// Fits the model to touches (pose number, object, label). Objects and labels are below `n_objects`.
+    /// Fits the model to labelled touches (pose number, object, label). Objects and labels are below `n_objects`.
     pub fn new(poses: &'a Poses, touches: &[(usize, usize, usize)], n_objects: usize) -> Self {
         let mut answered = vec![Vec::new(); n_objects];
         for &(touch, object, answer) in touches {
@@ -126,7 +126,7 @@ impl<'a> AnswerModel<'a> {
         model
     }
 
-    /// Sets one parameter to the candidate value of highest likelihood.
+    /// Sets one parameter to the candidate value with the highest likelihood.
     fn choose<const N: usize>(&mut self, values: [f64; N], number: impl Fn(&mut Self) -> &mut f64) {
         let likelihoods = values.map(|value| {
             *number(self) = value;
@@ -161,7 +161,7 @@ impl<'a> AnswerModel<'a> {
         (-0.5 * self.poses.squared_distance(&self.bandwidths, a, b)).exp()
     }
 
-    /// Returns the label probabilities of each object in the pose of a touch.
+    /// Returns the label probabilities of each object in the pose of the given touch.
     pub fn at(&self, touch: usize) -> PoseAnswers {
         let n = self.answered.len();
         let mut given = Array2::from_elem((n, n), 1.0 / n as f64);
@@ -183,14 +183,14 @@ impl<'a> AnswerModel<'a> {
 /// Label probabilities of all objects in one pose.
 #[derive(Clone, Debug)]
 pub struct PoseAnswers {
-    /// P(a | o): n_objects × n_answers, positive; each row sums to 1.
+    /// Conditional probabilities P(a | o), n_objects × n_answers, positive; each row sums to 1.
     given: Array2<f64>,
-    /// H(A | o), nats.
+    /// Entropies H(A | o) of each object's labels, nats.
     entropies: Array1<f64>,
 }
 
 impl PoseAnswers {
-    /// Creates the probabilities from P(a | o): n_objects × n_answers, positive; each row sums to 1.
+    /// Creates the probabilities from P(a | o), n_objects × n_answers, positive; each row sums to 1.
     pub fn new(given: Array2<f64>) -> Self {
         Self {
             entropies: given.map_axis(Axis(1), entropy),
@@ -198,7 +198,7 @@ impl PoseAnswers {
         }
     }
 
-    /// Updates the belief in each object after a label (Bayes' rule).
+    /// Updates the belief in each object after observing a label (Bayes' rule).
     pub fn believe(&self, belief: &mut Array1<f64>, answer: usize) {
         *belief *= &self.given.column(answer);
         *belief /= belief.sum();
@@ -225,8 +225,8 @@ pub fn most_informative(
     first_greatest(left.iter().map(|&touch| poses[touch].information(&belief)))
 }
 
-/// Returns a sequence of k ≤ n of the touches `0..n`, starting with `first`. Each further touch is chosen by `next`, which receives the touches made, in
-/// order, and the remaining touches, ascending. `next` returns a position in the latter list.
+/// Returns a sequence of k ≤ n of the touches `0..n` that starts with `first`. Each further touch is chosen by `next`, which receives the previous touches in
+/// order and the remaining touches in ascending order, and returns a position in the latter list.
 pub fn sequence(
     (first, k): (usize, usize),
     n: usize,
@@ -245,7 +245,7 @@ fn entropy(shares: ArrayView1<f64>) -> f64 {
     -shares.iter().map(|share| share * share.ln()).sum::<f64>()
 }
 
-/// Returns the index of the greatest value; the first, if several are equal.
+/// Returns the index of the greatest value; the first index, if several are equal.
 fn first_greatest(values: impl IntoIterator<Item = f64>) -> usize {
     let values = values.into_iter().enumerate();
     let greatest = values.reduce(|best, one| if one.1 > best.1 { one } else { best });
