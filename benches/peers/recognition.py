@@ -84,8 +84,8 @@ class Folder:
         scaler = StandardScaler().fit(features[train])
         self.train, self.test = scaler.transform(features[train]), scaler.transform(features[test])
         self.train_labels, self.test_labels = labels[train], labels[test]
-        cell = (path / "cell.toml").read_text()
-        self.settings = {key: toml_number(cell, key) for key in ["noise_std", "smoothing_mm", "measurements"]}
+        configuration = (path / "configuration.toml").read_text()
+        self.settings = {key: toml_number(configuration, key) for key in ["noise_std", "smoothing_mm", "measurements"]}
         self.scaled = self.write_scaled(scaler.transform(features))
 
     def write_scaled(self, features):
@@ -253,12 +253,12 @@ HEADER = (
 
 
 def make_folders(arguments):
-    """One folder a cell, by the command; folders that are there are used as they are."""
+    """Writes one folder per configuration with the command; existing folders are used again."""
     folders = []
-    for cell in arguments.cells:
-        path = arguments.work / f"{arguments.study.stem}_cell_{cell}"
-        if not (path / "cell.toml").exists():
-            command = [arguments.binary, "features", str(arguments.study), "--configuration", str(cell), "--out", str(path)]
+    for number in arguments.configurations:
+        path = arguments.work / f"{arguments.study.stem}_configuration_{number}"
+        if not (path / "configuration.toml").exists():
+            command = [arguments.binary, "features", str(arguments.study), "--configuration", str(number), "--out", str(path)]
             if arguments.objects:
                 command += ["--objects", str(arguments.objects)]
             subprocess.run(command, check=True)
@@ -270,7 +270,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--objects", type=Path, help="a folder of PLY meshes in metres; replaces the study's objects")
     parser.add_argument("--study", type=Path, default=ROOT / "experiments/peers.toml")
-    parser.add_argument("--configurations", type=int, nargs="+", default=[0, 1, 2, 9, 10, 11], help="cells of the study")
+    parser.add_argument("--configurations", type=int, nargs="+", default=[0, 1, 2, 9, 10, 11], help="configurations of the study")
     parser.add_argument("--work", type=Path, default=ROOT / "target/peers", help="where the features go")
     parser.add_argument("--binary", default=str(ROOT / "target/release/bubbletouch"))
     parser.add_argument("--train-rows", type=int, default=6000)
