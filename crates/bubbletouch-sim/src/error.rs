@@ -1,4 +1,4 @@
-//! Errors of two kinds: invalid input, and failures of the system.
+//! Errors with messages for the user: invalid input, and failures of the system.
 
 use std::fmt::Display;
 use std::io::ErrorKind;
@@ -9,13 +9,13 @@ pub type Result<T> = std::result::Result<T, Error>;
 
 /// Error with a message for the user.
 ///
-/// The message has the form `<where>: <what was given>; <what is allowed>`.
+/// A message contains where the error is, what was given, and what is allowed: `<where>: <what was given>; <what is allowed>`.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Invalid input. The command exits with code 2.
     #[error("{place}: {given}; {allowed}")]
     Input {
-        /// Place of the input: a file (with line and key if known), an option, or an argument's name.
+        /// Location of the input: a file (with line and key if known), an option, or an argument's name.
         place: String,
         /// Value that was given.
         given: String,
@@ -45,7 +45,7 @@ pub enum Error {
 }
 
 impl Error {
-    /// Creates an [`Error::Input`] from printable values. Long values are truncated, because a quotation from a broken file
+    /// Creates an input error from printable values. Long values are truncated, because a quotation from a broken file
     /// may be the whole file.
     pub fn input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> Self {
         Self::Input {
@@ -55,7 +55,7 @@ impl Error {
         }
     }
 
-    /// Prepends `outer` to the place of invalid input; `outer` ends in a separator (`: ` or `, `).
+    /// Prepends `outer` to the location of invalid input; `outer` ends in a separator, such as a colon or a comma with a space.
     pub fn under(self, outer: impl Display) -> Self {
         match self {
             Self::Input {
@@ -67,7 +67,7 @@ impl Error {
         }
     }
 
-    /// Creates an [`Error::Io`] with file and action, or an [`Error::Input`] if the path of a file to read is a folder.
+    /// Creates an input/output error with file and action, or an input error if the path of a file to read is a folder.
     pub fn io(path: impl AsRef<Path>, action: &'static str, source: std::io::Error) -> Self {
         if action == "read" && source.kind() == ErrorKind::IsADirectory {
             return Self::input(path.as_ref().display(), "a folder", "a file");
@@ -92,7 +92,7 @@ impl Error {
         Self::input(path.display(), given, allowed)
     }
 
-    /// Creates an [`Error::Input`] from a TOML error: `file:line:column: what was given; what is allowed`.
+    /// Creates an input error from a TOML error, with the text `file:line:column: what was given; what is allowed`.
     pub fn toml(place: &str, text: &str, error: &toml::de::Error) -> Self {
         let position = error.span().map_or(String::new(), |span| {
             let before = &text[..span.start.min(text.len())];
@@ -119,7 +119,7 @@ impl Error {
         Self::input(format!("{place}{position}"), given, allowed)
     }
 
-    /// Returns the command's exit code: 2 for invalid input, 1 for other failures.
+    /// Returns the command's exit code for this error: 2 for invalid input, 1 for other failures.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input { .. } => 2,
@@ -128,7 +128,7 @@ impl Error {
     }
 }
 
-/// Required by linfa's traits for the error of every classifier.
+/// Conversion that linfa's traits require for the error of every classifier.
 #[cfg(feature = "learning")]
 impl From<linfa::Error> for Error {
     fn from(error: linfa::Error) -> Self {
@@ -147,14 +147,14 @@ impl From<bubbletouch_svm::Error> for Error {
     }
 }
 
-/// Largest number of characters shown per line.
+/// Maximum number of characters shown per line of a message.
 const LETTERS: usize = 500;
-/// Largest number of lines shown.
+/// Maximum number of lines shown in a message.
 const LINES: usize = 25;
-/// Approximate largest number of bytes shown.
+/// Approximate maximum number of bytes shown in a message.
 const BYTES: usize = 2000;
 
-/// Truncates a text to a readable length.
+/// Truncates a text to a readable length for a message.
 fn shortened(text: String) -> String {
     if text.len() <= LETTERS {
         return text;

@@ -1,6 +1,7 @@
-//! Compact encoding of a frame: one bit per taxel, in words of 64, then the nonzero values as f32. Little-endian.
+//! Compact encoding of a frame: one bit per taxel, in words of 64 bits, then the nonzero values as f32; little-endian.
 //!
-//! In a typical touch a tenth of the taxels are nonzero, so the encoding takes an eighth of the f32 frame. At most it takes a thirty-second more.
+//! In a typical touch a tenth of the taxels are nonzero, so the encoding takes an eighth of the memory of an f32 frame. At most it takes a thirty-second more
+//! than this frame.
 
 /// Number of taxels per word of bits.
 const WORD: usize = 64;
@@ -10,7 +11,7 @@ pub fn most_bytes(n_taxels: usize) -> usize {
     n_taxels.div_ceil(WORD) * 8 + 4 * n_taxels
 }
 
-/// Encodes a frame.
+/// Encodes a frame as bytes.
 pub fn encode(frame: &[f32]) -> Box<[u8]> {
     let mut out = Vec::with_capacity(most_bytes(frame.len()));
     for taxels in frame.chunks(WORD) {
@@ -24,7 +25,7 @@ pub fn encode(frame: &[f32]) -> Box<[u8]> {
     out.into_boxed_slice()
 }
 
-/// Decodes a frame; `bytes` must be the result of [`encode`] for as many taxels.
+/// Decodes a frame; `bytes` must be the result of [`encode`] for a frame with as many taxels.
 pub fn decode(bytes: &[u8], frame: &mut [f64]) {
     let (words, values) = bytes.split_at(frame.len().div_ceil(WORD) * 8);
     let mut values = values.chunks_exact(4);

@@ -1,4 +1,4 @@
-//! Rigid motions, boxes and points.
+//! Rigid motions, bounding boxes and points.
 
 use glam::{DQuat, DVec3, EulerRot};
 use std::collections::HashSet;
@@ -6,14 +6,14 @@ use std::collections::HashSet;
 /// Rigid motion: rotation, then translation. `a_from_b` maps points of frame b to frame a.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// Rotation, unit quaternion.
+    /// Rotation of the motion, unit quaternion.
     pub rotation: DQuat,
-    /// Translation, metres.
+    /// Translation of the motion, metres.
     pub translation: DVec3,
 }
 
 impl Pose {
-    /// Identity: no motion.
+    /// Identity transform: no motion.
     pub const IDENTITY: Self = Self {
         rotation: DQuat::IDENTITY,
         translation: DVec3::ZERO,
@@ -57,8 +57,8 @@ impl Pose {
         Self::new(rotation, -(rotation * self.translation))
     }
 
-    /// Returns the motion relative to a frame: `world_from_b.seen_from(&world_from_a)` is `a_from_b`. In contrast to `inverse().compose()`, the
-    /// translations are subtracted first, so that no digits are lost far from the world's origin.
+    /// Returns the motion relative to a frame: `world_from_b.seen_from(&world_from_a)` is `a_from_b`. Unlike `inverse().compose()`, this function subtracts the
+    /// translations first, so that no digits are lost far from the world's origin.
     pub fn seen_from(&self, frame: &Self) -> Self {
         let back = frame.rotation.conjugate();
         Self::new(
@@ -67,18 +67,18 @@ impl Pose {
         )
     }
 
-    /// Returns the image of a point, metres.
+    /// Returns the image of a point under the motion, metres.
     pub fn transform_point(&self, point: DVec3) -> DVec3 {
         self.rotation * point + self.translation
     }
 
-    /// Returns the image of a direction.
+    /// Returns the image of a direction under the motion, that is, the rotated direction.
     pub fn transform_vector(&self, vector: DVec3) -> DVec3 {
         self.rotation * vector
     }
 }
 
-/// Returns the rotation about the fixed axes x, y, z in this order, radians (URDF's roll, pitch, yaw): `Rz(yaw) Ry(pitch) Rx(roll)`.
+/// Returns the rotation `Rz(yaw) Ry(pitch) Rx(roll)`: about the fixed axes x, y, z in this order, radians (URDF's roll, pitch, yaw).
 pub fn rotation_from_rpy(rpy: DVec3) -> DQuat {
     // Rotations about the fixed axes x, y, z equal rotations about the moving axes z, y, x.
     DQuat::from_euler(EulerRot::ZYX, rpy.z, rpy.y, rpy.x)
@@ -94,14 +94,14 @@ pub fn written_rotation(quaternion: DQuat) -> Option<DQuat> {
 /// Axis-aligned box, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Corner with the smallest coordinates.
+    /// Corner of the box with the smallest coordinates.
     pub min: DVec3,
-    /// Corner with the largest coordinates.
+    /// Corner of the box with the largest coordinates.
     pub max: DVec3,
 }
 
 impl Aabb {
-    /// Returns the smallest box around other boxes; `None` if there are none.
+    /// Returns the smallest box around other boxes; `None` if there are no boxes.
     pub fn around(boxes: impl IntoIterator<Item = Self>) -> Option<Self> {
         boxes.into_iter().reduce(|a, b| Self {
             min: a.min.min(b.min),
@@ -109,7 +109,7 @@ impl Aabb {
         })
     }
 
-    /// Returns the edge lengths, metres.
+    /// Returns the edge lengths of the box, metres.
     pub fn size(&self) -> DVec3 {
         self.max - self.min
     }
@@ -129,7 +129,7 @@ impl Aabb {
         }
     }
 
-    /// Returns the position, in lengths of `direction`, at which a line enters the box, at least `from`; infinite if the line misses the box.
+    /// Returns the position, as a multiple of `direction`, at which a line enters the box; at least `from`, infinite if the line misses the box.
     pub fn entry(&self, origin: DVec3, direction: DVec3, from: f64) -> f64 {
         let (mut start, mut end) = (from, f64::INFINITY);
         for axis in 0..3 {
@@ -153,13 +153,13 @@ impl Aabb {
         }
     }
 
-    /// Returns the centre.
+    /// Returns the centre of the box, metres.
     pub fn center(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 }
 
-/// Returns the bits of a point's coordinates, equal exactly for equal points.
+/// Returns the bits of a point's coordinates, which are equal exactly for equal points.
 pub fn place_bits(point: DVec3) -> [u64; 3] {
     // Adding zero makes −0 and 0 equal.
     (point + DVec3::ZERO).to_array().map(f64::to_bits)

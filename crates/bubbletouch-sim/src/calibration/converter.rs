@@ -1,16 +1,16 @@
-//! Converter: its number of bits b; readings are integer multiples of the step q = 1 / (2ᵇ − 1) of the full scale.
+//! Estimation of a converter's number of bits b. Readings are integer multiples of the step q = 1 / (2ᵇ − 1) of the full scale.
 //!
-//! q is the greatest common divisor of all differences of readings, computed by Euclid's algorithm with a tolerance for single precision.
+//! The step q is the greatest common divisor of all differences of readings, computed by Euclid's algorithm with a tolerance for single precision.
 
 use super::{Estimate, RecordedSkin};
 
-/// Approximate maximum number of evaluated readings. If the value is larger, the estimate takes longer without a better result.
+/// Approximate maximum number of evaluated readings. More readings take longer without a better result.
 const N_READINGS: usize = 200_000;
-/// Largest difference of equal readings due to single precision, as a fraction of the full scale.
+/// Largest difference between equal readings due to single precision, as a fraction of the full scale.
 const ROUNDING: f64 = 4e-7;
-/// Minimum step of a converter, in units of [`ROUNDING`]. All readings are multiples of smaller steps within rounding.
+/// Minimum step of a converter, in multiples of [`ROUNDING`]. Within rounding, all readings are multiples of smaller steps.
 const LEAST: f64 = 20.0;
-/// Minimum number of different readings that shows the absence of a step.
+/// Minimum number of different readings that shows that there is no step.
 const FEWEST: usize = 16;
 
 /// Returns the step of a converter with this number of bits, as a fraction of the full scale; 0 for 0 bits.
@@ -21,7 +21,8 @@ pub fn step_of(bits: f64) -> f64 {
     }
 }
 
-/// Estimates the number of bits; 0 if readings have no step. Readings from `saturation` on are left out, because the clipping level need not be a step.
+/// Estimates the number of bits of the converter; 0 if readings have no step. Readings of at least `saturation` are omitted, because the clipping level need
+/// not be a step.
 pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     let mut readings: Vec<f64> = Vec::new();
     for frames in [&skin.touched, &skin.untouched] {
@@ -59,7 +60,7 @@ pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
 fn common_divisor(mut large: f64, mut small: f64) -> f64 {
     while small > LEAST * ROUNDING {
         let rest = large % small;
-        // A remainder just below the divisor is a rounding error, too.
+        // A remainder just below the divisor is also a rounding error.
         let rest = rest.min(small - rest);
         large = small;
         small = if rest < 2.0 * ROUNDING { 0.0 } else { rest };
@@ -70,11 +71,11 @@ fn common_divisor(mut large: f64, mut small: f64) -> f64 {
     }
 }
 
-/// Returns the step that fits all readings best, as multiples above the lowest reading.
+/// Returns the step that fits all readings best; readings are multiples of this step above the lowest reading.
 fn refined(step: f64, readings: &[f64]) -> f64 {
     let mut step = step;
     let (mut products, mut squares) = (0.0, 0.0);
-    // Small differences first, so that an error of the step does not change the count of large ones.
+    // Small differences come first, so that an error of the step does not change the count of large ones.
     for reading in readings {
         let above = reading - readings[0];
         let count = (above / step).round();

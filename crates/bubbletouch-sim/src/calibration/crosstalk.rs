@@ -1,10 +1,10 @@
-//! Crosstalk: estimated from the readings of untouched taxels beside an edge of contact.
+//! Estimation of crosstalk from the readings of untouched taxels beside an edge of contact.
 //!
-//! Readings are x = A δ, where A applies a [leak](crate::signal::Crosstalk) κ to the deflections δ. An untouched taxel reads κ/4 Σⱼ δⱼ of its four
-//! neighbours; a touched taxel reads more because of its own deflection. The estimate uses taxels with a pressed neighbour on one side and a quiet one
-//! opposite. Their ratios xᵢ / Σⱼ δⱼ are densest at κ/4. Since δ = A⁻¹ x depends on κ, the estimate starts at κ = 0 and is iterated until it converges.
+//! Readings are x = A δ, where the operator A leaks a fraction κ of the deflections δ. An untouched taxel reads κ/4 Σⱼ δⱼ of its four neighbours; a touched
+//! taxel reads more because of its own deflection. The estimate uses taxels with a pressed neighbour on one side and a quiet one opposite. Their ratios xᵢ / Σⱼ
+//! δⱼ are densest at κ/4. Since δ = A⁻¹ x depends on κ, the estimate starts at κ = 0 and is iterated until it converges.
 //!
-//! The estimate refers to leakage before gains and noise. An elastic cover that rounds all edges is indistinguishable from a leak.
+//! The estimate refers to leakage before gains and noise. An elastic cover that rounds all edges cannot be distinguished from leakage.
 
 use super::gain::Gains;
 use super::robust::{jackknife, mode};
@@ -13,7 +13,7 @@ use crate::signal::Crosstalk;
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
 
-/// Maximum number of evaluated frames, evenly spaced among all. If the value is larger, the estimate takes longer.
+/// Maximum number of evaluated frames, evenly spaced among all frames. A larger number takes longer.
 const N_FRAMES: usize = 1000;
 /// Minimum sum of the readings of a taxel's neighbours: as a fraction of the full scale, and in standard deviations of the noise.
 const PRESSED: [f64; 2] = [0.15, 60.0];
@@ -30,7 +30,7 @@ const N_STEPS: usize = 25;
 /// Largest leaked fraction κ for which the iterative inverse of the crosstalk matrix A converges fast enough.
 const LARGEST: f64 = 0.45;
 
-/// Estimates the fraction κ that leaks.
+/// Estimates the fraction κ of a taxel's value that leaks to its neighbours.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     touched: &Array2<f64>,

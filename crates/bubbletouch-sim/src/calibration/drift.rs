@@ -1,4 +1,4 @@
-//! Drift: estimated from changes of the zeros. A zero is a Wiener process of standard deviation σ at the end of the session. Between the times s and t
+//! Estimation of drift from changes of the zeros. A zero is a Wiener process of standard deviation σ at the end of the session. Between the times s and t
 //! the zeros of all taxels therefore change with the variance σ² (t − s).
 //!
 //! From the first run of untouched frames to the last: σ² = (Var(z(t) − z(s)) − noise) / (t − s). If most readings are clipped at zero, only
@@ -10,11 +10,11 @@ use super::untouched::{Untouched, Zero};
 use super::{Estimate, RecordedSkin};
 use std::f64::consts::FRAC_PI_2;
 
-/// Minimum fraction of the session between the first and the last untouched frames. Less determines the drift at its end poorly.
+/// Minimum fraction of the session between the first and the last untouched frames. A shorter time determines the drift at the end poorly.
 const SPAN: f64 = 0.25;
 
-/// Estimates σ at the end of the session, as a fraction of the full scale. `noise` is a standard deviation; `width` is the width of the smoothing in
-/// pitches.
+/// Estimates the standard deviation σ of the zeros at the end of the session, as a fraction of the full scale. `noise` is a standard deviation; `width` is the
+/// width of the smoothing in pitches.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     untouched: Option<&Untouched>,
@@ -53,7 +53,7 @@ pub(super) fn estimate(
     }
 }
 
-/// Returns the variance of the change of the zeros from the first run to the last.
+/// Returns the variance of the change of the zeros from the first run of untouched frames to the last.
 fn moved(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f64> {
     let last = untouched.runs.nrows() - 1;
     let ends = taxels.map(|taxel| [0, last].map(|run| untouched.runs[(run, taxel)]));
@@ -66,7 +66,7 @@ fn moved(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f
     (moves.len() > 1).then(|| variance(&moves))
 }
 
-/// Returns σ² from the zeros above their initial value.
+/// Returns the estimate of σ² from the zeros above their initial value.
 fn above(untouched: &Untouched, taxels: impl Iterator<Item = usize>, of_mean: f64) -> Option<f64> {
     let (mut squares, mut times) = (0.0, 0.0);
     for taxel in taxels {

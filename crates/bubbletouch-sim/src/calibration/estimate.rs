@@ -1,4 +1,4 @@
-//! Estimates with 95 % intervals.
+//! Estimates of signal parameters with 95 % intervals.
 
 use crate::text::numbers::short_number;
 
@@ -13,17 +13,17 @@ pub(super) const NONE: f64 = 0.01;
 pub enum Estimate {
     /// The parameter is identifiable.
     Found {
-        /// Value in the unit of the parameter's key.
+        /// Estimated value in the unit of the parameter's key.
         value: f64,
-        /// Its 95 % interval, lower and upper end.
+        /// Lower and upper end of the 95 % interval.
         interval: [f64; 2],
     },
-    /// The parameter is not identifiable, for this reason.
+    /// The parameter is not identifiable; contains the reason.
     NotIdentifiable(String),
 }
 
 impl Estimate {
-    /// Returns the value, or `None` if the parameter is not identifiable.
+    /// Returns the estimated value, or `None` if the parameter is not identifiable.
     pub fn value(&self) -> Option<f64> {
         match self {
             Self::Found { value, .. } => Some(*value),
@@ -42,7 +42,7 @@ impl Estimate {
         Self::NotIdentifiable(why.into())
     }
 
-    /// Returns the estimate if its interval is narrow, or 0 if the interval reaches 0 and ends below [`NONE`]. Other estimates are not identifiable.
+    /// Returns the estimate if its interval is narrow, or 0 if the interval reaches 0 and ends below [`NONE`]. Other estimates become not identifiable.
     pub(super) fn resolved(self) -> Self {
         match self {
             Self::Found {

@@ -1,32 +1,32 @@
-//! Faults: taxels whose standard deviation over touched frames is below a tenth of the typical value among the 5 × 5 taxels around them.
+//! Detection of faults: taxels whose standard deviation over touched frames is below a tenth of the typical value among the 5 × 5 taxels around them.
 //!
-//! A faulty taxel that stays at its zero is dead; one that stays at another level is stuck. If stuck levels are uniform over the full scale, 1 % of them are
-//! classified as dead. If no taxel around changed, the state is unknown.
+//! A faulty taxel that stays at its zero is dead; one that stays at another level is stuck. If stuck levels are uniform over the full scale, 1 % of the stuck
+//! taxels are classified as dead. If none of the surrounding taxels changed, the state is unknown.
 
 use super::robust::median;
 use super::{Estimate, RecordedSkin};
 use crate::statistics::interval::Interval;
 use ndarray::Axis;
 
-/// Minimum standard deviation of a sound taxel relative to its neighbours. If the value is larger, taxels of low gain count as faulty; if the value is
-/// smaller, noisy faulty taxels are missed.
+/// Minimum standard deviation of a sound taxel relative to its neighbours. If larger, taxels of low gain count as faulty; if smaller, noisy faulty taxels are
+/// missed.
 const MOVES: f64 = 0.1;
 /// Largest constant level of a dead taxel, as a fraction of the full scale.
 const DEAD: f64 = 0.01;
 
-/// Faulty taxel: its reading stays constant.
+/// Faulty taxel, whose reading stays constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
     /// Index of the taxel.
     pub taxel: usize,
-    /// Whether the reading stays at the zero.
+    /// Whether the constant reading is the zero.
     pub is_dead: bool,
 }
 
-/// States of the taxels of a skin.
+/// State of each taxel of a skin: sound, faulty or unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundFaults {
-    /// Faulty taxels.
+    /// List of the faulty taxels.
     pub faults: Vec<Fault>,
     /// Whether each taxel is sound; true if its state is unknown.
     pub is_sound: Vec<bool>,
@@ -34,7 +34,7 @@ pub struct FoundFaults {
     n_known: usize,
 }
 
-/// Finds the faulty taxels.
+/// Finds the faulty taxels of a recorded skin.
 pub fn find(skin: &RecordedSkin) -> FoundFaults {
     let (rows, columns) = skin.shape;
     let stds = match skin.touched.nrows() {

@@ -1,6 +1,6 @@
-//! Gain: estimated from the readings of taxels relative to the readings of their four neighbours.
+//! Estimation of gains from the readings of taxels relative to the readings of their four neighbours.
 //!
-//! dᵢ is the median of ln xᵢ − ¼ Σⱼ ln xⱼ over frames in which all five taxels are well pressed. The pressure under a contact has an equal effect on every
+//! Let dᵢ be the median of ln xᵢ − ¼ Σⱼ ln xⱼ over frames in which all five taxels are well pressed. The pressure under a contact has an equal effect on every
 //! taxel on average, so the differences between taxels are ln gᵢ − ¼ Σⱼ ln gⱼ. The variance of ln g is the variance of d divided by ‖L S‖², the squared norm
 //! of this operator L after the smoothing S (5/4 without smoothing). Medians of even and of odd frames have independent errors, so their covariance over
 //! taxels is the variance of d without the effects of contacts and noise. Gains are log-normal: std² = exp(Var ln g) − 1.
@@ -19,7 +19,7 @@ const ABOVE_NOISE: f64 = 10.0;
 const MIN_FRAMES: usize = 3;
 /// Minimum number of taxels with known gains; with 50 the error of their spread is a tenth.
 const MIN_TAXELS: usize = 50;
-/// Number of Gauss–Seidel sweeps. If the value is smaller, errors that vary slowly over the array remain.
+/// Number of Gauss–Seidel sweeps. If smaller, errors that vary slowly over the array remain.
 const N_SWEEPS: usize = 200;
 
 /// Gains of the taxels of a skin.
@@ -66,7 +66,7 @@ impl Gains {
     }
 }
 
-/// Returns d of even and of odd frames for each taxel.
+/// Returns d, the median log ratio of a taxel to its neighbours, of even and of odd frames for each taxel.
 fn halves(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
@@ -87,14 +87,14 @@ fn halves(
     is_known.then(|| halves.map(|mut half| median(&mut half)))
 }
 
-/// Returns the covariance of pairs of numbers, without outliers.
+/// Returns the covariance of pairs of numbers, computed without outliers.
 fn covariance(pairs: &[[f64; 2]]) -> f64 {
     let means = [0, 1].map(|half| mean(pairs.iter().map(|pair| pair[half])));
     let products = pairs.iter().map(|[a, b]| (a - means[0]) * (b - means[1]));
     mean(products)
 }
 
-/// Returns ‖L S‖² in the middle of the array.
+/// Returns ‖L S‖², the squared norm of the neighbour difference after smoothing, in the middle of the array.
 fn operator_norm((rows, columns): (usize, usize), width: f64) -> f64 {
     let grid = Grid {
         nx: columns,

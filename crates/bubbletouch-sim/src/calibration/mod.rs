@@ -1,7 +1,7 @@
-//! Calibration: recorded frames of a skin → the `[signal]` settings that reproduce them in simulation.
+//! Calibration: estimates the `[signal]` settings of a skin from its recorded frames.
 //!
-//! The model is a [`Chain`](crate::signal::Chain) in physical order: crosstalk, gain, drift, noise, smoothing,
-//! faults, converter. Each parameter is estimated from an effect that it alone has, and from parameters estimated before:
+//! The model is a [`Chain`](crate::signal::Chain) in physical order, which consists of crosstalk, gain, drift, noise, smoothing,
+//! faults, and converter. Each parameter is estimated from an effect that it alone has, and from parameters estimated before:
 //!
 //! | parameter | from | by |
 //! |---|---|---|
@@ -62,7 +62,7 @@ pub struct Calibration {
     pub stiffness: Estimate,
 }
 
-/// Estimates all parameters.
+/// Estimates all parameters of the signal chain.
 ///
 /// # Errors
 /// If frames, times or forces have inconsistent sizes, or if readings are not finite.

@@ -1,6 +1,6 @@
-//! Noise: σ of the readings of untouched taxels, from differences between frames, which a slow drift does not affect.
+//! Estimation of noise: σ of the readings of untouched taxels, from differences between frames, which a slow drift does not affect.
 //!
-//! σ² = Var(x(t + 1) − x(t)) / 2 − q²/12, where the last term is the rounding of a converter of step q (Sheppard's correction). If most readings are
+//! The estimate is σ² = Var(x(t + 1) − x(t)) / 2 − q²/12, where q²/12 is the rounding of a converter of step q (Sheppard's correction). If most readings are
 //! clipped, σ is the mean over taxels of the estimate from censored readings (Tobin 1958). Smoothing reduces the variance of the noise by a
 //! known factor.
 
@@ -9,12 +9,12 @@ use super::smoothing::Smoothed;
 use super::untouched::{Untouched, Zero};
 use super::{Estimate, RecordedSkin};
 
-/// Noise below this many steps of the converter is not identifiable, because Sheppard's correction is invalid.
+/// Smallest identifiable noise, in steps of the converter; below it Sheppard's correction is invalid.
 const SEEN: f64 = 0.5;
-/// Limit in steps of the converter if readings are clipped, because rounding changes the fraction of clipped readings.
+/// Smallest identifiable noise if readings are clipped, in steps of the converter; below it rounding changes the fraction of clipped readings.
 const SEEN_CLIPPED: f64 = 2.0;
 
-/// Estimates σ of the readings after any smoothing, as a fraction of the full scale.
+/// Estimates the noise σ of the readings after any smoothing, as a fraction of the full scale.
 pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
     let Some(untouched) = untouched else {
         return Estimate::unknown("there are too few untouched frames");
@@ -42,7 +42,7 @@ pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
     }
 }
 
-/// Converts σ of the readings to σ before a smoothing whose width is in pitches.
+/// Converts the noise σ of the readings to σ before a smoothing whose width is in pitches.
 pub(super) fn before_smoothing(read: Estimate, skin: &RecordedSkin, width: f64) -> Estimate {
     let share = Smoothed::new(skin.shape, width).variance.sqrt();
     read.map(|std| std / share)

@@ -1,13 +1,13 @@
-//! Recorded frames of a skin.
+//! Recorded frames of a skin, from which its signal parameters are estimated.
 
 use super::robust::mean;
 use crate::error::{Error, Result};
 use ndarray::{Array1, Array2, ArrayView1};
 
-/// Frames of a grid of taxels, as fractions of the full scale: 0 is untouched, 1 is the full scale.
+/// Recorded frames of a grid of taxels, as fractions of the full scale: 0 is untouched, 1 is the full scale.
 #[derive(Clone, Debug)]
 pub struct RecordedSkin {
-    /// Rows and columns of the grid.
+    /// Numbers of rows and columns of the grid.
     pub shape: (usize, usize),
     /// Touched frames, shape (n_frames, n_taxels), in the order of time.
     pub touched: Array2<f64>,

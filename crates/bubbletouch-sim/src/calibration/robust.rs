@@ -1,17 +1,17 @@
-//! Statistics that are robust against outliers, and their intervals.
+//! Statistics that are robust against outliers, and their confidence intervals.
 
 use super::Estimate;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Number of groups of the jackknife. If the value is smaller, the jackknife itself is less accurate; if the value is larger, it takes longer.
+/// Number of groups of the jackknife. If smaller, the jackknife itself is less accurate; if larger, it takes longer.
 const N_GROUPS: usize = 20;
-/// Deviation at which the weight of a value becomes 0, in median absolute deviations. Smaller values lose precision for normal data; larger values are
+/// Deviation at which the weight of a value becomes 0, in median absolute deviations. If smaller, precision is lost for normal data; if larger, the estimate is
 /// less robust.
 const REACH: f64 = 9.0;
-/// Value of the uncorrected estimator for normal values of variance 1.
+/// Value of the uncorrected biweight estimator for normal values of variance 1.
 const OF_NORMAL: f64 = 1.018442;
 
-/// Returns the median; NaN if there are no values.
+/// Returns the median of some values; NaN if there are none.
 pub fn median(values: &mut [f64]) -> f64 {
     match values.is_empty() {
         true => f64::NAN,
@@ -19,15 +19,15 @@ pub fn median(values: &mut [f64]) -> f64 {
     }
 }
 
-/// Returns the mean; NaN if there are no values.
+/// Returns the mean of some values; NaN if there are none.
 pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, n) = values.fold((0.0, 0), |(sum, n), value| (sum + value, n + 1));
     sum / f64::from(n)
 }
 
-/// Returns the biweight midvariance: n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1 − 5u²))² over |u| < 1, u = (x − M) / (9 MAD), M the median, divided by
-/// its value for normal data of variance 1. Mosteller and Tukey, *Data analysis and regression*, 1977. If most values are
-/// equal, returns the ordinary variance.
+/// Returns the biweight midvariance, divided by its value for normal data of variance 1 (Mosteller and Tukey, *Data analysis and regression*, 1977). The
+/// biweight midvariance is n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1 − 5u²))² over |u| < 1, with u = (x − M) / (9 MAD) and the median M. If most values are equal,
+/// returns the ordinary variance.
 pub fn variance(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     let middle = median(&mut sorted);
@@ -47,8 +47,8 @@ pub fn variance(values: &[f64]) -> f64 {
     values.len() as f64 * squares / (weights * weights * OF_NORMAL)
 }
 
-/// Returns the mode: the half-sample mode (Bickel and Frühwirth, Computational Statistics & Data Analysis 50, 2006), refined by the mean of the values
-/// as close to it as those below, until convergence. Sorts the values; returns NaN if there are none.
+/// Returns the half-sample mode (Bickel and Frühwirth, Computational Statistics & Data Analysis 50, 2006), refined until convergence. The refinement takes the
+/// mean of the values as close to the mode as those below it. Sorts the values; returns NaN if there are none.
 pub fn mode(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let mut densest = &*values;
@@ -76,9 +76,9 @@ pub fn mode(values: &mut [f64]) -> f64 {
     found
 }
 
-/// Returns an estimate from n ordered units with its 95 % interval, by the jackknife over [`N_GROUPS`] runs of neighbours (Efron and Tibshirani,
-/// *An introduction to the bootstrap*, 1993, chapter 11) with Student's t. The closure computes the estimate from the units that it must keep, and
-/// returns `None` if that is impossible.
+/// Returns an estimate from n ordered units with its 95 % interval, by the jackknife over [`N_GROUPS`] runs of adjacent units with Student's t. (Efron and
+/// Tibshirani, *An introduction to the bootstrap*, 1993, chapter 11.) The closure computes the estimate from the units that it must keep, and returns `None` if
+/// that is impossible.
 pub fn jackknife(
     n: usize,
     estimate: impl Fn(&dyn Fn(usize) -> bool) -> Option<f64>,
@@ -97,7 +97,7 @@ pub fn jackknife(
     })
 }
 
-/// Returns the 97.5 % quantile of Student's t distribution.
+/// Returns the 97.5 % quantile of Student's t distribution with the given degrees of freedom.
 fn student(freedom: f64) -> Option<f64> {
     let distribution = StudentsT::new(0.0, 1.0, freedom).ok()?;
     Some(distribution.inverse_cdf(0.975))

@@ -1,4 +1,4 @@
-//! The `[signal]` table of a calibration, in the format of a study.
+//! Table `[signal]` of a calibration, in the format of a study.
 
 use super::smoothing::narrow;
 use super::{Calibration, Estimate};
@@ -37,7 +37,7 @@ impl Calibration {
         format!("[signal]\nsteps = [{}]\n{keys}", steps.join(", "))
     }
 
-    /// Returns the line of `[skin]` with the stiffness.
+    /// Returns the line of the `[skin]` table with the stiffness.
     pub fn stiffness_line(&self) -> String {
         line("stiffness_n_per_m", &self.stiffness)
     }

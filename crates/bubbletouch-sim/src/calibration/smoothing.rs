@@ -1,7 +1,7 @@
-//! Smoothing: estimated from the correlation of the noise of neighbours along rows and columns.
+//! Estimation of smoothing from the correlation of the noise of neighbours along rows and columns.
 //!
 //! Independent noise has the covariance S Sᵀ after a smoothing S. The mean correlation of neighbours increases with
-//! the width, so the measured correlation determines the width. Only smoothing that acts after the noise is identifiable; the effect of a soft cover is not.
+//! the width, so the measured correlation determines the width. Only smoothing that acts after the noise is identifiable, not the effect of a soft cover.
 
 use super::estimate::NONE;
 use super::robust::jackknife;
@@ -11,7 +11,7 @@ use crate::signal::Smoothing;
 use crate::world::Grid;
 use std::f64::consts::FRAC_PI_2;
 
-/// Smallest width, in pitches. A smaller smoothing has no effect, because it reaches less than half a taxel.
+/// Smallest width, in pitches. Smoothing with a smaller width has no effect, because it reaches less than half a taxel.
 const NARROWEST: f64 = 0.125;
 /// Number of bisection steps, to a billionth of the array.
 const N_STEPS: usize = 40;
@@ -40,7 +40,7 @@ impl Smoothed {
     }
 }
 
-/// Means over a line of taxels of noise of variance 1, smoothed along the line.
+/// Statistics of noise of variance 1, smoothed along a line of taxels.
 struct Line {
     /// Mean variance of the taxels.
     own: f64,
@@ -124,7 +124,7 @@ pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Es
 
 /// Returns the width if its interval is narrow, and 0 if the upper end has a correlation of at most [`NONE`].
 pub(super) fn narrow(width: Estimate) -> Estimate {
-    // For a Gaussian of width σ, the correlation of neighbours is exp(−1 / 4σ²).
+    // The correlation of neighbours is exp(−1 / 4σ²) for a Gaussian of width σ.
     let as_good_as_none = (-0.25 / NONE.ln()).sqrt();
     match width {
         Estimate::Found {
@@ -190,7 +190,7 @@ impl Products {
     }
 }
 
-/// Returns the width at which neighbours have a given correlation; 0 if the smallest width has a larger correlation.
+/// Returns the width at which neighbours have the given correlation; 0 if the smallest width already has a larger correlation.
 fn width_of(shape: (usize, usize), correlation: f64) -> f64 {
     if correlation <= 0.0 {
         return 0.0;

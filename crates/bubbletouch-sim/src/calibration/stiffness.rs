@@ -1,4 +1,5 @@
-//! Stiffness: the median over frames of the force divided by the sum of deflections. Springs of one stiffness k carry F = k Σ δᵢ; gains of mean 1 and
+//! Estimation of stiffness: the median over frames of the force divided by the sum of deflections. Springs of one stiffness k carry F = k Σ δᵢ; gains of mean 1
+//! and
 //! crosstalk hardly change the sum. A taxel without a known reading gets the mean of its neighbours. If readings are clipped at zero, the noise of untouched
 //! taxels does not cancel, so only readings well above the noise are counted.
 
@@ -6,11 +7,11 @@ use super::robust::{jackknife, median};
 use super::{Estimate, RecordedSkin};
 use ndarray::Array2;
 
-/// Reading from which on a taxel may be at its stroke, as a fraction of the full scale. At the stroke, the force exceeds the spring force.
+/// Smallest reading at which a taxel may be at its stroke, as a fraction of the full scale. At the stroke, the force exceeds the spring force.
 const CLIPPED: f64 = 0.97;
-/// Minimum number of frames.
+/// Minimum number of frames for an estimate of the stiffness.
 const FEWEST: usize = 40;
-/// Number of noise standard deviations from which on a reading counts, if readings are clipped at zero.
+/// Smallest reading that counts if readings are clipped at zero, in standard deviations of the noise.
 const ABOVE_NOISE: f64 = 4.0;
 /// Largest noise standard deviation, relative to full scale, for which clipped readings give an estimate.
 const LITTLE: f64 = 0.03;

@@ -1,4 +1,4 @@
-//! Untouched frames: the zero of each taxel in runs of frames, also if a converter clips values below zero.
+//! Untouched frames: the zero of each taxel in runs of frames, even if a converter clips values below zero.
 //!
 //! Let a clipped reading be max(0, z), z ~ N(μ, σ²). If p is the fraction of a run's readings above 0, m their mean, and a = Φ⁻¹(p), then
 //! σ = m / (a p + φ(a)) and μ = a σ (Tobin, Econometrica 26, 1958, by moments). A converter of step q rounds values below q/2 to 0; for it, p
@@ -10,23 +10,23 @@ use super::robust::mean;
 use ndarray::{Array2, ArrayView1, s};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
-/// Number of frames per run. If the value is smaller, the zero is less accurate; if the value is larger, the zero drifts during a run.
+/// Number of frames per run. If smaller, the zero is less accurate; if larger, the zero drifts during a run.
 const N_RUN: usize = 50;
 /// Minimum number of untouched frames for an estimate.
 const FEWEST: usize = 20;
 /// Range of the fraction of frames above the lowest reading in which a clipped zero is computed. A wider range uses too few frames at its ends.
 const CLIPPED: [f64; 2] = [0.3, 0.98];
-/// Fraction of runs that must be clear of the lowest reading for the other runs to be left out.
+/// Fraction of runs that must be clear of the lowest reading so that the other runs are omitted.
 const SUFFICIENT_CLEAR: f64 = 0.1;
 
 /// Zero of a taxel in a run of untouched frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Zero {
-    /// No reading is the lowest possible one; mean of the readings.
+    /// No reading is the lowest possible one; contains the mean of the readings.
     Clear(f64),
-    /// Many readings are clipped; mean and standard deviation of the values before clipping.
+    /// Many readings are clipped; contains mean and standard deviation of the values before clipping.
     Clipped { mean: f64, std: f64 },
-    /// Nearly all readings are clipped, or the taxel is faulty.
+    /// The zero is unknown: nearly all readings are clipped, or the taxel is faulty.
     Lost,
 }
 
@@ -36,7 +36,7 @@ pub struct Untouched<'a> {
     pub skin: &'a RecordedSkin,
     /// Step of the converter, as a fraction of the full scale.
     pub step: f64,
-    /// Zeros, shape (n_runs, n_taxels).
+    /// Zeros of the taxels in each run, shape (n_runs, n_taxels).
     pub runs: Array2<Zero>,
     /// Mean time of each run, 0 to 1.
     pub times: Vec<f64>,
@@ -44,12 +44,12 @@ pub struct Untouched<'a> {
     pub n_run: usize,
     /// Whether values below zero are clipped.
     pub is_clipped: bool,
-    /// Whether there are enough clear runs to leave out the other runs.
+    /// Whether there are enough clear runs to omit the other runs.
     pub is_clear: bool,
 }
 
 impl<'a> Untouched<'a> {
-    /// Estimates the zeros. Returns `None` if there are too few frames.
+    /// Estimates the zeros of all taxels. Returns `None` if there are too few frames.
     pub fn new(skin: &'a RecordedSkin, faults: &FoundFaults, step: f64) -> Option<Self> {
         let n = skin.untouched.nrows();
         if n < FEWEST {
@@ -87,7 +87,7 @@ impl<'a> Untouched<'a> {
         })
     }
 
-    /// Returns the zero of a taxel at a time, interpolated linearly between the runs before and after; `None` if one of them is lost.
+    /// Returns the zero of a taxel at a time, interpolated linearly between the runs before and after; `None` if the zero is unknown in one of these runs.
     pub fn zero(&self, taxel: usize, time: f64) -> Option<f64> {
         let after = self.times.partition_point(|&run| run <= time);
         let after = after.min(self.times.len() - 1);
@@ -105,7 +105,7 @@ impl<'a> Untouched<'a> {
         Some(first + share * (second - first))
     }
 
-    /// Returns the indices of the clear runs of a taxel.
+    /// Returns the indices of the runs in which a taxel is clear of the lowest reading.
     pub fn clear(&self, taxel: usize) -> impl Iterator<Item = usize> + '_ {
         let runs = self.runs.column(taxel).into_iter().enumerate();
         runs.filter_map(|(run, zero)| matches!(zero, Zero::Clear(_)).then_some(run))

@@ -27,7 +27,7 @@ pub struct Recording {
 /// A part of an object that pushed a taxel in the previous frame continues to push this taxel, even from behind the substrate, as in a direct press.
 /// direct press.
 ///
-/// `world_from_objects` contains one plan per object; the plan of a fixed object has no phases. The simulation is stable for any `dt`.
+/// The list `world_from_objects` contains one plan per object; the plan of a fixed object has no phases. The simulation is stable for any `dt`.
 ///
 /// # Errors
 /// If `dt` is not positive, or the number of plans differs from the number of objects.

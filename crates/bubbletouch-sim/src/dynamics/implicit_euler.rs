@@ -1,43 +1,42 @@
-//! Implicit Euler with exact contact \[AP\].
+//! Implicit Euler integrator with exact contact \[AP\].
 //!
-//! At the step's end, let `a = m/Δt² + c/Δt + k` be the effective stiffness of a taxel within a step, and `δ_f` the deflection of a free
-//! taxel:
+//! Let `a = m/Δt² + c/Δt + k` be the effective stiffness of a taxel within a step, and `δ_f` the deflection of a free taxel at the step's end:
 //!
 //! ```text
 //! δ_f = (m/Δt² δ + m/Δt δ̇ + c/Δt δ) / a,   f = a max(0, x' − start − δ_f)
 //! M (x' − x − Δt ẋ − Δt² g) / Δt² + Σ f(x') = 0,   x' ≤ the floor
 //! ```
 //!
-//! The second line is one equation for x', increasing and convex. Newton's method from the right ends after a few steps, exactly. At the floor, stops
-//! carry the remaining force. Stacked balls that would otherwise penetrate those below are merged into a group with one motion. The x' of a chain of
-//! balls is an isotonic regression of their free motions.
+//! The second line is one equation for x', increasing and convex. Newton's method, started at a larger x', ends after a few steps, exactly. When the first
+//! taxel reaches its stroke, stops carry the remaining force. Stacked balls that would otherwise penetrate the balls below are merged into a group with one
+//! motion. The x' of a chain of balls is an isotonic regression of their free motions.
 
 use super::state::{Integrator, Rider, State};
 use super::system::{Drive, System};
 
-/// Integrator and its state.
+/// Implicit Euler integrator with its state.
 #[derive(Clone, Debug)]
 pub struct ImplicitEuler {
     state: State,
-    /// Deflection of each taxel if it is free, metres.
+    /// Deflection that each taxel would have if it were free, metres.
     free: Vec<f64>,
-    /// Effective stiffness a of each taxel, N/m.
+    /// Effective stiffness a of each taxel within a step, N/m.
     stiffness: Vec<f64>,
-    /// Groups of balls, from below: first the object's, then those stacked on it.
+    /// Groups of balls, from below: first the object's group, then the groups stacked on it.
     groups: Vec<Group>,
 }
 
-/// Group of balls that move together.
+/// Group of balls that touch one another and move together.
 #[derive(Clone, Copy, Debug)]
 struct Group {
     n_balls: usize,
     mass: f64,
-    /// Free position after the step, metres of travel.
+    /// Free position of the group after the step, metres of travel.
     aim: f64,
 }
 
 impl Group {
-    /// Merges this group with the one on top of it.
+    /// Merges this group with the group on top of it.
     fn with(self, upper: Self) -> Self {
         let mass = self.mass + upper.mass;
         Self {
@@ -48,16 +47,16 @@ impl Group {
     }
 }
 
-/// Largest number of Newton steps; a handful are usual. The method ends after at most one step per taxel.
+/// Maximum number of Newton steps; about five are usual. The method ends after at most one step per taxel.
 const MAX_NEWTON_STEPS: usize = 100;
 
 impl ImplicitEuler {
-    /// Creates the integrator with everything at rest.
+    /// Creates the integrator with all taxels and the object at rest.
     pub fn new(system: &System) -> Self {
         Self::from_state(State::start(system))
     }
 
-    /// Creates the integrator from a state.
+    /// Creates the integrator from a given state.
     pub fn from_state(state: State) -> Self {
         Self {
             free: vec![0.0; state.deflection.len()],
@@ -67,7 +66,7 @@ impl ImplicitEuler {
         }
     }
 
-    /// Computes the free deflections of the taxels at the step's end.
+    /// Computes the deflections that the taxels would have at the step's end if they were free.
     fn let_go(&mut self, system: &System, dt: f64) {
         let m = system.taxel_mass;
         let taxels = system.patch.taxels();
@@ -82,7 +81,7 @@ impl ImplicitEuler {
         }
     }
 
-    /// Returns the position of a free object after the step, metres of travel. The first group then contains the balls that move with the object.
+    /// Returns the position of a free object after the step, metres of travel. Afterwards the first group contains the balls that move with the object.
     fn balance(&mut self, system: &System, mass: f64, gravity: f64, dt: f64) -> f64 {
         let state = &self.state;
         let alone = |mass, travel: f64, speed: f64| Group {
@@ -110,7 +109,7 @@ impl ImplicitEuler {
         travel
     }
 
-    /// Returns the position after the step of balls that lie on the taxels, metres of travel.
+    /// Returns the position, after the step, of balls that rest on the taxels, metres of travel.
     fn push_in(&self, system: &System, balls: &Group, dt: f64) -> f64 {
         let inertia = balls.mass / (dt * dt);
         let aim = balls.aim;
@@ -133,7 +132,7 @@ impl ImplicitEuler {
         travel.min(system.floor())
     }
 
-    /// Moves the balls stacked on the object. Returns the force, newtons, that those moving with the object need from below.
+    /// Moves the balls stacked on the object. Returns the force, newtons, with which the taxels must support the balls that move with the object.
     fn move_riders(&mut self, system: &System, lowest: f64, gravity: f64, dt: f64) -> f64 {
         let mut needed = 0.0;
         let travels = self.groups.iter().enumerate().flat_map(|(number, group)| {
@@ -151,7 +150,7 @@ impl ImplicitEuler {
         needed
     }
 
-    /// Distributes the force `rest` over the stops of the taxels at the floor.
+    /// Distributes the force `rest` over the stops of the taxels that have reached their stroke.
     fn load_stops(&mut self, system: &System, rest: f64) {
         let floor = system.floor();
         let is_there = |taxel: usize| {

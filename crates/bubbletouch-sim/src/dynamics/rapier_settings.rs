@@ -1,24 +1,24 @@
-//! Settings of the rigid-body engine.
+//! Settings of the rigid-body engine rapier.
 
 use super::skin_sim;
 use super::system::System;
 use rapier3d_f64::prelude::{IntegrationParameters, SpringCoefficients};
 
-/// Settings of the rigid-body engine.
+/// Settings of the rigid-body engine rapier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RapierSettings {
-    /// Solver iterations per step, at least 1. An iteration is a small time step of its own, because the solver is of the TGS kind.
+    /// Number of solver iterations per step, at least 1. An iteration is a small time step of its own, because the solver is of the TGS kind.
     pub solver_iterations: usize,
-    /// Sweeps over all constraints within each iteration, at least 1.
+    /// Number of sweeps over all constraints within each iteration, at least 1.
     pub sweeps: usize,
-    /// Engine steps per step of the integrator, at least 1.
+    /// Number of engine steps per step of the integrator, at least 1.
     pub substeps: usize,
-    /// Length scale, metres: allowed penetration and contact search distance are multiples of it. The engine's
-    /// default, 1 m, allows 5 mm of penetration.
+    /// Length scale, metres; the allowed penetration and the contact search distance are multiples of it. The engine's default, 1 m, allows 5 mm of
+    /// penetration.
     pub length_unit: f64,
-    /// Stiffness of contacts.
+    /// Stiffness of the engine's contacts.
     pub contacts: RapierContacts,
-    /// Model of springs and dampers.
+    /// Model of the taxels' springs and dampers.
     pub joints: RapierJoints,
 }
 
@@ -39,12 +39,12 @@ pub enum RapierJoints {
 /// Stiffness of the engine's contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RapierContacts {
-    /// Default of the engine: springs of 30 Hz; penetration is corrected at no more than 3 units of length per second.
+    /// Default of the engine: springs of 30 Hz, and a penetration that is corrected at no more than 3 units of length per second.
     AsItComes,
-    /// Critically damped springs of 300 / Δt, without a limit of the correction speed. Larger: no gain; smaller:
-    /// light taxels sink in under springs that are stiff for the step.
+    /// Critically damped springs of 300 / Δt, without a limit of the correction speed. A larger value brings no gain. If smaller, light taxels sink in under
+    /// springs that are stiff for the step.
     Hard,
-    /// Contacts of SkinSim \[SK\]: rigid (CFM 0), a fifth of the penetration corrected per step (ERP 0.2), at 100 m/s at most.
+    /// Contacts of SkinSim \[SK\]: rigid (CFM 0), with a fifth of the penetration corrected per step (ERP 0.2), at 100 m/s at most.
     Ode,
 }
 

@@ -1,4 +1,4 @@
-//! Scene in a rigid-body engine: rapier, in f64.
+//! Scene in the rigid-body engine rapier, in f64.
 //!
 //! Each taxel is a ball on a prismatic joint whose limit is the stroke; [`RapierJoints`] selects the model of its spring and damper. The object
 //! is one body with a ball for each sphere; taxels do not collide with each other. Joints in reduced coordinates, rapier's multibodies, are twenty
@@ -14,18 +14,18 @@ use rapier3d_f64::prelude::{
     MotorModel, PhysicsWorld, PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
 
-/// Scene in the engine.
+/// Taxels and object as bodies in the rigid-body engine.
 pub struct RapierWorld {
     world: PhysicsWorld,
     settings: RapierSettings,
     taxels: Vec<RigidBodyHandle>,
     colliders: Vec<ColliderHandle>,
     object: RigidBodyHandle,
-    /// Balls stacked on the object, from below.
+    /// Balls stacked on the object, listed from below.
     riders: Vec<RigidBodyHandle>,
     /// Body to which the taxels are attached.
     base: RigidBodyHandle,
-    /// Position of the object at a travel of 0.
+    /// Position of the object at a travel of 0, metres.
     origin: DVec3,
     /// Length of the last engine step, seconds.
     dt: f64,
@@ -36,7 +36,7 @@ const SKIN: Group = Group::GROUP_1;
 const OBJECT: Group = Group::GROUP_2;
 
 impl RapierWorld {
-    /// Builds the scene; returns an error if the object is not a union of spheres.
+    /// Builds the scene. Returns an error if the object is not a union of spheres.
     pub fn new(system: &System, settings: RapierSettings) -> Result<Self> {
         let Some(spheres) = system.object.spheres() else {
             let allowed = "a union of spheres";
@@ -178,12 +178,12 @@ fn insert_base(world: &mut PhysicsWorld, joints: RapierJoints) -> RigidBodyHandl
     base
 }
 
-/// Allows motion along z only.
+/// Locked axes of a body that moves along z only.
 const GUIDE: LockedAxes = LockedAxes::ROTATION_LOCKED
     .union(LockedAxes::TRANSLATION_LOCKED_X)
     .union(LockedAxes::TRANSLATION_LOCKED_Y);
 
-/// Limit of the joint on the free side, metres, never reached.
+/// Limit of the joint on the free side, metres, which is never reached.
 const FAR: f64 = 1.0;
 
 impl Integrator for RapierWorld {

@@ -1,4 +1,4 @@
-//! Time loop, and its recorded frames.
+//! Time loop of a dynamic simulation, and its recorded frames.
 
 use super::state::{Integrator, State};
 use super::system::System;
@@ -7,14 +7,14 @@ use crate::error::{Error, Result};
 use crate::text::in_range::positive;
 use ndarray::{Array1, Array2};
 
-/// Step length, number of steps, and frames to record.
+/// Step length, number of steps, and the frames to record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Steps<'a> {
-    /// Length of a step, seconds.
+    /// Length of each step, seconds.
     pub dt: f64,
-    /// Number of steps.
+    /// Total number of steps.
     pub n: usize,
-    /// Numbers of the steps after which a frame is recorded, from 1, ascending.
+    /// Steps after which a frame is recorded, counted from 1, ascending.
     pub frames: &'a [usize],
     /// Energy above which the run counts as diverged, joules; infinite for no limit.
     pub energy_limit: f64,
@@ -23,34 +23,34 @@ pub struct Steps<'a> {
 /// Reason why a run was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Divergence {
-    /// A value is not finite.
+    /// A value of the state is not finite.
     NotFinite,
-    /// The energy exceeds the limit.
+    /// The energy exceeds its limit.
     EnergyGrowth,
 }
 
-/// Recorded frames, and the motion of the object.
+/// Recorded frames of a dynamic simulation, and the motion of the object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicRecording {
     /// Frames of the skin. Deflections may be negative; forces act between object and taxels, including the forces of stops.
     pub recording: Recording,
-    /// Travel x, metres, shape (n_frames,).
+    /// Travel x of the object in each frame, metres, shape (n_frames,).
     pub travel: Array1<f64>,
-    /// Speed ẋ, m/s, shape (n_frames,).
+    /// Speed ẋ of the object in each frame, m/s, shape (n_frames,).
     pub speed: Array1<f64>,
-    /// Reason of an early end, if any; later frames are then missing.
+    /// Reason if the run ended early; later frames are then missing.
     pub divergence: Option<Divergence>,
     /// Number of completed steps.
     pub n_steps: usize,
 }
 
-/// Steps between two checks of the energy. Larger: a diverged run continues longer; smaller: the checks take more time.
+/// Number of steps between two checks of the energy. If larger, a diverged run continues longer; if smaller, the checks take more time.
 const LOOK_EVERY: usize = 64;
 
-/// Advances a system from the integrator's state and records frames.
+/// Advances a system from the integrator's state, and records frames.
 ///
 /// # Errors
-/// If `dt` is not positive, or the frames are not ascending numbers of steps.
+/// If `dt` is not positive, or the frames are not ascending step numbers.
 pub fn run(
     system: &System,
     integrator: &mut dyn Integrator,

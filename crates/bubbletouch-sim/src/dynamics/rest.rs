@@ -3,18 +3,18 @@
 use super::system::{Drive, System};
 use crate::contact::{Sample, crossing};
 
-/// Object at rest.
+/// Final state of a free object, at rest on the taxels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
-    /// Travel x, metres.
+    /// Travel x of the object, metres.
     pub travel: f64,
-    /// Deflections, metres, shape (n_taxels,).
+    /// Deflections of the taxels, metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// Force carried by stops in addition to the springs, newtons.
+    /// Force that the stops carry in addition to the springs, newtons.
     pub stops: f64,
 }
 
-/// Returns the state in which the springs carry the weight of the object and the balls on it, and stops carry the remainder. The travel is accurate
+/// Returns the state in which the springs carry the weight of the object and of the balls on it; stops carry the remainder. The travel is accurate
 /// to the last bit, as a reference for the integrators.
 ///
 /// Returns `None` for an imposed motion, or if the object meets no taxel.

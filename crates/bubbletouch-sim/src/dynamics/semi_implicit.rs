@@ -6,24 +6,24 @@
 //! ẋ' = ẋ + Δt (g − Σ f / M),                        x' = x + Δt ẋ'
 //! ```
 //!
-//! The force f between stacked balls is computed likewise: κ max(0, travel of the upper one − travel of the lower one).
+//! The force f between stacked balls is computed in the same way: κ max(0, travel of the upper ball − travel of the lower ball).
 //!
-//! The damper is implicit, at no additional cost; an explicit one would halve the largest stable step of a well-damped taxel. A free taxel
+//! The damper is implicit, at no additional cost; an explicit damper would halve the largest stable step of a well-damped taxel. A free taxel
 //! without a damper is stable exactly for Δt < 2 √(m / k).
 
 use super::state::{Integrator, State};
 use super::system::{Drive, System};
 
-/// Integrator and its state.
+/// Semi-implicit Euler integrator with its state.
 #[derive(Clone, Debug)]
 pub struct SemiImplicit {
     state: State,
-    /// Contact stiffness κ of contacts and stops, N/m. Larger: less penetration, but smaller stable steps.
+    /// Stiffness κ of contacts and stops, N/m. If larger, bodies penetrate less, but the largest stable step is smaller.
     contact_stiffness: f64,
 }
 
 impl SemiImplicit {
-    /// Creates the integrator with everything at rest; κ in N/m.
+    /// Creates the integrator with all taxels and the object at rest; `contact_stiffness` is in N/m.
     pub fn new(system: &System, contact_stiffness: f64) -> Self {
         Self {
             state: State::start(system),
@@ -31,7 +31,7 @@ impl SemiImplicit {
         }
     }
 
-    /// Creates the integrator from a state; κ in N/m.
+    /// Creates the integrator from a given state; `contact_stiffness` is in N/m.
     pub fn from_state(state: State, contact_stiffness: f64) -> Self {
         Self {
             state,
@@ -39,9 +39,9 @@ impl SemiImplicit {
         }
     }
 
-    /// Returns the stiffest stable contact, N/m, for steps of `dt` seconds while `n_touched` equal taxels touch the object.
-    /// The stiffness is half the stability limit of a taxel, `κ + k < 4 m / Δt² + 2 c / Δt`, or of the object, `n κ < 4 M / Δt²`. The result is at least
-    /// the stiffness of the taxel's own spring.
+    /// Returns the largest stable contact stiffness, N/m, for steps of `dt` seconds while `n_touched` equal taxels touch the object. The result is half the
+    /// stability limit of a taxel (`κ + k < 4 m / Δt² + 2 c / Δt`) or of the object (`n κ < 4 M / Δt²`). The result is at least the stiffness of the taxel's
+    /// own spring.
     pub fn stiffest(system: &System, dt: f64, n_touched: usize) -> f64 {
         let taxel = system.patch.taxels().at(0);
         let of_taxel = (4.0 * system.taxel_mass / dt + 2.0 * taxel.damping) / dt;
@@ -82,7 +82,7 @@ impl Integrator for SemiImplicit {
         state.time += dt;
         match &system.drive {
             Drive::Free { mass, gravity, .. } => {
-                // Force of each rider on the ball below, from the positions before the step.
+                // Force of each rider on the ball below it, from the positions before the step.
                 let (mut below, mut lower) = (support, state.travel);
                 let (mut mass, mut speed, mut travel) =
                     (*mass, &mut state.speed, &mut state.travel);

@@ -1,37 +1,37 @@
-//! State of a system, and the interface of integrators.
+//! State of a dynamic system, and the interface of integrators.
 
 use super::system::{Drive, System};
 
-/// State of a system at one instant.
+/// State of a dynamic system at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Time, seconds.
+    /// Time of the state, seconds.
     pub time: f64,
-    /// Deflections δ, metres, shape (n_taxels,); negative if a free taxel swings out.
+    /// Deflections δ of the taxels, metres, shape (n_taxels,); negative if a free taxel swings out.
     pub deflection: Vec<f64>,
-    /// Velocities δ̇, m/s, shape (n_taxels,).
+    /// Velocities δ̇ of the taxels, m/s, shape (n_taxels,).
     pub velocity: Vec<f64>,
     /// Forces f of the object on each taxel, newtons, never negative, shape (n_taxels,).
     pub force: Vec<f64>,
-    /// Travel x, metres.
+    /// Travel x of the object, metres.
     pub travel: f64,
-    /// Speed ẋ, m/s.
+    /// Speed ẋ of the object, m/s.
     pub speed: f64,
-    /// Balls stacked on the object, from below.
+    /// Balls stacked on the object, listed from below.
     pub riders: Vec<Rider>,
 }
 
-/// Stacked ball; it touches the one below if both have equal travels.
+/// Stacked ball; two adjacent balls touch if they have equal travels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rider {
-    /// Travel, metres.
+    /// Travel of the ball, metres.
     pub travel: f64,
-    /// Speed, m/s.
+    /// Speed of the ball, m/s.
     pub speed: f64,
 }
 
 impl State {
-    /// Creates the start state: undeflected taxels, and an object without contact.
+    /// Creates the start state of a system: undeflected taxels, and an object without contact.
     pub fn start(system: &System) -> Self {
         let zeros = vec![0.0; system.n_taxels()];
         let rider = Rider {
@@ -49,7 +49,8 @@ impl State {
         }
     }
 
-    /// Returns the energy Σ ½ m δ̇² + Σ ½ k δ² plus ½ M ẋ² − M g x of each free object, joules, without energy stored in contacts and stops.
+    /// Returns the energy of the system, joules: Σ ½ m δ̇² + Σ ½ k δ² plus ½ M ẋ² − M g x of each free object. Energy stored in contacts and stops is not
+    /// included.
     pub fn energy(&self, system: &System) -> f64 {
         let m = system.taxel_mass;
         let taxels = self.deflection.iter().zip(&self.velocity).enumerate();
@@ -71,7 +72,7 @@ impl State {
         }
     }
 
-    /// Returns Σ f, newtons.
+    /// Returns the sum Σ f of the object's forces on the taxels, newtons.
     pub fn support(&self) -> f64 {
         self.force.iter().sum()
     }

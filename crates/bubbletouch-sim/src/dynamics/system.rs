@@ -8,43 +8,42 @@ use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use glam::DVec3;
 
-/// Cause of the object's motion along its guide.
+/// Cause of the object's motion along its guide: gravity, or an imposed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
     /// Free motion under gravity.
     Free {
-        /// Mass M, kg, positive.
+        /// Mass M of the object, kg, positive.
         mass: f64,
         /// Gravity g towards the skin, m/s², positive.
         gravity: f64,
-        /// Initial travel, metres; the object starts at rest.
+        /// Initial travel of the object, metres; its initial speed is zero.
         travel: f64,
     },
-    /// Imposed motion of the object's origin in the patch frame. Only the component along z is used; the travel is 0 at the
-    /// start.
+    /// Imposed motion of the object's origin in the patch frame. Only the component along z is used. The travel is 0 at the start.
     Imposed(VelocityPlan),
 }
 
 /// Skin whose taxels have mass, and one object above it.
 #[derive(Clone, Debug)]
 pub struct System<'a> {
-    /// Skin; all axes are +z.
+    /// Patch of skin whose axes are all +z.
     pub patch: &'a Patch,
     /// Mass m of each taxel, kg.
     pub taxel_mass: f64,
-    /// Object.
+    /// Object above the skin.
     pub object: &'a Model,
-    /// Pose `patch_from_object` at a travel of 0.
+    /// Pose `patch_from_object` of the object at a travel of 0.
     pub pose: Pose,
-    /// Cause of the object's motion.
+    /// Cause of the object's motion along its guide.
     pub drive: Drive,
     starts: Vec<f64>,
-    /// Masses of the balls stacked on the object, from below, kg.
+    /// Masses of the balls stacked on the object, listed from below, kg.
     riders: Vec<f64>,
 }
 
 impl<'a> System<'a> {
-    /// Creates and checks a system. Taxels that the object does not meet within `reach` metres of travel are never pushed.
+    /// Creates a system and checks it. Taxels that the object does not meet within `reach` metres of travel are never pushed.
     ///
     /// # Errors
     /// If a mass, gravity or reach is not positive, or the axis of a taxel is not +z (the error names the first such taxel).
@@ -81,8 +80,8 @@ impl<'a> System<'a> {
         })
     }
 
-    /// Stacks balls on the object, each equal to it and free on the same guide under gravity; `masses` from below, kg. All balls start
-    /// in contact.
+    /// Stacks balls on the object. Each ball equals the object and moves freely on the same guide under gravity; `masses` are listed from below, kg. All balls
+    /// start in contact.
     ///
     /// # Errors
     /// If a mass is not positive, or the object is not one free sphere.
@@ -106,12 +105,12 @@ impl<'a> System<'a> {
         Ok(self)
     }
 
-    /// Returns the masses of the balls on top of the object, from below, kg.
+    /// Returns the masses of the balls stacked on the object, listed from below, kg.
     pub fn riders(&self) -> &[f64] {
         &self.riders
     }
 
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of the skin.
     pub fn n_taxels(&self) -> usize {
         self.starts.len()
     }
@@ -129,7 +128,7 @@ impl<'a> System<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the travel before the first step, metres.
+    /// Returns the object's travel before the first step, metres.
     pub fn first_travel(&self) -> f64 {
         match &self.drive {
             Drive::Free { travel, .. } => *travel,
@@ -143,7 +142,8 @@ impl<'a> System<'a> {
     }
 }
 
-/// Along the axes the deflection of a pushed taxel grows with the travel, so one press at the end of the reach yields all starts.
+/// Returns the travel at which the object meets each taxel. The deflection of a pushed taxel grows with the travel, so one press at the end of the reach yields
+/// all values.
 fn starts(patch: &Patch, object: &Model, pose: &Pose, reach: f64) -> Vec<f64> {
     let mut workspace = Workspace::new();
     let low = Pose::new(pose.rotation, pose.translation - reach * DVec3::Z);

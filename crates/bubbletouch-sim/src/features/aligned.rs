@@ -1,19 +1,20 @@
-//! The image with its centroid shifted to the middle and its principal axes rotated to the axes of the array, sampled at a quarter of its taxels.
+//! Feature "aligned": the image with its centroid shifted to the middle and its principal axes rotated to the axes of the array, sampled at a quarter of its
+//! taxels.
 //!
 //! With the central moments μ_pq = Σ δ (x − x̄)ᵖ (y − ȳ)^q, the longer principal axis is at the angle φ = ½ atan2(2 μ₁₁, μ₂₀ − μ₀₂). Its direction
 //! is chosen so that Σ δ a³ > 0, a along it; the other axis is a quarter turn from it. Values are sampled at every second
 //! taxel of the rotated grid, interpolated bilinearly, and are 0 beyond the array.
 //!
 //! The feature is invariant to quarter turns, and to shifts by whole taxels that keep the contact on the array. For other motions the sampling limits the
-//! invariance. An image with two equal principal moments (a disc, a square) has no axes. If its moments are nearly equal, or its
-//! third moment is near 0, noise determines the rotation. [`polar_harmonics`](super::ImageFeature::PolarHarmonics) need no axes.
+//! invariance. An image with two equal principal moments (a disc, a square) has no axes. If its moments are nearly equal, or its third moment is near 0, noise
+//! determines the rotation. The feature `polar_harmonics` needs no axes.
 //!
 //! Source: Hu (1962), *Visual pattern recognition by moment invariants*, IRE Transactions on Information Theory 8, 179, section III.
 
 use super::feature::{Feature, FeatureAbout, Workspace};
 use super::image::{Image, Touched};
 
-/// Distance between samples, in taxels.
+/// Distance between samples of the rotated grid, in taxels.
 const STEP: usize = 2;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
@@ -44,7 +45,7 @@ impl Feature for Aligned {
     }
 }
 
-/// Returns the sine and cosine of the longer principal axis; it points to where the third moment along it is positive.
+/// Returns the sine and cosine of the longer principal axis. The axis points to where the third moment along it is positive.
 fn axis(image: &Image) -> (f64, f64) {
     let (x, y) = image.centroid;
     let from_centroid = || {

@@ -1,16 +1,16 @@
-//! Images of layouts without rows and columns.
+//! Charts: images of layouts without rows and columns.
 
 use glam::DVec2;
 use ndarray::{Array2, ArrayView2};
 
-/// Distance, in pitches, up to which a taxel contributes to a pixel. No place between taxels is farther than 0.62 from one on a hexagonal lattice with one
-/// taxel per square pitch, or than 0.8 on rings on a sphere. If the value is smaller, images have holes; if the value is larger, they are blurred.
+/// Distance, in pitches, up to which a taxel contributes to a pixel. No point between taxels is farther than 0.62 from a taxel on a hexagonal lattice with one
+/// taxel per square pitch, or than 0.8 on rings on a sphere. If smaller, images have holes; if larger, they are blurred.
 const NEAR: f64 = 1.0;
 /// Maximum distance, in pitches, from a pixel of the patch to its nearest taxel. Pixels without such a taxel lie beside the patch and are 0.
 const ON_PATCH: f64 = 0.8;
 
-/// Chart of a patch: the positions of its taxels on a plane, and an image of them. A pixel is the weighted mean of the taxels near it, with
-/// weights that decrease linearly to 0 at a distance of one pitch. The image of a square grid equals the grid.
+/// Chart of a patch: the positions of its taxels on a plane, and an image of them. A pixel is the weighted mean of the taxels near it; weights decrease
+/// linearly to 0 at a distance of one pitch. The image of a square grid equals the grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     shape: (usize, usize),
@@ -52,7 +52,7 @@ impl Chart {
         Self { shape, terms, ends }
     }
 
-    /// Returns images of frames (n × taxels), shape (n, pixels), pixels row by row.
+    /// Returns images of frames. The frames have the shape (n, taxels), the images (n, pixels), with pixels row by row.
     ///
     /// # Panics
     /// If the frames have fewer taxels than the chart.
@@ -69,7 +69,7 @@ impl Chart {
         images
     }
 
-    /// Returns the numbers of rows and columns.
+    /// Returns the numbers of rows and columns of the image.
     pub fn shape(&self) -> (usize, usize) {
         self.shape
     }
@@ -117,7 +117,7 @@ mod tests {
                 assert_eq!(one, 0.0, "{place} is beside the patch");
             } else if outermost < 7.0 {
                 assert!((one - 1.0).abs() < 1e-12);
-                // A pixel is a mean of taxels less than a pitch away, mostly on both sides.
+                // A pixel is a mean of taxels less than a pitch away, mostly on opposite sides.
                 assert!((value - slope.dot(place)).abs() < 0.5 * slope.length());
             }
         }

@@ -1,4 +1,4 @@
-//! Descriptors: areas by depth, spread of the pressure, and its decrease with the distance from the centroid. 126 numbers.
+//! Feature "descriptors": 126 numbers that describe areas by depth, the spread of the pressure, and its decrease with the distance from the centroid.
 //!
 //! | numbers | of |
 //! |---|---|
@@ -9,9 +9,9 @@
 //! | 3 × 9 | [moments](super::moments) of δ, of the touched taxels, and of those above half of the largest |
 //! | 24 | Σ δ / (area) in rings about the centroid, r from k h / 24 to (k + 1) h / 24, h half the shorter side |
 //!
-//! The root of an area is a length, as are the other numbers. Each number is a sum over touched taxels that depends on their positions only
-//! through distances from the centroid. Descriptors are exactly invariant to shifts that keep the contact on the array and to quarter turns. Descriptors are
-//! also invariant to mirror images, except for two of the moments, which change sign. For other rotations the sampling limits the invariance.
+//! The root of an area is a length, as are the other numbers. Each number is a sum over touched taxels that depends on their positions only through distances
+//! from the centroid. Descriptors are exactly invariant to shifts that keep the contact on the array and to quarter turns. They are also invariant to mirror
+//! images, except for two of the moments, which change sign. For other rotations the sampling limits the invariance.
 //!
 //! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179 (moments); level sets and radial profiles are common in
 //! granulometry: Serra (1982), *Image Analysis and Mathematical Morphology*.
@@ -70,14 +70,14 @@ impl Feature for Descriptors {
     }
 }
 
-/// Numbers of taxels by the highest level that they reach; the last level includes all higher values.
+/// Numbers of taxels, counted by the highest level that they reach; the last level includes all higher values.
 #[derive(Default)]
 struct Counts {
     fixed: [u32; N_LEVELS],
     relative: [u32; N_LEVELS],
-    /// Numbers of taxels by the lowest ℓ with δ ≥ δ_max − ℓ.
+    /// Numbers of taxels, counted by the lowest ℓ with δ ≥ δ_max − ℓ.
     behind: [u32; N_LEVELS],
-    /// Σ δ².
+    /// Sum of squares Σ δ².
     squares: f64,
 }
 
@@ -168,7 +168,7 @@ mod tests {
         }
     }
 
-    /// A deeper press of a rigid object adds a constant to every touched taxel.
+    /// Checks the level areas relative to the foremost point. A deeper press of a rigid object adds a constant to every touched taxel.
     #[test]
     fn areas_behind_the_foremost_point_do_not_change_with_depth() {
         let shape = (32, 32);
@@ -181,7 +181,7 @@ mod tests {
         };
         let behind = |depth| {
             let found = features_of(ImageFeature::Descriptors, shape, &ball(depth));
-            // Levels within the depth of both presses.
+            // Levels within the depth of either press.
             found[3 + 48..3 + 48 + 12].to_vec()
         };
         assert_eq!(behind(0.52), behind(0.52 + 0.25));

@@ -1,28 +1,28 @@
-//! Description of image features.
+//! Description of image features, and the trait that computes them.
 
 use super::image::Image;
 use super::rings::RingWorkspace;
 use super::spectrum::FourierWorkspace;
 use std::fmt::Debug;
 
-/// Description of an image feature.
+/// Description of an image feature: name, size, and constructor.
 #[derive(Debug)]
 pub struct FeatureAbout {
-    /// Name in reports and charts.
+    /// Display name of the feature.
     pub words: &'static str,
-    /// Returns the number of values for an ny × nx image.
+    /// Function that returns the number of values for an ny × nx image.
     pub n_values: fn((usize, usize)) -> usize,
-    /// Prepares the feature for ny × nx images of a full scale.
+    /// Function that prepares the feature for ny × nx images of a full scale.
     pub prepare: fn((usize, usize), f64) -> Box<dyn Feature>,
 }
 
 /// Image feature, prepared for images of one size.
 pub trait Feature: Debug + Send + Sync {
-    /// Writes the values for an image; zeros if nothing is touched.
+    /// Writes the values of the feature for an image; zeros if nothing is touched.
     fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]);
 }
 
-/// Working memory for features: one per thread.
+/// Working memory for image features: one per thread.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(super) image: Image,
@@ -35,20 +35,20 @@ macro_rules! image_features {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(mod $file;)*
 
-        /// Feature of an image.
+        /// Feature that is computed from an image of a frame.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum ImageFeature {
             $(#[doc = $doc] $name,)*
         }
 
         impl ImageFeature {
-            /// All image features.
+            /// List of all image features.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// Names in a study and names in texts.
+            /// Names of the image features in a study, and their display names.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
-            /// Returns the description of the feature.
+            /// Returns the description of the image feature.
             pub const fn about(self) -> &'static FeatureAbout {
                 match self {
                     $(Self::$name => &$file::ABOUT,)*

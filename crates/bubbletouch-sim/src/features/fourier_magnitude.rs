@@ -1,4 +1,4 @@
-//! √|F(u, v)| at low frequencies: 925 numbers for 64 × 64 taxels.
+//! Feature "Fourier magnitude": √|F(u, v)| at low frequencies, 925 numbers for 64 × 64 taxels.
 //!
 //! A cyclic shift multiplies F(u, v) by a phase only, so |F| is invariant. Frequencies are u = 0 … ⌊nx/3⌋ and
 //! |v| ≤ ⌊ny/3⌋, two thirds of the resolution; higher frequencies contain mainly edges of single taxels and noise. Each frequency occurs once
@@ -19,7 +19,7 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
     prepare: |shape, _| Box::new(FourierMagnitude(Spectrum::new(shape, shape.1 / 3), shape.0)),
 };
 
-/// The transform, and the number of rows.
+/// Fourier transform of the image, and the number of its rows.
 #[derive(Debug)]
 struct FourierMagnitude(Spectrum, usize);
 

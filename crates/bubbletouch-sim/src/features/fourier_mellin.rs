@@ -1,4 +1,4 @@
-//! Angular harmonics of √|F| in rings about frequency 0: 216 numbers.
+//! Feature "Fourier–Mellin": angular harmonics of √|F| in rings about frequency 0, 216 numbers.
 //!
 //! A shift does not change |F|, and a rotation of the image by φ rotates |F| by φ. The magnitude of a harmonic around a ring does not change if the
 //! ring is rotated. With ρⱼ = j / 72 cycles per taxel, j = 1 … 24 (up to a third), and θ over half a turn, since |F(−ω)| = |F(ω)|:
@@ -24,7 +24,7 @@ const N_RINGS: usize = 24;
 const LAST_RING: f64 = 1.0 / 3.0;
 /// Number of directions over half a turn; even, so that a quarter turn is a whole number of steps.
 const N_ANGLES: usize = 36;
-/// Number of harmonics: 0, 2, … 16 of the whole turn. Few describe the edges of contacts; higher ones contain mostly noise.
+/// Number of harmonics: 0, 2, … 16 of the whole turn. Low harmonics describe the edges of contacts; higher ones contain mostly noise.
 const N_HARMONICS: usize = 9;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
@@ -64,7 +64,7 @@ impl FourierMellin {
     }
 }
 
-/// Returns the four integer frequencies around (u, v). |F| has the period of the array, and F(−u, −v) and F(u, v) have equal magnitudes.
+/// Returns indices and weights of the four integer frequencies around (u, v). |F| has the period of the array, and F(−u, −v) and F(u, v) have equal magnitudes.
 fn read((u, v): (f64, f64), spectrum: &Spectrum, (ny, nx): (usize, usize)) -> Read {
     let (left, below) = (u.floor(), v.floor());
     let (along, up) = (u - left, v - below);
@@ -111,7 +111,7 @@ mod tests {
     use super::super::{Cut, Image, ImageFeature};
     use super::*;
 
-    /// Compares all values with their definition, frequency by frequency.
+    /// Compares all values of the feature with their definition, frequency by frequency.
     #[test]
     fn they_are_what_the_equation_says() {
         let shape = (12, 10);

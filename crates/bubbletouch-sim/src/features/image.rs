@@ -1,12 +1,12 @@
-//! Frames as images, the input of all image features.
+//! Images of frames, from which all image features are computed.
 
 use multiversion::multiversion;
 use ndarray::ArrayView2;
 
-/// Parts of a frame that its image leaves out. The limits `level` and `foremost` are in the unit of the frame.
+/// Parts of a frame that its image omits. The limits `level` and `foremost` are in the unit of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cut {
-    /// Threshold ℓ, zero or positive: values δ below it count as 0. Negative values (from noise or estimates) and NaN also count as 0.
+    /// Threshold ℓ, zero or positive. Values δ below it count as 0, as do negative values (from noise or estimates) and NaN.
     pub level: f64,
     /// Depth window d, positive: the image keeps the depth within d of the foremost point, max(0, δ − δ_max + d). If a rigid object moves deeper, δ increases
     /// equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.
@@ -16,35 +16,35 @@ pub struct Cut {
 /// Pressure image of an ny × nx frame after the cut, with its sum, centroid and largest value.
 #[derive(Clone, Debug, Default)]
 pub struct Image {
-    /// Values, zero or positive, shape (ny, nx), row after row.
+    /// Values of the image, zero or positive, shape (ny, nx), row after row.
     pub values: Vec<f64>,
-    /// Number of columns.
+    /// Number of columns of the image.
     pub nx: usize,
-    /// Number of rows.
+    /// Number of rows of the image.
     pub ny: usize,
     /// Taxels with values above zero, in reading order.
     pub touched: Touched,
-    /// Sum Σ δ.
+    /// Sum Σ δ of all values.
     pub sum: f64,
     /// Centroid Σ δ (x, y) / Σ δ, in columns and rows; the middle of the image if nothing is touched.
     pub centroid: (f64, f64),
-    /// Largest value δ.
+    /// Largest value δ of the image.
     pub largest: f64,
 }
 
-/// Positions and values of taxels, in three lists of equal length for vectorised sums.
+/// Positions and values of touched taxels, in three lists of equal length for vectorised sums.
 #[derive(Clone, Debug, Default)]
 pub struct Touched {
     /// Columns of the taxels.
     pub x: Vec<f64>,
     /// Rows of the taxels.
     pub y: Vec<f64>,
-    /// Values δ.
+    /// Values δ of the taxels.
     pub value: Vec<f64>,
 }
 
 impl Image {
-    /// Reads a frame (ny · nx values) with `nx` columns.
+    /// Converts a frame (ny · nx values) with `nx` columns to an image.
     ///
     /// # Panics
     /// If the frame does not consist of whole rows.
@@ -60,13 +60,13 @@ impl Image {
         view.expect("ny · nx values")
     }
 
-    /// Replaces `out` by the values at positions (columns and rows) plus an offset, as [`at`](Self::at) returns them.
+    /// Replaces `out` by the interpolated values at positions (columns and rows) plus an offset.
     pub fn write_at(&self, places: &[(f64, f64)], offset: (f64, f64), out: &mut Vec<f64>) {
         out.resize(places.len(), 0.0);
         write_at(self, places, offset, out);
     }
 
-    /// Returns the value at a position between taxels, by bilinear interpolation; 0 outside.
+    /// Returns the value at a position between taxels, by bilinear interpolation; 0 outside the array.
     #[inline(always)]
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let (left, below) = (x.floor(), y.floor());
@@ -91,7 +91,7 @@ impl Image {
     }
 }
 
-/// Reads a frame into an image whose shape is set.
+/// Converts a frame to an image whose shape is already set.
 #[multiversion(targets("x86_64+avx2"))]
 fn read(image: &mut Image, frame: &[f64], cut: Cut) {
     let Touched { x, y, value } = &mut image.touched;

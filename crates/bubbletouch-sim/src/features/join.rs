@@ -1,4 +1,4 @@
-//! Joins of image features.
+//! Joins: several image features, one after the other.
 
 use super::ImageFeature;
 use super::feature::{Feature, Workspace};
@@ -6,12 +6,12 @@ use super::image::Cut;
 use crate::error::{Error, Result};
 use std::fmt::{self, Debug};
 
-/// One or several image features, one after the other in the order of [`ImageFeature::ALL`].
+/// One or several image features, one after the other in the order of `ImageFeature::ALL`.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Join(u8);
 
 impl Join {
-    /// Joins at least one feature, each once.
+    /// Joins image features: at least one, each at most once.
     ///
     /// # Errors
     /// If there is no feature, or one occurs twice.
@@ -36,13 +36,13 @@ impl Join {
         all.filter(move |&feature| self.0 & (1 << feature as u8) != 0)
     }
 
-    /// Returns the number of values for an ny × nx image.
+    /// Returns the number of values of the join for an ny × nx image.
     pub fn n_values(self, shape: (usize, usize)) -> usize {
         self.features().map(|f| (f.about().n_values)(shape)).sum()
     }
 }
 
-/// Writes the name in a study: `fourier_mellin+descriptors`.
+/// Writes the name of the join in a study: `fourier_mellin+descriptors`.
 impl fmt::Display for Join {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let names: Vec<&str> = self.features().map(ImageFeature::name).collect();
@@ -57,7 +57,7 @@ impl Debug for Join {
 }
 
 impl ImageFeature {
-    /// Returns the name in a study.
+    /// Returns the name of the join in a study.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize].0
     }
@@ -89,7 +89,7 @@ impl ImageFeatures {
     /// Writes the features of a frame (ny · nx values, row after row). Allocates no memory after the first call with frames of this size.
     ///
     /// # Panics
-    /// If the length of `out` is not [`Join::n_values`].
+    /// If the length of `out` differs from the number of values of the join.
     pub fn write(&self, frame: &[f64], workspace: &mut Workspace, out: &mut [f64]) {
         let mut image = std::mem::take(&mut workspace.image);
         image.read(frame, self.nx, self.cut);

@@ -1,4 +1,4 @@
-//! Measurement features: without the effect of a constant pressure, at norm 1, or both.
+//! Measurement features: measurements without the effect of a constant pressure, scaled to norm 1, or both.
 //!
 //! **Centred.** An equal pressure on all taxels, x = a·1, has the measurements y = a·u with u = Φ1. Centring removes this
 //! component from each frame: `y − u (u·y) / (u·u)` is the component of the measurements orthogonal to u. The features of a touch therefore
@@ -16,8 +16,8 @@
 use super::Features;
 use ndarray::{ArrayView1, ArrayViewMut1, ArrayViewMut2};
 
-/// Rounding error in double precision of an element of u = Φ1 that is exactly 0 (rows of Φ have norms of about 1, and at most
-/// 2²⁴ taxels). Smaller elements count as 0.
+/// Rounding error, in double precision, of an element of u = Φ1 that is exactly 0. (Rows of Φ have norms of about 1, and at most 2²⁴ taxels.) Smaller elements
+/// count as 0.
 const ROUNDING: f64 = 1e-12;
 
 impl Features {
@@ -52,7 +52,7 @@ impl Features {
     }
 }
 
-/// Divides by the norm, after scaling by the largest value, so that squares neither overflow nor underflow.
+/// Divides a row by its norm, after scaling by the largest value, so that squares neither overflow nor underflow.
 fn scale_to_one(mut row: ArrayViewMut1<f64>) {
     let largest = row.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
     if largest == 0.0 || !largest.is_finite() {
@@ -153,7 +153,7 @@ mod tests {
             let rows = features(Features::Centred, &projection, &frames());
             let raised = features(Features::Centred, &projection, &(frames() + 4e-3));
             assert!(largest_difference(&rows, &raised) < 1e-15, "{ensemble:?}");
-            // The operation is a projection: applying it again changes nothing, and its effect is nonzero.
+            // The operation is a projection, so a second application changes nothing, and its effect is nonzero.
             let mut twice = rows.clone();
             Features::Centred.apply(twice.view_mut(), of_ones(&projection).view());
             assert!(largest_difference(&rows, &twice) < 1e-15, "{ensemble:?}");

@@ -3,11 +3,11 @@
 //! The measurements of a touch are F frames of m values, one after the other (F = 1 unless a touch is read at several depths). Features are
 //! computed from one touch at a time without knowledge of objects, so training and test touches need not be separated.
 //!
-//! **Measurement features** ([`measured`]): raw, without the effect of a constant pressure (centred), at norm 1, or both.
+//! **Measurement features** ([`measured`]): unchanged measurements, measurements without the effect of a constant pressure (centred), at norm 1, or both.
 //!
-//! **Image features** ([`ImageFeature`], and joins of several): numbers that are invariant to shifts and rotations of the contact on the array,
-//! which cause most differences between touches of a free object. Image features need the frame; if it was
-//! compressed, its [linear estimate](crate::sensing::ImageEstimate) replaces it. A patch without rows and columns uses its [`Chart`].
+//! **Image features** ([`ImageFeature`], and joins of several) are numbers that are invariant to shifts and rotations of the contact on the array. Shifts and
+//! rotations cause most differences between touches of a free object. Image features need the frame; if it was compressed, the linear estimate of the image
+//! replaces it. A patch without rows and columns uses its [`Chart`].
 //!
 //! | feature | numbers (64 × 64) | shift | turn | mirror image | more pressure | deeper |
 //! |---|---|---|---|---|---|---|
@@ -19,9 +19,9 @@
 //! | [`Descriptors`](ImageFeature::Descriptors) | 126 | exact by taxels | exact by 90° | all but 3 | 51 of them | 24 of them |
 //! | [`Aligned`](ImageFeature::Aligned) | 1,024 | exact by taxels | exact by 90° | | | |
 //!
-//! Exact by taxels: for shifts by a whole number of taxels while the contact stays on the array. Exact by 90°: up to rounding, on a square array. Other
-//! shifts and rotations change the features as much as the sampling by taxels changes the image. Four
-//! times the pressure doubles magnitudes and harmonics, because these are square roots.
+//! "Exact by taxels" means for shifts by a whole number of taxels while the contact stays on the array. "Exact by 90°" means up to rounding, on a square array.
+//! Other shifts and rotations change the features as much as the sampling by taxels changes the image. Four times the pressure doubles magnitudes and
+//! harmonics, because these are square roots.
 
 mod chart;
 mod feature;

@@ -1,13 +1,13 @@
 //! Moments of an image that are invariant to shifts and rotations.
 //!
-//! Let μ_pq = Σ w (x − x̄)ᵖ (y − ȳ)^q / Σ w be moments about the centroid of the weights w, and C_pq those of complex coordinates z = x + iy
-//! (C₁₁ = μ₂₀ + μ₀₂, C₂₀ = μ₂₀ − μ₀₂ + 2i μ₁₁, C₃₀ = Σ w z³ / Σ w, C₂₁ = Σ w z² z̄ / Σ w). A rotation by φ multiplies C_pq by exp(i (p − q) φ).
-//! The following nine numbers are therefore invariant; roots convert each of them to a length:
+//! Let μ_pq = Σ w (x − x̄)ᵖ (y − ȳ)^q / Σ w be moments about the centroid of the weights w. The complex moments C_pq use the coordinates z = x + iy: C₁₁ = μ₂₀
+//! + μ₀₂, C₂₀ = μ₂₀ − μ₀₂ + 2i μ₁₁, C₃₀ = Σ w z³ / Σ w, C₂₁ = Σ w z² z̄ / Σ w. A rotation by φ multiplies C_pq by exp(i (p − q) φ). The following nine numbers
+//! are therefore invariant, and roots convert each of them to a length:
 //!
 //! √C₁₁, the standard deviations along both principal axes √((C₁₁ ± |C₂₀|) / 2), √|C₂₀|, |C₃₀|^⅓, |C₂₁|^⅓, and
 //! the products Re(C₂₀ C̄₂₁²), Re(C₃₀ C̄₂₁³), Im(C₃₀ C̄₂₁³), signed roots of them.
 //!
-//! The last one changes its sign in a mirror image. All nine are functions of Hu's seven moments.
+//! The last number changes its sign in a mirror image. All nine are functions of Hu's seven moments.
 //!
 //! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179; Flusser (2000), *On the independence of rotation moment
 //! invariants*, Pattern Recognition 33, 1405 (the complex form).
@@ -22,15 +22,15 @@ pub const N_MOMENTS: usize = 9;
 /// Weight of a touched taxel in the moments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weight {
-    /// The pressure δ of the taxel.
+    /// Pressure δ of the taxel.
     Pressure,
-    /// One for every touched taxel.
+    /// Weight 1 for every touched taxel.
     Touched,
-    /// One for taxels above a level.
+    /// Weight 1 for taxels above a level, 0 for others.
     Above(f64),
 }
 
-/// Number of weights that are summed at a time.
+/// Number of weights whose sums are computed at a time.
 const LANES: usize = 4;
 
 /// Returns the nine moments for each of up to four weights, in units of columns and rows; zeros if the sum of the weights is 0.
@@ -45,12 +45,12 @@ pub fn moments<const N: usize>(image: &Image, weights: [Weight; N]) -> [[f64; N_
     })
 }
 
-/// Σ w and the sums from which the C_pq are computed.
+/// Sum Σ w and the sums from which the moments C_pq are computed.
 #[derive(Default)]
 struct Sums {
     total: [f64; LANES],
     c11: [f64; LANES],
-    /// Real and imaginary parts of the sum for C₂₀.
+    /// Real and imaginary parts of the sum for the moment C₂₀.
     c20: [[f64; LANES]; 2],
     c21: [[f64; LANES]; 2],
     c30: [[f64; LANES]; 2],
@@ -102,7 +102,7 @@ fn central_sums(Touched { x, y, value }: &Touched, weights: [Weight; LANES]) -> 
 }
 
 impl Sums {
-    /// Returns the nine invariants of one weight.
+    /// Returns the nine invariant moments of one weight.
     fn invariants(&self, lane: usize) -> [f64; N_MOMENTS] {
         let total = self.total[lane];
         let c11 = self.c11[lane] / total;

@@ -1,12 +1,11 @@
-//! Square roots of angular harmonics of the image, in rings about the centroid of its pressure: 416 numbers.
+//! Feature "polar harmonics": square roots of angular harmonics of the image, in rings about the centroid of its pressure; 416 numbers.
 //!
-//! With the centroid (x̄, ȳ) = Σ δ (x, y) / Σ δ and rings of radius r = (j + ½) h / 26, j = 0 … 25, where h is half the shorter side:
+//! The centroid is (x̄, ȳ) = Σ δ (x, y) / Σ δ. With rings of radius r = (j + ½) h / 26, j = 0 … 25, where h is half the shorter side, the feature is
 //!
 //! f(j, k)² = |Σ_θ δ(x̄ + r cos θ, ȳ + r sin θ) exp(−ikθ)| / 32, θ in 32 equal steps, k = 0 … 15.
 //!
-//! δ between taxels is interpolated bilinearly, and is 0 beyond the array. The centroid moves with the contact, and a rotation of the image
-//! rotates the rings. The feature is exactly invariant to quarter turns. The feature is also exactly invariant to shifts by whole taxels as long as no ring
-//! that meets the
+//! The value δ between taxels is interpolated bilinearly, and is 0 beyond the array. The centroid moves with the contact, and a rotation of the image rotates
+//! the rings. The feature is exactly invariant to quarter turns. It is also exactly invariant to shifts by whole taxels as long as no ring that meets the
 //! contact leaves the array. For other motions the sampling by taxels limits the invariance. The root brings weak harmonics closer to strong ones.
 //!
 //! Source: the angular part of Sheng and Arsenault (1986), JOSA A 3, 771, without the transform before it.
@@ -16,11 +15,11 @@ use super::image::Image;
 use super::rings::{Rings, roots};
 use std::f64::consts::TAU;
 
-/// Number of rings; on 64 × 64 taxels they are 1.2 pitches apart.
+/// Number of rings; on 64 × 64 taxels the rings are 1.2 pitches apart.
 const N_RINGS: usize = 26;
 /// Number of angles per ring, a multiple of 4, so that a quarter turn is a whole number of steps.
 const N_ANGLES: usize = 32;
-/// Number of harmonics: all but the one that 32 steps cannot distinguish from its mirror image.
+/// Number of harmonics: all except the one that 32 steps cannot distinguish from its mirror image.
 const N_HARMONICS: usize = 16;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
@@ -32,7 +31,7 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
 #[derive(Debug)]
 struct PolarHarmonics {
     rings: Rings,
-    /// Offsets from the centroid of each value, ring after ring, in columns and rows.
+    /// Offsets of each value's position from the centroid, ring after ring, in columns and rows.
     places: Vec<(f64, f64)>,
 }
 
@@ -68,7 +67,8 @@ mod tests {
     use super::super::tests::features_of;
     use super::*;
 
-    /// A plane δ = 1 + 0.1 (x − x̄) over a disc has harmonic 0 of 1 and harmonic 1 of 0.05 r; bilinear interpolation is exact on planes.
+    /// Compares the harmonics of a plane with the exact ones. A plane δ = 1 + 0.1 (x − x̄) over a disc has harmonic 0 of 1 and harmonic 1 of 0.05 r; bilinear
+    /// interpolation is exact on planes.
     #[test]
     fn harmonics_of_a_plane_are_its_height_and_its_slope() {
         let shape = (64, 64);

@@ -6,7 +6,7 @@ use realfft::{RealFftPlanner, RealToComplex};
 use std::fmt;
 use std::sync::Arc;
 
-/// First harmonics of values at equal angles around several rings:
+/// Low-order harmonics of values at equal angles around several rings:
 ///
 /// hₖ = |Σⱼ f(θⱼ) exp(−2πi j k / n)| / n, k = 0 … `n_harmonics` − 1.
 ///
@@ -35,7 +35,7 @@ impl Rings {
         }
     }
 
-    /// Writes the harmonics of `workspace.values`, ring after ring.
+    /// Writes the harmonics of `workspace.values` to `out`, ring after ring.
     pub(super) fn write(&self, workspace: &mut RingWorkspace, out: &mut [f64]) {
         let RingWorkspace {
             values,
@@ -58,7 +58,7 @@ impl Rings {
     }
 }
 
-/// Replaces values by their square roots, vectorised.
+/// Replaces the values by their square roots, using vector instructions.
 #[multiversion(targets("x86_64+avx2"))]
 pub(super) fn roots(values: &mut [f64]) {
     for value in values {

@@ -1,4 +1,4 @@
-//! Features of a touch by their names in a study.
+//! Selection of the features of a touch by their names in a study.
 
 use super::{ImageFeature, Join, fourier_magnitude, fourier_mellin};
 use crate::error::Error;
@@ -10,20 +10,20 @@ use serde::{Deserialize, Serialize};
 )]
 #[serde(try_from = "String", into = "String")]
 pub enum Features {
-    /// Measurements without a change.
+    /// Unchanged measurements.
     #[default]
     Raw,
-    /// Each frame without the effect of a constant pressure.
+    /// Measurements of each frame without the effect of a constant pressure.
     Centred,
-    /// Each touch scaled to norm 1.
+    /// Measurements of each touch scaled to norm 1.
     UnitNorm,
-    /// Centred, then scaled to norm 1.
+    /// Measurements of each frame without the effect of a constant pressure, then scaled to norm 1 per touch.
     CentredUnitNorm,
     /// Image features of each frame.
     OfImage(Join),
 }
 
-/// Measurement features: name in a study, and description if it differs.
+/// Measurement features: name in a study, and display name if it differs.
 const OF_MEASUREMENTS: [(&str, Features); 4] = [
     ("raw", Features::Raw),
     ("centred", Features::Centred),
@@ -32,7 +32,7 @@ const OF_MEASUREMENTS: [(&str, Features); 4] = [
 ];
 
 impl Features {
-    /// Descriptions of features whose name is not sufficient.
+    /// Display names of features whose name in a study is not sufficient.
     pub const NAMES: &[(&str, &str)] = &[
         ("centred_unit_norm", "centred, unit norm"),
         ("fourier_magnitude", fourier_magnitude::ABOUT.words),

@@ -10,7 +10,7 @@ use rustfft::{Fft, FftPlanner};
 use std::fmt;
 use std::sync::Arc;
 
-/// Transform that computes |F| at u = 0 … `n_columns` − 1 and all v.
+/// Fourier transform that computes |F| at u = 0 … `n_columns` − 1 and all v.
 pub(super) struct Spectrum {
     nx: usize,
     ny: usize,
@@ -26,12 +26,12 @@ pub struct FourierWorkspace {
     of_line: Vec<Complex<f64>>,
     columns: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
-    /// Magnitudes |F|; the value of column u and row v is at index u · ny + v.
+    /// Magnitudes |F| of the spectrum; the value of column u and row v is at index u · ny + v.
     pub(super) magnitudes: Vec<f64>,
 }
 
 impl Spectrum {
-    /// Prepares the transform of ny × nx images for columns 0 to `last`, limited to the existing ones.
+    /// Prepares the transform of ny × nx images for columns 0 to `last`, limited to the existing columns.
     pub(super) fn new((ny, nx): (usize, usize), last: usize) -> Self {
         Self {
             nx,
@@ -47,7 +47,7 @@ impl Spectrum {
         self.n_columns
     }
 
-    /// Transforms the touched rows, then the columns.
+    /// Transforms the touched rows of an image, then the columns.
     pub(super) fn transform(&self, image: &Image, workspace: &mut FourierWorkspace) {
         assert_eq!((image.nx, image.ny), (self.nx, self.ny));
         let FourierWorkspace {

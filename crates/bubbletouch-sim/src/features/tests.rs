@@ -1,4 +1,4 @@
-//! Laws of image features, tested on all of them.
+//! Laws of image features, tested on all features.
 
 use super::*;
 use crate::random::Seed;
@@ -58,7 +58,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
 }
 
-/// Rounding error of numbers of order 1 to 10, and of roots of numbers that are 0 except for rounding.
+/// Tolerance for rounding of numbers of order 1 to 10, and of roots of numbers that are 0 except for rounding.
 const ROUNDING: f64 = 1e-7;
 
 #[test]
@@ -231,7 +231,7 @@ fn every_name_reads_back_and_others_are_told_what_there_is() {
     }
 }
 
-/// A deeper press of a rigid object adds a constant to every touched taxel, and touches more taxels.
+/// Checks the depth window. A deeper press of a rigid object adds a constant to every touched taxel, and touches more taxels.
 #[test]
 fn what_is_behind_the_foremost_point_does_not_change_with_depth() {
     let shape = (32, 32);
@@ -252,6 +252,6 @@ fn what_is_behind_the_foremost_point_does_not_change_with_depth() {
     assert!(largest_difference(&shallow, &deep) < ROUNDING);
     let [shallow, deep] = [0.4, 0.75].map(|depth| found(depth, None));
     assert!(largest_difference(&shallow, &deep) > 1.0);
-    // A press less deep than the window is unchanged.
+    // A press that is less deep than the window is unchanged.
     assert!(found(0.2, Some(0.3)) == found(0.2, None));
 }

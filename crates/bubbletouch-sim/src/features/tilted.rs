@@ -1,10 +1,9 @@
 //! Prediction of a frame after a small additional tilt of the object.
 //!
-//! The deflection at (x, y) under a rigid object is the height of its surface below the untouched skin. A small tilt adds a plane
-//! to it, δ + a x + b y, except for second-order terms in the angle (1 − cos 5° = 0.004). The patch then moves until the foremost point has its
-//! previous depth:
+//! The deflection at (x, y) under a rigid object is the height of its surface below the untouched skin. A small tilt adds a plane to it, δ + a x + b y, except
+//! for second-order terms in the angle (1 − cos 5° = 0.004). The patch then moves until the foremost point has its previous depth:
 //!
-//! δ'(x, y) = max(0, δ + a x + b y − max(δ + a x + b y) + max δ), both maxima over the touched taxels.
+//! δ'(x, y) = max(0, δ + a x + b y − max(δ + a x + b y) + max δ), where each maximum is over the touched taxels.
 //!
 //! Untouched taxels stay untouched, since a frame does not contain their distance to the object. If the tilt would bring
 //! them into contact, the image still ends at its old border.
@@ -44,7 +43,7 @@ mod tests {
 
     const NX: usize = 40;
 
-    /// Returns the depth of a surface at (x, y), pressed so that its foremost point has depth 1.
+    /// Returns the depth of a surface at each position, pressed so that its foremost point has depth 1.
     fn pressed(height: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let at = |i: usize| height((i % NX) as f64 - 19.5, (i / NX) as f64 - 14.5);
         let heights: Vec<f64> = (0..NX * 30).map(at).collect();
@@ -59,8 +58,8 @@ mod tests {
         out
     }
 
-    /// Compares a tilted copy with the frame of the tilted surface where both are touched. They are equal up to an offset, which is 0 if the
-    /// foremost point was touched before.
+    /// Compares a tilted copy with the frame of the tilted surface where both are touched. The two are equal up to an offset, which is 0 if the foremost point
+    /// was touched before.
     #[test]
     fn a_copy_is_the_frame_of_the_tilted_surface_where_that_was_touched() {
         let ball = |x: f64, y: f64| -(x * x + y * y) / 200.0;
@@ -90,7 +89,7 @@ mod tests {
         let deepest = |frame: &[f64]| frame.iter().copied().fold(0.0, f64::max);
         let copy = tilted(&frame, (0.05, -0.03));
         assert!((deepest(&copy) - deepest(&frame)).abs() < 1e-15);
-        // Noise on untouched taxels is no contact, and an empty frame stays empty.
+        // Noise on untouched taxels is not contact, and an empty frame stays empty.
         frame[0] = 0.01;
         let mut out = vec![0.0; frame.len()];
         tilt_frame(&frame, NX, (0.1, 0.0), 0.02, &mut out);

@@ -14,7 +14,7 @@ pub struct CsvFile {
 }
 
 impl CsvFile {
-    /// Starts a table. [`commit`](Self::commit) moves it to `path`.
+    /// Starts a CSV file; `commit` moves it to `path` when it is complete.
     ///
     /// # Errors
     /// If the file cannot be created.
@@ -25,13 +25,13 @@ impl CsvFile {
         })
     }
 
-    /// Appends a row, a struct with one field per column.
+    /// Appends a row, given as a struct with one field per column.
     ///
     /// # Errors
     /// If the row cannot be written.
     pub fn row(&mut self, row: impl Serialize) -> Result<()> {
         let is_first = !std::mem::replace(&mut self.has_header, true);
-        // A separate buffer per row, because flushing the CSV writer would flush the file with every row.
+        // Each row uses a separate buffer, because flushing the CSV writer would flush the file with every row.
         let mut csv = csv::WriterBuilder::new()
             .has_headers(is_first)
             .from_writer(Vec::new());
@@ -50,7 +50,7 @@ impl CsvFile {
     }
 }
 
-/// Returns a conversion of CSV read errors. The result names the file, the line if it is known, and what is `allowed`.
+/// Returns a conversion of CSV read errors to errors that name the file, the line if it is known, and what is `allowed`.
 pub fn table_error(path: &Path, allowed: &str) -> impl Fn(csv::Error) -> Error {
     move |error| {
         let line = error.position().map(|at| format!(", line {}", at.line()));

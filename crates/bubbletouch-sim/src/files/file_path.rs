@@ -17,8 +17,8 @@ thread_local! {
 
 /// Path of a file or a folder in a study file.
 ///
-/// A relative path is relative to the folder of the study file ([`with_folder`]). If the path exists only relative to the current folder, that
-/// file is used, with a note on standard error. Serialization writes an absolute path, so that a resolved study runs from any folder.
+/// A relative path is relative to the folder of the study file ([`with_folder`]). If the path exists only relative to the current folder, this file is used,
+/// with a note on standard error. Serialization writes an absolute path, so that a resolved study runs from any folder.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FilePath {
     written: PathBuf,
@@ -27,7 +27,7 @@ pub struct FilePath {
 
 /// Runs `parse` with paths relative to `folder`; with `None`, paths are kept as written.
 pub fn with_folder<T>(folder: impl Into<Option<PathBuf>>, parse: impl FnOnce() -> T) -> T {
-    /// Guard that restores the previous folder, also if parsing panics.
+    /// Guard that restores the previous folder, even if parsing panics.
     struct Before(Option<PathBuf>);
     impl Drop for Before {
         fn drop(&mut self) {
@@ -44,7 +44,7 @@ impl FilePath {
         &self.written
     }
 
-    /// Returns the resolved path. If the file was parsed without a folder, a relative path is relative to `folder`.
+    /// Returns the resolved path. If the file was parsed without a folder, a relative path is resolved relative to `folder`.
     pub fn within(&self, folder: &Path) -> PathBuf {
         match self.resolved == self.written {
             true => folder.join(&self.written),
@@ -61,7 +61,7 @@ impl FilePath {
                 written.display(),
                 resolved.display()
             ));
-            // An absolute path, so that no folder is prepended to it.
+            // The path is made absolute, so that no folder is prepended to it.
             let resolved = std::path::absolute(&written).unwrap_or_else(|_| written.clone());
             return Self { written, resolved };
         }
@@ -120,7 +120,7 @@ impl Serialize for FilePath {
     }
 }
 
-/// Returns a copy of a specification in which every [`FilePath`] is absolute; relative paths are relative to `folder`. The copy is made
+/// Returns a copy of a specification in which every [`FilePath`] is absolute; relative paths are resolved relative to `folder`. The copy is made
 /// through TOML. Each path is resolved during serialization, so no key can be missed.
 ///
 /// # Errors
@@ -156,7 +156,7 @@ pub fn file_path<'de, D: Deserializer<'de>>(deserializer: D) -> Result<PathBuf, 
     })
 }
 
-/// Deserializes an optional path like [`file_path`].
+/// Deserializes an optional path. If the file is parsed with a folder, the path becomes absolute.
 ///
 /// # Errors
 /// If the value is not a string.
@@ -169,9 +169,9 @@ pub fn optional_file_path<'de, D: Deserializer<'de>>(
 /// Name of a built-in set of objects, or path of a TOML file with objects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SetName {
-    /// Name of a built-in set.
+    /// Name of a built-in object set.
     BuiltIn(String),
-    /// Path of a TOML file.
+    /// Path of a TOML file with objects.
     File(FilePath),
 }
 

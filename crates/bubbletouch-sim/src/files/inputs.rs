@@ -1,7 +1,7 @@
 //! Input files of a command, which no command may overwrite.
 //!
 //! The functions [`open`], [`read`] and [`read_to_string`] record input files after [`protect_inputs`] has been called.
-//! [`WholeFile`](super::WholeFile) does not replace a recorded file under any path.
+//! A [`WholeFile`](super::WholeFile) does not replace a recorded file under any path.
 
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
@@ -30,7 +30,7 @@ pub fn protect_inputs() {
 /// Opens a file for reading and records it as an input.
 ///
 /// # Errors
-/// If [`File::open`] fails.
+/// If the file cannot be opened.
 pub fn open(path: &Path) -> io::Result<File> {
     let file = File::open(path)?;
     let mut inputs = INPUTS.lock().unwrap_or_else(|e| e.into_inner());
@@ -45,7 +45,7 @@ pub fn open(path: &Path) -> io::Result<File> {
 /// Reads a whole file and records it as an input.
 ///
 /// # Errors
-/// If [`fs::read`] fails.
+/// If the file cannot be read.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     open(path)?.read_to_end(&mut bytes)?;
@@ -55,7 +55,7 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// Reads a whole text file and records it as an input.
 ///
 /// # Errors
-/// If [`fs::read_to_string`] fails.
+/// If the file cannot be read or is not UTF-8.
 pub fn read_to_string(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     open(path)?.read_to_string(&mut text)?;
@@ -88,7 +88,7 @@ pub fn check_output(path: &Path) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// Returns a recorded input in a folder or its subfolders; `None` if there is none.
+/// Returns a recorded input file in a folder or its subfolders; `None` if there is none.
 pub fn input_within(folder: &Path) -> Option<PathBuf> {
     let folder = folder.canonicalize().ok()?;
     let inputs = INPUTS.lock().unwrap_or_else(|e| e.into_inner());
@@ -100,7 +100,7 @@ pub fn input_within(folder: &Path) -> Option<PathBuf> {
     paths.find(is_within).cloned()
 }
 
-/// Returns `None` for a pipe or a device; writing does not replace them.
+/// Returns the identity of a file; `None` for a pipe or a device, because writing does not replace them.
 #[cfg(unix)]
 fn file_id(_: &Path, meta: &Metadata) -> Option<FileId> {
     use std::os::unix::fs::MetadataExt;

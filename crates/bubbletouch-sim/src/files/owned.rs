@@ -1,4 +1,4 @@
-//! Files of an output folder that the program wrote; the program may replace only these files.
+//! Files of an output folder that the program wrote and may therefore replace.
 
 use super::inputs::check_output;
 use super::whole_file::write_bytes;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Name of the manifest in an output folder.
 pub const MANIFEST_FILE: &str = "manifest.json";
 
-/// Name of the subcommand that writes result folders, for [`OwnedFiles::read`].
+/// Name of the subcommand that writes result folders.
 pub const RUN: &str = "run";
 
 /// Keys of the file lists in a manifest; the keys of each list are file names.
@@ -111,7 +111,7 @@ impl OwnedFiles {
     /// The names of charts depend on the results. In a folder without a manifest, any existing picture is therefore an error.
     ///
     /// # Errors
-    /// If [`check`](Self::check) fails, or if a picture exists that the program did not write.
+    /// If a file was not written by the program, is a link, or is an input; or if a picture exists that the program did not write.
     pub fn check_results<'a>(&self, tables: impl IntoIterator<Item = &'a str>) -> Result<()> {
         self.check(["study.toml", "report.html"])?;
         self.check(tables)?;
@@ -182,7 +182,7 @@ impl DataFolder {
     /// Prepares a folder for files with these names without writing anything. `writer` is the subcommand.
     ///
     /// # Errors
-    /// If [`OwnedFiles::read`] or [`OwnedFiles::check`] fails.
+    /// If the folder's manifest is invalid or belongs to another subcommand, or a file was not written by the program.
     pub fn claim<'a>(
         folder: &Path,
         writer: &'static str,
@@ -191,10 +191,10 @@ impl DataFolder {
         Self::claim_with(folder, writer, names, |_| false)
     }
 
-    /// Prepares a folder like [`claim`](Self::claim), but also accepts files that no manifest lists if their content shows that the program wrote them.
+    /// Prepares a folder for files with these names. Files that no manifest lists are also accepted if their content shows that the program wrote them.
     ///
     /// # Errors
-    /// If [`claim`](Self::claim) fails.
+    /// If `claim` fails for these arguments.
     pub fn claim_with<'a>(
         folder: &Path,
         writer: &'static str,

@@ -1,4 +1,4 @@
-//! Files that are complete or absent: written under a temporary name, then renamed.
+//! Files that are either complete or absent: they are written under a temporary name, then renamed.
 
 use super::inputs::check_output;
 use crate::error::{Error, Result};
@@ -10,10 +10,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Number of files that this process has started; it makes temporary names unique if two threads write one path.
 static N_STARTED: AtomicU64 = AtomicU64::new(0);
 
-/// File under construction. [`commit`](Self::commit) moves it to its path; if it is dropped earlier, the temporary file is removed.
+/// File under construction. Committing moves it to its path; if it is dropped earlier, the temporary file is removed.
 #[derive(Debug)]
 pub struct WholeFile {
-    /// Path as given, for error messages.
+    /// Path of the file as given, for error messages.
     given: PathBuf,
     path: PathBuf,
     /// Path of the temporary file; `None` for a device or a pipe, which cannot be replaced by renaming.
@@ -22,10 +22,10 @@ pub struct WholeFile {
 }
 
 impl WholeFile {
-    /// Starts a file. [`commit`](Self::commit) moves it to `path`. If `path` is a symbolic link, the file replaces the target of the link.
+    /// Starts a file; `commit` moves it to `path` when it is complete. If `path` is a symbolic link, the file replaces the target of the link.
     ///
     /// # Errors
-    /// If this process has read the file ([`protect_inputs`](super::protect_inputs)), or if the file cannot be created.
+    /// If this process has read the file (`protect_inputs`), or if the file cannot be created.
     pub fn create(path: &Path) -> Result<Self> {
         check_output(path)?;
         let given = path;
@@ -66,7 +66,7 @@ impl WholeFile {
         })
     }
 
-    /// Writes part of the file.
+    /// Writes a part of the file.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -96,7 +96,7 @@ impl WholeFile {
     }
 }
 
-/// Maximum length of a chain of symbolic links, as in Linux. If the value is larger, loops are detected later; if the value is smaller, long chains fail.
+/// Maximum length of a chain of symbolic links, as in Linux. If larger, loops are detected later; if smaller, long chains fail.
 const MAX_LINKS: usize = 40;
 
 /// Returns the target of a symbolic link, or `path` itself if it is not a link.
@@ -142,7 +142,7 @@ pub fn write_whole(
     file.commit()
 }
 
-/// Writes bytes to a file, which is afterwards complete or unchanged.
+/// Writes bytes to a file. If writing fails, an existing file stays unchanged.
 ///
 /// # Errors
 /// If the file cannot be written.

@@ -1,11 +1,11 @@
 //! Counter-based random numbers: functions of a name and of indices, for large sets of items of which only a few are needed.
 //!
-//! A [stream](super::Seed::rng) must be drawn from its start. Here the draws of group g at index t are functions of the counter (g, t) and
+//! A random stream must be drawn from its start. Here the draws of group g at index t are functions of the counter (g, t) and
 //! a key, in any order and on any thread. Philox4x32-10 \[PX\] converts the counter to four words w of 32 bits, one for each item
 //! of the group: 4 g, 4 g + 1, 4 g + 2, 4 g + 3. The words are converted to
 //!
 //! - uniform numbers, (w + ½) / 2³²;
-//! - normal numbers in pairs by Box and Muller: √(−2 ln u₀) (cos, sin)(2π u₁). Their magnitude is at most 6.77, which a normal number exceeds
+//! - normal numbers in pairs by Box and Muller, √(−2 ln u₀) (cos, sin)(2π u₁). Their magnitude is at most 6.77, which a normal number exceeds
 //!   once in 10¹¹ draws.
 //!
 //! Logarithm, sine and cosine consist of additions and products only. The bits are therefore equal on any machine, and many groups can be
@@ -41,7 +41,7 @@ const COS: [f64; 7] = [479_001_600.0, 3_628_800.0, 40_320.0, 720.0, 24.0, 2.0, 1
 pub struct CounterKey([u32; 2]);
 
 impl Seed {
-    /// Returns the key of the counter-based random numbers of this name.
+    /// Returns the key of the counter-based random numbers with this name.
     pub fn counter_key(&self) -> CounterKey {
         let half = |at: usize| u32::from_le_bytes([at, at + 1, at + 2, at + 3].map(|k| self.0[k]));
         CounterKey([half(0), half(4)])
@@ -70,7 +70,7 @@ impl CounterKey {
         [a, b, c, d]
     }
 
-    /// Returns Philox4x32-10 of the counters (group, lower half of the index, upper half of the index, 0): 32-bit words.
+    /// Returns the 32-bit words of Philox4x32-10 for the counters (group, lower half of the index, upper half of the index, 0).
     #[inline(always)]
     fn words<const N: usize>(self, groups: &[u64; N], index: u64) -> [[u64; N]; 4] {
         self.mixed([*groups, [index & LOW; N], [index >> 32; N], [0; N]])
@@ -120,7 +120,7 @@ fn box_muller<const N: usize>(first: &[u64; N], second: &[u64; N]) -> [[f64; N];
     [x, y]
 }
 
-/// Returns ln u of a normal float above zero: for u = 2ᵉ m with m within a factor √2 of 1, e ln 2 + 2 artanh((m − 1) / (m + 1)).
+/// Returns ln u of a normal float above zero. With u = 2ᵉ m and m within a factor √2 of 1, the logarithm is e ln 2 + 2 artanh((m − 1) / (m + 1)).
 #[inline(always)]
 fn logarithm(u: f64) -> f64 {
     let bits = u.to_bits();
@@ -140,7 +140,7 @@ fn sin_cos(angle: f64) -> (f64, f64) {
     (angle * series(&SIN, q), series(&COS, q))
 }
 
-/// Returns Σ qⁿ / dₙ, with the divisor of the highest power first.
+/// Returns the series Σ qⁿ / dₙ; the divisor of the highest power comes first.
 #[inline(always)]
 fn series<const N: usize>(divisors: &[f64; N], q: f64) -> f64 {
     let mut sum = 1.0 / divisors[0];

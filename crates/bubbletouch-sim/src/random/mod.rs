@@ -23,12 +23,12 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
 
-/// Name of a random stream, extended by [`named`](Seed::named) and [`numbered`](Seed::numbered).
+/// Name of a random stream, which words and numbers extend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Seed([u8; 32]);
 
 impl Seed {
-    /// Returns the root of all streams of a study.
+    /// Returns the root seed of all random streams of a study.
     pub fn new(seed: u64) -> Self {
         Self(Sha256::digest(seed.to_le_bytes()).into())
     }
@@ -43,7 +43,7 @@ impl Seed {
         self.child(b"number", &number.to_le_bytes())
     }
 
-    /// Returns the generator of the stream, at its start.
+    /// Returns the generator of the random stream, at its start.
     pub fn rng(&self) -> ChaCha8Rng {
         ChaCha8Rng::from_seed(self.0)
     }

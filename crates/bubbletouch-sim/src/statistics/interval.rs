@@ -5,16 +5,16 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use crate::{Error, Result};
 use std::collections::BTreeMap;
 
-/// Interval `low..=high`.
+/// Closed interval `low..=high` of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Lower end.
+    /// Lower end of the interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the interval.
     pub high: f64,
 }
 
-/// Counts of one accuracy test.
+/// Counts of one accuracy test: how many test rows were recognised correctly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RowTest {
     /// Index of the tested part of the rows: the fold, or 0 without folds.
@@ -66,7 +66,7 @@ impl Interval {
     /// trials of one part add no rows, and k folds add up the rows of all k parts.
     ///
     /// # Errors
-    /// If there are no tests, or if [`wilson`](Self::wilson) would fail for one of them.
+    /// If there are no tests, or if the count of a test is invalid.
     pub fn wilson_of_tests(tests: &[RowTest], confidence: f64) -> Result<Self> {
         check_confidence(confidence)?;
         let (Some(first), true) = (tests.first(), tests.iter().all(RowTest::is_possible)) else {
@@ -92,7 +92,7 @@ impl Interval {
         Ok(Self::score(share, n_rows as f64, z))
     }
 
-    /// Returns the score interval of a proportion `share` of n independent rows, for z standard errors.
+    /// Returns the Wilson score interval of a proportion `share` of n independent rows, for z standard errors.
     pub fn score(share: f64, n: f64, z: f64) -> Self {
         let z2 = z * z;
         let centre = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
@@ -106,10 +106,10 @@ impl Interval {
     }
 }
 
-/// Checks that a coverage is between 0 and 1.
+/// Checks that a confidence level (coverage) is between 0 and 1.
 ///
 /// # Errors
-/// If the confidence is outside 0..1.
+/// If the confidence level is outside 0..1.
 pub fn check_confidence(confidence: f64) -> Result<()> {
     if confidence > 0.0 && confidence < 1.0 {
         return Ok(());

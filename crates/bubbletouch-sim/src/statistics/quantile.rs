@@ -1,6 +1,6 @@
 //! Quantiles with linear interpolation: type 7 of Hyndman and Fan (American Statistician 50, 1996), NumPy's default.
 
-/// Returns the quantile at `part` (0 to 1), and sorts the values; returns 0 if there are no values.
+/// Returns the quantile of some values at `part` (0 to 1), and sorts the values; returns 0 if there are none.
 pub fn quantile(values: &mut [f64], part: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
@@ -9,7 +9,7 @@ pub fn quantile(values: &mut [f64], part: f64) -> f64 {
     of_sorted(values, part)
 }
 
-/// Returns the quantile at `part` (0 to 1) of a non-empty sorted slice.
+/// Returns the quantile of a non-empty sorted slice at `part` (0 to 1).
 pub fn of_sorted(values: &[f64], part: f64) -> f64 {
     let place = part * (values.len() - 1) as f64;
     let below = place as usize;

@@ -1,7 +1,7 @@
 //! Tolerances for tests of random quantities, in standard errors of the estimate.
 
-/// Allowed deviation of a random quantity, in standard errors: one normal estimate in 1.7 million deviates more. If the value is smaller, tests of thousands
-/// of estimates fail by chance; if the value is larger, tests detect fewer errors.
+/// Allowed deviation of a random quantity, in standard errors: one normal estimate in 1.7 million deviates more. If smaller, tests of thousands of estimates
+/// fail by chance; if larger, tests detect fewer errors.
 pub const STANDARD_ERRORS: f64 = 5.0;
 
 /// Asserts that an estimate is within [`STANDARD_ERRORS`] standard errors of its expected value.

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-/// Checks that a number is finite and positive; `unit` is used in the error.
+/// Checks that a number is finite and positive; the error contains `unit`.
 ///
 /// # Errors
 /// If the value is infinite, NaN or not positive.
@@ -17,7 +17,7 @@ pub fn positive(place: &str, value: f64, unit: &str) -> Result<f64> {
     ))
 }
 
-/// Checks that a number is finite and not negative; `unit` is used in the error and may be empty.
+/// Checks that a number is finite and not negative; the error contains `unit`, which may be empty.
 ///
 /// # Errors
 /// If the value is infinite, NaN or negative.

@@ -1,4 +1,4 @@
-//! Notes on standard error, about inputs that are interpreted differently than written and about slow operations.
+//! Notes on standard error, about inputs that are not interpreted as written and about slow operations.
 
 use std::fmt::Display;
 use std::io::Write;

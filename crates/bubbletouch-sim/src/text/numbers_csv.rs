@@ -61,14 +61,14 @@ pub fn finite(place: &str, column: &str, field: &str, allowed: &str) -> Result<f
 /// Table of numbers with named columns.
 #[derive(Debug, Default)]
 pub struct NumberTable {
-    /// Name of the file, for errors.
+    /// Name of the file, for error messages.
     pub place: String,
     header_line: u64,
     /// Names of the columns.
     pub names: Vec<String>,
-    /// Values of each column, in the order of `names`.
+    /// Values of each column, shape (n_rows,), in the order of `names`.
     pub columns: Vec<Vec<f64>>,
-    /// Line of each row in the file.
+    /// Line number of each row in the file.
     pub lines: Vec<u64>,
 }
 
@@ -105,7 +105,7 @@ impl NumberTable {
         Ok(table)
     }
 
-    /// Returns an error about the header.
+    /// Returns an error about the header of the table.
     pub fn refuse_header(&self, given: impl ToString, allowed: impl ToString) -> Error {
         let place = format!("{}, line {}", self.place, self.header_line);
         Error::input(place, given, allowed)

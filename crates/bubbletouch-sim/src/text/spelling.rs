@@ -11,7 +11,7 @@ pub fn counted(number: usize, one: &str) -> String {
     format!("{number} {one}{plural}")
 }
 
-/// Formats seconds in words, with few digits, as for an estimate.
+/// Formats a time in seconds in words with few digits, for estimates.
 pub fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 1.0 => "under 1 s".to_owned(),
@@ -22,7 +22,7 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// Returns the index of a name among `names`; the error suggests similar names.
+/// Returns the index of a name among `names`.
 ///
 /// # Errors
 /// If the name is unknown; the error contains the most similar names.
@@ -35,7 +35,7 @@ pub fn known<'a>(
     found.ok_or_else(|| Error::input(place, format!("`{name}`"), nearest_names(name, names)))
 }
 
-/// Returns the end of the error for an unknown name: similar names, otherwise the first names of the list.
+/// Returns the end of the error message for an unknown name: similar names, otherwise the first names of the list.
 pub fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let all: Vec<&str> = names.into_iter().collect();
     let mut near: Vec<(usize, &str)> = all
@@ -56,7 +56,8 @@ pub fn nearest_names<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -
     format!("perhaps {}", quoted(&near))
 }
 
-/// Returns the known word of which an unknown word is probably a misspelling: at most two edits, and no more than a third of its letters.
+/// Returns the known word of which an unknown word is probably a misspelling. The two may differ by at most two edits, and by no more than a third of the
+/// letters.
 pub fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let near = |known: &&&str| {
         let far = distance(word, known);
@@ -65,7 +66,7 @@ pub fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     known.iter().find(near).copied()
 }
 
-/// Returns the edit distance: letters inserted, deleted, replaced or swapped, ignoring case.
+/// Returns the edit distance of two words: letters inserted, deleted, replaced or swapped, ignoring case.
 fn distance(a: &str, b: &str) -> usize {
     strsim::damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
 }

@@ -1,4 +1,4 @@
-//! Bounds of the numbers in a TOML file, for any key: all are finite, and none is far beyond the range of its unit in robotics.
+//! Bounds of the numbers in a TOML file, for any key: all numbers are finite, and none is far beyond the range of its unit in robotics.
 //!
 //! The end of a key names its unit (`stroke_mm`). A number without a unit is bounded by `MAX_PLAIN`. The check runs when a file is read,
 //! before its keys are known; checks of single keys are narrower.
@@ -8,9 +8,8 @@ use crate::error::{Error, Result};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Suffixes of keys with the largest allowed magnitude and the unit; longer suffixes come first. The bounds are three or more powers of ten
-/// above the largest values in use. If they are larger, squares overflow, or steps and cells become too many; if they are smaller, valid
-/// machines are rejected.
+/// Suffixes of keys with the largest allowed magnitude and the unit; longer suffixes come first. The bounds are three or more powers of ten above the largest
+/// values in use. If larger, squares overflow, or steps and cells become too many; if smaller, valid machines are rejected.
 const BOUNDS: [(&str, f64, &str); 19] = [
     ("_n_s_per_m", 1e9, " N·s/m"),
     ("_mm_per_s", 1e7, " mm/s"),
@@ -36,11 +35,11 @@ const BOUNDS: [(&str, f64, &str); 19] = [
 /// Largest magnitude of a number without a unit; its square, and sums of millions of squares, are finite in f64.
 const MAX_PLAIN: f64 = 1e100;
 
-/// Bound of the values of a key: the largest magnitude, and the unit.
+/// Bound of the values of a key: the largest magnitude, and its unit.
 #[derive(Clone, Copy)]
 struct Bound(f64, &'static str);
 
-/// Checks all numbers of a TOML text.
+/// Checks that all numbers of a TOML text are within the bounds of their units.
 ///
 /// # Errors
 /// If a number is not finite or beyond the bound of its unit. The error names `place` (the file), the line and the key.
@@ -132,7 +131,7 @@ fn shown(number: f64) -> String {
     }
 }
 
-/// Adds the line of the key to an error that contains a key of this text without a line: `file:12, key skin.stroke_mm`.
+/// Adds the line of the key, as in `file:12, key skin.stroke_mm`, to an error that contains a key of this text without a line.
 pub fn with_line(place: &str, text: &str, error: Error) -> Error {
     let Error::Input {
         place: named,

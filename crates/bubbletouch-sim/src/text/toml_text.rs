@@ -1,4 +1,4 @@
-//! Reading and writing of TOML files, with errors that state the place.
+//! Reading and writing of TOML files, with errors that state the location.
 
 use super::toml_lines::line_of;
 use super::toml_numbers::check_bounds;
@@ -8,8 +8,8 @@ use serde::de::DeserializeOwned;
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// Maximum nesting of brackets. The TOML reader has its own limit (80), but ignores it in invalid text and recurses for
-/// each bracket; thousands of them would overflow a thread's stack.
+/// Maximum nesting of brackets. The TOML reader has its own limit (80), but ignores it in invalid text and recurses for each bracket. Thousands of brackets
+/// would overflow a thread's stack.
 const MAX_OPEN: usize = 200;
 
 /// Parses a text; the error contains `place` (the file), line and column.
@@ -22,7 +22,7 @@ pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
 }
 
-/// Rejects integers that a TOML table cannot store, and numbers [out of bounds](check_bounds).
+/// Checks that a TOML table can store all integers of a text, and that all numbers are within the bounds of their units.
 ///
 /// # Errors
 /// If the text is not valid TOML, or a number in it is out of bounds.
@@ -75,7 +75,7 @@ pub fn check_brackets(place: &str, text: &str) -> Result<()> {
 mod tests {
     use super::*;
 
-    /// Runs on a stack as small as that of a thread.
+    /// Returns the error of a text that is parsed on a small thread stack.
     fn refused(text: &'static str) -> String {
         let read = move || read::<toml::Table>("study.toml", text).unwrap_err();
         let thread = std::thread::Builder::new().stack_size(2 << 20);
