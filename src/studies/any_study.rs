@@ -1,4 +1,4 @@
-//! Type-erased study, as used by all commands.
+//! Type-erased studies, as used by all commands.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
@@ -11,12 +11,12 @@ use crate::report::page::StudyAbout;
 use crate::table::Table;
 use std::path::Path;
 
-/// A loaded and checked study of any kind.
+/// Type-erased study: a loaded and checked study of any kind.
 pub trait AnyStudy: Send {
-    /// Returns the content on which the study's results depend.
+    /// Returns the identity of the study: all content on which its results depend.
     fn identity(&self) -> &Identity;
 
-    /// Returns the number of work items.
+    /// Returns the number of work items of the study.
     fn n_all(&self) -> usize;
 
     /// Returns a description of the study: its question, its size and the memory that it needs.
@@ -37,7 +37,7 @@ pub trait AnyStudy: Send {
     /// If the journal cannot be written, if an item fails and the first failure ends the run, or if the memory does not suffice for a single item.
     fn run(&self, options: &RunOptions) -> Result<Outcome>;
 
-    /// Writes the tables, charts and page, the study file and the manifest of the run.
+    /// Writes the results of a run: tables, charts, page, study file and manifest.
     ///
     /// # Errors
     /// If a chart cannot be drawn or a file cannot be written.
@@ -52,23 +52,23 @@ pub trait AnyStudy: Send {
     /// Returns the summary for the terminal, wrapped at `width` characters.
     fn words(&self, outcome: &Outcome, width: usize) -> String;
 
-    /// Re-runs `n` work items, drawn at random with the seed `draw`, and compares them with the stored results. Returns a description of the items.
+    /// Re-runs `n` randomly drawn work items (seed `draw`), and compares them with the stored results. Returns a description of these items.
     ///
     /// # Errors
     /// If a recomputed row differs from the row in the folder.
     fn verify(&self, folder: &Path, n: usize, draw: u64, progress: &dyn Progress)
     -> Result<String>;
 
-    /// Rewrites the charts, pictures and page of a folder from its tables; question and answers come from the study.
+    /// Rewrites the charts, pictures and page of a result folder from its tables. The question and the answers come from the study.
     ///
     /// # Errors
     /// If a table cannot be read or a file cannot be written.
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()>;
 }
 
-/// Result of a run.
+/// Result of a run of a study.
 pub struct Outcome {
-    /// All tables, including the table of failed work items.
+    /// All result tables, including the table of failed work items.
     pub tables: Vec<Table>,
     /// Number of failed work items.
     pub n_failed: usize,

@@ -1,10 +1,10 @@
-//! Work within a memory limit.
+//! Limitation of the memory that a run uses.
 
 use crate::engine::work_items::scale::Scale;
 use crate::error::{Error, Result};
 use crate::inputs::memory::GIB;
 
-/// Returns the number of threads with which the study stays within the memory limit; all threads if there is no limit.
+/// Returns the number of threads for which a study stays within the memory limit; all threads if there is no limit.
 ///
 /// # Errors
 /// If even one work item at a time exceeds the limit.

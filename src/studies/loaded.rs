@@ -1,4 +1,4 @@
-//! Type-erased access to a loaded study of any kind.
+//! Loaded study of any kind as a type-erased study.
 
 use crate::engine::journal::identity::{Identity, SameStudy};
 use crate::engine::journal::journal_file::Journal;
@@ -33,18 +33,18 @@ use std::sync::Arc;
 /// Table of failed work items.
 pub(super) const FAILURES: File<ItemFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
 
-/// Loaded and checked study, with the content on which its results depend.
+/// Loaded and checked study, with all content on which its results depend.
 pub struct Loaded<K> {
     pub(super) kind: K,
     facts: Facts,
     identity: Identity,
     pub(super) items: Arc<[WorkItem]>,
-    /// Memory limit, bytes.
+    /// Memory limit, bytes; `None` for no limit.
     memory: Option<u64>,
 }
 
 impl<K: Study> Loaded<K> {
-    /// Reads and checks a study.
+    /// Reads, checks and loads a study.
     ///
     /// # Errors
     /// If [`Study::load`] fails.
@@ -68,7 +68,7 @@ impl<K: Study> Loaded<K> {
         })
     }
 
-    /// Returns the number of work items that a run computes; with `retries` including the items that failed before.
+    /// Returns the number of work items that a run computes, including items that failed before if `retries` is set.
     fn n_to_run(&self, part: Part, journal: &Journal, retries: bool) -> usize {
         let options = RunOptions {
             journal,
@@ -88,7 +88,7 @@ impl<K: Study> Loaded<K> {
         }
     }
 
-    /// Returns the charts, pictures and page of a folder, without writing them. `of_run` describes the run.
+    /// Returns the charts, pictures and page of a result folder without writing them. `of_run` describes the run.
     fn files_of(&self, of_run: StudyAbout, tables: &[Table]) -> Result<Vec<NamedFile>> {
         let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
         let about = StudyAbout {
@@ -233,7 +233,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
     }
 }
 
-/// Returns whether bytes are a picture, a page or a chart of this program; used if the manifest of a folder is missing.
+/// Returns whether the bytes are a picture, a page or a chart of this program; used if the manifest of a folder is missing.
 fn is_drawn(bytes: &[u8]) -> bool {
     let holds = |mark: &str| {
         bytes
@@ -244,7 +244,7 @@ fn is_drawn(bytes: &[u8]) -> bool {
 }
 
 /// Writes the tables, charts and page of a run, and the manifest that lists them. The manifest is written first, so that files of an interrupted run are
-/// recognised as the program's own.
+/// recognised as files of this program.
 fn write_results(
     folder: &Path,
     mut manifest: Manifest,
@@ -258,7 +258,7 @@ fn write_results(
     let mut listed = before.files_sha256.unwrap_or_default();
     listed.extend(before.tables_sha256);
     listed.extend(before.times_sha256);
-    // Files that are no longer results remain in the folder and in the manifest.
+    // Files that are no longer results stay in the folder and in the manifest.
     listed.retain(|name, _| folder.join(name).exists());
     listed.retain(|name, _| !manifest.tables_sha256.contains_key(name));
     listed.retain(|name, _| !manifest.times_sha256.contains_key(name));
@@ -274,7 +274,7 @@ fn write_results(
 }
 
 impl<K: Study> Loaded<K> {
-    /// Returns the numbers of `n` items that did not fail, drawn at random with `seed`.
+    /// Returns the numbers of `n` work items that did not fail, drawn at random with `seed`.
     pub(crate) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
         let failed: Vec<ItemFailure> = read_rows(&folder.join(FAILURES_FILE))?;
         let has_failed = |number: usize| {

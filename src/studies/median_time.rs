@@ -1,9 +1,9 @@
-//! Measurement of computing time.
+//! Measurement of median computing times.
 
 use crate::quantile::quantile;
 use std::time::Instant;
 
-/// Returns the median wall-clock time of `act`, called for each of `things` in sequence, seconds; 0 if there are none.
+/// Returns the median wall-clock time of `act`, called for each of `things` in sequence, s; 0 if there are no things.
 pub(super) fn median_s<T>(things: impl IntoIterator<Item = T>, mut act: impl FnMut(T)) -> f64 {
     let seconds = things.into_iter().map(|thing| {
         let start = Instant::now();

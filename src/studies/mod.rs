@@ -1,6 +1,6 @@
-//! The kinds of study: one folder and one entry in `KINDS` for each kind.
+//! Kinds of studies: one folder and one entry in `KINDS` for each kind.
 //!
-//! A kind lists the [work items](crate::engine::work_items) of a study, measures them, and makes tables, charts, pictures and answers ([`Study`]). All
+//! A kind of study ([`Study`]) lists the [work items](crate::engine::work_items) of a study, computes them, and makes tables, charts, pictures and answers. All
 //! commands use [`AnyStudy`], so that every command works with every kind.
 
 pub(crate) mod any_study;
@@ -45,7 +45,7 @@ struct Entry {
     tables: TableFiles,
 }
 
-/// Registry of all kinds.
+/// Registry of all kinds of studies.
 const KINDS: &[Entry] = &[
     entry::<object_detail::ObjectDetailStudy>(),
     entry::<reconstruction::ReconstructionStudy>(),
@@ -54,7 +54,7 @@ const KINDS: &[Entry] = &[
     RECOGNITION,
 ];
 
-/// Kind of a study file that has no table of another kind.
+/// Kind of a study file without a table of another kind.
 const RECOGNITION: Entry = entry::<recognition::study::RecognitionStudy>();
 
 const fn entry<K: Study>() -> Entry {
@@ -65,7 +65,7 @@ const fn entry<K: Study>() -> Entry {
     }
 }
 
-/// Returns the kind of a study; `None` if the file has no table of a kind.
+/// Returns the kind of a study file; `None` if the file has no table of a kind.
 pub fn about(text: &str) -> Option<About> {
     find(text).map(|entry| entry.about)
 }
@@ -110,17 +110,17 @@ fn check_recognition(source: &Source) -> Result<()> {
     }
 }
 
-/// Checks before loading a study that a folder can take its results, without replacing files that other programs or users wrote.
+/// Checks before loading a study that a folder can take its results without replacing files of other programs or users.
 ///
 /// # Errors
-/// If the folder has such a file, or one that this command has read; the error names the file.
+/// If the folder contains such a file, or a file that this command has read; the error names the file.
 pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
     let entry = find(study).unwrap_or(&RECOGNITION);
     let tables = entry.tables.names().into_iter().chain([FAILURES_FILE]);
     OwnedFiles::read(folder, RUN)?.check_results(tables)
 }
 
-/// Reads the tables of a result folder of any kind, and returns its kind. Files that the study refers to are not loaded.
+/// Reads the tables of a result folder of any kind; also returns the kind. Files that the study refers to are not loaded.
 ///
 /// # Errors
 /// If the folder has no study, or a table cannot be read or has other columns.
@@ -131,7 +131,7 @@ pub fn read_tables(folder: &Path) -> Result<(About, Vec<Table>)> {
     Ok((entry.about, entry.tables.read(folder)?))
 }
 
-/// Returns the table of failed work items of a folder, or `None` if no item failed.
+/// Returns the table of failed work items in a result folder, or `None` if no item failed.
 ///
 /// # Errors
 /// If the table cannot be read or has other columns.
@@ -140,7 +140,7 @@ pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
     Ok(found.filter(|failures| failures.n_rows > 0))
 }
 
-/// Tables of removed kinds of study, each with its replacement.
+/// Tables of kinds of studies that were removed, each with its replacement.
 const REMOVED: [(&str, &str); 2] = [
     (
         "speed_accuracy",
@@ -167,7 +167,7 @@ fn check_removed(place: &str, text: &str) -> Result<()> {
     }
 }
 
-/// Returns the kind whose table the text contains; `None` also for invalid TOML, which the reader of the study reports.
+/// Returns the kind whose table the text contains; also `None` for invalid TOML, which the reader of the study reports.
 fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
     let mut kinds = KINDS.iter();

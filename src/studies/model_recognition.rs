@@ -1,6 +1,6 @@
-//! Classifiers that are trained on touches of models and tested on touches of the objects themselves.
+//! Recognition with classifiers that are trained on touches of models and tested on touches of the exact objects.
 //!
-//! Every object has the same number of touches. The first touches train, the others test.
+//! Every object has the same number of touches. The first touches are for training, the others for testing.
 
 use crate::error::{Error, Result};
 use crate::learning::classifiers::trained_classifier::TrainedClassifier;
@@ -10,7 +10,7 @@ use bubbletouch_svm::dataset::{Dataset, dataset};
 use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
 use std::ops::Range;
 
-/// Returns an error about `place` if there are fewer than two objects.
+/// Returns an error about `place` if there are fewer than two objects to distinguish.
 pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
     match n_objects {
         0 | 1 => {
@@ -21,7 +21,7 @@ pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
     }
 }
 
-/// Returns some touches of every object (n_touches × m each), labelled with the object's number.
+/// Returns a data set of some touches of every object (n_touches × m each), labelled with the object's number.
 pub(super) fn touches_of<'a>(
     objects: impl Iterator<Item = ArrayView2<'a, f64>>,
     touches: Range<usize>,
@@ -34,7 +34,7 @@ pub(super) fn touches_of<'a>(
     Ok(dataset(features, Array1::from_iter(labels))?)
 }
 
-/// Returns the fraction of correct answers of a classifier, 0 to 1, with its 95 % Wilson interval.
+/// Returns the accuracy of a classifier on the test rows, 0 to 1, with its 95 % Wilson interval.
 pub(super) fn accuracy(classifier: &TrainedClassifier, test: &Dataset) -> Result<(f64, Interval)> {
     let answers = classifier.labels(test.records.view())?;
     let pairs = answers.iter().zip(&test.targets);

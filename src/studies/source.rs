@@ -1,4 +1,4 @@
-//! Source of a study, and the options that override it.
+//! Source of a study: its text and the options that override it.
 
 use crate::error::{Error, Result};
 use crate::files::SetName;
@@ -7,29 +7,29 @@ use crate::studies::recognition::spec::recorded::RecordedSpec;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// Text of a study, and the options of the command line that override it.
+/// Text of a study, and the command-line options that override it.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
-    /// Name in error messages: the path of the study file.
+    /// Name of the study in error messages: the path of its file.
     pub place: String,
-    /// Content of the study, TOML.
+    /// Content of the study file, TOML.
     pub text: String,
-    /// Folder to which paths in the study are relative.
+    /// Folder to which paths in the study file are relative.
     pub folder: PathBuf,
-    /// Meshes or a file of objects that replace the study's objects.
+    /// Path of meshes or of a file of objects that replaces the study's objects.
     pub objects: Option<PathBuf>,
-    /// Seed that replaces the study's seed.
+    /// Random seed that replaces the study's seed.
     pub seed: Option<u64>,
-    /// Folder of cached packed meshes.
+    /// Cache folder of packed meshes.
     pub packings: Option<PathBuf>,
-    /// Result folder, which also stores temporary data that exceed the memory.
+    /// Result folder; it also stores temporary data that exceed the memory.
     pub results: PathBuf,
-    /// Memory limit, bytes; `None`: unlimited.
+    /// Memory limit, bytes; `None` for no limit.
     pub memory: Option<u64>,
 }
 
 impl Source {
-    /// Creates a source from a text, without overriding options.
+    /// Creates a source from the text of a study, without overriding options.
     pub fn of_text(place: &str, text: &str) -> Self {
         Self {
             place: place.to_owned(),
@@ -38,7 +38,7 @@ impl Source {
         }
     }
 
-    /// Returns the study of a result folder, without overriding options.
+    /// Reads the study of a result folder, without overriding options.
     ///
     /// # Errors
     /// If the folder has no study or the study cannot be read.
@@ -50,12 +50,12 @@ impl Source {
         Ok(Self::of_text(&path.display().to_string(), &text))
     }
 
-    /// Returns the overriding seed, or the seed of the study.
+    /// Returns the overriding seed if there is one, otherwise the seed of the study.
     pub fn seed(&self, of_study: u64) -> u64 {
         self.seed.unwrap_or(of_study)
     }
 
-    /// Replaces the study's objects if other objects are given.
+    /// Replaces the study's objects if an option gives other objects.
     pub fn replace_objects(&self, objects: &mut ObjectsSpec) {
         let Some(given) = &self.objects else {
             return;
@@ -69,7 +69,7 @@ impl Source {
         }
     }
 
-    /// Replaces the folder of recorded frames if another folder is given.
+    /// Replaces the folder of recorded frames if an option gives another folder.
     pub fn replace_recorded(&self, recorded: &mut RecordedSpec) {
         let Some(folder) = &self.objects else {
             return;
@@ -79,19 +79,19 @@ impl Source {
         }
     }
 
-    /// Checks that no replacement objects are given; `why` explains what the study has instead.
+    /// Checks that no option replaces the objects; `why` explains what the study has instead.
     ///
     /// # Errors
-    /// If replacement objects are given.
+    /// If an option replaces the objects.
     pub fn refuse_objects(&self, why: &str) -> Result<()> {
         let given = self.objects.as_ref().map(|path| path.display());
         refuse("--objects", given, why)
     }
 
-    /// Checks that no replacement seed is given; `why` explains why the study has no seed.
+    /// Checks that no option replaces the seed; `why` explains why the study has no seed.
     ///
     /// # Errors
-    /// If a replacement seed is given.
+    /// If an option replaces the seed.
     pub fn refuse_seed(&self, why: &str) -> Result<()> {
         refuse("--seed", self.seed, why)
     }

@@ -1,4 +1,4 @@
-//! The trait that every kind of study implements, and the descriptions that a kind provides.
+//! Trait [`Study`], which every kind of study implements, and the types that a kind provides.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::{
@@ -13,42 +13,43 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Description of a kind of study, available before a study file is read.
+/// Description of a kind of study; available before a study file is read.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// Table of a study file that only this kind has.
+    /// Name of the table in a study file that only this kind has.
     pub table: &'static str,
-    /// Description of the kind, in words: `a study that …`.
+    /// Description of the kind in words, of the form `a study that …`.
     pub words: &'static str,
-    /// Rule that decides which studies may resume each other's work.
+    /// Rule that decides which studies of this kind may resume each other's runs.
     pub resumes: Resumes,
 }
 
-/// Rule that decides which studies of a kind may resume each other's work.
+/// Rule that decides which studies of a kind may resume each other's runs.
 #[derive(Clone, Copy, Debug)]
 pub enum Resumes {
-    /// Studies that differ only in these keys and the keys below them. The keys are texts, or select work items without changing their results.
+    /// Studies that differ only in these keys and the keys below them may resume each other. The keys are texts, or select work items without changing their
+    /// results.
     ButFor(&'static [&'static str]),
-    /// Studies that share work items with results; the name of an item is derived from all its inputs.
+    /// Studies that share work items with results may resume each other; the name of an item is derived from all its inputs.
     SharedWork,
 }
 
-/// Content of a study file and of the files that it refers to.
+/// Facts about a study: the content of its file and of the files that it refers to.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
-    /// The study as TOML, with all defaults written out.
+    /// Study as TOML, with all defaults written out.
     pub toml: String,
-    /// Question of the study.
+    /// Question that the study answers.
     pub question: String,
-    /// Expectation of the author before the first run; may be empty.
+    /// Answer that the author expected before the first run; may be empty.
     pub expected: String,
     /// Seed of all random numbers; 0 if nothing is random.
     pub seed: u64,
-    /// SHA-256 of content outside the study file, such as objects and other files, by name.
+    /// SHA-256 hash of content outside the study file, such as objects and other files, by name.
     pub content: BTreeMap<String, String>,
-    /// Methods by which intervals and p-values are computed, by table and columns.
+    /// Methods that compute the intervals and p-values, by table and columns.
     pub methods: Vec<(&'static str, &'static str)>,
-    /// Notes about tables, by the name of the table's file.
+    /// Notes about the tables, by the name of the table's file.
     pub notes: Vec<(&'static str, String)>,
 }
 
@@ -58,7 +59,7 @@ impl Facts {
         Self::of_toml(toml_text::write(spec), content)
     }
 
-    /// Creates the facts of a study from its TOML with all defaults; question, expectation and seed are read from it.
+    /// Creates the facts of a study from its TOML text with all defaults; question, expectation and seed are taken from the text.
     pub fn of_toml(toml: String, content: BTreeMap<String, String>) -> Self {
         let table = toml_text::table(&toml).unwrap_or_default();
         let words = |key| table.get(key).and_then(toml::Value::as_str);
@@ -74,18 +75,18 @@ impl Facts {
     }
 }
 
-/// A [`File`] with rows of any type.
+/// Type-erased [`File`], with rows of any type.
 pub trait AnyFile: Sync {
-    /// Returns the name of the file; see [`File::name`].
+    /// Returns the name of the table file; see [`File::name`].
     fn name(&self) -> &'static str;
 
-    /// Reads the file of a folder; see [`File::read`].
+    /// Reads the table from a folder; see [`File::read`].
     ///
     /// # Errors
     /// If [`File::read`] fails.
     fn read(&self, folder: &Path) -> Result<Table>;
 
-    /// Reads the file of a folder if it exists; see [`File::read_if_there`].
+    /// Reads the table from a folder if the file exists; see [`File::read_if_there`].
     ///
     /// # Errors
     /// If [`File::read_if_there`] fails.
@@ -106,27 +107,27 @@ impl<R: Columns> AnyFile for File<R> {
     }
 }
 
-/// Files of a study's result tables.
+/// Table files that a kind of study writes.
 #[derive(Clone, Copy)]
 pub enum TableFiles {
-    /// Files that every study of the kind writes, in order, followed by files of optional parts.
+    /// Table files that every study of the kind writes, followed by files of optional parts.
     Listed {
-        /// Files that every study writes.
+        /// Table files that every study of the kind writes.
         always: &'static [&'static dyn AnyFile],
-        /// Files of optional parts of a study.
+        /// Table files of optional parts of a study.
         of_parts: &'static [&'static dyn AnyFile],
     },
-    /// Files of tables whose columns depend on the study.
+    /// Table files whose columns depend on the study.
     Own {
-        /// Names of all files that a study may write.
+        /// Names of all table files that a study may write.
         names: &'static [&'static str],
-        /// Function that reads the tables of a folder.
+        /// Function that reads all tables of a folder.
         read: fn(&Path) -> Result<Vec<Table>>,
     },
 }
 
 impl TableFiles {
-    /// Creates a list of files that every study of the kind writes.
+    /// Creates a list of table files that every study of the kind writes.
     pub const fn always(always: &'static [&'static dyn AnyFile]) -> Self {
         Self::Listed {
             always,
@@ -145,7 +146,7 @@ impl TableFiles {
         }
     }
 
-    /// Reads the tables of a folder in the order of [`Study::tables`].
+    /// Reads all tables of a folder, in the order of [`Study::tables`].
     ///
     /// # Errors
     /// If a table cannot be read or has other columns.
@@ -172,18 +173,19 @@ pub struct Findings {
     pub answers: Vec<String>,
 }
 
-/// A kind of study. The engine runs, resumes, shards, merges, plans, verifies and reports studies of any kind.
+/// Kind of study. The engine runs, resumes, shards, merges, plans, verifies and reports studies of any kind.
 pub trait Study: Send + Sized + Sync + 'static {
-    /// Description of the kind.
+    /// Description of the kind of study.
     const ABOUT: About;
 
-    /// Files to which [`tables`](Self::tables) are written.
+    /// Table files to which the result of [`tables`](Self::tables) is written.
     const TABLES: TableFiles;
 
-    /// Function that makes the text at the end of a run, wrapped at a number of characters. `None`: the first table with a value, and the answers.
+    /// Function that returns the text at the end of a run, wrapped at a number of characters. With `None`, the text contains the first table with a value, and
+    /// the answers.
     const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
 
-    /// Rows that a work item produces.
+    /// Rows that a work item returns.
     type Rows: ItemRows;
 
     /// Reads and checks a study, and loads its objects.
@@ -192,52 +194,52 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// If a key is unknown or out of its range, or a file cannot be read. The error names the place, the key and the allowed values.
     fn load(source: &Source) -> Result<Self>;
 
-    /// Returns the content of the study file and of the files that it refers to.
+    /// Returns the facts about the study: the content of its file and of the files that it refers to.
     ///
     /// # Errors
     /// If a file that the study depends on cannot be read.
     fn facts(&self) -> Result<Facts>;
 
-    /// Returns the size of the study: counts and memory.
+    /// Returns the size of the study: numbers of objects, touches and configurations, and memory.
     fn scale(&self) -> Scale;
 
-    /// Lists all work items in the order of their rows.
+    /// Lists all work items of the study, in the order of their rows.
     fn work_items(&self) -> Vec<WorkItem>;
 
-    /// Computes the pending items, in any order and on any threads. Data that several items share are computed only if an item is pending.
+    /// Computes the pending work items, in any order and on any threads. Data that several items share are computed only if one of these items is pending.
     ///
     /// # Errors
     /// If [`PendingItems::finish`] fails, or data that all items need cannot be computed.
     fn measure(&self, pending: &PendingItems<Self::Rows>) -> Result<()>;
 
-    /// Sets the values in the rows of an item that depend on its number, such as numbers of configurations. Rows in the journal may come from a study with
-    /// other axes.
+    /// Sets the values in a work item's rows that depend on its number, such as numbers of configurations. Rows in the journal may come from a study with other
+    /// axes.
     fn place(&self, _number: usize, _rows: &mut Self::Rows) {}
 
-    /// Describes an item for failure messages, given its number.
+    /// Describes the work item with the given number for failure messages.
     fn item_words(&self, _number: usize, item: &WorkItem) -> String {
         item.name.clone()
     }
 
-    /// Makes the tables from the rows of all items that did not fail.
+    /// Creates the result tables from the rows of all work items that did not fail.
     ///
     /// # Errors
     /// If a file that the tables need cannot be read.
     fn tables(&self, rows: Self::Rows) -> Result<Vec<Table>>;
 
-    /// Returns charts and answers for the tables.
+    /// Returns the charts and answers for the result tables.
     fn findings(&self, tables: &[Table]) -> Findings;
 
-    /// Returns pictures other than charts, and further sections of the page.
+    /// Returns pictures other than charts, and additional sections of the page.
     ///
     /// # Errors
-    /// If a picture cannot be made.
+    /// If a picture cannot be drawn.
     fn beyond(&self, _tables: &[Table]) -> Result<Beyond> {
         Ok(Beyond::default())
     }
 }
 
-/// Computes the items of a study that the options select; see [`StudyRun::run`].
+/// Computes the work items of a study that the options select; see [`StudyRun::run`].
 ///
 /// # Errors
 /// If [`StudyRun::run`] fails.
@@ -253,7 +255,7 @@ pub(crate) fn run_items<S: Study>(
     )
 }
 
-/// Runs a whole study without a journal; the first item that fails ends the run.
+/// Runs a whole study without a journal; the first failed work item ends the run.
 ///
 /// # Errors
 /// If an item fails; returns the error of the first item that failed.

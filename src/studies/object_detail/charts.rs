@@ -1,13 +1,13 @@
-//! Charts and answers of an object-detail study: errors of models, their costs, and the accuracy of classifiers trained on models.
+//! Charts and answers of an object-detail study: deflection errors of models, their costs, and the accuracy of classifiers trained on models.
 
 use crate::studies::object_detail::study::{ObjectDetailStudy, RECOGNITION};
 use crate::studies::object_detail::variants::within;
 use crate::table::{ChartSpec, Table, short_number};
 
-/// An axis: a part of the chart's file name, words of its title, and a column.
+/// Chart axis: a part of the chart's file name, the words of its title, and a column.
 type Named = (&'static str, &'static str, &'static str);
 
-/// Deflection errors.
+/// Chart axes of deflection errors.
 const FELT: [Named; 2] = [
     (
         "deflection_error",
@@ -33,11 +33,11 @@ const SURFACE: [Named; 2] = [
     ),
 ];
 
-/// Costs.
+/// Chart axes of costs.
 const SPHERES: Named = ("spheres", "number of spheres", "n_spheres_median");
 const TIME: Named = ("time", "time of a touch", "us_per_touch_median");
 
-/// Accuracies against the error of the models used in training.
+/// Chart axes of accuracies, plotted against the error of the models used in training.
 const LEARNED: [Named; 2] = [
     (
         "recognition",
@@ -52,7 +52,7 @@ const LEARNED: [Named; 2] = [
 ];
 
 impl ObjectDetailStudy {
-    /// Returns charts of errors by cost, and of accuracies if classifiers were trained.
+    /// Returns the charts of errors by cost; also the charts of accuracies if classifiers were trained.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let by_cost = [(FELT, SPHERES), (FELT, TIME), (SURFACE, SPHERES)];
         let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
@@ -80,7 +80,7 @@ impl ObjectDetailStudy {
         errors.chain(learned).collect()
     }
 
-    /// Returns answers: the most exact model, the cheapest model of each method within half a millimetre, and the loss of accuracy by training on models.
+    /// Returns the answers: the most exact model, the cheapest model of each method within half a millimetre, and the loss of accuracy by training on models.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let costs = &tables[3];
         let rows = 0..costs.n_rows;
@@ -102,7 +102,7 @@ impl ObjectDetailStudy {
     }
 }
 
-/// Returns the table of classifiers, if any were trained.
+/// Returns the table of classifiers; `None` if none were trained.
 fn learned(tables: &[Table]) -> Option<&Table> {
     tables.iter().find(|table| table.file == RECOGNITION.name())
 }
@@ -115,7 +115,7 @@ const OF_SPHERES: [&str; 4] = [
     "medial_spheres",
 ];
 
-/// Returns a sentence on the classifier whose accuracy on its own models exceeds its accuracy on the meshes the most; `None` if none exceeds it.
+/// Returns a sentence on the classifier whose accuracy on its own models exceeds its accuracy on the meshes the most; `None` if there is none.
 fn misled_most(learned: &Table) -> Option<String> {
     let shares = |row: usize| {
         ["accuracy_on_mesh", "accuracy_on_itself"].map(|share| learned.number(share, row))
@@ -129,13 +129,13 @@ fn misled_most(learned: &Table) -> Option<String> {
     ))
 }
 
-/// Returns the name of a model: `packing within 0.5 mm`.
+/// Returns the name of a model, such as `packing within 0.5 mm`.
 fn model_words(table: &Table, row: usize) -> String {
     let tolerance_mm = Some(table.number("tolerance_mm", row)).filter(|mm| !mm.is_nan());
     table.words("method", row) + &within(tolerance_mm)
 }
 
-/// Error that counts as small, mm.
+/// Deflection error that counts as small, mm.
 const SMALL_MM: f64 = 0.5;
 
 /// Returns a description of the model with the smallest value in a column.

@@ -1,4 +1,4 @@
-//! Deflections caused by a model, compared with the deflections caused by the exact mesh.
+//! Deflections on a model, compared with the deflections on the exact mesh.
 
 use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
 use crate::error::Result;
@@ -11,17 +11,17 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::touches::drawn_touches::draw_touches;
 use crate::world::Placement;
 
-/// Differences between the deflections by a model and the exact ones, mm.
+/// Difference between the deflections δ on a model and the exact deflections δ\*, mm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DeflectionError {
-    /// Mean of |δ − δ*| over the taxels that either model touches.
+    /// Mean of |δ − δ\*| over all taxels that the mesh or the model touches, mm.
     pub mean_mm: f64,
-    /// 95th percentile of |δ − δ*| over the same taxels.
+    /// 95th percentile of |δ − δ\*| over all taxels that the mesh or the model touches, mm.
     pub p95_mm: f64,
 }
 
 impl DeflectionError {
-    /// Computes the summary of the errors of single taxels, metres; 0 if there are none.
+    /// Computes the mean and the 95th percentile of the errors of single taxels (metres); 0 if there are none.
     pub fn new(mut errors: Vec<f64>) -> Self {
         Self {
             mean_mm: in_mm(mean(&errors)),
@@ -39,18 +39,18 @@ fn mean(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |sum, error| sum + error) / errors.len().max(1) as f64
 }
 
-/// Touches of the exact object and their readings.
+/// Touches of the exact object, with their deflections.
 pub(super) struct Truth {
     array: TaxelArray,
-    /// Readings of the touches that reached the object.
+    /// Touches that reached the object, with their deflections.
     pub readings: Vec<Reading>,
-    /// Number of touches that reached nothing.
+    /// Number of touches that missed the object.
     pub n_missed: usize,
-    /// Number of touched taxels, over all touches.
+    /// Number of touched taxels, summed over all touches.
     pub n_touched: usize,
 }
 
-/// One touch with its exact deflections.
+/// Touch of the exact object, with its deflections.
 pub(super) struct Reading {
     patch_from_object: Pose,
     /// Depth past first contact, metres.
@@ -59,15 +59,15 @@ pub(super) struct Reading {
     deflections: Vec<f64>,
 }
 
-/// Number of offsets that are tried before the best is refined. With fewer, the search may end in a local minimum.
+/// Number of offsets evaluated before the best one is refined. If smaller, the search may end in a local minimum.
 const N_OFFSETS: usize = 48;
-/// Approximate number of interval reductions around the best offset.
+/// Approximate number of golden-section steps around the best offset.
 const N_STEPS: usize = 30;
-/// Number of repetitions of each timed touch.
+/// Number of times that each timed touch is repeated.
 const N_REPEATS: usize = 3;
 
 impl Truth {
-    /// Touches an exact model at the same poses as other studies touch an object of this name.
+    /// Touches an exact model in the same poses in which other studies touch an object of this name.
     pub fn new(
         (name, exact): (&str, Model),
         array: &TaxelArray,
@@ -103,13 +103,13 @@ impl Truth {
         Ok(truth)
     }
 
-    /// Returns the error of a model at the pose of the exact object, with the patch retracted by `offset` metres.
+    /// Returns the deflection error of a model in the pose of the exact object, with the patch retracted by `offset` metres.
     pub fn error(&self, model: &Model, offset: f64) -> DeflectionError {
         DeflectionError::new(self.errors(model, offset))
     }
 
-    /// Returns the error of a model that is pressed to the same depth past its own first contact. This is the error in a study that only has this model of the
-    /// object.
+    /// Returns the deflection error of a model that is pressed to the same depth past its own first contact. This is the error in a study that has only this
+    /// model of the object.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::new(self.errors_of(|pose, reading, workspace| {
@@ -117,7 +117,7 @@ impl Truth {
         }))
     }
 
-    /// Returns the constant offset, metres, that minimises the error; its error is at most the error of offset 0.
+    /// Returns the constant offset that minimises the deflection error, metres; its error is at most the error of offset 0.
     pub fn best_offset(&self, model: &Model) -> f64 {
         let cost = |offset| mean(&self.errors(model, offset));
         let Some((low, high)) = self.offset_range(model) else {
@@ -132,7 +132,7 @@ impl Truth {
         least(start, (refined, cost(refined))).0
     }
 
-    /// Returns the median time of a touch to its depth on one thread, seconds; 0 if nothing was touched.
+    /// Returns the median computing time of a touch on one thread, s; 0 if nothing was touched.
     pub fn seconds_per_touch(&self, model: &Model) -> f64 {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();
@@ -145,7 +145,7 @@ impl Truth {
         median_s((0..N_REPEATS).flat_map(|_| &self.readings), press)
     }
 
-    /// Returns |δ − δ*| of each taxel that either model touches, over all touches, with the patch retracted by `offset`.
+    /// Returns |δ − δ\*| of each taxel that the mesh or the model touches, over all touches, metres, with the patch retracted by `offset`.
     fn errors(&self, model: &Model, offset: f64) -> Vec<f64> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         self.errors_of(|pose, reading, workspace| {
@@ -153,7 +153,7 @@ impl Truth {
         })
     }
 
-    /// Returns |δ − δ*| of each touched taxel for presses performed by `press`.
+    /// Returns |δ − δ\*| of each touched taxel, metres, for presses that are performed by `press`.
     fn errors_of(&self, press: impl Fn(&[Pose], &Reading, &mut Workspace)) -> Vec<f64> {
         let mut workspace = Workspace::new();
         let mut errors = Vec::new();
@@ -164,7 +164,7 @@ impl Truth {
         errors
     }
 
-    /// Returns the range of useful offsets. Outside of it, every touch either has no contact or is deeper everywhere than on the mesh.
+    /// Returns the range of useful offsets, metres. Outside of it, every touch either has no contact or is deeper at every taxel than on the mesh.
     fn offset_range(&self, model: &Model) -> Option<(f64, f64)> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();
@@ -179,7 +179,7 @@ impl Truth {
 }
 
 impl Reading {
-    /// Returns |δ − δ*| of each taxel that either model touches; `felt` contains δ, metres, shape (n_taxels,).
+    /// Returns |δ − δ\*| of each taxel that the mesh or the model touches, metres; `felt` contains the deflections δ, metres, shape (n_taxels,).
     pub fn errors<'a>(&'a self, felt: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let pairs = felt.iter().zip(&self.deflections);
         let touched = pairs.filter(|(model, mesh)| **model > 0.0 || **mesh > 0.0);

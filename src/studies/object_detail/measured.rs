@@ -1,4 +1,4 @@
-//! Measurements of an object's models: deviation of the surface, deflection error, and time per touch.
+//! Measurements of an object's models: surface deviation, deflection error, and computing time per touch.
 
 use crate::error::Result;
 use crate::inputs::object_files::NamedMesh;
@@ -12,12 +12,12 @@ use crate::studies::object_detail::spec::DetailMethod;
 use crate::studies::object_detail::variants::{Variant, variants};
 use std::path::Path;
 
-/// An object and its models.
+/// Object with its models.
 pub(super) struct Measured<'a> {
     pub mesh: &'a NamedMesh,
     surface: Surface,
     pub truth: Truth,
-    /// Models; the first is the mesh itself.
+    /// Models of the object; the first is the mesh itself.
     pub variants: Vec<Variant>,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Measured<'a> {
         })
     }
 
-    /// Returns one row per model.
+    /// Returns one row per model of the object.
     fn rows<T>(&self, row: impl Fn(&Variant) -> T) -> Vec<(DetailCell, T)> {
         let configuration = |variant: &Variant| DetailCell {
             object: self.mesh.name.clone(),

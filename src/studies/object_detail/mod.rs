@@ -1,17 +1,17 @@
-//! Object-detail studies: the model detail that a skin can detect, and its cost.
+//! Object-detail studies: how much detail of an object's model a skin can detect, and what the detail costs.
 //!
 //! A file with an `[object_detail]` table is an object-detail study: [`ObjectDetailStudySpec`] (as written) → [`ObjectDetailPlan`]
 //! (checked, SI) → [`ObjectDetailStudy`] → tables of [`rows`].
 //!
-//! Each mesh is touched exactly ([`MeshModel`](crate::objects::MeshModel)); then sphere models of the mesh are pressed with the patch at the same places:
+//! Each mesh is touched exactly ([`MeshModel`](crate::objects::MeshModel)). Sphere models of the mesh are then pressed with the patch in the same poses:
 //!
-//! - **error**: |δ − δ\*|, mean over the taxels of all touches that the mesh (δ\*) or the model (δ) touches.
-//! - **error after offset**: the error with the patch retracted by a constant distance. The distance is the same for all touches of a model and minimises the
-//!   error. A uniformly inflated model has no error after offset.
-//! - **error past own contact**: the error if model and mesh are pressed to equal depths past their own first contact.
+//! - **error**: mean of |δ − δ\*| over the taxels of all touches that the mesh (δ\*) or the model (δ) touches.
+//! - **error after offset**: the error with the patch retracted by a constant distance, which is equal for all touches of a model and minimises the error. A
+//!   uniformly inflated model has no error after offset.
+//! - **error past own contact**: the error if the model and the mesh are pressed to equal depths past their own first contact.
 //!
-//! With an `[object_detail.recognition]` table, classifiers are trained on each kind of model and tested on other touches of the exact meshes. This measures
-//! the loss of accuracy if training uses coarse objects.
+//! With a table `[object_detail.recognition]`, classifiers are trained on each kind of model and tested on other touches of the exact meshes. This measures the
+//! loss of accuracy if coarse objects are used for training.
 
 mod charts;
 mod deflection;

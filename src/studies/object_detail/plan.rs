@@ -1,4 +1,4 @@
-//! Plan of an object-detail study: checked keys in SI units.
+//! Plan of an object-detail study: checked keys, converted to SI units.
 
 use crate::error::Result;
 use crate::inputs::check::{Check, Range, SURFACE_ERROR, TOUCHES};
@@ -9,10 +9,10 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Placement;
 use std::path::PathBuf;
 
-/// Checked settings of an object-detail study.
+/// Checked keys of an object-detail study, converted to SI units.
 #[derive(Clone, Debug)]
 pub struct ObjectDetailPlan {
-    /// Specification as written in the file.
+    /// Specification as written in the study file.
     pub spec: ObjectDetailStudySpec,
     /// Folder of the meshes.
     pub meshes: PathBuf,
@@ -22,10 +22,10 @@ pub struct ObjectDetailPlan {
     pub placement: Placement,
 }
 
-/// Largest number of points of a mesh; all points are in memory at once.
+/// Maximum number of measured points of a mesh; all points are in memory together.
 const MAX_POINTS: usize = 10_000_000;
 
-/// Ranges of the numeric keys of `[object_detail]`.
+/// Allowed values of the numeric keys of `[object_detail]`.
 const KEYS: [(&str, Range); 7] = [
     ("tolerances_mm", SURFACE_ERROR),
     ("methods", Range::Any),
@@ -37,7 +37,7 @@ const KEYS: [(&str, Range); 7] = [
 ];
 
 impl ObjectDetailPlan {
-    /// Checks a study.
+    /// Creates the plan of a study and checks all keys.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -78,7 +78,7 @@ impl ObjectDetailPlan {
         })
     }
 
-    /// Returns the specification of the recognition, if the study has any.
+    /// Returns the specification of the recognition; `None` if the study has none.
     pub fn recognition(&self) -> Option<&DetailRecognitionSpec> {
         self.spec.object_detail.recognition.as_ref()
     }
@@ -98,7 +98,7 @@ fn check_recognition(
         return Err(check.error(&key("measurements"), n_measurements, allowed));
     }
     let n_touches = wanted.n_touches();
-    // Memory for two objects, the minimum; more objects need more.
+    // Memory of two objects, the minimum; more objects need more.
     let bytes = 16.0 * n_touches as f64 * n_measurements as f64;
     let what = "the measurements of all touches";
     check.memory(&key("training_touches"), n_touches, bytes, what)

@@ -1,6 +1,6 @@
 //! Effect of model errors on recognition: classifiers are trained on models and tested on the exact meshes.
 //!
-//! All models of an object are touched at the same places and to the same depth past their own first contact, as in other studies.
+//! All models of an object are touched in the same poses and to the same depth past their own first contact, as in other studies.
 
 use crate::engine::progress::Silent;
 use crate::error::Result;
@@ -22,16 +22,16 @@ use crate::world::Placement;
 use ndarray::Array2;
 use std::ops::Range;
 
-/// A classifier trained on one kind of model.
+/// Classifier that is trained on one kind of model.
 pub(super) struct Learned {
-    /// Index of the method and tolerance.
+    /// Index of the method and tolerance of the models.
     number: usize,
     level: Level,
     classifier: ClassifierKind,
 }
 
 impl Learned {
-    /// Returns every classifier for each method and tolerance; empty if the study has no recognition.
+    /// Returns all classifiers for each method and tolerance; an empty list if the study has no recognition.
     pub fn all(plan: &ObjectDetailPlan) -> Vec<Self> {
         let kinds = plan.recognition().map_or(&[][..], |spec| &spec.classifiers);
         let of_level = |(number, level)| {
@@ -45,7 +45,7 @@ impl Learned {
         levels.flat_map(of_level).collect()
     }
 
-    /// Returns the name of the work item.
+    /// Returns the name of the classifier's work item.
     pub fn name(&self) -> String {
         let (method, tolerance_mm) = self.level;
         format!(
@@ -56,7 +56,7 @@ impl Learned {
     }
 }
 
-/// Computes measurements of models, for training and testing.
+/// Sensor that measures touches of models, for training and testing.
 pub(super) struct Sensor<'a> {
     plan: &'a ObjectDetailPlan,
     spec: &'a DetailRecognitionSpec,
@@ -64,7 +64,7 @@ pub(super) struct Sensor<'a> {
     seed: Seed,
 }
 
-/// Measurements of a model.
+/// Measurements of touches of one model.
 pub(super) struct ModelMeasurements {
     /// Measurements, shape (n_touches, m).
     measurements: Array2<f64>,
@@ -73,7 +73,7 @@ pub(super) struct ModelMeasurements {
 }
 
 impl<'a> Sensor<'a> {
-    /// Creates a sensor for a study with recognition.
+    /// Creates the sensor of a study with recognition.
     pub fn new(plan: &'a ObjectDetailPlan, spec: &'a DetailRecognitionSpec) -> Result<Self> {
         let seed = Seed::new(plan.spec.seed);
         let grid = plan.array.shape();
@@ -86,7 +86,7 @@ impl<'a> Sensor<'a> {
         })
     }
 
-    /// Returns the measurements of each model of an object, in order; the first is the mesh. All models are touched at the same places of the object's rest
+    /// Returns the measurements of each model of an object, in order; the first is the mesh. All models are touched in the same poses, in the object's resting
     /// poses.
     pub fn measure(&self, made: &Measured) -> Result<Vec<ModelMeasurements>> {
         let object =
@@ -107,7 +107,7 @@ impl<'a> Sensor<'a> {
         measured.collect()
     }
 
-    /// Trains a classifier on one kind of model, given the measurements of all models of each object, and returns its accuracy.
+    /// Trains a classifier on one kind of model, given the measurements of all models of each object; returns the row with its accuracy.
     pub fn row(
         &self,
         objects: &[Vec<ModelMeasurements>],

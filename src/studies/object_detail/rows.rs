@@ -1,79 +1,79 @@
-//! Rows of the tables of an object-detail study: one plain struct for each kind of row, one field for each column.
+//! Rows of the result tables of an object-detail study: one plain struct for each kind of row, with one field per column.
 
 use crate::learning::classifiers::ClassifierKind;
 use crate::row;
 use crate::studies::object_detail::spec::DetailMethod;
 
-/// Names of methods in charts and tables.
+/// Display names of the methods.
 const METHODS: &[(&str, &str)] = &[("mesh", "exact mesh")];
 
 row! {
 /// Model of an object; each row of `object_detail.csv` and `timing.csv` begins with these columns.
 pub struct DetailCell {
-    /// Name of the object.
+    /// Name of the touched object.
     object: String => Subject;
-    /// Method that replaces the mesh.
+    /// Method that replaces the mesh by a model.
     method: DetailMethod => Choice "model" named METHODS;
-    /// Tolerance of the packing, mm. For methods without a tolerance, the tolerance of the packing with the same number of spheres.
+    /// Tolerance of the packing, mm. Methods without a tolerance have the tolerance of the packing with the same number of spheres.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
-    /// Number of spheres; 0 for the mesh.
+    /// Number of spheres of the model; 0 for the mesh.
     n_spheres: usize => Cost "spheres": Log;
 } }
 
 row! {
 /// Deviation of a model from its mesh. A row of `object_detail.csv` is a [`DetailCell`] followed by a `DetailScore`.
 pub struct DetailScore {
-    /// Mean distance between the two surfaces, measured at points of the mesh: `protrusion_mean_mm` + `gap_mean_mm`, mm.
+    /// Mean distance between the surfaces of model and mesh, measured at points of the mesh, mm: `protrusion_mean_mm` + `gap_mean_mm`.
     surface_error_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log;
     /// Mean distance by which the spheres protrude from the mesh, mm.
     protrusion_mean_mm: f64 => Value(Less) "mean protrusion" in "mm": Log;
     /// 95th percentile of the protrusion, mm.
     protrusion_p95_mm: f64 => Value(Less) "protrusion, 95th percentile" in "mm": Log;
-    /// Largest protrusion, mm.
+    /// Largest distance by which the spheres protrude from the mesh, mm.
     protrusion_max_mm: f64 => Value(Less) "largest protrusion" in "mm": Log;
-    /// Mean distance by which the mesh lies outside the spheres, mm.
+    /// Mean distance by which the mesh protrudes from the spheres, mm.
     gap_mean_mm: f64 => Value(Less) "mean gap" in "mm": Log;
     /// 95th percentile of the gap, mm.
     gap_p95_mm: f64 => Value(Less) "gap, 95th percentile" in "mm": Log;
-    /// Largest gap, mm.
+    /// Largest distance by which the mesh protrudes from the spheres, mm.
     gap_max_mm: f64 => Value(Less) "largest gap" in "mm": Log;
     /// Number of touches that reached the mesh.
     n_touches: usize => Note "touches": Linear;
-    /// Number of touches that reached nothing.
+    /// Number of touches that missed the mesh.
     n_missed: usize => Note "touches that met nothing": Linear;
-    /// Number of taxels that the mesh touches, over all touches.
+    /// Number of taxels that the mesh touches, summed over all touches.
     n_taxels: usize => Note "touched taxels": Linear;
-    /// Difference |deflection − deflection by the mesh|, mean over taxels that either model touches, mm.
+    /// Deflection error, mm: mean of |δ − δ*| over taxels that the mesh (δ*) or the model (δ) touches.
     error_mm: f64 => Value(Less) "deflection error" in "mm": Log;
-    /// 95th percentile of the deflection difference over these taxels, mm.
+    /// 95th percentile of |δ − δ*| over the taxels that the mesh or the model touches, mm.
     error_p95_mm: f64 => Value(Less) "deflection error, 95th percentile" in "mm": Log;
     /// Distance by which the patch is retracted for `error_after_offset_mm`, mm; negative if it is advanced.
     offset_mm: f64 => Note "best constant offset" in "mm": Linear;
-    /// `error_mm` with the constant offset that minimises it.
+    /// Deflection error `error_mm` with the constant offset that minimises it, mm.
     error_after_offset_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log;
-    /// `error_p95_mm` with the constant offset of `error_after_offset_mm`.
+    /// 95th percentile of the deflection error with the offset `offset_mm`, mm.
     error_after_offset_p95_mm: f64 => Value(Less) "deflection error after offset, 95th percentile" in "mm": Log;
-    /// `error_mm` if mesh and model are each pressed to the same depth past their own first contact, as in other studies.
+    /// Deflection error if mesh and model are each pressed to the same depth past their own first contact, as in other studies, mm.
     error_own_contact_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
 } }
 
 row! {
-/// Cost of a model. A row of `timing.csv` is a [`DetailCell`] followed by a `DetailTime`.
+/// Computing cost of a model. A row of `timing.csv` is a [`DetailCell`] followed by a `DetailTime`.
 pub struct DetailTime {
-    /// Time per touch on one thread, median over touches, µs.
+    /// Computing time per touch on one thread, median over touches, µs.
     us_per_touch: f64 => Cost "time of a touch" in "µs": Log;
-    /// Time to compute the model while other work runs on all threads, or to read a cached model, seconds.
+    /// Time to compute the model while other work runs on all threads, or to read it from the cache, s.
     prepare_s: f64 => Cost "time to make the model" in "s": Log;
-    /// Whether the model was cached by an earlier run.
+    /// Whether the model was read from the cache of an earlier run.
     cached: bool => Note "kept from a run before";
 } }
 
 row! {
-/// Results of a method and tolerance over all objects: a row of `object_detail_summary.csv`.
+/// Summary of a method and tolerance over all objects: a row of `object_detail_summary.csv`.
 pub struct DetailSummary {
-    /// Method that replaces the meshes.
+    /// Method that replaces the meshes by models.
     method: DetailMethod => Choice "model" named METHODS;
-    /// Tolerance, mm; `None` for methods without tolerances.
+    /// Tolerance of the packing, mm; empty for methods without tolerances.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
     /// Number of objects.
     n_objects: usize => Note "objects": Linear;
@@ -83,68 +83,68 @@ pub struct DetailSummary {
     n_spheres_median: f64 => Cost "spheres an object": Log between [n_spheres_q1, n_spheres_q3];
     /// Upper quartile of the number of spheres per object.
     n_spheres_q3: f64 => Note "quartiles of spheres, upper": Log;
-    /// Lower quartile of [`DetailScore::surface_error_mm`].
+    /// Lower quartile over objects of [`DetailScore::surface_error_mm`], mm.
     surface_error_q1_mm: f64 => Note "quartiles of mean distance of the surfaces, lower" in "mm": Log;
-    /// Median of [`DetailScore::surface_error_mm`].
+    /// Median over objects of [`DetailScore::surface_error_mm`], mm.
     surface_error_median_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log between [surface_error_q1_mm, surface_error_q3_mm];
-    /// Upper quartile of [`DetailScore::surface_error_mm`].
+    /// Upper quartile over objects of [`DetailScore::surface_error_mm`], mm.
     surface_error_q3_mm: f64 => Note "quartiles of mean distance of the surfaces, upper" in "mm": Log;
-    /// Lower quartile of the larger of `protrusion_max_mm` and `gap_max_mm`.
+    /// Lower quartile over objects of the larger of `protrusion_max_mm` and `gap_max_mm`, mm.
     surface_error_max_q1_mm: f64 => Note "quartiles of largest distance of the surfaces, lower" in "mm": Log;
-    /// Median of the larger of `protrusion_max_mm` and `gap_max_mm`.
+    /// Median over objects of the larger of `protrusion_max_mm` and `gap_max_mm`, mm.
     surface_error_max_median_mm: f64 => Value(Less) "largest distance of the surfaces" in "mm": Log between [surface_error_max_q1_mm, surface_error_max_q3_mm];
-    /// Upper quartile of the larger of `protrusion_max_mm` and `gap_max_mm`.
+    /// Upper quartile over objects of the larger of `protrusion_max_mm` and `gap_max_mm`, mm.
     surface_error_max_q3_mm: f64 => Note "quartiles of largest distance of the surfaces, upper" in "mm": Log;
-    /// Lower quartile of [`DetailScore::error_mm`].
+    /// Lower quartile over objects of [`DetailScore::error_mm`], mm.
     error_q1_mm: f64 => Note "quartiles of deflection error, lower" in "mm": Log;
-    /// Median of [`DetailScore::error_mm`].
+    /// Median over objects of [`DetailScore::error_mm`], mm.
     error_median_mm: f64 => Value(Less) "deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
-    /// Upper quartile of [`DetailScore::error_mm`].
+    /// Upper quartile over objects of [`DetailScore::error_mm`], mm.
     error_q3_mm: f64 => Note "quartiles of deflection error, upper" in "mm": Log;
-    /// Largest [`DetailScore::error_mm`] of an object.
+    /// Largest [`DetailScore::error_mm`] of any object, mm.
     error_worst_mm: f64 => Value(Less) "deflection error of the worst object" in "mm": Log;
-    /// Lower quartile of [`DetailScore::error_after_offset_mm`].
+    /// Lower quartile over objects of [`DetailScore::error_after_offset_mm`], mm.
     error_after_offset_q1_mm: f64 => Note "quartiles of deflection error after offset, lower" in "mm": Log;
-    /// Median of [`DetailScore::error_after_offset_mm`].
+    /// Median over objects of [`DetailScore::error_after_offset_mm`], mm.
     error_after_offset_median_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
-    /// Upper quartile of [`DetailScore::error_after_offset_mm`].
+    /// Upper quartile over objects of [`DetailScore::error_after_offset_mm`], mm.
     error_after_offset_q3_mm: f64 => Note "quartiles of deflection error after offset, upper" in "mm": Log;
-    /// Largest [`DetailScore::error_after_offset_mm`] of an object.
+    /// Largest [`DetailScore::error_after_offset_mm`] of any object, mm.
     error_after_offset_worst_mm: f64 => Value(Less) "deflection error after offset of the worst object" in "mm": Log;
-    /// Median of [`DetailScore::error_own_contact_mm`].
+    /// Median over objects of [`DetailScore::error_own_contact_mm`], mm.
     error_own_contact_median_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
-    /// Largest [`DetailScore::error_own_contact_mm`] of an object.
+    /// Largest [`DetailScore::error_own_contact_mm`] of any object, mm.
     error_own_contact_worst_mm: f64 => Value(Less) "deflection error past own contact of the worst object" in "mm": Log;
-    /// Ratio of `error_after_offset_mm` to that error of the packing with the same tolerance, median over objects; `None` without such a packing.
+    /// Ratio of `error_after_offset_mm` to the error after offset of the packing with the same tolerance, median over objects; empty without such a packing.
     times_packing: Option<f64> => Value(Less) "times the error of the packing": Log;
 } }
 
 row! {
 /// Accuracy of a classifier trained on the models of one method and tolerance: a row of `object_detail_recognition.csv`.
 pub struct DetailRecognition {
-    /// Method that replaced the meshes in training.
+    /// Method that replaces the meshes by models in training.
     method: DetailMethod => Choice "learned from" named METHODS;
-    /// Tolerance, mm; `None` for methods without tolerances.
+    /// Tolerance of the packing, mm; empty for methods without tolerances.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
     /// Kind of classifier.
     classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
     /// Number of objects to distinguish.
     n_objects: usize => Note "objects": Linear;
-    /// Number of training rows of all objects.
+    /// Number of training rows, summed over all objects.
     n_training: usize => Note "training touches": Linear;
-    /// Number of test rows of all objects.
+    /// Number of test rows, summed over all objects.
     n_test: usize => Note "test touches": Linear;
-    /// Number of measurements per row.
+    /// Number of measurements per touch.
     n_measurements: usize => Note "measurements": Linear;
-    /// Median over objects of [`DetailScore::error_own_contact_mm`]; training touches are also pressed past the model's own contact.
+    /// Median over objects of [`DetailScore::error_own_contact_mm`], mm; training touches are also pressed past the model's own contact.
     error_own_contact_median_mm: f64 => Value(Less) "median deflection error past own contact" in "mm": Log;
-    /// Fraction of correct answers to touches of the meshes, 0 to 1.
+    /// Accuracy on test touches of the meshes, 0 to 1.
     accuracy_on_mesh: f64 => Value(More) "accuracy on the exact meshes": Share between [accuracy_on_mesh_low, accuracy_on_mesh_high];
     /// Lower end of the 95 % Wilson interval of `accuracy_on_mesh`.
     accuracy_on_mesh_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % Wilson interval of `accuracy_on_mesh`.
     accuracy_on_mesh_high: f64 => Note "95 % interval, upper end": Share;
-    /// Fraction of correct answers to the same touches of the models used in training, 0 to 1.
+    /// Accuracy on the same test touches of the models used in training, 0 to 1.
     accuracy_on_itself: f64 => Value(More) "accuracy on the models learned from": Share between [accuracy_on_itself_low, accuracy_on_itself_high];
     /// Lower end of the 95 % Wilson interval of `accuracy_on_itself`.
     accuracy_on_itself_low: f64 => Note "95 % interval, lower end": Share;
@@ -155,8 +155,8 @@ pub struct DetailRecognition {
 } }
 
 row! {
-/// Time per touch of a method and tolerance. A row of `object_detail_cost.csv` is a [`DetailSummary`] followed by a `LevelTime`.
+/// Computing time per touch for a method and tolerance. A row of `object_detail_cost.csv` is a [`DetailSummary`] followed by a `LevelTime`.
 pub struct LevelTime {
-    /// Time per touch on one thread, median over objects, µs.
+    /// Computing time per touch on one thread, median over objects, µs.
     us_per_touch_median: f64 => Cost "time of a touch, one thread" in "µs": Log;
 } }

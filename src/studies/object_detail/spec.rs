@@ -10,51 +10,51 @@ use serde::{Deserialize, Serialize};
 
 study_file! {
 pub struct ObjectDetailStudySpec {
-    /// Touched objects, given as meshes.
+    /// Table `[objects]`: the touched objects, given as meshes.
     pub objects: ObjectsSpec,
-    /// The skin, a single array.
+    /// Table `[skin]`: a single array of taxels.
     pub skin: SkinSpec,
-    /// The touches.
+    /// Table `[touches]`: poses and depths of the touches.
     pub touches: TouchesSpec,
-    /// Models that replace the meshes.
+    /// Table `[object_detail]`: models that replace the meshes.
     pub object_detail: ObjectDetailSpec,
 } }
 
-/// `[object_detail]`: models that replace meshes, and their comparison.
+/// Keys of `[object_detail]`: models that replace the meshes, and their comparison with the meshes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectDetailSpec {
-    /// Tolerances, mm: largest distances of packed spheres from the mesh.
+    /// Tolerances of the packing, mm, at least 1e-6: maximum distances between the spheres and the mesh.
     pub tolerances_mm: Vec<f64>,
-    /// Methods that replace the mesh.
+    /// Methods that replace the mesh by a model.
     pub methods: Vec<DetailMethod>,
-    /// Number of points of a mesh at which the distance to the spheres is measured.
+    /// Number of points of a mesh at which the distance to the spheres is measured, at least 1. Default: 5000.
     #[serde(default = "count::<5000>")]
     pub surface_points: usize,
-    /// Classifiers that are trained on the models and tested on the meshes. Default: none.
+    /// Table `[object_detail.recognition]`: classifiers that are trained on models and tested on meshes. Default: none.
     #[serde(default)]
     pub recognition: Option<DetailRecognitionSpec>,
 }
 
-/// `[object_detail.recognition]`: classifiers trained on models and tested on meshes.
+/// Keys of `[object_detail.recognition]`: classifiers that are trained on models and tested on meshes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DetailRecognitionSpec {
-    /// Number of training touches of each object, drawn like the study's touches.
+    /// Number of training touches per object, at least 1, drawn like the study's touches.
     pub training_touches: usize,
-    /// Number of further touches of each object for testing.
+    /// Number of additional touches per object for testing, at least 1.
     pub test_touches: usize,
-    /// Ensemble that compresses the frames.
+    /// Ensemble of the measurement matrix that compresses the frames. Default: `sbhe`.
     #[serde(default = "default_ensemble")]
     pub ensemble: Ensemble,
-    /// Number of measurements per frame.
+    /// Number m of measurements per frame, at least 1.
     pub measurements: usize,
-    /// Classifiers, with the parameters of [`Classifier::new`](crate::learning::classifiers::classifier::Classifier::new).
+    /// Kinds of classifiers, with the default parameters of [`Classifier::new`](crate::learning::classifiers::classifier::Classifier::new).
     pub classifiers: Vec<ClassifierKind>,
 }
 
 impl DetailRecognitionSpec {
-    /// Returns the number of training and test touches of each object.
+    /// Returns the number of touches per object for training and testing together.
     pub(super) fn n_touches(&self) -> usize {
         self.training_touches + self.test_touches
     }
@@ -64,17 +64,16 @@ impl DetailRecognitionSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DetailMethod {
-    /// The exact mesh, which is the reference for all other methods; always measured.
+    /// Exact mesh, the reference for all other methods; always measured.
     Mesh,
-    /// Packed spheres within each tolerance.
+    /// Spheres packed within each tolerance.
     Packing,
     /// One sphere per vertex \[BT\].
     VertexSpheres,
-    /// One sphere at each of a number of evenly spread vertices. For each packing, the number equals the packing's number of spheres, or the number of all
-    /// vertices if that is smaller.
+    /// One sphere at each of n evenly spread vertices. For each packing, n is the number of its spheres, or the number of all vertices if that is smaller.
     DecimatedVertexSpheres,
-    /// The largest spheres inside the mesh that touch it at a number of points equal to the number of spheres of each packing
-    /// ([`medial_spheres`](crate::packing::medial_spheres)).
+    /// The largest spheres inside the mesh that touch it at n points ([`medial_spheres`](crate::packing::medial_spheres)). For each packing, n is the number of
+    /// its spheres.
     MedialSpheres,
 }
 

@@ -1,4 +1,4 @@
-//! Runs an object-detail study: models of every mesh and their errors on all threads, then their times on one thread.
+//! Object-detail study: computes models of every mesh and their errors on all threads, then their computing times on one thread.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
@@ -21,17 +21,17 @@ use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// An object-detail study and its meshes.
+/// Object-detail study with its meshes.
 pub struct ObjectDetailStudy {
-    /// Plan of the study.
+    /// Plan of the study: checked keys in SI units.
     pub plan: ObjectDetailPlan,
-    /// Meshes, one for each object.
+    /// Meshes of the study, one per object.
     pub meshes: Vec<NamedMesh>,
-    /// Folder of cached packings, if any.
+    /// Cache folder of packings; `None` for no cache.
     pub packings: Option<PathBuf>,
 }
 
-/// Results of work items: errors of models, their costs, and accuracies of classifiers.
+/// Results of work items: errors of models, their computing costs, and accuracies of classifiers.
 pub type DetailRows = (
     Vec<(DetailCell, DetailScore)>,
     Vec<(DetailCell, DetailTime)>,
@@ -60,18 +60,18 @@ pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
     "",
 );
 
-/// Returns the number of the work item of an object's models. For the index after the last object, it is the number of the first classifier's item.
+/// Returns the number of the work item for an object's models. The index after the last object gives the number of the first classifier's item.
 fn models_item(object: usize) -> usize {
     2 * object
 }
 
-/// Returns the number of the work item of the times of an object's models.
+/// Returns the number of the work item for the computing times of an object's models.
 fn times_item(object: usize) -> usize {
     models_item(object) + 1
 }
 
 impl ObjectDetailStudy {
-    /// Computes an object's models and stores their errors. If they cannot be computed, all items that need them fail, including `learners`.
+    /// Computes an object's models and stores their errors. If they cannot be computed, all work items that need them fail, including `learners`.
     fn object(
         &self,
         object: usize,
@@ -149,12 +149,12 @@ impl Study for ObjectDetailStudy {
             },
             n_configurations: n_levels * (n_objects + n_classifiers),
             bytes: 8.0 * (n_objects * n_learned * n_levels * n_measurements) as f64,
-            // Memory of simulated frames and of frames as read.
+            // Memory of the frames before and after the signal chain.
             item_bytes: 12.0 * (n_learned * n_taxels) as f64,
         }
     }
 
-    /// Each object has an item for its models and one for their times. Items of classifiers follow, which need all objects.
+    /// Each object has one work item for its models and one for their times. The work items of classifiers follow; they need all objects.
     fn work_items(&self) -> Vec<WorkItem> {
         let mut items = Vec::new();
         for (group, NamedMesh { name, .. }) in self.meshes.iter().enumerate() {

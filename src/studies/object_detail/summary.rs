@@ -1,4 +1,4 @@
-//! Aggregation over all objects, by method and tolerance.
+//! Summary over all objects, by method and tolerance.
 
 use crate::quantile::quantile;
 use crate::studies::grouped;
@@ -14,7 +14,7 @@ fn level(configuration: &DetailCell) -> Level {
     (configuration.method, configuration.tolerance_mm)
 }
 
-/// Returns one row per method and tolerance, in the order of first occurrence.
+/// Returns one summary row per method and tolerance, in the order of first occurrence.
 pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
     let levels = grouped(rows, |(configuration, _)| level(configuration)).into_iter();
     levels
@@ -68,7 +68,7 @@ fn summary_row((method, tolerance_mm): Level, of_level: &[&Row], rows: &[Row]) -
     }
 }
 
-/// Returns each method and tolerance with its time per touch.
+/// Returns the computing time per touch for each method and tolerance.
 pub(super) fn costs(
     summary: &[DetailSummary],
     timing: &[(DetailCell, DetailTime)],

@@ -1,4 +1,4 @@
-//! Models of a mesh that are compared with it.
+//! Models of a mesh that are compared with the mesh.
 
 use crate::error::Result;
 use crate::geometry::distinct_places;
@@ -13,25 +13,25 @@ use glam::DVec3;
 use std::path::Path;
 use std::time::Instant;
 
-/// Method and tolerance, mm (as written). Without its own tolerance, a method has the tolerance of the packing with the same number of spheres.
+/// Method and tolerance (mm, as written). Methods without a tolerance of their own have the tolerance of the packing with the same number of spheres.
 pub(super) type Level = (DetailMethod, Option<f64>);
 
-/// Returns a tolerance in words, or an empty text without a tolerance.
+/// Returns a tolerance in words; an empty text without a tolerance.
 pub(super) fn within(tolerance_mm: Option<f64>) -> String {
     tolerance_mm.map_or(String::new(), |mm| format!(" within {mm} mm"))
 }
 
-/// A model of a mesh.
+/// Model of a mesh, with its computing time.
 pub(super) struct Variant {
     pub level: Level,
     pub model: Model,
-    /// Time to compute the model, seconds.
+    /// Time to compute the model, s.
     pub prepare_s: f64,
-    /// Whether the model was cached.
+    /// Whether the model was read from the cache.
     pub cached: bool,
 }
 
-/// Returns all models of a mesh in the order of [`levels`]; the mesh is the first. Errors name `place`, the mesh's file.
+/// Returns all models of a mesh in the order of [`levels`]; the first is the mesh. Errors name `place`, the file of the mesh.
 pub(super) fn variants(
     plan: &ObjectDetailPlan,
     place: &str,
@@ -40,7 +40,7 @@ pub(super) fn variants(
 ) -> Result<Vec<Variant>> {
     let mesh = surface.mesh();
     let pack = |mm: f64| pack_within(place, surface, mm * MM, packings);
-    // Tolerance of the last packing and its number of spheres.
+    // Tolerance of the last packing, and its number of spheres.
     let mut packed = (None, 0);
     let mut found = Vec::new();
     for (method, tolerance_mm) in levels(plan) {
@@ -73,7 +73,7 @@ pub(super) fn variants(
     Ok(found)
 }
 
-/// Returns the methods and tolerances: the mesh, then methods without tolerances, then all other methods by tolerance.
+/// Returns all pairs of method and tolerance: the mesh, then methods without tolerances, then all other methods by tolerance.
 pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     let wanted = &plan.spec.object_detail;
     let is_wanted = |method: &DetailMethod| wanted.methods.contains(method);
@@ -92,8 +92,8 @@ pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     levels
 }
 
-/// Returns `n` distinct positions of `vertices` (all if there are fewer, but at least two). Starting with the first vertex, each position is the farthest from
-/// the previous ones.
+/// Returns `n` distinct positions from `vertices` (all if there are fewer, but at least two). The first is the first vertex; each further one is the farthest
+/// from all previous ones.
 fn evenly_chosen(vertices: &[DVec3], n: usize) -> Vec<DVec3> {
     let places = distinct_places(vertices);
     if n >= places.len() {

@@ -6,7 +6,7 @@ use crate::studies::reconstruction::study::ReconstructionStudy;
 use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
 
 impl ReconstructionStudy {
-    /// Returns charts for each noise level: error by measurements for each ensemble, then error against time.
+    /// Returns the charts for each noise level: error by measurements for each ensemble, then error against time.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (configurations, pareto) = (&tables[0], &tables[3]);
         let mut charts = Vec::new();
@@ -40,7 +40,7 @@ impl ReconstructionStudy {
         self.sample_frames(tables)
     }
 
-    /// Returns answers for each noise level: the best configuration, and the fewest measurements with which a configuration is as good as full sampling.
+    /// Returns the answers for each noise level: the best configuration, and the fewest measurements for which a configuration is as good as full sampling.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (configurations, timing) = (&tables[0], &tables[2]);
         let error = |row: usize| configurations.number("error", row);
@@ -79,7 +79,7 @@ impl ReconstructionStudy {
     }
 }
 
-/// Returns a chart with a panel per dictionary and a line per solver; a rule shows the error of the noisy frame.
+/// Returns a chart with one panel per dictionary and one line per solver; a reference line shows the error of the noisy frame.
 fn by_measurements(configurations: &Table, rows: &[usize]) -> ChartSpec {
     let (code, ensemble) = (
         configurations.word("ensemble", rows[0]),
@@ -105,7 +105,7 @@ fn by_measurements(configurations: &Table, rows: &[usize]) -> ChartSpec {
     }
 }
 
-/// Returns the noise of a configuration in words: `noise of 10 % of full scale`.
+/// Returns the noise of a configuration in words, such as `noise of 10 % of full scale`.
 pub(super) fn noise_words(configurations: &Table, row: usize) -> String {
     let level = configurations.number("noise_std", row);
     match (level, configurations.word("noise_unit", row)) {
@@ -116,7 +116,7 @@ pub(super) fn noise_words(configurations: &Table, row: usize) -> String {
     }
 }
 
-/// Returns the settings of a configuration in words: `LMMSE, PCA, SBHE, m = 1024`.
+/// Returns the settings of a configuration in words, such as `LMMSE, PCA, SBHE, m = 1024`.
 pub(super) fn cell_words(configurations: &Table, row: usize) -> String {
     let names = ["solver", "dictionary", "ensemble", "measurements"];
     let [solver, dictionary, ensemble, m] = names.map(|column| configurations.words(column, row));

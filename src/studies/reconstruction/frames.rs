@@ -1,4 +1,4 @@
-//! Picture of a few test frames: clean, as read, and as reconstructed by some configurations.
+//! Picture of a few test frames: clean, with noise, and as reconstructed by some configurations.
 
 use crate::engine::progress::Silent;
 use crate::error::Result;
@@ -12,7 +12,7 @@ use crate::table::Table;
 use ndarray::Array2;
 
 impl ReconstructionStudy {
-    /// Returns the picture at the largest noise; empty without results.
+    /// Returns the picture of test frames at the largest noise; an empty list without results.
     pub(super) fn sample_frames(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
         let Some(configurations) = tables
             .first()
@@ -82,7 +82,7 @@ impl ReconstructionStudy {
     }
 }
 
-/// Returns the best configuration at the m nearest to a quarter of the taxels, and at the fewest measurements.
+/// Returns the rows to show: the best configuration at the m nearest to a quarter of the taxels, and the best one at the fewest measurements.
 fn shown_rows(configurations: &Table, level: f64) -> Vec<usize> {
     let of_level: Vec<usize> = (0..configurations.n_rows)
         .filter(|&row| configurations.number("noise_std", row) == level)

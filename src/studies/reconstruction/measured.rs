@@ -1,4 +1,4 @@
-//! Reconstructions from the same measurements.
+//! Reconstruction of frames: all configurations that use the same measurements.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::shared::Shared;
@@ -16,17 +16,17 @@ use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Number of frames that a thread reconstructs together. With fewer, matrix products are less efficient; with more, threads finish at different times.
+/// Number of frames that a thread reconstructs together. If smaller, matrix products are less efficient; if larger, threads finish at different times.
 const BLOCK: usize = 64;
 
-/// Computes the pending configurations of one ensemble and m, given by index; dictionaries are computed when an item needs them.
+/// Computes the pending configurations of one ensemble and m, given by index; dictionaries are computed when a work item needs them.
 pub(super) fn measure_cells(
     (plan, touches): (&ReconstructionPlan, &Touches),
     (group, configurations): (usize, &[ReconstructionCell]),
     left: &PendingItems<ReconstructionRows>,
 ) -> Result<()> {
     let first = &configurations[0];
-    // In each group, the isometries of all dictionaries precede the configurations.
+    // In each group, the isometry items of all dictionaries come before the configurations.
     let n_dictionaries = plan.dictionaries.len();
     let isometries = first.configuration + group * n_dictionaries;
     let projection = Shared::default();
@@ -66,7 +66,7 @@ pub(super) fn measure_cells(
     Ok(())
 }
 
-/// Returns errors and times of a configuration.
+/// Returns the reconstruction errors and times of a configuration.
 fn reconstruct(
     (plan, touches): (&ReconstructionPlan, &Touches),
     configuration: &ReconstructionCell,
@@ -109,7 +109,7 @@ fn reconstruct(
     ))
 }
 
-/// Returns the isometry statistics of a dictionary seen through a projection; one row per size of supports.
+/// Returns the isometry statistics of a projection and a dictionary, one row per support size.
 fn statistics(
     plan: &ReconstructionPlan,
     sensed: &SensedDictionary,

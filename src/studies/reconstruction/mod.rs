@@ -3,8 +3,8 @@
 //! A file with a `[reconstruction]` table in place of `[recognition]` is a reconstruction study:
 //! [`ReconstructionStudySpec`] (as written) → [`ReconstructionPlan`] (checked, SI) → [`ReconstructionStudy`] → [its tables](rows).
 //!
-//! Noise is added to taxels, before Φ. Dictionaries, covariances and the choice of atoms are computed from the **clean** frames of training touches, which are
-//! available in simulation. Test touches are not used for them.
+//! Noise is added to the taxel readings before they are multiplied by Φ. Dictionaries, covariances and the choice of atoms are computed from the **clean**
+//! frames of training touches, which a simulation provides. Test touches are not used for them.
 
 mod charts;
 mod frames;

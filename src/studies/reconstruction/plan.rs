@@ -1,4 +1,4 @@
-//! Plan of a reconstruction study: checked keys in SI units.
+//! Plan of a reconstruction study: checked keys, converted to SI units.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::work_items::shared::Shared;
@@ -15,32 +15,32 @@ use crate::studies::reconstruction::rows::ReconstructionCell;
 use crate::studies::reconstruction::spec::{ReconstructionSpec, ReconstructionStudySpec};
 use crate::world::{Grid, Placement};
 
-/// Checked axes and settings of a reconstruction study.
+/// Checked keys of a reconstruction study, converted to SI units.
 #[derive(Clone, Debug)]
 pub struct ReconstructionPlan {
-    /// Specification as written in the file.
+    /// Specification as written in the study file.
     pub spec: ReconstructionStudySpec,
     /// Array of taxels.
     pub array: TaxelArray,
     /// Distribution of touch poses.
     pub placement: Placement,
-    /// Approach speed at the time of reading, m/s.
+    /// Approach speed of the press at the time of reading, m/s.
     pub speed: f64,
     /// Unit of the noise axis.
     pub noise_unit: NoiseUnit,
-    /// Values of the noise axis, in `noise_unit`.
+    /// Values of the noise axis (standard deviations), in `noise_unit`.
     pub noise: Vec<f64>,
-    /// Values of the dictionary axis.
+    /// Dictionaries to compare.
     pub dictionaries: Vec<Basis>,
 }
 
-/// Largest number of supports drawn of each size; all are in memory at once.
+/// Maximum number of supports drawn per size; all are in memory together.
 const MAX_SUBSETS: usize = 1_000_000;
 
-/// Largest number of atoms of a dictionary, more than any array has taxels. The smallest is two, because λ = √(2 ln k) vanishes for k = 1 atom.
+/// Maximum number of atoms of a dictionary, more than any array has taxels. The minimum is two, because λ = √(2 ln k) vanishes for k = 1 atom.
 const MAX_ATOMS: usize = 100_000_000;
 
-/// Ranges of the numeric keys of `[reconstruction]`.
+/// Allowed values of the numeric keys of `[reconstruction]`.
 const KEYS: [(&str, Range); 10] = [
     ("dictionary", Range::Any),
     ("atoms", Range::Count(2, MAX_ATOMS)),
@@ -55,7 +55,7 @@ const KEYS: [(&str, Range); 10] = [
 ];
 
 impl ReconstructionPlan {
-    /// Checks a study.
+    /// Creates the plan of a study and checks all keys.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -95,20 +95,20 @@ impl ReconstructionPlan {
         })
     }
 
-    /// Returns the study's signal steps at a noise level; without the noise step for `None`.
+    /// Returns the signal steps at a given noise level; `None` omits the noise step.
     pub fn signal_steps(&self, noise: Option<f64>) -> Vec<SignalStep> {
         let unit = self.noise_unit;
         let steps = self.spec.signal.steps.iter();
         let steps = steps.filter_map(|step| match step {
             StepSpec::Force => Some(SignalStep::Force),
             StepSpec::Noise => noise.map(|std| SignalStep::Noise(Noise { std, unit })),
-            // Steps that a reconstruction does not support were rejected before.
+            // Steps that a reconstruction does not support were rejected earlier.
             _ => None,
         });
         steps.collect()
     }
 
-    /// Returns the quantity of the frames to which noise is added.
+    /// Returns the quantity (deflection or force) of the frames to which noise is added.
     pub fn quantity(&self) -> Quantity {
         match self.spec.signal.steps.contains(&StepSpec::Force) {
             true => Quantity::Force,
@@ -116,7 +116,7 @@ impl ReconstructionPlan {
         }
     }
 
-    /// Returns the numbers m of measurements of an ensemble; the identity always has all taxels.
+    /// Returns the numbers m of measurements for an ensemble; the identity always measures all taxels.
     pub fn measurement_counts(&self, ensemble: Ensemble) -> Vec<usize> {
         let n = self.array.n_taxels();
         if ensemble == Ensemble::Identity {
@@ -128,7 +128,7 @@ impl ReconstructionPlan {
         counts
     }
 
-    /// Returns the study's projection of an ensemble to m measurements.
+    /// Returns the projection of an ensemble with m measurements.
     pub(super) fn projection(&self, ensemble: Ensemble, m: usize) -> Result<Projection> {
         let seed = Seed::new(self.spec.seed).named("projection").numbered(0);
         Projection::new(ensemble, self.shape(), m, &seed)
@@ -139,7 +139,7 @@ impl ReconstructionPlan {
         self.array.shape()
     }
 
-    /// Returns one shared value for each dictionary, in order.
+    /// Returns a list with one shared value per dictionary, in the order of the plan.
     pub(super) fn of_each_dictionary<T>(&self) -> Vec<Shared<T>> {
         let each = self.dictionaries.iter();
         each.map(|_| Shared::default()).collect()
@@ -151,7 +151,7 @@ impl ReconstructionPlan {
         place.expect("configurations have the dictionaries of their plan")
     }
 
-    /// Returns all configurations, ordered by ensemble and m. The numbers of atoms are set once dictionaries are computed.
+    /// Returns all configurations, ordered by ensemble and m. The numbers of atoms are set when the dictionaries are computed.
     pub fn configurations(&self) -> Vec<ReconstructionCell> {
         let n_taxels = self.array.n_taxels() as f64;
         let mut configurations = Vec::new();
@@ -178,7 +178,7 @@ impl ReconstructionPlan {
 }
 
 impl Check<'_> {
-    /// Checks that no step follows the noise. Solvers assume independent noise on every taxel and need a clean frame for comparison.
+    /// Checks that no signal step follows the noise. Solvers assume independent noise on every taxel and need a clean frame for comparison.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
         let refuse = |key, given: &str, allowed| Err(self.error(key, given, allowed));
         if signal.test_sensor.is_some() {
@@ -215,7 +215,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks that each limit of a solver's work that differs from its default belongs to a solver of the study.
+    /// Checks that each solver limit that differs from its default applies to a solver of the study.
     fn efforts(&self, wanted: &ReconstructionSpec) -> Result<()> {
         let (given, usual) = (wanted.effort(), Effort::default());
         let pursuit = (Solver::Omp, "omp");

@@ -9,27 +9,27 @@ use ndarray::{Array2, ArrayView2};
 /// Half width of the central 95 % of a normal distribution, in standard deviations.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// Returns ‖a − b‖² of each row.
+/// Returns the squared error ‖a − b‖² of each row.
 pub(super) fn square_errors(a: ArrayView2<f64>, b: ArrayView2<f64>) -> Vec<f64> {
     let rows = a.outer_iter().zip(b.outer_iter());
     rows.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum())
         .collect()
 }
 
-/// Clean frames with which reconstructions are compared.
+/// Clean test frames with which reconstructions are compared.
 pub(super) struct Truth {
-    /// ‖x‖² of each test frame.
+    /// Squared norm ‖x‖² of each test frame.
     squares: Vec<f64>,
     n_taxels: usize,
-    /// Largest value that a taxel can have.
+    /// Largest value that a taxel reading can have.
     full_scale: f64,
 }
 
-/// Reconstruction of some test frames.
+/// Reconstruction of a block of test frames.
 pub(super) struct Found {
-    /// ‖x̂ − x‖² of each frame.
+    /// Squared error ‖x̂ − x‖² of each frame.
     pub errors: Vec<f64>,
-    /// Number of non-zero coefficients over all frames.
+    /// Number of non-zero coefficients, summed over the frames.
     pub n_atoms: usize,
     pub n_capped: usize,
     pub seconds: f64,
@@ -45,7 +45,7 @@ impl Truth {
         }
     }
 
-    /// Returns the score over all test frames; `full` contains ‖noisy − x‖² of each frame.
+    /// Returns the score over all test frames; `full` contains the squared error ‖noisy − x‖² of each frame.
     pub(super) fn score(&self, found: &[Found], full: &[f64]) -> ReconstructionScore {
         let n_frames = self.squares.len();
         let errors: Vec<f64> = found.iter().flat_map(|f| f.errors.clone()).collect();
@@ -79,7 +79,7 @@ impl Truth {
     }
 }
 
-/// Marks, among configurations of one noise level, those that no other dominates in error and rate.
+/// Marks the configurations of one noise level that no other configuration dominates in error and rate.
 pub(super) fn pareto(
     rows: &[ReconstructionRow],
     levels: &[f64],

@@ -12,56 +12,56 @@ use serde::{Deserialize, Serialize};
 
 study_file! {
 pub struct ReconstructionStudySpec {
-    /// Touched objects.
+    /// Table `[objects]`: the touched objects.
     pub objects: ObjectsSpec,
-    /// The skin, a single array.
+    /// Table `[skin]`: a single array of taxels.
     pub skin: SkinSpec,
-    /// The touches.
+    /// Table `[touches]`: poses and depths of the touches.
     pub touches: TouchesSpec,
-    /// Processing of a frame before it is compressed; smoothing is not allowed.
+    /// Table `[signal]`: noise and processing of frames before compression; smoothing is not allowed.
     #[serde(default)]
     pub signal: SignalSpec,
-    /// Compression of a frame.
+    /// Table `[sensing]`: compression of frames.
     pub sensing: SensingSpec,
-    /// Reconstruction of a frame.
+    /// Table `[reconstruction]`: solvers and dictionaries that reconstruct frames.
     pub reconstruction: ReconstructionSpec,
 } }
 
-/// `[reconstruction]`: solvers and dictionaries that reconstruct frames.
+/// Keys of `[reconstruction]`: solvers and dictionaries that reconstruct frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReconstructionSpec {
-    /// Axis: solver of the coefficients, `omp`, `l1` or `lmmse`.
+    /// Axis: solver of the coefficients: `omp` (orthogonal matching pursuit), `l1` (ℓ1 minimisation) or `lmmse` (linear minimum mean square error).
     pub solver: Axis<Solver>,
-    /// Axis: dictionary, `dct`, `haar`, `daubechies4` or `pca`.
+    /// Axis: dictionary of the frames: `dct`, `haar`, `daubechies4` or `pca`.
     pub dictionary: Axis<Basis>,
-    /// Largest number of atoms of a dictionary; the atoms with the most energy in the training frames are kept. Default: all, or 256 for PCA.
+    /// Maximum number of atoms of a dictionary, at least 2; the atoms with the most energy in the training frames are used. Default: all, or 256 for PCA.
     pub atoms: Option<usize>,
-    /// Largest number of atoms that matching pursuit may select per frame.
+    /// Maximum number of atoms per frame that matching pursuit may select, at least 1. Default: 128.
     #[serde(default = "default_most_atoms")]
     pub most_atoms: usize,
-    /// Regularisation λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k).
+    /// Regularisation λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k), positive. Default: 0.3.
     #[serde(default = "default_lambda_scale")]
     pub lambda_scale: f64,
-    /// Relative duality gap at which the ℓ1 solver stops.
+    /// Relative duality gap at which the ℓ1 solver stops, positive. Default: 1e-3.
     #[serde(default = "default_tolerance")]
     pub tolerance: f64,
-    /// Largest number of steps of the ℓ1 solver per frame.
+    /// Maximum number of steps of the ℓ1 solver per frame, at least 1. Default: 500.
     #[serde(default = "default_most_steps")]
     pub most_steps: usize,
-    /// Fraction of the touches held out for testing.
+    /// Fraction of the touches held out for testing, between 0 and 1. Default: 0.25.
     #[serde(default = "default_test_fraction")]
     pub test_fraction: f64,
-    /// Sizes of the supports for the isometry statistics.
+    /// Axis: sizes of the supports for the isometry statistics, in atoms. Default: 8 and 32.
     #[serde(default = "default_isometry_sparsity")]
     pub isometry_sparsity: Axis<usize>,
-    /// Number of supports drawn for each size.
+    /// Number of randomly drawn supports per size, at least 1. Default: 200.
     #[serde(default = "count::<200>")]
     pub isometry_subsets: usize,
 }
 
 impl ReconstructionSpec {
-    /// Returns the limits of the solvers' work.
+    /// Returns the limits of the solvers: atoms, regularisation, tolerance and steps.
     pub fn effort(&self) -> Effort {
         Effort {
             most_atoms: self.most_atoms,

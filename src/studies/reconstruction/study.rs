@@ -1,4 +1,4 @@
-//! Runs a reconstruction study: touches and dictionaries once, then every ensemble, m, noise, dictionary and solver.
+//! Reconstruction study: computes touches and dictionaries once, then every ensemble, m, noise, dictionary and solver.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::pending::PendingItems;
@@ -25,11 +25,11 @@ use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{File, Table};
 use std::collections::BTreeMap;
 
-/// A reconstruction study and its touches.
+/// Reconstruction study with its touches.
 pub struct ReconstructionStudy {
-    /// Plan of the study.
+    /// Plan of the study: checked keys in SI units.
     pub plan: ReconstructionPlan,
-    /// Objects with their touches.
+    /// Objects of the study with their touches.
     pub touched: Vec<TouchedObject>,
     /// Frames of all touches, simulated when they are first needed.
     frames: Shared<Touches>,
@@ -109,7 +109,7 @@ impl Study for ReconstructionStudy {
         }
     }
 
-    /// For each ensemble and m, the isometry of every dictionary is followed by the configurations.
+    /// For each ensemble and m, the isometry items of all dictionaries are followed by the configurations.
     fn work_items(&self) -> Vec<WorkItem> {
         let mut items = Vec::new();
         for (group, configurations) in on_measured(&self.plan.configurations()).enumerate() {
@@ -133,7 +133,7 @@ impl Study for ReconstructionStudy {
     }
 
     fn tables(&self, (mut rows, statistics): ReconstructionRows) -> Result<Vec<Table>> {
-        // Configurations are renumbered, because the axes of an earlier run may have had other values.
+        // The configurations are renumbered, because the axes of an earlier run may have had other values.
         let numbers = self.plan.configurations().into_iter();
         let numbers: BTreeMap<String, usize> = numbers
             .map(|configuration| (configuration.name(), configuration.configuration))
@@ -167,7 +167,7 @@ impl Study for ReconstructionStudy {
     }
 }
 
-/// Returns the configurations in groups that share their measurements.
+/// Returns the configurations in groups that use the same measurements.
 fn on_measured(
     configurations: &[ReconstructionCell],
 ) -> impl Iterator<Item = &[ReconstructionCell]> {
@@ -175,7 +175,7 @@ fn on_measured(
 }
 
 impl ReconstructionStudy {
-    /// Returns the frames of all touches.
+    /// Returns the frames of all touches; simulates them at the first call.
     pub(super) fn frames(&self, progress: &dyn Progress) -> Result<&Touches> {
         let simulate = || Touches::simulate(&self.plan, &self.touched, progress);
         self.frames.get(simulate)

@@ -1,4 +1,4 @@
-//! Frames of all touches: simulated once, split, with and without noise, and the dictionaries computed from them.
+//! Frames of all touches: simulated once, split into training and test frames, with and without noise. Also the dictionaries computed from them.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::shared::Shared;
@@ -19,7 +19,7 @@ use crate::studies::reconstruction::score::{Truth, square_errors};
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Array2, Axis};
 
-/// Number of test frames in the picture.
+/// Number of test frames that the picture shows.
 const N_SAMPLES: usize = 3;
 
 /// Frames of all touches, divided into training and test frames.
@@ -30,19 +30,19 @@ pub(super) struct Touches {
     pub test: Array2<f64>,
     pub truth: Truth,
     pub noisy: Vec<Noisy>,
-    /// Dictionaries of the training frames, computed when first needed, in the order of the plan.
+    /// Dictionaries of the training frames in the order of the plan, computed when first needed.
     dictionaries: Vec<Shared<Dictionary>>,
-    /// Rows of the test frames in the picture, with their objects.
+    /// Row numbers of the test frames that the picture shows, with the names of their objects.
     pub shown: Vec<(usize, String)>,
 }
 
-/// Test frames at one noise level.
+/// Test frames with one noise level.
 pub(super) struct Noisy {
     pub level: f64,
-    /// Standard deviation σ of the noise of a taxel, in the frame's unit.
+    /// Noise standard deviation σ of a taxel, in the unit of the frame.
     pub std: f64,
     pub frames: Array2<f64>,
-    /// ‖noise‖² of each frame.
+    /// Squared norm ‖noise‖² of each frame.
     pub errors: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ impl Touches {
         })
     }
 
-    /// Returns a dictionary of the training frames.
+    /// Returns a dictionary of the training frames; computes it at the first call.
     pub(super) fn dictionary(
         &self,
         plan: &ReconstructionPlan,
@@ -96,14 +96,14 @@ impl Touches {
         })
     }
 
-    /// Returns the frames in the picture.
+    /// Returns the frames that the picture shows.
     pub(super) fn pick(&self, frames: &Array2<f64>) -> Array2<f64> {
         let rows: Vec<usize> = self.shown.iter().map(|(row, _)| *row).collect();
         frames.select(Axis(0), &rows)
     }
 }
 
-/// Reads frames of some touches, with or without noise.
+/// Returns the frames of some touches after the signal chain, with or without noise.
 fn read(
     plan: &ReconstructionPlan,
     frames: &Frames,
@@ -126,7 +126,7 @@ fn read(
     Ok(measure(reading, &touches)?.0)
 }
 
-/// Returns the first test touch of a few objects, spread over the list.
+/// Returns the first test touch of a few objects that are spread over the list.
 fn shown(touched: &[TouchedObject], labels: &Array1<usize>, split: &Split) -> Vec<(usize, String)> {
     let n = N_SAMPLES.min(touched.len());
     let objects = (0..n).map(|sample| sample * touched.len() / n);

@@ -1,12 +1,12 @@
-//! Charts of a stability study: a map for each part, and the computing time against the number of taxels.
+//! Charts of a stability study: an outcome map for each part, and the computing time against the number of taxels.
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::table::{Along, At, ChartSpec, Mark, Rule, Table};
 
 impl StabilityPlan {
-    /// Returns the charts: maps for parts with several methods and several time steps or masses, followed by charts of growing arrays. A map has time steps
-    /// along x and taxel masses along y, one column of panels per method and one row per setting.
+    /// Returns the charts: outcome maps for parts with several methods and several time steps or masses, followed by charts of growing arrays. An outcome map
+    /// has time steps along x and taxel masses along y, with one column of panels per method and one row per setting.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (configurations, joints) = (&tables[0], &tables[3]);
         let mut charts: Vec<ChartSpec> = Vec::new();
@@ -27,7 +27,7 @@ impl StabilityPlan {
         charts
     }
 
-    /// Returns the number of right results of each method, in descending order.
+    /// Returns sentences with the number of right results of each method, in descending order.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let summary = &tables[1];
         let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
@@ -51,7 +51,7 @@ impl StabilityPlan {
     }
 }
 
-/// Returns the map of one part.
+/// Returns the outcome map of one part of the study.
 fn map(configurations: &Table, rows: &[usize]) -> ChartSpec {
     let scene = configurations.word("scene", rows[0]);
     let what = match scene {
@@ -90,7 +90,7 @@ fn map(configurations: &Table, rows: &[usize]) -> ChartSpec {
     chart
 }
 
-/// Returns the mark that draws outcomes as tiles.
+/// Returns the chart mark that draws outcomes as tiles.
 fn tiles(sign: &str) -> Mark {
     Mark::Tiles {
         fill: "outcome".to_owned(),
@@ -98,14 +98,14 @@ fn tiles(sign: &str) -> Mark {
     }
 }
 
-/// Returns the columns that have several values in these rows.
+/// Returns the columns that have several values in the given rows.
 fn varying(table: &Table, columns: &[&str], rows: &[usize]) -> Vec<String> {
     let varies = |column: &str| table.groups(&[column], rows.iter().copied()).len() > 1;
     let varying = columns.iter().filter(|column| varies(column));
     varying.map(|column| (*column).to_owned()).collect()
 }
 
-/// Returns the computing time against the number of joints for each time step, followed by a chart of the outcomes.
+/// Returns the chart of computing time against the number of joints for each time step, followed by a chart of the outcomes.
 fn joint_charts(joints: &Table) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..joints.n_rows).collect();
     if all.is_empty() {

@@ -1,4 +1,4 @@
-//! One configuration: simulation of a scene by a method, and evaluation of the result.
+//! Simulation of one configuration: a scene is simulated by a method, and the result is evaluated.
 
 use crate::contact::equilibrium::{
     EquilibriumSolver, FreeObject, Ground, Outcome as EquilibriumOutcome, PlacedSkin,
@@ -20,27 +20,27 @@ use glam::DVec3;
 use std::slice::from_ref;
 use std::time::Instant;
 
-/// Result of a method at the time of evaluation.
+/// Result of a simulation method at the time of evaluation.
 #[derive(Default)]
 struct Answer {
-    /// Kind of failure, if the simulation failed; all other fields are then zero or empty.
+    /// Kind of failure; `None` if the simulation succeeded. After a failure, all other fields are zero or empty.
     broken: Option<Outcome>,
     /// Relative force error, |Σ f − expected| / expected.
     force_imbalance: f64,
     /// Deflections at the time of evaluation, metres, shape (n_taxels,).
     deflection: Vec<f64>,
-    /// Sum of deflections |δ| after the release, metres; 0 if nothing is released.
+    /// Sum of the absolute deflections |δ| after the release, metres; 0 if nothing is released.
     left_over: f64,
     /// Number of steps; 0 if the method does not step through time.
     n_steps: usize,
 }
 
-/// Duration below which times are medians of several runs, seconds; a single short run is dominated by other load of the machine.
+/// Duration below which computing times are medians of several runs, seconds; other load of the machine dominates a single short run.
 const SHORT: f64 = 5e-3;
 /// Number of runs of short simulations.
 const N_REPEATS: usize = 9;
 
-/// Simulates and evaluates a configuration, given its taxels without dampers.
+/// Simulates and evaluates a configuration, given its taxel parameters without damper.
 pub(super) fn measure(
     configuration: &StabilityCell,
     undamped: Taxel,
@@ -84,10 +84,10 @@ pub(super) fn measure(
     Ok(best.expect("at least one try"))
 }
 
-/// Ratio of the contact stiffness to the stiffness that just meets the tolerance. The penetration reduces the deflection of every taxel.
+/// Safety factor of the contact stiffness over the stiffness that just meets the tolerance. The penetration reduces the deflection of every taxel.
 const SAFETY: f64 = 4.0;
 
-/// Returns the two contact stiffnesses to try: the lowest that meets the tolerance, and the highest that is stable with the time step.
+/// Returns the two contact stiffnesses to try: the lowest that meets the tolerance, and the highest that is stable for the time step.
 fn contact_stiffnesses(configuration: &StabilityCell, scene: &CellScene) -> Result<[f64; 2]> {
     let (taxel, truth) = (&scene.taxel, &scene.truth);
     let deepest = truth.deflection.iter().copied().fold(0.0, f64::max);
@@ -162,7 +162,7 @@ fn integrator(
         #[cfg(feature = "rapier")]
         (method, _) if method.is_engine() => {
             use crate::dynamics::{RapierSettings, RapierWorld};
-            // The plan sets the iterations of every engine.
+            // The plan sets the number of iterations for every engine.
             let n = configuration.solver_iterations.unwrap_or(1);
             let settings = match method {
                 ContactMethod::RapierSkinSim => RapierSettings::skin_sim(system, n),
@@ -177,12 +177,12 @@ fn integrator(
             };
             Ok(Box::new(RapierWorld::new(system, settings)?))
         }
-        // The plan omits methods that are not built; the quasi-static method does not step.
+        // The plan omits methods that this build does not contain; the quasi-static method does not step.
         _ => Ok(Box::new(ImplicitEuler::new(system))),
     }
 }
 
-/// Solves the equilibrium of one free ball, or of several stacked in a tube, with the quasi-static method. The balls may rotate and move sideways.
+/// Solves the equilibrium of one free ball, or of several balls stacked in a tube, with the quasi-static method. The balls may rotate and move sideways.
 fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
     let cradle = &scene.cradle;
     let spheres = cradle.ball.spheres().expect("a ball is a sphere");
@@ -216,7 +216,7 @@ fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
     })
 }
 
-/// Presses a plunger with the quasi-static method until the springs carry its weight.
+/// Lowers a plunger with the quasi-static method until the springs carry its weight.
 fn press_to_weight(scene: &CellScene) -> Result<Answer> {
     let (cradle, weight) = (&scene.cradle, scene.force);
     let ball = from_ref(&cradle.ball);

@@ -1,19 +1,21 @@
-//! Stability studies: the limits of each method of contact simulation.
+//! Stability studies: the range of masses and time steps for which each method of contact simulation gives right results.
 //!
 //! A file with a `[stability]` table is a stability study: [`StabilityStudySpec`] (as written) → [`StabilityPlan`] (checked, SI) →
 //! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).
 //!
 //! A ball is lowered onto a square array whose taxels it touches nearly at once (all within a quarter of their stroke), in one of five
 //! [scenes](StabilityScene). In two scenes, two or four balls are stacked in a smooth tube. Without friction, a free stack has no stable upright state. In the
-//! tube, the taxels carry the whole weight and the walls carry nothing. In every scene, the exact result is known at one time without time stepping: the ball
-//! prescribes the deflections, or the springs carry the weight ([`rest`](crate::dynamics::rest)). Each method is evaluated at this time:
+//! tube, the taxels carry the whole weight and the walls carry nothing.
 //!
-//! - **force imbalance**: |Σ f − expected| / expected, at the end of the simulation or, for an imposed motion, of the hold.
-//! - **deflection error**: Σ |δ − δ\*| / Σ δ\* at this time. For an imposed motion, the error also covers the time after the release, when all
-//!   deflections must be zero.
+//! In every scene, the exact result is known at one time without time stepping: either the motion of the ball determines the deflections, or the springs carry
+//! the weight ([`rest`](crate::dynamics::rest)). Each method is evaluated at this time:
+//!
+//! - **force imbalance**: |Σ f − expected| / expected, at the end of the simulation or, for an imposed motion, at the end of the hold.
+//! - **deflection error**: Σ |δ − δ\*| / Σ δ\* at this time. For an imposed motion, the error also includes the time after the release, when all deflections
+//!   must be zero.
 //! - **outcome**: [`right`](Outcome::Right) if both errors are at most [`TOLERANCE`], otherwise [`inaccurate`](Outcome::Inaccurate). A simulation fails if a
-//!   number is not finite, if the energy exceeds that of the scene, or if contact is missed (deflections less than half of the expected ones, or the ball below
-//!   the stops).
+//!   number is not finite, if the energy exceeds the energy of the scene, or if contact is missed (deflections below half of the expected ones, or the ball
+//!   below the stops).
 //!
 //! Dynamic methods run until the slowest motion of a scene has decayed to 5e-5, and for at least [`LEAST_STEPS`] steps and half a second.
 

@@ -5,11 +5,11 @@ use crate::report::csv_tables::read_rows;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{PeerSource, StabilityCell, StabilityRow};
 
-/// Returns the rows of other programs whose configuration differs from the plan only in the method, and their source: `MuJoCo 4.0.0, 2026-11-22`. Returns
-/// nothing if there is no file.
+/// Returns the rows of other programs whose configuration differs from the plan only in the method, and their source, such as `MuJoCo 4.0.0, 2026-11-22`. The
+/// result is empty if there is no file.
 ///
 /// # Errors
-/// If the file is not such a table; the error names the file and the line.
+/// If the file is not a table of such rows; the error names the file and the line.
 pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, String)> {
     let Some(path) = plan.peers.as_ref().filter(|path| path.exists()) else {
         return Ok(Default::default());
@@ -31,7 +31,7 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
     Ok((rows, sources.join("; ")))
 }
 
-/// Returns whether the plan has a configuration that differs only in the method.
+/// Returns whether the plan has a configuration that differs from the given one only in the method.
 fn is_asked(plan: &StabilityPlan, configuration: &StabilityCell) -> bool {
     let is_like = |(other, _): &(StabilityCell, _)| {
         let of_method = StabilityCell {

@@ -1,4 +1,4 @@
-//! Plan of a stability study: checked keys and the list of configurations.
+//! Plan of a stability study: checked keys, and the list of configurations.
 
 use crate::error::Result;
 use crate::inputs::check::{COUNT, Check, Range};
@@ -11,21 +11,21 @@ use crate::studies::stability::spec::{
 use crate::world::Taxel;
 use std::path::{Path, PathBuf};
 
-/// Checked settings of a stability study.
+/// Checked keys of a stability study, with its configurations.
 #[derive(Clone, Debug)]
 pub struct StabilityPlan {
-    /// Specification as written in the file.
+    /// Specification as written in the study file.
     pub spec: StabilityStudySpec,
-    /// Configurations, ordered by part, each with its taxel without damper. Methods that this build does not contain are omitted.
+    /// Configurations, ordered by part, each with its taxel parameters without damper. Methods that this build does not contain are omitted.
     pub configurations: Vec<(StabilityCell, Taxel)>,
-    /// Path of the rows of other programs.
+    /// Path of the table of other programs.
     pub peers: Option<PathBuf>,
 }
 
-/// Largest number of taxels along a side. Larger arrays take long and show nothing new about stability.
+/// Maximum number of taxels along a side. Larger arrays take long and give no new information about stability.
 const MAX_TAXELS: usize = 256;
 
-/// Ranges of the numeric keys of a part.
+/// Allowed values of the numeric keys of a part.
 const KEYS: [(&str, Range); 9] = [
     ("methods", Range::Any),
     ("taxels", COUNT),
@@ -39,7 +39,7 @@ const KEYS: [(&str, Range); 9] = [
 ];
 
 impl StabilityPlan {
-    /// Checks a study whose file is in `folder`.
+    /// Creates the plan of a study whose file is in `folder`, and checks all keys.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the key.

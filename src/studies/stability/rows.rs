@@ -1,11 +1,11 @@
-//! Rows of the result tables of a stability study: one plain struct for each kind of row, one field for each column.
+//! Rows of the result tables of a stability study: one plain struct for each kind of row, with one field per column.
 
 use crate::engine::work_items::any_number;
 use crate::row;
 use crate::studies::stability::spec::{ContactMethod, StabilityScene};
 use serde::{Deserialize, Serialize};
 
-/// Names of methods in charts and tables.
+/// Display names of the simulation methods.
 const METHODS: &[(&str, &str)] = &[
     ("quasi_static", "quasi-static (ours)"),
     ("semi_implicit", "semi-implicit Euler, penalty"),
@@ -23,9 +23,9 @@ pub struct StabilityCell {
     part: usize => Subject "part of the study": Linear;
     /// Simulated scene.
     scene: StabilityScene => Condition;
-    /// Simulation method.
+    /// Method that simulates the contact.
     method: ContactMethod => Choice named METHODS;
-    /// Iterations of an engine's solver per step.
+    /// Number of iterations of an engine's solver per step; empty for methods without such a solver.
     solver_iterations: Option<usize> => Choice: Linear;
     /// Number of taxels along a side of the square array.
     taxels: usize => Condition "taxels a side": Linear;
@@ -33,7 +33,7 @@ pub struct StabilityCell {
     stiffness_n_per_m: f64 => Condition "taxel stiffness" in "N/m": Log;
     /// Mass m of a taxel, kg.
     taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
-    /// Mass M of a free ball, kg.
+    /// Mass M of a free ball, kg; empty if the ball's motion is imposed.
     object_mass_kg: Option<f64> => Condition "mass of the ball" in "kg": Log;
     /// Time step Δt, s.
     dt_s: f64 => Choice "time step" in "s": Log;
@@ -45,7 +45,7 @@ impl StabilityCell {
         self.taxels * self.taxels
     }
 
-    /// Returns the mass ratio M / m for a free ball; `None` if the ball's motion is imposed.
+    /// Returns the mass ratio M / m of a free ball and a taxel; `None` if the ball's motion is imposed.
     pub fn mass_ratio(&self) -> Option<f64> {
         self.object_mass_kg.map(|mass| mass / self.taxel_mass_kg)
     }
@@ -54,25 +54,25 @@ impl StabilityCell {
 row! {
 /// Result of a simulation. A row of `stability.csv` is a [`StabilityCell`] followed by a `StabilityScore`.
 pub struct StabilityScore {
-    /// Mass ratio M / m of a free ball and a taxel.
+    /// Mass ratio M / m of a free ball and a taxel; empty if the ball's motion is imposed.
     mass_ratio: Option<f64> => Note "mass ratio, ball to taxel": Log;
-    /// Stability limit 2 √(m / k), s: with larger time steps an explicit spring without a damper diverges.
+    /// Stability limit 2 √(m / k) of an explicit spring without a damper, s; larger time steps diverge.
     explicit_limit_s: f64 => Note "limit of an explicit spring" in "s": Log;
-    /// Damping c of a taxel, N·s/m.
+    /// Damping coefficient c of a taxel, N·s/m.
     damping_n_s_per_m: f64 => Note "taxel damping" in "N s/m": Log;
-    /// Contact stiffness κ, N/m, if contact is modelled by a penalty force.
+    /// Contact stiffness κ, N/m; empty unless contact is modelled by a penalty force.
     contact_stiffness_n_per_m: Option<f64> => Note "contact stiffness" in "N/m": Log;
-    /// Whether the result is right, and if not, the kind of failure.
+    /// Outcome: whether the result is right, or else the kind of failure.
     outcome: Outcome => Outcome;
-    /// Relative force error, |Σ f − expected| / expected; `None` if the simulation failed earlier.
+    /// Relative force error, |Σ f − expected| / expected; empty if the simulation failed.
     #[serde(with = "any_number")]
     force_imbalance: Option<f64> => Value(Less): Log;
-    /// Relative deflection error, Σ |δ − δ*| / Σ δ*; `None` if the simulation failed earlier.
+    /// Relative deflection error, Σ |δ − δ*| / Σ δ*; empty if the simulation failed.
     #[serde(with = "any_number")]
     deflection_error: Option<f64> => Value(Less): Log;
-    /// Number of completed steps.
+    /// Number of completed time steps.
     n_steps: usize => Note "steps": Log;
-    /// Simulated time, s; `None` if the method does not step through time.
+    /// Simulated time, s; empty if the method does not step through time.
     simulated_s: Option<f64> => Note "simulated time" in "s": Log;
 } }
 
@@ -81,73 +81,73 @@ row! {
 pub struct StabilityTime {
     /// Wall-clock time of the whole simulation, s, on one thread while other threads run other simulations.
     wall_s: f64 => Cost "time" in "s": Log;
-    /// Wall-clock seconds per simulated second; `None` if the method does not step through time.
+    /// Wall-clock seconds per simulated second; empty if the method does not step through time.
     per_simulated_s: Option<f64> => Cost "computing a simulated second" in "s": Log;
 } }
 
 row! {
-/// Results of a method in a scene over all configurations: a row of `stability_summary.csv`.
+/// Summary of a method in a scene over all configurations: a row of `stability_summary.csv`.
 pub struct StabilitySummary {
     /// Simulated scene.
     scene: StabilityScene => Condition;
-    /// Simulation method.
+    /// Method that simulates the contact.
     method: ContactMethod => Choice named METHODS;
-    /// Iterations of an engine's solver per step.
+    /// Number of iterations of an engine's solver per step; empty for methods without such a solver.
     solver_iterations: Option<usize> => Choice: Linear;
     /// Number of configurations.
     n_configurations: usize => Note "configurations": Linear;
-    /// Number of configurations with the right result.
+    /// Number of configurations with a right result.
     n_correct: usize => Value(More) "right": Linear;
-    /// Number of configurations that ended with a wrong result.
+    /// Number of configurations that ended with an inaccurate result.
     n_inaccurate: usize => Value(Less) "inaccurate": Linear;
-    /// Number of configurations that missed a contact.
+    /// Number of configurations in which contact was missed.
     n_missed_contact: usize => Value(Less) "missed contact": Linear;
-    /// Number of configurations whose energy grew.
+    /// Number of configurations whose energy grew beyond its limit.
     n_energy_growth: usize => Value(Less) "energy growth": Linear;
-    /// Number of configurations that ended with a number that is not finite.
+    /// Number of configurations that ended with an infinite or NaN number.
     n_not_finite: usize => Value(Less) "not finite": Linear;
-    /// Largest force imbalance of the configurations that did not fail; `None` if all failed.
+    /// Largest force imbalance of the configurations that did not fail; empty if all failed.
     worst_force_imbalance: Option<f64> => Value(Less): Log;
-    /// Largest deflection error of the configurations that did not fail; `None` if all failed.
+    /// Largest deflection error of the configurations that did not fail; empty if all failed.
     worst_deflection_error: Option<f64> => Value(Less): Log;
 } }
 
 row! {
-/// Cost of simulating a plunger whose mass per taxel is the same on all arrays: a row of `joints.csv`.
+/// Cost of simulating a plunger whose mass per taxel is equal on all arrays: a row of `joints.csv`.
 pub struct Joints {
-    /// Simulation method.
+    /// Method that simulates the contact.
     method: ContactMethod => Choice named METHODS;
-    /// Iterations of an engine's solver per step.
+    /// Number of iterations of an engine's solver per step; empty for methods without such a solver.
     solver_iterations: Option<usize> => Choice: Linear;
     /// Mass m of a taxel, kg.
     taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
     /// Time step Δt, s.
     dt_s: f64 => Choice "time step" in "s": Log;
-    /// Number of taxels; each is a body on a joint.
+    /// Number of taxels of the array; each taxel is a body on a joint.
     joints: usize => Condition: Log;
     /// Mass M of the plunger divided by the number of taxels, kg.
     load_kg: f64 => Note "load of a taxel" in "kg": Log;
-    /// Whether the result is right, and if not, the kind of failure.
+    /// Outcome: whether the result is right, or else the kind of failure.
     outcome: Outcome => Outcome;
-    /// Wall-clock seconds per simulated second; in total if the method does not step through time.
+    /// Wall-clock seconds per simulated second; total wall-clock time, s, if the method does not step through time.
     time_s: f64 => Cost "computing a simulated second" in "s": Log;
 } }
 
-/// Configuration, result and computing time of a work item.
+/// Configuration of a work item, with its result and computing time.
 pub type StabilityRow = (StabilityCell, StabilityScore, StabilityTime);
 
-/// Source of a row that another program measured; such a row ends with these columns.
+/// Source of a row that another program computed; the row ends with these columns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PeerSource {
-    /// Name of the program.
+    /// Name of the other program.
     pub program: String,
-    /// Version of the program.
+    /// Version of the other program.
     pub version: String,
-    /// Date of the measurement, year-month-day.
+    /// Date of the computation, year-month-day.
     pub date: String,
 }
 
-/// Outcome of a simulation.
+/// Outcome of a simulation: right, or the kind of failure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -155,13 +155,13 @@ pub enum Outcome {
     Right,
     /// The simulation ended, but an error exceeds [`TOLERANCE`].
     Inaccurate,
-    /// Contact was missed: at a time of evaluation the deflections sum to less than half or more than twice their expected sum, or nothing supports the ball.
+    /// Contact was missed: the sum of deflections is below half or above twice the expected sum, or nothing supports the ball.
     MissedContact,
     /// The energy exceeds four times the energy that enters the scene.
     EnergyGrowth,
-    /// A number is infinite or NaN.
+    /// A number became infinite or NaN.
     NotFinite,
 }
 
-/// Largest relative error of a result that counts as right.
+/// Maximum relative error of a result that counts as right.
 pub const TOLERANCE: f64 = 0.01;

@@ -12,37 +12,37 @@ use glam::DVec3;
 
 /// Gravity g, m/s².
 pub(super) const GRAVITY: f64 = 9.81;
-/// Speed of a ball whose motion is imposed, m/s.
+/// Speed of a ball with imposed motion, m/s.
 const SPEED: f64 = 0.5;
 /// Distance from the start of an imposed motion to first contact, metres.
 const APPROACH: f64 = 2e-3;
-/// Shortest duration of a hold, seconds.
+/// Minimum duration of a hold, seconds.
 const LEAST_HOLD: f64 = 0.2;
-/// A hold and a run last until the slowest motion has decayed by e^−10 = 5e-5.
+/// Decay exponent: a hold and a run last until the slowest motion has decayed by e^−10 = 5e-5.
 const DECAY: f64 = 10.0;
-/// Smallest number of steps in a hold.
+/// Minimum number of steps in a hold.
 const LEAST_HOLD_STEPS: f64 = 5.0;
-/// Travel within which taxels count as reachable, in strokes. All taxels are reached within 1.25 strokes. With a much larger travel, the ball would be behind
+/// Travel of the ball within which taxels count as reachable, in strokes. All taxels are reached within 1.25 strokes. If much larger, the ball could be behind
 /// the substrate.
 const REACH: f64 = 1.5;
-/// Shortest simulated time of a free ball, seconds.
+/// Minimum simulated time of a free ball, seconds.
 const LEAST_TIME: f64 = 0.5;
 
-/// Array of taxels under a ball that touches all of them nearly at once; see the documentation of the module.
+/// Array of taxels under a ball that touches all of them nearly at once; see the module documentation.
 #[derive(Clone, Debug)]
 pub(super) struct TestBed {
     pub patch: Patch,
     pub ball: Model,
-    /// `patch_from_object` at first contact.
+    /// Pose of the ball at first contact, `patch_from_object`.
     pub pose: Pose,
 }
 
-/// Scene of a configuration, independent of the simulation method.
+/// Scene of a configuration; it does not depend on the simulation method.
 #[derive(Clone, Debug)]
 pub(super) struct CellScene {
     pub cradle: TestBed,
     pub taxel: Taxel,
-    /// Motion or gravity of the ball.
+    /// Motion of the ball: imposed, or free under gravity.
     pub drive: Drive,
     /// Exact result at the time of evaluation.
     pub truth: Rest,
@@ -50,7 +50,7 @@ pub(super) struct CellScene {
     pub force: f64,
     /// Time of evaluation, seconds: the end of the hold, or of the simulation.
     judged: f64,
-    /// End of the simulation, seconds.
+    /// Time at which the simulation ends, seconds.
     end: f64,
     /// Energy above which the simulation counts as unstable, joules.
     pub energy_limit: f64,
@@ -87,12 +87,12 @@ impl TestBed {
         })
     }
 
-    /// Returns the initial pose of a ball whose motion is imposed.
+    /// Returns the initial pose of a ball with imposed motion.
     fn above(&self) -> Pose {
         Pose::from_translation(self.pose.translation + APPROACH * DVec3::Z)
     }
 
-    /// Returns the poses of a stack of balls at first contact, from bottom to top: `patch_from_object`.
+    /// Returns the poses of a stack of balls at first contact, from bottom to top, `patch_from_object`.
     pub fn stack(&self, n_balls: usize) -> impl Iterator<Item = Pose> {
         let radius = self
             .ball
@@ -117,7 +117,7 @@ impl TestBed {
         inwards.map(wall).into()
     }
 
-    /// Returns the system for dynamic methods. It contains the taxels within `reach` metres of the ball's start and the balls stacked on the first one.
+    /// Returns the dynamic system: the taxels within `reach` metres of the ball's start, and the balls stacked on the first one.
     fn system(
         &self,
         configuration: &StabilityCell,
@@ -138,7 +138,7 @@ impl TestBed {
 }
 
 impl CellScene {
-    /// Creates the scene of a configuration from the taxel without its damper.
+    /// Creates the scene of a configuration, given its taxel parameters without damper.
     pub fn new(configuration: &StabilityCell, undamped: Taxel) -> Result<Self> {
         let cradle = TestBed::new(configuration.taxels, undamped)?;
         let mut scene = match configuration.object_mass_kg {
@@ -150,13 +150,13 @@ impl CellScene {
         Ok(scene)
     }
 
-    /// Returns the system for dynamic methods.
+    /// Returns the dynamic system for methods that step through time.
     pub fn system(&self, configuration: &StabilityCell) -> Result<System<'_>> {
         let reach = APPROACH + REACH * self.taxel.stroke;
         self.cradle.system(configuration, &self.drive, reach)
     }
 
-    /// Returns the steps of `dt` seconds after which the state is evaluated, from 1: the time of evaluation, and the end if it differs.
+    /// Returns the numbers of steps of `dt` seconds after which the state is evaluated, from 1: at the time of evaluation, and at the end if it differs.
     pub fn frames(&self, dt: f64) -> Vec<usize> {
         let end = (self.end / dt).ceil() as usize;
         match self.judged < self.end {
@@ -255,7 +255,7 @@ fn slowest(k: f64, c: f64, m: f64) -> f64 {
     }
 }
 
-/// Smallest number of steps of a free ball.
+/// Minimum number of time steps of a free ball.
 pub const LEAST_STEPS: f64 = 50.0;
 
 #[cfg(test)]

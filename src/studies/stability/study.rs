@@ -1,4 +1,4 @@
-//! Runs a stability study and makes its tables.
+//! Stability study: simulates all configurations and makes the result tables.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
@@ -78,7 +78,7 @@ impl Study for StabilityPlan {
         }
     }
 
-    /// Items are named by their settings, because the list of configurations depends on the features of the build.
+    /// Work items are named by their settings, because the list of configurations depends on the features of the build.
     fn work_items(&self) -> Vec<WorkItem> {
         let items = self.configurations.iter().enumerate();
         let items = items.map(|(group, (configuration, taxel))| {
@@ -94,7 +94,7 @@ impl Study for StabilityPlan {
     fn measure(&self, left: &PendingItems<Self::Rows>) -> Result<()> {
         left.progress.stage("stability", left.n() as u64);
         let configurations = self.configurations.par_iter().enumerate();
-        // Items are distributed one by one, because their times range from microseconds to a minute.
+        // Work items are distributed one by one, because their times range from microseconds to a minute.
         let configurations = configurations.with_max_len(1);
         configurations.try_for_each(|(number, (configuration, undamped))| {
             left.finish(number, || {
@@ -126,7 +126,7 @@ impl Study for StabilityPlan {
     }
 }
 
-/// Returns one row per scene, method and number of iterations, in the order of first occurrence.
+/// Returns one summary row per scene, method and number of iterations, in the order of first occurrence.
 fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     let settings = grouped(rows, |(configuration, ..)| {
         (
@@ -159,10 +159,11 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     settings.into_iter().map(summarise).collect()
 }
 
-/// Smallest number of array sizes in a series of growing arrays.
+/// Minimum number of array sizes in a series of growing arrays.
 const LEAST_RUNGS: usize = 3;
 
-/// Returns the plunger configurations with the load per taxel that occurs on the most array sizes; empty if fewer than three sizes share a load.
+/// Returns the rows of the plunger configurations with the load per taxel that occurs on the most array sizes; empty if fewer than three sizes have the same
+/// load.
 fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
     let plungers = rows.iter();
     let plungers =

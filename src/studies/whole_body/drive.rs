@@ -1,4 +1,4 @@
-//! Motion of an object over a body, and the search for its first contact.
+//! Motion of an object over a robot's skin, and the search for its first contact.
 
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -8,24 +8,24 @@ use crate::studies::whole_body::plan::Aim;
 use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
 use glam::DVec3;
 
-/// Time after which a damped taxel is at rest, seconds.
+/// Time step after which a damped taxel has fully relaxed, s.
 pub(super) const FORGOTTEN: f64 = 1e9;
-/// Step of the search for the first contact, metres, and its accuracy.
+/// Step of the search for the first contact, metres; bisection then refines the contact to `SEARCH_END`.
 const SEARCH_STEP: f64 = 1e-3;
 const SEARCH_END: f64 = 1e-7;
-/// Distance from first contact at which the search begins, metres.
+/// Distance from the target, in addition to the object's size, at which the search for the first contact starts, metres.
 const SEARCH_START: f64 = 0.05;
 
-/// A body with the poses of its patches and links.
+/// Robot covered with skin, with the poses of its patches and links.
 pub(super) struct Posture<'a> {
     pub body: &'a WholeBody,
-    /// Pose of each patch, `world_from_patch`.
+    /// Pose of each patch in the world, `world_from_patch`.
     pub patches: Vec<Pose>,
-    /// Pose of each link, `world_from_link`.
+    /// Pose of each link in the world, `world_from_link`.
     pub links: Vec<Pose>,
 }
 
-/// An object that moves along a path.
+/// Object that moves along a path over the skin.
 pub(super) struct Drive<'a> {
     pub body: &'a WholeBody,
     pub state: BodyState,
@@ -48,7 +48,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Presses at the start of a path, without history.
+    /// Presses the object against the skin at the start of a path, without history.
     pub fn probe(&mut self, path: Path) -> BodyContact {
         let pose = [path.at(0.0)];
         self.state.press(self.body, &self.object, &pose, FORGOTTEN)

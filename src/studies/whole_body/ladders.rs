@@ -1,4 +1,5 @@
-//! Scaling series: computing time of a step by the size of skin, touch and object. Bodies consist of equal sleeves, far apart, under a cushion of spheres.
+//! Scaling series: computing time per step by the size of skin, touch and object. The skin consists of equal cylinders ("sleeves") far apart; a cushion of
+//! spheres touches the first one.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -13,11 +14,11 @@ use crate::world::{Extrusion, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Numbers of patches around and along a sleeve. Growing skins use ten patches, so that 100,000 taxels are one sleeve with patches of 10,000. The other series
-/// need a larger area, as large as a trunk.
+/// Numbers of patches around and along a cylindrical sleeve of skin. Growing skins use ten patches, so that 100,000 taxels are one sleeve with patches of
+/// 10,000. The other series need a larger area, as large as a trunk.
 const SMALL: (usize, usize) = (5, 2);
 const LARGE: (usize, usize) = (9, 4);
-/// Largest fraction of a sleeve's taxels that a touch may cover, to leave space for the cushion.
+/// Maximum fraction of a sleeve's taxels that a touch may cover, so that the cushion has space.
 const MAX_TOUCHED: f64 = 0.4;
 /// Amplitudes of the cushion's motion: rotation about the sleeve's axis, radians, and translation as a fraction of its side. The period is half a second.
 const SWING: f64 = 0.05;
@@ -26,7 +27,7 @@ const PERIOD: f64 = 0.5;
 /// Number of bisections in the search for the depth at which the required number of taxels is touched.
 const N_HALVINGS: usize = 40;
 
-/// One size of a scaling series: numbers of taxels, touched taxels and spheres.
+/// Size in a scaling series: numbers of taxels, touched taxels and spheres.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ScalingPoint {
     pub series: Series,
@@ -37,7 +38,7 @@ pub(super) struct ScalingPoint {
     n_spheres: usize,
 }
 
-/// Returns all sizes of all series.
+/// Returns all sizes of all scaling series.
 pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
     let small = SMALL.0 * SMALL.1 * 10_000;
     let mut rungs = Vec::new();
@@ -77,12 +78,12 @@ pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
     rungs
 }
 
-/// Simulates and times one size.
+/// Simulates and times one size of a scaling series.
 pub(super) fn climb(plan: &WholeBodyPlan, rung: &ScalingPoint) -> Result<Driven> {
     let sleeve = Sleeve::of_body(rung.n_taxels, rung.sleeve, plan.pitch);
     let (body, patches) = sleeve.body(rung.n_taxels, plan.taxel, plan.pitch)?;
     let side = plan.pitch * (rung.n_touched as f64).sqrt();
-    // The inner surface of the cushion lies at the spheres of the taxels.
+    // The inner surface of the cushion lies at the radius of the taxel spheres.
     let object = cushion(rung.n_spheres, side, sleeve.radius() + plan.taxel.radius)?;
     let posture = Posture {
         body: &body,
@@ -114,7 +115,7 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &ScalingPoint) -> Result<Driven>
     drive.run(plan, (rung.series, &rung.name), &[])
 }
 
-/// A sleeve: the numbers of patches around and along it, and their side length, metres.
+/// Cylindrical sleeve of skin: numbers of patches around and along it, and their side length, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sleeve {
     n_around: usize,
@@ -122,11 +123,11 @@ struct Sleeve {
     side: f64,
 }
 
-/// Distance between sleeves, metres.
+/// Distance between neighbouring sleeves, metres.
 const APART: f64 = 1.0;
 
 impl Sleeve {
-    /// Returns a sleeve of patches with 100 × 100 taxels, or with smaller patches if the body has fewer taxels than one such sleeve.
+    /// Returns a sleeve of patches with 100 × 100 taxels each, or with smaller patches if the skin has fewer taxels than such a sleeve.
     fn of_body(n_taxels: usize, (n_around, n_along): (usize, usize), pitch: f64) -> Self {
         let a_patch = (n_taxels as f64 / (n_around * n_along) as f64).min(1e4);
         Self {
@@ -136,12 +137,12 @@ impl Sleeve {
         }
     }
 
-    /// Returns the radius of the rest centres, metres.
+    /// Returns the radius of the rest centres of the taxels, metres.
     fn radius(&self) -> f64 {
         self.n_around as f64 * self.side / TAU
     }
 
-    /// Returns a body of about `n_taxels`: sleeves about z in rows of twenty, the first at the origin. The last sleeve may have fewer patches.
+    /// Returns a skin of about `n_taxels` taxels: sleeves about z in rows of twenty, the first at the origin. The last sleeve may have fewer patches.
     fn body(&self, n_taxels: usize, taxel: Taxel, pitch: f64) -> Result<(WholeBody, Vec<Pose>)> {
         let (radius, length) = (self.radius(), self.side - pitch);
         let part = Extrusion::cylinder(radius, length, length / radius, pitch)?;

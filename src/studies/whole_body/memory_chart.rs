@@ -1,8 +1,8 @@
-//! Chart of accuracy against memory.
+//! Chart of accuracy against the memory of the measurement matrix.
 
 use crate::table::{ChartSpec, Mark, Table};
 
-/// Returns the chart of accuracy against the memory of a compression per taxel, with the Pareto front; `None` without results.
+/// Returns the chart of accuracy against the memory of the measurement matrix per taxel, with the Pareto front; `None` without results.
 pub(super) fn memory_chart(recognition: &Table) -> Option<ChartSpec> {
     (recognition.n_rows > 0).then(|| ChartSpec {
         lines: vec!["compression".to_owned()],

@@ -1,4 +1,4 @@
-//! Objects that touch a body: built-in objects, solids of a few parts, and cushions of spheres.
+//! Objects that touch the skin: built-in objects, solids of a few parts, and cushions of spheres.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -7,7 +7,7 @@ use crate::objects::{Catalogue, Part, Shape, Solid, Sphere, SphereUnion, pack};
 use crate::studies::whole_body::spec::{BodyPartSpec, BodySceneSpec};
 use glam::DVec3;
 
-/// Returns the spheres of a scene's object, metres.
+/// Returns the spheres of a scene's object, in metres.
 pub(super) fn of_scene(scene: &BodySceneSpec, surface_error: f64) -> Result<SphereUnion> {
     match &scene.object {
         Some(name) => built_in(name, surface_error),
@@ -18,7 +18,7 @@ pub(super) fn of_scene(scene: &BodySceneSpec, surface_error: f64) -> Result<Sphe
     }
 }
 
-/// Returns the spheres of a built-in object with the centre of its bounding box at the origin, metres.
+/// Returns the spheres of a built-in object, in metres, with the centre of its bounding box at the origin.
 pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
     let solid = Catalogue::builtin()?.object(name)?.solid.clone();
     let middle = solid.bounds().center();
@@ -55,13 +55,13 @@ fn part(part: &BodyPartSpec) -> Result<Part> {
     Part::new(shape, Pose::from_translation(MM * DVec3::from_array(at_mm)))
 }
 
-/// Radius of the spheres of a cushion, divided by their distance. With a larger radius, each taxel is under more spheres.
+/// Ratio of the radius of a cushion's spheres to their distance. If larger, each taxel is under more spheres.
 const SPHERE_RADIUS: f64 = 3.0;
-/// Golden ratio: increment of a lattice that is evenly distributed in a square for any number of points.
+/// Golden ratio: increment of a lattice that is distributed evenly in a square for any number of points.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Returns a square cushion of n spheres with side length `side`, metres, bent around a cylinder about z, with its centre at +x. Half of the spheres touch the
-/// cylinder from outside. The others are on the far side, half a side length away.
+/// cylinder from outside. The others are on the far side of the cushion, half a side length away.
 pub(super) fn cushion(n: usize, side: f64, cylinder: f64) -> Result<SphereUnion> {
     let n_inside = n.div_ceil(2);
     let radius = SPHERE_RADIUS * side / (n_inside as f64).sqrt();

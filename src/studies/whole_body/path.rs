@@ -4,23 +4,23 @@ use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Path of an object. At time t, with s = sin(2π t / period), the object is rotated about the link's z axis by s · swing and translated by s · moves.
+/// Path of an object. At time t, the object is rotated about the link's z axis by s · swing and translated by s · moves, with s = sin(2π t / period).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Path {
-    /// Pose of the link, `world_from_link`.
+    /// Pose of the link in the world, `world_from_link`.
     pub world_from_link: Pose,
-    /// Initial pose of the object, `link_from_object`.
+    /// Initial pose of the object in the link's frame, `link_from_object`.
     pub start: Pose,
-    /// Amplitude of the translation in the frame of the link, metres.
+    /// Amplitude of the translation in the link's frame, metres.
     pub moves: DVec3,
     /// Amplitude of the rotation, radians.
     pub swing: f64,
-    /// Period, seconds.
+    /// Period of the motion, seconds.
     pub period: f64,
 }
 
 impl Path {
-    /// Returns the path of an object at rest.
+    /// Creates the path of an object that does not move.
     pub fn resting(start: Pose) -> Self {
         Self {
             world_from_link: Pose::IDENTITY,
@@ -31,7 +31,7 @@ impl Path {
         }
     }
 
-    /// Returns the pose `world_from_object` at a time, seconds.
+    /// Returns the pose of the object in the world, `world_from_object`, at a time (seconds).
     pub fn at(&self, time: f64) -> Pose {
         let share = (TAU * time / self.period).sin();
         let moved = Pose::new(
@@ -41,7 +41,7 @@ impl Path {
         self.world_from_link.compose(&moved.compose(&self.start))
     }
 
-    /// Returns the path with its start shifted in the link's frame, metres.
+    /// Returns a copy of the path with its start shifted in the link's frame (metres).
     pub fn shifted(&self, by: DVec3) -> Self {
         Self {
             start: Pose::new(self.start.rotation, self.start.translation + by),

@@ -1,4 +1,4 @@
-//! Picture of the scene that touches most patches: the robot with the object, and without it with the pressure on its patches.
+//! Picture of the scene with the most touched patches: the robot with the object, and the robot alone with the pressure on its patches.
 
 use crate::error::Result;
 use crate::objects::Sphere;
@@ -14,9 +14,9 @@ use crate::table::{Table, short_number};
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Contents of a picture of a scene, in the world frame.
+/// Contents of the picture of a scene, in the world frame.
 struct SceneView {
-    /// Points on the skin, metres, some millimetres apart, each with the pressure on its patch (force divided by area), Pa.
+    /// Points on the skin, metres, some millimetres apart, each with the mean pressure on its patch (force divided by area), Pa.
     skin: Vec<(DVec3, f64)>,
     /// Positions of touched taxels, metres.
     touched: Vec<DVec3>,
@@ -24,21 +24,21 @@ struct SceneView {
     object: Vec<Sphere>,
 }
 
-/// Distance between points of the skin in a picture, metres.
+/// Distance between neighbouring points of the skin in the picture, metres.
 const PICTURE_PITCH: f64 = 4e-3;
-/// Size of a panel, pixels.
+/// Width and height of a panel, pixels.
 const PANEL: [usize; 2] = [600, 900];
-/// Colours of untouched skin and of touched taxels.
+/// Colours (RGB) of untouched skin and of touched taxels.
 const BARE: [u8; 3] = [226, 214, 200];
 const TOUCHED: [u8; 3] = [0xd5, 0x5e, 0x00];
-/// Radius of a point of the skin, metres; neighbours overlap. Touched taxels are slightly raised.
+/// Radius of a drawn point of the skin, metres; neighbouring points overlap. Touched taxels are drawn slightly above the skin.
 const SKIN_RADIUS: f64 = 3.4e-3;
 const TOUCHED_RADIUS: f64 = 3.8e-3;
-/// Viewing direction, radians: to the right of the robot's front, and upwards.
+/// Viewing direction, radians: azimuth to the right of the robot's front, and elevation.
 const AZIMUTH: f64 = 0.7;
 const ELEVATION: f64 = 0.3;
 
-/// Returns the picture of the scene with most touched patches, if any scene has a touched taxel; in a tie the last.
+/// Returns the picture of the scene with the most touched patches (the last in a tie); `None` if no scene has a touched taxel.
 ///
 /// # Errors
 /// If the scene cannot be simulated.
@@ -101,8 +101,8 @@ fn view(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SceneView> {
     })
 }
 
-/// Draws two panels: the robot with the object, and the robot alone. Patches are the bluer the higher their mean pressure; touched taxels are orange. Equal
-/// inputs give equal bytes.
+/// Draws two panels: the robot with the object, and the robot alone. A higher mean pressure on a patch is drawn in a deeper blue; touched taxels are orange.
+/// Equal inputs give equal bytes.
 fn draw(name: &str, scene: &SceneView) -> Result<Picture> {
     let turn = DQuat::from_rotation_z(-FRAC_PI_2);
     let sphere = |center: DVec3, radius| Sphere {

@@ -1,4 +1,4 @@
-//! Plan of a whole-body study: checked keys in SI units.
+//! Plan of a whole-body study: checked keys, converted to SI units.
 
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
@@ -13,37 +13,37 @@ use crate::world::{Robot, Taxel};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-/// Checked settings of a whole-body study.
+/// Checked keys of a whole-body study, converted to SI units.
 #[derive(Clone, Debug)]
 pub struct WholeBodyPlan {
-    /// Specification as written in the file.
+    /// Specification as written in the study file.
     pub spec: WholeBodyStudySpec,
-    /// Covered robot.
+    /// Robot that is covered with skin.
     pub robot: Robot,
-    /// Path of the robot's file.
+    /// Path of the robot's URDF file.
     pub robot_file: PathBuf,
     /// Parameters of each taxel.
     pub taxel: Taxel,
-    /// Distance between taxels, metres.
+    /// Distance between neighbouring taxels, metres.
     pub pitch: f64,
     /// Approximate side length of a patch, metres.
     pub side: f64,
-    /// Duration of a step, seconds.
+    /// Duration of a simulated step, seconds.
     pub dt: f64,
-    /// Largest distance between an object's spheres and its surface, metres.
+    /// Maximum distance between an object's spheres and its surface, metres.
     pub surface_error: f64,
-    /// Scenes, in the order of the file.
+    /// Scenes in the order of the study file.
     pub scenes: Vec<ScenePlan>,
-    /// Compressions by name (`sbhe_32`, `sparse`), each with the taxels of a Hadamard block; `None` for very sparse rows.
+    /// Compressions by name (`sbhe_32`, `sparse`), each with the number of taxels in a Hadamard block; `None` for very sparse rows.
     pub compressions: Vec<(String, Option<usize>)>,
-    /// Target of the objects to be recognised.
+    /// Target of the objects that are to be recognised.
     pub aim: Aim,
 }
 
-/// A scene: an object and its path.
+/// Scene of a study: an object and its path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePlan {
-    /// Specification as written in the file.
+    /// Specification as written in the study file.
     pub spec: BodySceneSpec,
     /// Target and path of the object.
     pub aim: Aim,
@@ -54,20 +54,20 @@ pub struct ScenePlan {
 /// Target of an object in the frame of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
-    /// Index of the link.
+    /// Index of the robot link.
     pub link: usize,
-    /// Direction from the target to the start of the approach, unit vector.
+    /// Direction from the target to the start of the approach, a unit vector.
     pub from: DVec3,
-    /// Path of the object, with the link at the origin until the posture is known.
+    /// Path of the object, with the link at the origin until the robot's posture is known.
     pub path: ObjectPath,
 }
 
-/// Largest number of steps of a scene; the time of each step is held in memory.
+/// Maximum number of steps of a scene; the times of all steps are in memory.
 const MAX_STEPS: usize = 10_000_000;
-/// Largest number of spheres of a cushion.
+/// Maximum number of spheres of a cushion.
 const MAX_SPHERES: usize = 10_000_000;
 
-/// Ranges of the numeric keys of `[whole_body]`.
+/// Allowed values of the numeric keys of `[whole_body]`.
 const KEYS: [(&str, Range); 23] = [
     ("pitch_mm", Range::Positive),
     ("taxel_radius_mm", Range::Positive),
@@ -94,7 +94,7 @@ const KEYS: [(&str, Range); 23] = [
     ("ladders.taxels_at_touch", COUNT),
 ];
 
-/// Ranges of the numeric keys of a scene.
+/// Allowed values of the numeric keys of a scene.
 const SCENE_KEYS: [(&str, Range); 3] = [
     ("depth_mm", Range::Positive),
     ("period_ms", Range::Positive),
@@ -102,7 +102,7 @@ const SCENE_KEYS: [(&str, Range); 3] = [
 ];
 
 impl WholeBodyPlan {
-    /// Checks a study; the path of the robot is relative to `folder`.
+    /// Creates the plan of a study and checks all keys; the path of the robot is relative to `folder`.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -146,7 +146,7 @@ impl WholeBodyPlan {
         &self.spec.whole_body.recognition
     }
 
-    /// Returns the number of measured steps of each scene and each size of a scaling series.
+    /// Returns the number of measured steps for each scene and each size of a scaling series.
     pub fn n_steps(&self) -> usize {
         self.spec.whole_body.steps
     }
@@ -188,7 +188,7 @@ impl Check<'_> {
         Ok(positions)
     }
 
-    /// Returns the target given by the name of a link, a position in millimetres and a direction.
+    /// Returns the target that is given by the name of a link, a position in millimetres and a direction.
     fn aim(
         &self,
         prefix: &str,

@@ -1,4 +1,4 @@
-//! Object recognition from the measurements of a whole body: a linear SVM for each compression, trained and tested on simulated touches.
+//! Object recognition from the measurements of a whole skin: one linear SVM per compression, trained and tested on simulated touches.
 
 use crate::engine::progress::Progress;
 use crate::error::Result;
@@ -20,14 +20,14 @@ use ndarray::{Array2, ArrayView2, Axis};
 use rand::Rng;
 use rayon::prelude::*;
 
-/// A compression and its trained classifier.
+/// Compression (measurement matrix) with its trained classifier.
 pub(super) struct Compression {
     pub columns: Columns,
     pub classifier: TrainedClassifier,
     pub score: BodyRecognition,
 }
 
-/// Draws every compression of a body, and trains a classifier for each on touches of the body.
+/// Draws every compression of a robot's skin, and trains a classifier for each on simulated touches.
 pub(super) fn learn(
     plan: &WholeBodyPlan,
     posture: &Posture,
@@ -41,13 +41,13 @@ pub(super) fn learn(
     progress.stage("train", columns.len() as u64);
     let of_each = features.axis_chunks_iter(Axis(1), m);
     let named = plan.compressions.iter().zip(columns).zip(of_each);
-    // Each compression is a work item, which advances the progress when it is stored.
+    // Each compression is a work item; it advances the progress when it is stored.
     named
         .map(|(((name, _), columns), features)| train(plan, name, columns, features))
         .collect()
 }
 
-/// Returns the matrix of the sparse ensemble or, with `block`, of SBHE with blocks of that many taxels.
+/// Returns the measurement matrix of the sparse ensemble, or of SBHE with Hadamard blocks of `block` taxels.
 fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Result<Columns> {
     let size = (posture.body.n_taxels(), 1);
     let m = plan.spec.whole_body.sensing.measurements;
@@ -59,7 +59,7 @@ fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Res
     Ok(projection.columns())
 }
 
-/// Returns the measurements of all compressions, concatenated; one row per touch, ordered by object.
+/// Returns the concatenated measurements of all compressions, one row per touch, ordered by object.
 fn measure(
     plan: &WholeBodyPlan,
     posture: &Posture,
@@ -74,7 +74,7 @@ fn measure(
     progress.stage("touch", wanted.n_touches() as u64);
     let mut features = Array2::zeros((wanted.n_touches(), columns.len() * m));
     let rows = features.axis_iter_mut(Axis(0)).into_par_iter().enumerate();
-    // Each thread keeps the body and the object for its next touch of the same object.
+    // Each thread keeps the state of the skin and the object for its next touch of the same object.
     rows.try_for_each_init(
         || None,
         |kept: &mut Option<(usize, Drive)>, (number, mut row)| -> Result<()> {
@@ -101,7 +101,7 @@ fn measure(
     Ok(features)
 }
 
-/// Draws the target pose of an object in a touch (`link_from_object`) and its travel past first contact, metres.
+/// Draws the target pose of an object in a touch (`link_from_object`), and its travel past first contact, metres.
 fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
     let wanted = plan.recognition();
     let seed = Seed::new(plan.spec.seed).named("whole_body").named("touch");
@@ -120,7 +120,7 @@ fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
     )
 }
 
-/// Trains on the first touches of each object and tests on the others.
+/// Trains a classifier on the first touches of each object and tests it on the other touches.
 fn train(
     plan: &WholeBodyPlan,
     name: &str,

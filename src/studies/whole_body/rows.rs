@@ -1,32 +1,32 @@
-//! Rows of the result tables of a whole-body study: one plain struct for each kind of row, one field for each column.
+//! Rows of the result tables of a whole-body study: one plain struct for each kind of row, with one field per column.
 
 use crate::row;
 use serde::{Deserialize, Serialize};
 
-/// Series of measurements to which a row belongs.
+/// Series to which a measured case belongs: scenes, or a scaling series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Series {
-    /// An object touches the robot.
+    /// Scenes: an object touches the robot.
     Scene,
-    /// The skin grows while the touch stays the same.
+    /// Scaling series in which the skin grows while the touch stays constant.
     Skin,
-    /// The touch grows while the skin stays the same.
+    /// Scaling series in which the touch grows while the skin stays constant.
     Touch,
-    /// The number of the object's spheres grows while skin and touch stay the same.
+    /// Scaling series in which the object's number of spheres grows while skin and touch stay constant.
     Spheres,
 }
 
 row! {
-/// Measured case: a scene, or one size in a scaling series.
+/// Measured case: a scene, or one size of a scaling series.
 pub struct BodyCase {
     /// Series to which the case belongs.
     series: Series => Note;
     /// Name of the scene or of the size.
     name: String => Subject "scene or rung";
-    /// Number of taxels of the body.
+    /// Number of taxels of the whole skin.
     n_taxels: usize => Condition "taxels of the body": Log;
-    /// Number of patches of the body.
+    /// Number of patches of the whole skin.
     n_patches: usize => Condition "patches": Log;
     /// Number of spheres of the object.
     n_spheres: usize => Condition "spheres": Log;
@@ -35,27 +35,27 @@ pub struct BodyCase {
 row! {
 /// Counts of a simulated case. A row of `whole_body.csv` is a [`BodyCase`] followed by a `BodyCount`.
 pub struct BodyCount {
-    /// Number of steps.
+    /// Number of simulated steps.
     n_steps: usize => Note "steps": Linear;
-    /// Number of taxels with a deflection, mean over steps.
+    /// Number of deflected taxels, averaged over steps.
     touched_mean: f64 => Value(Neither) "touched taxels": Log;
-    /// Smallest number of taxels with a deflection in a step.
+    /// Smallest number of deflected taxels in any step.
     touched_min: usize => Note "fewest touched": Linear;
-    /// Largest number of taxels with a deflection in a step.
+    /// Largest number of deflected taxels in any step.
     touched_max: usize => Note "most touched": Linear;
-    /// Number of taxels at their stroke that the object would push further, mean over steps.
+    /// Number of taxels at their stroke that the object would push further, averaged over steps.
     saturated_mean: f64 => Value(Neither) "saturated taxels": Linear;
-    /// Number of visited patches, mean over steps.
+    /// Number of patches that the contact search visits, averaged over steps.
     patches_visited_mean: f64 => Value(Neither) "patches visited": Linear;
-    /// Number of patches with a touched taxel, mean over steps.
+    /// Number of patches with a deflected taxel, averaged over steps.
     patches_touched_mean: f64 => Value(Neither) "patches touched": Linear;
-    /// Number of spheres for which rows, rings or tiles of taxels were evaluated, summed over patches, mean over steps.
+    /// Number of spheres whose taxels were evaluated, summed over patches and averaged over steps.
     spheres_evaluated_mean: f64 => Value(Neither) "spheres evaluated": Linear;
-    /// Number of spheres that were rejected before evaluation, summed over patches near the object, mean over steps.
+    /// Number of spheres that were rejected before evaluation, summed over patches near the object and averaged over steps.
     spheres_rejected_mean: f64 => Value(Neither) "spheres rejected": Linear;
     /// Sum of all deflections over taxels and steps, mm.
     deflection_sum_mm: f64 => Note "sum of deflections" in "mm": Linear;
-    /// Memory of the body and its state at rest, bytes per taxel.
+    /// Memory of the skin and its state at rest, bytes per taxel.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Linear;
 } }
 
@@ -64,42 +64,42 @@ row! {
 pub struct BodySensed {
     /// Name of the scene.
     scene: String => Subject;
-    /// Name of the compression.
+    /// Name of the compression (measurement matrix).
     compression: String => Choice;
     /// Sum of the magnitudes of all measurements over steps, mm.
     measurement_sum_mm: f64 => Note "sum of measurements" in "mm": Linear;
-    /// Most frequent decision over the steps; in a tie the first of the objects.
+    /// Most frequent decision over the steps: the name of an object (the first in a tie).
     decision: String => Outcome;
-    /// Fraction of the steps with this decision.
+    /// Fraction of the steps with this decision, 0 to 1.
     decision_fraction: f64 => Note "share of the steps": Share;
 } }
 
 row! {
-/// Accuracy of object recognition with a compression: a row of `recognition.csv`.
+/// Recognition accuracy with a compression: a row of `recognition.csv`.
 pub struct BodyRecognition {
-    /// Name of the compression; `sbhe_32` has blocks of 32 taxels.
+    /// Name of the compression; `sbhe_32` has Hadamard blocks of 32 taxels.
     compression: String => Choice;
-    /// Number m of measurements.
+    /// Number m of measurements per step.
     n_measurements: usize => Choice "measurements": Linear;
-    /// Number of non-zero entries of Φ per taxel.
+    /// Number of non-zero entries of the measurement matrix Φ per taxel.
     entries_per_taxel: f64 => Cost "entries of a taxel": Log;
-    /// Fraction of the taxels that at least one measurement reads.
+    /// Fraction of the taxels that occur in at least one measurement, 0 to 1.
     read_fraction: f64 => Note "share of the taxels read": Share;
-    /// Memory of Φ, stored by columns, bytes per taxel.
+    /// Memory of the measurement matrix Φ, stored by columns, bytes per taxel.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Log;
     /// Number of objects to distinguish.
     n_objects: usize => Condition "objects": Linear;
-    /// Number of training touches of all objects.
+    /// Number of training touches, summed over all objects.
     n_training: usize => Note "training touches": Linear;
-    /// Number of test touches of all objects.
+    /// Number of test touches, summed over all objects.
     n_test: usize => Note "test touches": Linear;
-    /// Fraction of recognised test touches, 0 to 1.
+    /// Fraction of correctly recognised test touches, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
     /// Lower end of the 95 % interval of the accuracy.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Binary SVMs that stopped at the solver's iteration cap.
+    /// Number of binary SVMs that stopped at the solver's iteration cap.
     n_capped: usize => Note "capped SVMs": Linear;
 } }
 
@@ -107,57 +107,57 @@ pub struct BodyRecognition {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
-    /// Simulation of the skin.
+    /// Simulation of the contact with the skin.
     Press,
-    /// Compression of the touched taxels into measurements.
+    /// Compression of the readings of touched taxels into measurements.
     Compress,
-    /// Classification of the measurements.
+    /// Classification of the measurements by the SVM.
     Classify,
     /// All three stages together.
     Whole,
 }
 
 row! {
-/// Timed stage. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
+/// Timed stage of a step. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
 pub struct BodyStage {
-    /// The stage.
+    /// Timed stage: press, compress, classify, or all three together.
     stage: Stage => Note;
-    /// Name of the compression; empty for `press`.
+    /// Name of the compression; empty for the stage `press`.
     compression: String => Choice;
-    /// Number of threads that share a large touch.
+    /// Number of threads that share the work of a step.
     n_threads: usize => Choice "threads": Linear;
 } }
 
 row! {
-/// Number of touched taxels in a step that was timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
+/// Number of touched taxels in a step that is timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
 pub struct BodyTouch {
-    /// Number of taxels with a deflection, rounded to two digits.
+    /// Number of deflected taxels, averaged over steps and rounded to two digits.
     touched: f64 => Condition "touched taxels, about": Log;
-    /// Number of taxels with a deflection, mean over steps.
+    /// Number of deflected taxels, averaged over steps.
     touched_mean: f64 => Note "touched taxels": Log;
 } }
 
 row! {
-/// Computing time of a step.
+/// Distribution of the computing time per step.
 pub struct StepTime {
-    /// Median time of a step, µs.
+    /// Median computing time per step, µs.
     us_median: f64 => Cost "time of a step" in "us": Log between [us_p05, us_p95];
-    /// 5th percentile of the time of a step, µs.
+    /// 5th percentile of the computing time per step, µs.
     us_p05: f64 => Note "5th to 95th percentile, lower end" in "us": Log;
-    /// 95th percentile of the time of a step, µs.
+    /// 95th percentile of the computing time per step, µs.
     us_p95: f64 => Note "5th to 95th percentile, upper end" in "us": Log;
-    /// Steps per second, computed from the median.
+    /// Number of steps per second, computed from the median time.
     steps_per_s: f64 => Value(More) "steps a second": Log;
 } }
 
 /// Results of a scene or of one size of a scaling series.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driven {
-    /// The measured case.
+    /// Measured case: a scene, or one size of a scaling series.
     pub case: BodyCase,
-    /// Counts of the simulation.
+    /// Counts of the simulated case.
     pub count: BodyCount,
-    /// Times of the press, then of all stages of each compression. With several threads, the press with one thread follows.
+    /// Times of the press, then of all stages of each compression. With several threads, the times of the press on one thread follow.
     pub times: Vec<(BodyStage, StepTime)>,
     /// Recognition results, one for each compression.
     pub sensed: Vec<BodySensed>,

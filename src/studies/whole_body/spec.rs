@@ -9,192 +9,192 @@ use std::collections::BTreeMap;
 
 study_file! {
 pub struct WholeBodyStudySpec {
-    /// All settings of the study.
+    /// Table `[whole_body]`: all keys of the study.
     pub whole_body: WholeBodySpec,
 } }
 
-/// `[whole_body]`: a robot covered with skin, its scenes, and the measurement of computing time.
+/// Keys of `[whole_body]`: a robot covered with skin, its scenes, and the measurement of computing time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WholeBodySpec {
-    /// URDF file of the covered robot, relative to the study file.
+    /// URDF file of the robot that is covered with skin, relative to the study file.
     pub robot: FilePath,
-    /// Distance between taxels, mm.
+    /// Distance between neighbouring taxels, mm, positive. Default: 1.
     #[serde(default = "number::<1>")]
     pub pitch_mm: f64,
-    /// Approximate side length of a patch, mm.
+    /// Approximate side length of a patch, mm, positive. Default: 100.
     #[serde(default = "number::<100>")]
     pub patch_mm: f64,
-    /// Whether the flat ends of cylinders are covered, too.
+    /// Whether the flat ends of cylinders are also covered with skin. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub flat_ends: bool,
-    /// Taxel radius ρ, mm. Default: half the pitch.
+    /// Radius ρ of a taxel, mm, positive. Default: half the pitch.
     pub taxel_radius_mm: Option<f64>,
-    /// Stroke s, mm.
+    /// Stroke s of a taxel, mm, positive: its maximum deflection. Default: 2.
     #[serde(default = "number::<2>")]
     pub stroke_mm: f64,
-    /// Stiffness k, N/m.
+    /// Stiffness k of a taxel, N/m, positive. Default: 100.
     #[serde(default = "number::<100>")]
     pub stiffness_n_per_m: f64,
-    /// Damping c, N·s/m.
+    /// Damping coefficient c of a taxel, N·s/m, at least 0. Default: 0.
     #[serde(default)]
     pub damping_n_s_per_m: f64,
-    /// Duration of a step, ms.
+    /// Duration of a simulated step, ms, positive. Default: 1.
     #[serde(default = "number::<1>")]
     pub step_ms: f64,
-    /// Number of measured steps for each scene and each size of a scaling series.
+    /// Number of measured steps for each scene and each size of a scaling series, at least 1. Default: 1000.
     #[serde(default = "count::<1000>")]
     pub steps: usize,
-    /// Largest distance between an object's spheres and its surface, mm.
+    /// Maximum distance between an object's spheres and its surface, mm, at least 1e-6. Default: 0.25.
     #[serde(default = "default_surface_error_mm")]
     pub surface_error_mm: f64,
-    /// Simulated scenes.
+    /// Tables `[[whole_body.scenes]]`: the simulated scenes.
     pub scenes: Vec<BodySceneSpec>,
-    /// Compression of the readings of touched taxels into measurements.
+    /// Table `[whole_body.sensing]`: compression of the readings of touched taxels into measurements.
     pub sensing: BodySensingSpec,
-    /// Recognised objects and their touches.
+    /// Table `[whole_body.recognition]`: recognised objects and their touches.
     pub recognition: BodyRecognitionSpec,
-    /// Sizes for the measurement of computing time. Default: none.
+    /// Table `[whole_body.ladders]`: scaling series for the measurement of computing time. Default: none.
     pub ladders: Option<LaddersSpec>,
 }
 
-/// `[[whole_body.scenes]]`: an object that moves along a path.
+/// Keys of `[[whole_body.scenes]]`: an object that moves along a path over the skin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodySceneSpec {
     /// Name of the scene.
     pub name: String,
-    /// Name of a built-in object, with the centre of its bounding box at its origin; replaces `parts`.
+    /// Name of a built-in object; the centre of its bounding box is its origin. Replaces `parts`.
     pub object: Option<String>,
-    /// Parts of the object, in its own frame.
+    /// Parts of the object, in its own frame; replaces `object`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<BodyPartSpec>,
-    /// Link in whose frame the object is placed and moves.
+    /// Name of the robot link in whose frame the object is placed and moves.
     pub link: String,
-    /// Position of the object's origin, mm; with `depth_mm`, the target of its approach.
+    /// Position of the object's origin in the link's frame, mm; with `depth_mm`, the target of its approach. Default: the link's origin.
     #[serde(default)]
     pub at_mm: [f64; 3],
-    /// Orientation of the object: roll, pitch, yaw about the link's axes, degrees.
+    /// Orientation of the object: roll, pitch, yaw about the link's axes, degrees. Default: 0.
     #[serde(default, alias = "rotation_deg")]
     pub turn_deg: [f64; 3],
-    /// With `depth_mm`: direction from `at_mm` to the start of the approach.
+    /// Direction from `at_mm` to the start of the approach, in the link's frame, with `depth_mm`. Default: +x.
     #[serde(default = "default_from")]
     pub from: [f64; 3],
-    /// Travel past first contact, mm. Without this key, the object is placed at `at_mm`.
+    /// Travel of the object past first contact, mm, positive. Without this key, the object is placed at `at_mm`.
     pub depth_mm: Option<f64>,
-    /// Amplitude of a sinusoidal translation, mm.
+    /// Amplitude of a sinusoidal translation of the object, mm. Default: 0.
     #[serde(default)]
     pub moves_mm: [f64; 3],
-    /// Amplitude of a sinusoidal rotation about the link's z axis, degrees; in phase with `moves_mm`.
+    /// Amplitude of a sinusoidal rotation about the link's z axis, degrees; in phase with `moves_mm`. Default: 0.
     #[serde(default)]
     pub swing_deg: f64,
-    /// Period of the sinusoidal motion, ms.
+    /// Period of the sinusoidal motion, ms, positive. Default: 1000.
     #[serde(default = "number::<1000>")]
     pub period_ms: f64,
-    /// Joint angles by joint name, degrees; all other joints are at zero.
+    /// Joint angles of the robot by joint name, degrees. Joints that are not listed are at 0.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub posture_deg: BTreeMap<String, f64>,
 }
 
-/// Part of an object.
+/// Part of an object: a ball, a capsule or a torus.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum BodyPartSpec {
-    /// Ball.
+    /// Ball, given by its diameter and centre.
     Ball {
-        /// Diameter, mm.
+        /// Diameter of the ball, mm.
         diameter_mm: f64,
-        /// Centre, mm.
+        /// Centre of the ball, mm. Default: the origin.
         #[serde(default)]
         at_mm: [f64; 3],
     },
-    /// Cylinder about z with a hemisphere on each end.
+    /// Capsule: cylinder about z with a hemisphere on each end.
     Capsule {
-        /// Diameter, mm.
+        /// Diameter of the capsule, mm.
         diameter_mm: f64,
-        /// Length along z including both hemispheres, mm.
+        /// Length of the capsule along z including both hemispheres, mm.
         length_mm: f64,
-        /// Centre, mm.
+        /// Centre of the capsule, mm. Default: the origin.
         #[serde(default)]
         at_mm: [f64; 3],
     },
-    /// Torus about z, such as arms around the robot.
+    /// Torus about z, for example arms around the robot.
     Torus {
-        /// Diameter of the centre line of the tube, mm.
+        /// Diameter of the centre line of the torus's tube, mm.
         ring_diameter_mm: f64,
-        /// Diameter of the tube, mm.
+        /// Diameter of the torus's tube, mm.
         tube_diameter_mm: f64,
-        /// Centre, mm.
+        /// Centre of the torus, mm. Default: the origin.
         #[serde(default)]
         at_mm: [f64; 3],
     },
 }
 
-/// `[whole_body.sensing]`: compression of the touched taxels into measurements.
+/// Keys of `[whole_body.sensing]`: compression of the readings of touched taxels into measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodySensingSpec {
-    /// Number of measurements per frame.
+    /// Number m of measurements per step, at least 1.
     pub measurements: usize,
     /// Ensembles with sparse matrices: `sbhe` and `sparse`.
     pub ensembles: Vec<Ensemble>,
-    /// Numbers of taxels in a Hadamard block, powers of two; each gives a compression of its own.
+    /// Numbers of taxels in a Hadamard block, powers of two; each number defines one compression. Default: 32.
     #[serde(default = "default_blocks")]
     pub sbhe_blocks: Vec<usize>,
 }
 
-/// `[whole_body.recognition]`: touches of built-in objects at one location.
+/// Keys of `[whole_body.recognition]`: touches of built-in objects at one location of the skin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyRecognitionSpec {
-    /// Names of built-in objects.
+    /// Names of the built-in objects to recognise.
     pub objects: Vec<String>,
-    /// Link in whose frame the objects are placed.
+    /// Name of the robot link in whose frame the objects are placed.
     pub link: String,
-    /// Target of the approach, mm.
+    /// Target of the approach in the link's frame, mm.
     pub at_mm: [f64; 3],
-    /// Direction from the target to the start of the approach.
+    /// Direction from the target to the start of the approach, in the link's frame. Default: +x.
     #[serde(default = "default_from")]
     pub from: [f64; 3],
-    /// Largest random offset from the target across the approach, mm.
+    /// Maximum random offset from the target across the approach, mm, at least 0. Default: 0.
     #[serde(default)]
     pub offset_mm: f64,
-    /// Largest random rotation about the link's z axis, degrees.
+    /// Maximum random rotation about the link's z axis, degrees, at least 0. Default: 0.
     #[serde(default)]
     pub yaw_deg: f64,
-    /// Range of the random travel past first contact, mm.
+    /// Lower and upper bound of the random travel past first contact, mm.
     pub depth_mm: [f64; 2],
-    /// Number of training touches of each object.
+    /// Number of training touches per object, at least 1.
     pub training_touches: usize,
-    /// Number of test touches of each object.
+    /// Number of test touches per object, at least 1.
     pub test_touches: usize,
 }
 
-/// `[whole_body.ladders]`: series of growing skins, touches and objects for the measurement of computing time.
+/// Keys of `[whole_body.ladders]`: series of growing skins, touches and objects for the measurement of computing time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LaddersSpec {
-    /// Numbers of taxels in the series of growing skins.
+    /// Numbers of taxels of the skins in the series of growing skins.
     pub taxels: Vec<usize>,
     /// Approximate numbers of touched taxels for each of these skins, if the skin is large enough.
     pub touched_at_taxels: Vec<usize>,
     /// Approximate numbers of touched taxels in the series of growing touches.
     pub touched: Vec<usize>,
-    /// Numbers of spheres in the series of growing objects, half of them on the far side. The first number is used in the other series.
+    /// Numbers of spheres in the series of growing objects; half of the spheres are on the far side. The other series use the first number.
     pub spheres: Vec<usize>,
     /// Approximate number of touched taxels in the series of growing objects.
     pub touched_at_spheres: usize,
-    /// Number of taxels of the skin in the series of growing touches and objects.
+    /// Number of taxels of the skin in the series of growing touches and of growing objects.
     pub taxels_at_touch: usize,
 }
 
 impl BodyRecognitionSpec {
-    /// Returns the number of touches of each object.
+    /// Returns the number of touches per object for training and testing together.
     pub fn of_each(&self) -> usize {
         self.training_touches + self.test_touches
     }
 
-    /// Returns the number of touches of all objects.
+    /// Returns the number of touches of all objects together.
     pub fn n_touches(&self) -> usize {
         self.objects.len() * self.of_each()
     }

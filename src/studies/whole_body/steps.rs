@@ -1,4 +1,4 @@
-//! Simulation and timing of the steps along a path.
+//! Simulation and timing of the steps along an object's path.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -15,21 +15,21 @@ use glam::DVec3;
 use ndarray::ArrayView2;
 use std::time::Instant;
 
-/// Number of steps before the measurement, during which memory is allocated and caches are filled.
+/// Number of warm-up steps before the measurement, which allocate memory and fill the caches.
 const WARM_UP: usize = 20;
 
-/// Result of a step of the skin.
+/// Result of simulating one step of the skin.
 struct Step {
     contact: BodyContact,
     n_visited: usize,
-    /// Sum of the deflections over taxels, metres.
+    /// Sum of the deflections over all taxels, metres.
     deflection: f64,
     press_s: f64,
 }
 
-/// Result of a step of a compression.
+/// Result of compressing and classifying one step.
 struct SensedStep {
-    /// Sum of the magnitudes of the measurements, metres.
+    /// Sum of the magnitudes of all measurements, metres.
     size: f64,
     label: usize,
     compress_s: f64,
@@ -37,7 +37,7 @@ struct SensedStep {
 }
 
 impl Drive<'_> {
-    /// Simulates the steps of the path after some warm-up steps. With several threads, the path is repeated on one thread.
+    /// Simulates and times the steps of the path after some warm-up steps. With several threads, the path is also simulated on one thread.
     pub fn run(
         &mut self,
         plan: &WholeBodyPlan,
@@ -120,7 +120,7 @@ impl Drive<'_> {
 }
 
 impl Compression {
-    /// Computes the measurements and the decision; `row` is scratch memory for measurements.
+    /// Computes the measurements and the decision of a step; `row` is scratch memory for the measurements.
     fn sense(
         &self,
         touched: impl Iterator<Item = (usize, f64)>,
@@ -163,7 +163,7 @@ fn count(steps: &[Step], bytes_per_taxel: f64) -> BodyCount {
     }
 }
 
-/// Returns the most frequent decision over the steps of a scene.
+/// Returns the most frequent decision over the steps of a scene (the first object in a tie).
 fn decision(
     plan: &WholeBodyPlan,
     (scene, compression): (&str, &str),

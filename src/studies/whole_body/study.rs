@@ -1,4 +1,4 @@
-//! Runs a whole-body study: training first, then scenes and scaling series one after the other, so that timings do not disturb each other.
+//! Whole-body study: training comes first, then scenes and scaling series one after the other, so that timings do not disturb each other.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
@@ -96,7 +96,7 @@ impl Study for WholeBodyPlan {
         }
     }
 
-    /// Compressions and scenes depend on all training; scaling series do not.
+    /// Compressions and scenes depend on all training inputs; scaling series do not.
     fn work_items(&self) -> Vec<WorkItem> {
         let compressions = self
             .compressions
@@ -184,7 +184,7 @@ impl Study for WholeBodyPlan {
     }
 }
 
-/// Rounds to two digits: a touch of 10,008 taxels counts as 10,000.
+/// Rounds a number to two digits; for example, a touch of 10,008 taxels counts as 10,000.
 fn round_to_two(value: f64) -> f64 {
     let unit = 10f64.powf(value.max(1.0).log10().floor() - 1.0);
     (value / unit).round() * unit
@@ -196,7 +196,7 @@ impl WholeBodyPlan {
         ladders.map_or_else(Vec::new, rungs)
     }
 
-    /// Returns the robot covered with skin of this pitch, metres.
+    /// Returns the robot covered with skin of this pitch (metres).
     pub(super) fn cover(&self, pitch: f64) -> Result<CoveredRobot> {
         let cover = match self.spec.whole_body.flat_ends {
             true => CoveredRobot::with_flat_ends,
@@ -205,7 +205,7 @@ impl WholeBodyPlan {
         cover(&self.robot, self.taxel, pitch, self.side)
     }
 
-    /// Returns the poses of all parts of the robot.
+    /// Returns the poses of all patches and links of the robot in a posture.
     pub(super) fn posture<'a>(
         &self,
         covered: &'a CoveredRobot,
@@ -221,7 +221,7 @@ impl WholeBodyPlan {
         })
     }
 
-    /// Returns the object of a scene at its start; an error names the scene.
+    /// Returns the object of a scene at the start of its path; an error names the scene.
     pub(super) fn begin<'a>(
         &self,
         scene: &ScenePlan,
