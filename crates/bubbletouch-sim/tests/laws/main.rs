@@ -1,4 +1,4 @@
-//! The laws of the simulation, each checked against a slow or an independent computation.
+//! Laws of the simulation, each checked against a slow or an independent computation.
 
 mod fixtures {
     pub mod counting;

@@ -1,4 +1,4 @@
-//! A skin of any layout moved past first contact: against the grid's own press, and against all pairs of spheres.
+//! Laws of approaches by a skin of any layout: comparison with the grid kernel, and with all pairs of spheres and taxels.
 
 use bubbletouch_sim::contact::{
     Approach, Contact, Goal, Row, Workspace, first_contact, press, press_into, press_onto_zeros,
@@ -19,7 +19,7 @@ const GRID: Grid = Grid {
     pitch: 2e-3,
 };
 
-/// Spheres of a millimetre and of centimetres: in a deep press the small ones go past the substrate.
+/// Returns a union of spheres from a millimetre to centimetres; in a deep press the small spheres move behind the substrate.
 fn random_union(rng: &mut impl Rng) -> SphereUnion {
     let spheres = (0..rng.gen_range(1..60)).map(|_| Sphere {
         center: DVec3::from_array([0; 3].map(|_| rng.gen_range(-0.02..0.02))),
@@ -65,7 +65,7 @@ fn on_a_grid_it_is_the_grids_own_press() {
     assert!(n_touched > 200 && n_deep > 50, "{n_touched} {n_deep}");
 }
 
-/// Whatever is in the row or zeros, and wherever its last taxels are in the kernel's steps.
+/// Tests arbitrary contents of the row, rows of zeros, and all remainders of the row length by the kernel's block size.
 #[test]
 fn a_press_into_a_row_leaves_the_frame_and_nothing_else_there() {
     let mut rng = rng("approach", 5);
@@ -160,7 +160,7 @@ fn first_contact_is_that_of_the_nearest_pair_of_spheres() {
             (found - expected).abs() < 1e-12,
             "case {case}: {found} for {expected}"
         );
-        // A hair before it nothing is touched, a hair behind it something is.
+        // Just before first contact no taxel is touched, and just behind it at least one is.
         let mut n_touched = |travel: f64| {
             let moved = Pose {
                 translation: pose.translation - travel * direction,

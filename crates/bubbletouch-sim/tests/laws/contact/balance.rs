@@ -1,4 +1,4 @@
-//! Laws of free objects: they rest where all forces balance, wherever the world is, or they are said to leave.
+//! Laws of free objects: at rest all forces balance, wherever the world's origin is; otherwise the object is reported as escaped.
 
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,
@@ -24,7 +24,7 @@ fn taxel(stiffness: f64) -> Taxel {
     }
 }
 
-/// n × n taxels, 2 mm apart.
+/// Creates a bed of n × n taxels, 2 mm apart.
 fn bed(n: usize, stiffness: f64) -> Patch {
     let grid = Grid {
         nx: n,
@@ -65,7 +65,7 @@ fn a_ball_rests_as_deep_as_its_weight_asks() {
         &at(1e-3, 1e-3, 0.05),
     );
     assert_eq!(rest.outcome, Outcome::AtRest);
-    // The lift at a height, taxel by taxel, where the ball is.
+    // Force of all springs with the ball at a given height, computed taxel by taxel at the ball's position.
     let place = rest.pose.translation;
     let lift = |height: f64| -> f64 {
         let reach = radius + 1e-3;
@@ -105,7 +105,7 @@ fn forces_balance_for_every_weight_and_stiffness() {
     }
 }
 
-/// What the press kernel and the springs say of the pose that was found.
+/// The press kernel and the spring load must confirm the forces at the pose that the solver found.
 #[test]
 fn the_skin_feels_the_weight_that_rests_on_it() {
     let patch = bed(48, 150.0);
@@ -128,7 +128,7 @@ fn the_skin_feels_the_weight_that_rests_on_it() {
     let mut workspace = Workspace::new();
     press_with_contacts(&patch, &objects, &[rest.pose], &mut workspace);
     let load = spring_load(&patch, workspace.contacts());
-    // Taxels between two spheres: one of them is said to decide, so the sides may differ a little.
+    // For taxels between two spheres, only one sphere counts as deciding, so the lateral forces may differ slightly.
     assert!(
         (load.spring_force / (mass * G) - 1.0).abs() < 1e-6,
         "{load:?}"
@@ -262,7 +262,7 @@ fn a_ball_on_the_point_of_a_single_taxel_does_not_stay_there() {
     let patch = Patch::new("pin", layout, Taxels::Equal(taxel(100.0))).unwrap();
     let union = ball(0.02);
     let object = FreeObject::new(&union, 0.01, DVec3::ZERO).unwrap();
-    // Exactly above it every force balances at some height; a saddle of the energy.
+    // Exactly above the middle the forces balance at some height, which is a saddle of the energy.
     let rest = equilibrium(
         &object,
         &[placed(&patch, Pose::IDENTITY)],
@@ -302,7 +302,7 @@ fn others_that_push_the_taxels_take_their_part() {
         &[placed(&patch, Pose::IDENTITY)],
         &at(0.0, 0.0, 0.05),
     );
-    // All taxels held down by a millimetre: it rests that much lower, to the deflections that carry it.
+    // If all taxels are held down by a millimetre, the object rests lower, with the deflections that carry it.
     let held = vec![1e-3; patch.n_taxels()];
     let skins = [PlacedSkin {
         pushed: &held,
@@ -317,7 +317,7 @@ fn others_that_push_the_taxels_take_their_part() {
     );
 }
 
-/// How far spheres push each taxel of a flat bed at the origin, straight from the formula, metres; `None` where one would go beyond its stroke.
+/// Returns the deflection of each taxel of a flat bed at the origin by spheres, computed from the formula, metres; `None` if a deflection exceeds the stroke.
 fn pushed(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> Option<Vec<f64>> {
     let Taxel { radius, stroke, .. } = *bed.taxels().at(0);
     let places: Vec<(DVec3, f64)> = spheres
@@ -343,8 +343,8 @@ fn pushed(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> Option<Vec<f64>> {
         .collect()
 }
 
-/// Whether a taxel stands beside the widest part of a sphere, or nearly: its energy jumps there, since it springs up, or is pushed in at
-/// once, when the sphere moves sideways by nothing.
+/// Returns whether a taxel is beside the widest part of a sphere, where the energy jumps: an infinitesimal lateral motion of the sphere releases the taxel or
+/// pushes it in.
 fn stands_on_a_cliff(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> bool {
     const NEAR: f64 = 2e-4;
     let radius = bed.taxels().at(0).radius;
@@ -356,7 +356,7 @@ fn stands_on_a_cliff(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> bool {
     })
 }
 
-/// What springs and height hold of a solid of spheres on a bed, joules; `None` where a stop is in the way.
+/// Returns the energy of springs and height for a solid of spheres on a bed, joules; `None` if a taxel is pushed beyond its stop.
 fn energy(bed: &Patch, (spheres, mass): (&SphereUnion, f64), pose: &Pose) -> Option<f64> {
     let squares = pushed(bed, spheres, pose)?
         .iter()
@@ -366,8 +366,8 @@ fn energy(bed: &Patch, (spheres, mass): (&SphereUnion, f64), pose: &Pose) -> Opt
     Some(0.5 * bed.taxels().at(0).stiffness * squares + mass * G * height)
 }
 
-/// Of an object at rest that no stop carries, and beside whose spheres no taxel stands: how many of 100 small motions were tried. None may lower the energy, but for what the balance is
-/// allowed to be off.
+/// Asserts that none of 100 small motions lowers the energy by more than the accepted imbalance allows. Returns the number of motions tried, which is zero if a
+/// stop carries load or a taxel is beside a sphere.
 fn assert_lowest(
     bed: &Patch,
     (spheres, mass): (&SphereUnion, f64),
@@ -393,7 +393,7 @@ fn assert_lowest(
             turn * pose.rotation,
             pose.translation + step * DVec3::new(random(), random(), random()),
         );
-        // A stop is in the way of some motions.
+        // Some motions would push a taxel beyond its stop.
         let Some(there) = energy(bed, (spheres, mass), &moved) else {
             continue;
         };
@@ -440,7 +440,7 @@ fn random_objects_settle_or_leave() {
             match rest.outcome {
                 Outcome::AtRest => {
                     assert!(rest.imbalance <= 1e-6, "case {case}: {rest:?}");
-                    // Every sphere against every taxel, a hundred times over, takes its time.
+                    // Comparing every sphere with every taxel a hundred times is slow, so only some cases are tried.
                     let is_tried = case.is_multiple_of(5);
                     let tried = || assert_lowest(&patch, (&union, mass), &rest.pose, case);
                     Some(if is_tried { tried() } else { 0 })
@@ -455,7 +455,7 @@ fn random_objects_settle_or_leave() {
         .collect();
     let settled: Vec<usize> = tried.into_iter().flatten().collect();
     assert!((45..148).contains(&settled.len()), "{}", settled.len());
-    // The others rest on stops, or taxels stand beside them.
+    // The other cases rest on stops, or have taxels beside a sphere.
     let n_tried: usize = settled.iter().sum();
     assert!(n_tried > 300, "{n_tried}");
 }

@@ -1,4 +1,4 @@
-//! Where the balance of free objects could break. Each case has the behaviour that `guide::limits` states.
+//! Limits of the balance of free objects. Each case has the behaviour that the guide's page on limits states.
 
 use crate::random_scenes::{TAXEL, direction, rng};
 use bubbletouch_sim::contact::equilibrium::{
@@ -13,7 +13,7 @@ use rand::Rng;
 const G: f64 = 9.81;
 const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
 
-/// n × n taxels, 2 mm apart.
+/// Creates a bed of n × n taxels, 2 mm apart.
 fn bed(n: usize, stiffness: f64) -> Patch {
     let grid = Grid {
         nx: n,
@@ -44,7 +44,7 @@ fn height(z: f64) -> Pose {
     Pose::from_translation(DVec3::new(0.0, 0.0, z))
 }
 
-/// How far some spheres push each taxel, straight from the formula, metres; 0 or less for those that they do not.
+/// Returns the deflection that spheres need of each taxel, computed from the formula, metres; 0 or less if no sphere touches the taxel.
 fn needed(skin: &Patch, spheres: &SphereUnion, pose: &Pose) -> impl Iterator<Item = f64> {
     let centers = skin.layout().centers().iter().enumerate();
     centers.map(|(number, &taxel)| {
@@ -63,7 +63,7 @@ fn needed(skin: &Patch, spheres: &SphereUnion, pose: &Pose) -> impl Iterator<Ite
     })
 }
 
-/// What all springs carry, newtons.
+/// Returns the force that all springs carry, newtons.
 fn lift(skin: &Patch, spheres: &SphereUnion, pose: &Pose) -> f64 {
     let needed = needed(skin, spheres, pose).enumerate();
     needed
@@ -71,7 +71,7 @@ fn lift(skin: &Patch, spheres: &SphereUnion, pose: &Pose) -> f64 {
         .sum()
 }
 
-/// What is wrong with something that should be at rest.
+/// Returns the fault of an equilibrium that should be at rest; `None` if there is none.
 fn fault(rest: &Equilibrium, weight: f64) -> Option<String> {
     let is_balanced = rest.imbalance <= 1e-6 && (rest.force.z / weight - 1.0).abs() <= 1e-6;
     let is_right = rest.outcome == Outcome::AtRest && is_balanced;
@@ -112,7 +112,7 @@ fn a_million_metres_from_the_origin_objects_rest_as_at_it() {
             let case = format!("{mass} kg on {stiffness} N/m");
             assert_rests(&there, mass * G, &case);
             assert_eq!(there.outcome, here.outcome, "{case}");
-            // A nanometre: what numbers of a million metres can tell apart.
+            // A nanometre is the resolution of coordinates of a million metres.
             let apart = (there.pose.translation - far).distance(here.pose.translation);
             assert!(apart < 1e-9, "{case}: {apart} m");
             assert_eq!(there.force, here.force, "{case}");
@@ -120,8 +120,8 @@ fn a_million_metres_from_the_origin_objects_rest_as_at_it() {
     }
 }
 
-/// Whether an object is said not to rest on a spring on which a last bit of its place, from where it started at this height, is more than
-/// what balances: no pose can say what such a spring carries.
+/// Returns whether the solver reports no convergence because the spring is too stiff. In this case the last bit of the position, relative to the start, changes
+/// the spring force by more than the accepted imbalance.
 fn is_beyond_last_bits(rest: &Equilibrium, stiffness: f64, size: f64, weight: f64) -> bool {
     let place = size + (0.05 - rest.pose.translation.z);
     let last_bit = f64::EPSILON * place;
@@ -214,7 +214,7 @@ fn a_ball_rests_on_a_pattern_of_springs_at_the_height_of_the_formula() {
 #[test]
 fn what_balances_on_an_edge_or_a_point_does_not_stay_there() {
     let skin = bed(48, 200.0);
-    // A tile of spheres, 20 × 20 × 2 mm, and a rod of 30 mm: how high their middles are when they lie.
+    // Objects: a tile of spheres, 20 × 20 × 2 mm, and a rod of 30 mm, with the heights of their middles when they lie.
     let square = (0..11).flat_map(|i| (0..11).map(move |j| (i, j)));
     let tile = square.map(|(i, j)| 2e-3 * DVec3::new(f64::from(i) - 5.0, f64::from(j) - 5.0, 0.0));
     let tile = union(tile, 2e-3);
@@ -226,7 +226,7 @@ fn what_balances_on_an_edge_or_a_point_does_not_stay_there() {
         let body = FreeObject::new(object, 0.01, DVec3::ZERO).unwrap();
         for lean in [0.0, 1e-12, -1e-6, 1e-3] {
             for turn in [0.0, 0.3] {
-                // On its edge or end, exactly upright but for the lean.
+                // The object starts on its edge or end, exactly upright except for the lean.
                 let upright = DQuat::from_rotation_z(turn)
                     * DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2 + lean);
                 let start = Pose::new(upright, DVec3::new(0.0, 0.0, 0.02));
@@ -282,7 +282,7 @@ fn a_thin_sheet_that_falls_from_any_height_is_caught() {
 
 #[test]
 fn stops_carry_what_saturated_springs_do_not() {
-    // A flat foot on all 12 × 12 taxels, whose springs carry a hundredth of it or less.
+    // A flat foot on all 12 × 12 taxels, whose springs carry at most a hundredth of the weight.
     let n = 12;
     let skin = bed(n, 10.0);
     let springs = (n * n) as f64 * 10.0 * TAXEL.stroke;
@@ -295,7 +295,7 @@ fn stops_carry_what_saturated_springs_do_not() {
             assert_rests(&rest, mass * G, &case);
             assert!(rest.force.z > 50.0 * springs);
             assert!(rest.n_saturated >= 3, "{case}: {rest:?}");
-            // The stops are rigid: no taxel is pressed further than its stroke.
+            // The stops are rigid, so no taxel is pressed beyond its stroke.
             let most = needed(&skin, &foot, &rest.pose).fold(0.0, f64::max);
             assert!((most - TAXEL.stroke).abs() < 1e-8, "{case}: {most}");
         }
@@ -340,7 +340,7 @@ fn what_starts_inside_the_skin_comes_up_and_what_starts_behind_it_falls() {
     let ball = union([DVec3::ZERO], 0.02);
     let body = FreeObject::new(&ball, 0.05, DVec3::ZERO).unwrap();
     let above = equilibrium(&skin, &body, &height(0.05));
-    // S is 21 mm and the substrate 6 mm behind the skin.
+    // The sum of radii S is 21 mm, and the substrate is 6 mm behind the skin.
     for start in [0.02, 0.01, 0.0, -0.004, -0.0061, -0.012] {
         let rest = equilibrium(&skin, &body, &height(start));
         assert_rests(&rest, 0.05 * G, &format!("from {start} m"));
@@ -367,20 +367,20 @@ fn balls_of_all_sizes_rest_at_the_height_of_the_formula_or_fall_between_the_taxe
         let body = FreeObject::new(&ball, mass, DVec3::ZERO).unwrap();
         let rest = equilibrium(&skin, &body, &height(radius + 0.01));
         let case = format!("{radius} m, {mass} kg");
-        // The holes between taxels are (√2 − 1) mm wide: smaller balls fall through.
+        // The gaps between taxels are (√2 − 1) mm wide, so smaller balls fall through.
         if radius < 0.4e-3 {
             let is_gone = matches!(rest.outcome, Outcome::Escaped { .. });
             assert!(is_gone, "{case}: {rest:?}");
             continue;
         }
-        // Much larger than the bed it rolls off, so far that the steps may not be enough.
+        // The ball is much larger than the bed and rolls off; the step limit may not suffice for this distance.
         if radius > 0.5 && rest.outcome != Outcome::AtRest {
             continue;
         }
         faults.extend(fault(&rest, mass * G).map(|fault| format!("{case}: {fault}")));
         if rest.n_saturated == 0 && rest.outcome == Outcome::AtRest {
             let error = lift(&skin, &ball, &rest.pose) / (mass * G) - 1.0;
-            // Of a kilometre only 1e-13 m are known.
+            // Coordinates of a kilometre have a resolution of 1e-13 m.
             let known = 1e-6 + 256.0 * 100.0 * 4.0 * f64::EPSILON * radius / (mass * G);
             assert!(error.abs() < known, "{case}: {error}");
         }

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 const RADIUS: f64 = 2e-3;
 const BALL: f64 = 20e-3;
-/// Where a ball touches a taxel right below it.
+/// Distance between the centres of a ball and the taxel right below it at first contact.
 const TOUCHING: f64 = RADIUS + BALL;
 
 fn taxel(damping: f64) -> Taxel {
@@ -33,7 +33,7 @@ fn skin(n: usize, taxel: Taxel) -> Patch {
     Patch::new("skin", Layout::grid(&grid).unwrap(), Taxels::Equal(taxel)).unwrap()
 }
 
-/// Taxels that a ball meets all at once: it lies there stably, free to move aside as it is for the balance.
+/// Returns a skin whose taxels a ball meets all at the same time. The ball lies stably on it, although the equilibrium solver lets it move sideways.
 fn bowl(n: usize, taxel: Taxel) -> Patch {
     let flat = skin(n, taxel);
     let raised = flat.layout().centers().iter().map(|center| {
@@ -64,7 +64,7 @@ fn free(mass: f64) -> Drive {
     }
 }
 
-/// A ball that stands far above for ever.
+/// Returns an imposed motion of a ball that stays far above the skin.
 fn far_away() -> Drive {
     Drive::Imposed(VelocityPlan::new(at(1.0), vec![]).unwrap())
 }
@@ -82,7 +82,7 @@ fn steps(dt: f64, n: usize) -> Steps<'static> {
     }
 }
 
-/// A state with one deflected taxel, at rest.
+/// Returns a state at rest with one deflected taxel.
 fn deflected(system: &System, deflection: f64) -> State {
     let mut state = State::start(system);
     state.deflection[0] = deflection;
@@ -96,7 +96,7 @@ fn both(state: &State) -> [Box<dyn Integrator>; 2] {
     ]
 }
 
-/// Where an integrator has a taxel after `time`, less `exact`.
+/// Returns the error of an integrator: its deflection of the first taxel after `time` minus `exact`.
 fn error_after(
     system: &System,
     start: &State,
@@ -115,7 +115,7 @@ fn error_after(
 fn free_relaxation_tends_to_the_closed_form_with_order_one() {
     let (m, c, time) = (1e-3, 0.3, 0.01);
     let (patch, ball) = (skin(1, taxel(c)), ball());
-    // The ball never comes.
+    // The ball never reaches the taxel.
     let system = System::new(&patch, m, &ball, at(1.0), far_away(), 1e-3).unwrap();
     let start = deflected(&system, 1e-3);
     let (decay, omega) = (c / (2.0 * m), (100.0 / m - (c / (2.0 * m)).powi(2)).sqrt());
@@ -131,7 +131,7 @@ fn free_relaxation_tends_to_the_closed_form_with_order_one() {
 
 #[test]
 fn the_step_response_under_a_weight_tends_to_the_closed_form_with_order_one() {
-    // Contact holds throughout: ball and taxel are one body of mass M + m on one spring, let go at its rest.
+    // Contact holds throughout: ball and taxel are one body of mass M + m on one spring, released at the spring's rest length.
     let (m, mass, c, time) = (1e-2, 0.02, 2.0, 0.02);
     let (patch, ball) = (skin(1, taxel(c)), ball());
     let system = system(&patch, &ball, m, free(mass));
@@ -145,7 +145,7 @@ fn the_step_response_under_a_weight_tends_to_the_closed_form_with_order_one() {
     let order = (error(1000) / error(2000)).log2();
     assert!((order - 1.0).abs() < 0.05, "{order}");
     assert!(error(2000) < 1e-3 * exact);
-    // A penalty is off by what it sinks in, too: the stiffer, the less.
+    // A penalty method also has an error due to penetration, which decreases with the contact stiffness.
     let penalty = |stiffness| {
         let mut integrator = SemiImplicit::new(&system, stiffness);
         run(&system, &mut integrator, &steps(time / 20_000.0, 20_000)).unwrap();
@@ -156,7 +156,7 @@ fn the_step_response_under_a_weight_tends_to_the_closed_form_with_order_one() {
 
 #[test]
 fn a_ball_on_its_guide_comes_to_the_rest_of_the_quasi_static_balance() {
-    // Critical for the ball: it is at rest soon.
+    // The damping is critical for the ball, so it comes to rest quickly.
     let (mass, n) = (0.02, 4);
     let c = 2.0 * f64::sqrt(100.0 * (mass / 16.0 + 1e-4));
     let (patch, ball) = (bowl(n, taxel(c)), ball());
@@ -181,7 +181,7 @@ fn a_ball_on_its_guide_comes_to_the_rest_of_the_quasi_static_balance() {
     let state = implicit.state(&system);
     assert!((state.travel - travel).abs() < 1e-9);
     assert!((state.support() / (mass * 9.81) - 1.0).abs() < 1e-9);
-    // The penalty's rest is deeper by what each contact sinks in.
+    // With penalty contact the rest position is deeper by the penetration of each contact.
     let kappa = 1e5;
     let mut explicit = SemiImplicit::new(&system, kappa);
     run(&system, &mut explicit, &steps(1e-5, 200_000)).unwrap();
@@ -216,7 +216,7 @@ fn implicit_euler_never_gains_energy_however_long_the_step() {
             let system = system(&patch, &ball, m, free(mass));
             for dt in [1e-6, 1e-4, 1e-2, 1.0, 100.0] {
                 let mut start = State::start(&system);
-                // It comes with a speed, and taxels swing.
+                // The object has an initial speed, and taxels oscillate.
                 start.speed = 1.0;
                 start.deflection[0] = 2e-3;
                 let mut before = start.energy(&system);
@@ -343,7 +343,7 @@ fn taxels_as_bodies_in_rapier_come_to_the_same_rest_where_masses_are_alike() {
     assert!((state.support() / (mass * 9.81) - 1.0).abs() < 1e-3);
 }
 
-/// Masses of a stack, from below, kg.
+/// Masses of a stack of balls, from below, kg.
 const STACK: [f64; 4] = [0.02, 0.05, 0.01, 0.03];
 
 #[test]
@@ -387,7 +387,7 @@ fn a_stack_comes_to_rest_with_its_whole_weight_on_the_skin_stops_or_none() {
         let implicit: Box<dyn Integrator> = Box::new(ImplicitEuler::new(&stack));
         let mut integrators = vec![(implicit, 1e-3, 1e-9)];
         if end.stops == 0.0 {
-            // On stops nothing damps balls on penalties: they ring for ever.
+            // On stops nothing damps balls with penalty contact, so they oscillate forever.
             let penalty = SemiImplicit::new(&stack, 1e6);
             integrators.push((Box::new(penalty), 2e-5, 3e-3));
         }
@@ -417,7 +417,7 @@ fn a_stack_with_gaps_is_thrown_up_and_falls_back_with_forces_that_only_push() {
     start.travel = 4e-3;
     start.deflection.fill(4e-3);
     for (number, rider) in start.riders.iter_mut().enumerate() {
-        // Some of them hang in the air.
+        // Some riders start without contact to the ball below.
         rider.travel = 4e-3 - 2e-3 * (number / 2) as f64;
     }
     let mut integrator = ImplicitEuler::from_state(start.clone());
@@ -434,7 +434,7 @@ fn a_stack_with_gaps_is_thrown_up_and_falls_back_with_forces_that_only_push() {
                 .collect()
         };
         let (old, new) = (bodies(&before), bodies(&now));
-        // From above: what each ball needs of the one below it.
+        // Force that each ball needs from the ball below, summed from above.
         let mut carried = 0.0;
         for number in (1..STACK.len()).rev() {
             carried += STACK[number] * (9.81 - (new[number].1 - old[number].1) / DT);

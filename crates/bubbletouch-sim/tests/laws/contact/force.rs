@@ -1,4 +1,4 @@
-//! Laws of touches to a force: against a slow bisection, the press at the travel that is found, and what cannot be reached.
+//! Laws of presses to a force: comparison with slow bisection and with a press to the travel found; errors for unreachable forces.
 
 use crate::random_scenes::Scene;
 use bubbletouch_sim::contact::{
@@ -15,7 +15,7 @@ use rand::Rng;
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, direction, rng};
 
-/// Spheres a few times as large as the stroke, or a mesh, turned at random somewhere over or beside a grid.
+/// Returns a scene of spheres a few times as large as the stroke, or a mesh, in a random orientation over or beside a grid.
 fn random_scene(name: &str, case: u64) -> (Scene, Vec<Pose>) {
     let mut rng = rng(name, case);
     let grid = Grid {
@@ -51,7 +51,7 @@ fn force_of(workspace: &Workspace) -> f64 {
     TAXEL.stiffness * workspace.deflections().iter().sum::<f64>()
 }
 
-/// A force that the scene can take, from next to nothing to that of a press three strokes deep; `None` where nothing is met.
+/// Returns a force that the scene can reach, from nearly zero to the force of a press three strokes deep; `None` if nothing is met.
 fn reachable_force(scene: &Scene, poses: &[Pose], case: u64) -> Option<f64> {
     let mut workspace = Workspace::new();
     let mut rng = rng("share", case);
@@ -209,7 +209,7 @@ fn what_cannot_be_reached_is_refused_with_the_largest_force() {
         "touch force: 4.5 N; up to 4.000000 N, where all 8 taxels that the object reaches are at their stroke, 5.129 mm past \
          first contact"
     );
-    // What all taxels take at their strokes can be reached, and no more.
+    // The force of all taxels at their strokes can be reached, but no larger force.
     let scene = ball_over(grid, 0.03);
     let all = press_to_force(
         &scene.patch,
@@ -222,7 +222,7 @@ fn what_cannot_be_reached_is_refused_with_the_largest_force() {
     assert_eq!(all.unwrap().n_touched, 8);
 }
 
-/// Meshes as one.
+/// Joins several meshes into one.
 fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {
     let (mut corners, mut faces) = (Vec::new(), Vec::new());
     for mesh in meshes {
@@ -239,7 +239,7 @@ fn joined(meshes: &[TriangleMesh]) -> TriangleMesh {
 
 #[test]
 fn no_part_passes_through_a_skin_on_the_way_to_a_force() {
-    // A small part in front of a large one: it is far behind the substrate before the large one touches.
+    // A small part in front of a large part: the small part is far behind the substrate before the large part touches.
     let grid = Grid {
         nx: 40,
         ny: 40,
@@ -292,7 +292,7 @@ fn no_part_passes_through_a_skin_on_the_way_to_a_force() {
             }
         }
         let skin = patch.clone();
-        // Afterwards the workspace presses where things are, as any other.
+        // Afterwards the workspace presses objects at their given poses like any other workspace.
         let behind = [Pose::from_translation(-0.3 * DVec3::Z)];
         assert_eq!(
             press_with_contacts(&skin, &scene.objects, &behind, &mut on_skin).n_touched,
@@ -301,7 +301,7 @@ fn no_part_passes_through_a_skin_on_the_way_to_a_force() {
     }
 }
 
-/// A skin, and a ball somewhere in front of it in the direction that comes with it.
+/// Returns a skin, and a ball in front of it in the returned direction of travel.
 fn random_way(case: u64) -> (Patch, Vec<Model>, Pose, DVec3) {
     let mut rng = rng("way", case);
     let layout = match case % 4 {
@@ -390,7 +390,7 @@ fn ways_that_miss_or_cannot_be_gone_are_told_apart() {
     };
     let here = Pose::IDENTITY;
     assert!(press(here, DVec3::X, 1.0).unwrap().is_none());
-    // The way comes from afar, wherever the patch is.
+    // The path starts far away, whatever the patch's position.
     let mut at = |travel: f64| press(Pose::from_translation(-travel * DVec3::Z), DVec3::Z, 1.0);
     let travels = [0.0, 0.071]
         .map(&mut at)

@@ -1,4 +1,4 @@
-//! Laws of friction on skins: the cone, dissipation, steps of any size, symmetry, and textbook slip.
+//! Laws of friction on skins: friction cone, dissipation, steps of any size, symmetry, and textbook solutions for slip.
 
 use bubbletouch_sim::contact::{
     Approach, ContactMode, ContactModeCounts, DamperState, FrictionLoad, FrictionState,
@@ -27,20 +27,20 @@ fn flat(n: usize, pitch: f64) -> Patch {
     Patch::grid(grid, TAXEL).unwrap()
 }
 
-/// A ball around its frame's origin.
+/// Creates a ball around the origin of its frame.
 fn ball(radius: f64) -> Model {
     let center = DVec3::ZERO;
     let spheres = vec![Sphere { center, radius }];
     SphereUnion::new(spheres).unwrap().into()
 }
 
-/// A box whose lower side is in the plane z = 0 of its frame.
+/// Creates a box whose lower side is in the plane z = 0 of its frame.
 fn block(size: DVec3) -> Model {
     let lifted = cuboid(0.5 * size).moved(&Pose::from_translation(0.5 * size.z * DVec3::Z));
     MeshModel::new(lifted).into()
 }
 
-/// A skin with a grip that objects move on.
+/// Test bench: a skin with friction on which objects move.
 struct Bench {
     skin: Patch,
     objects: Vec<Model>,
@@ -65,7 +65,7 @@ impl Bench {
             .step(&self.skin, contacts, poses, NormalForce::Springs)
     }
 
-    /// A step of one object to a place, not turned.
+    /// Moves one object to a place without rotation, in one step.
     fn slide_to(&mut self, place: DVec3) -> ContactModeCounts {
         self.step(&[Pose::from_translation(place)])
     }
@@ -80,7 +80,7 @@ impl Bench {
     }
 }
 
-/// A curved or flat skin, a ball and a box at random on it, and where they go from there in 12 steps.
+/// Returns a curved or flat skin with a ball and a box at random on it, and their poses over the next 12 steps.
 fn random_bench(name: &str, case: u64) -> (Bench, Vec<[Pose; 2]>) {
     let mut rng = rng(name, case);
     let layout = match case % 4 {
@@ -198,7 +198,7 @@ fn readings_of_all_taxels_add_up_to_what_the_objects_feel() {
 
 #[test]
 fn a_straight_way_in_one_step_is_the_same_in_many() {
-    // Not along what they are displaced before: a first leg aside.
+    // The path is not parallel to the initial displacement: a first step goes sideways.
     for (aside, along) in [(0.0, 1e-4), (0.9e-3, 2e-3), (2e-3, 1e-3), (1e-3, 20e-3)] {
         let place = |x: f64, y: f64| DVec3::new(x, y, -TAXEL.radius - 1e-3);
         let displacements = |n: u32| {
@@ -263,7 +263,7 @@ fn a_pressed_block_sticks_to_its_springs_and_then_slides_with_mu_n() {
         let textbook = (SHEAR.stiffness * n * way).min(SHEAR.friction * weight);
         assert!((drag.x - textbook).abs() < 1e-9, "{k}: {drag} {textbook}");
         assert!(drag.y.abs() < 1e-9 && drag.z.abs() < 1e-9);
-        // At the very edge either is right.
+        // Exactly at the onset of slip either result is valid.
         if k != 20 {
             assert_eq!(counts.n_slipping == 100, k > 20, "{k}: {counts:?}");
             assert_eq!(counts.n_sticking == 100, k < 20);
@@ -271,8 +271,8 @@ fn a_pressed_block_sticks_to_its_springs_and_then_slides_with_mu_n() {
     }
 }
 
-/// On a foundation of springs a ball's deflection is a paraboloid of depth d, and so is the reach u* (1 − r²/a²) of its tips,
-/// u* = μ k d / k_t: dragged by u < u*, `F = μ N (1 − (1 − u/u*)²)`, and the outer ring slips first.
+/// On a foundation of springs a ball's deflection is a paraboloid of depth d. The slip displacement is therefore u* (1 − r²/a²) at the distance r, with u* = μ
+/// k d / k_t. If the ball is dragged by u < u*, the force is `F = μ N (1 − (1 − u/u*)²)`, and the outer ring slips first.
 #[test]
 fn under_a_dragged_ball_the_outer_taxels_slip_first_and_the_force_is_the_textbooks() {
     let shear = Shear {
@@ -308,9 +308,9 @@ fn under_a_dragged_ball_the_outer_taxels_slip_first_and_the_force_is_the_textboo
         };
         let innermost_slip = from_middle(ContactMode::Slip).fold(f64::INFINITY, f64::min);
         let outermost_stick = from_middle(ContactMode::Stick).fold(0.0, f64::max);
-        // The ball's own way, a few micrometres, moves the ring by as much.
+        // The motion of the ball itself, a few micrometres, moves the ring by the same distance.
         assert!(outermost_stick < innermost_slip + 20e-6, "{k}");
-        // The deepest taxel's reach is the onset, to its distance from the ball's middle.
+        // The deepest taxel slips last, at the onset, up to its distance from the ball's middle.
         if k != 20 {
             assert_eq!(counts.n_sticking == 0, k > 20, "{k}: {counts:?}");
         }
@@ -322,7 +322,7 @@ fn on_closed_ways_friction_only_takes_energy() {
     let mut n_lossy = 0;
     for case in 0..60 {
         let (mut bench, mut way) = random_bench("energy", case);
-        // Without turns: what the object does is then one force along one motion.
+        // Without rotations, the work of an object is that of one force along one motion.
         let rotations = way[0].map(|pose| pose.rotation);
         for poses in &mut way {
             poses[0].rotation = rotations[0];
@@ -400,7 +400,7 @@ fn a_ball_that_rolls_drags_nothing_and_one_that_spins_in_place_neither() {
     let (radius, angle) = (0.03, 0.02_f64);
     let high = radius + TAXEL.radius - 1e-3;
     let mut bench = Bench::new(skin(), vec![ball(radius)], Shears::Equal(SHEAR));
-    // The taxel stays under the ball's middle from −angle/2 to angle/2, and the ball rolls on it.
+    // The taxel stays under the ball's middle from −angle/2 to angle/2 while the ball rolls on it.
     let rolled = |a: f64| Pose::new(DQuat::from_rotation_y(a), DVec3::new(radius * a, 0.0, high));
     bench.step(&[rolled(-0.5 * angle)]);
     bench.step(&[rolled(0.5 * angle)]);
@@ -410,7 +410,7 @@ fn a_ball_that_rolls_drags_nothing_and_one_that_spins_in_place_neither() {
     bench.slide_to(high * DVec3::Z);
     bench.step(&[Pose::new(DQuat::from_rotation_z(1.0), high * DVec3::Z)]);
     assert!(bench.state.displacement(0).length() < 1e-15);
-    // A taxel beside the pivot of a plate is dragged along the tangent, neither inwards nor outwards.
+    // A plate that rotates about a pivot drags a taxel beside the pivot along the tangent, neither inwards nor outwards.
     let layout = Layout::new(vec![5e-3 * DVec3::X], vec![DVec3::Z]).unwrap();
     let skin = Patch::new("beside", layout, Taxels::Equal(TAXEL)).unwrap();
     let plate = vec![block(DVec3::new(0.1, 0.1, 0.01))];

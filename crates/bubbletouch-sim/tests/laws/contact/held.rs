@@ -1,4 +1,4 @@
-//! Laws of free objects on a skin with friction: its tips hold them inside of Coulomb's cone, and no further.
+//! Laws of free objects on a skin with friction: friction holds them inside Coulomb's cone, and no further.
 
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Ground, Outcome, PlacedSkin, TangentialSpring,
@@ -15,7 +15,7 @@ const G: f64 = 9.81;
 const MASS: f64 = 0.15;
 const STIFFNESS: f64 = 120.0;
 
-/// 24 × 24 taxels, 2 mm apart.
+/// Creates a bed of 24 × 24 taxels, 2 mm apart.
 fn bed() -> Patch {
     let taxel = Taxel {
         radius: 1e-3,
@@ -31,7 +31,7 @@ fn bed() -> Patch {
     Patch::grid(grid, taxel).unwrap()
 }
 
-/// A plate of 5 × 5 spheres, 24 mm wide, which cannot roll.
+/// Creates a plate of 5 × 5 spheres, 24 mm wide, which cannot roll.
 fn plate() -> SphereUnion {
     let spheres = (0..25).map(|k| Sphere {
         center: DVec3::new(
@@ -44,12 +44,12 @@ fn plate() -> SphereUnion {
     SphereUnion::new(spheres.collect()).unwrap()
 }
 
-/// Gravity on a bed that is tilted by `angle` about y.
+/// Returns the gravity on a bed that is tilted by `angle` about y.
 fn gravity(angle: f64) -> DVec3 {
     G * DVec3::new(angle.sin(), 0.0, -angle.cos())
 }
 
-/// A plate on a bed, step by step.
+/// Plate on a bed, advanced step by step.
 struct Held {
     patch: Patch,
     union: SphereUnion,
@@ -59,12 +59,12 @@ struct Held {
     friction: FrictionState,
     world_from_patch: Pose,
     balance: Equilibrium,
-    /// Those that the last step began with.
+    /// Tangential springs at the beginning of the last step.
     tips: Vec<TangentialSpring>,
 }
 
 impl Held {
-    /// At rest on a level bed.
+    /// Creates the plate at rest on a level bed.
     fn new(shear: Shear) -> Self {
         let (patch, union) = (bed(), plate());
         let object = FreeObject::new(&union, MASS, DVec3::ZERO).unwrap();
@@ -114,7 +114,7 @@ impl Held {
         self.balance.outcome
     }
 
-    /// Of the taxels and of their friction on the plate, in the patch frame: what balances its weight, and torques about its centre of mass.
+    /// Asserts that the forces of taxels and friction on the plate (patch frame) balance its weight and have no torque about its centre of mass.
     fn assert_balanced(&self, gravity: DVec3, case: &str) {
         let pose = self.balance.pose.seen_from(&self.world_from_patch);
         let normal = self.balancer.loads().iter().map(|load| load.on_object);
@@ -136,7 +136,7 @@ impl Held {
         );
         assert!(torque.length() <= 1e-6 * size * 0.02, "{case}: {torque}");
         assert!(self.balance.imbalance <= 1e-6, "{case}");
-        // No tip carries more than the cone of what presses it in.
+        // No tangential force exceeds the friction cone of the taxel's normal force.
         for contact in self.workspace.contacts() {
             let carried = self.friction.friction(contact.taxel).length();
             let shear = self.friction.shears().at(contact.taxel);
@@ -146,7 +146,7 @@ impl Held {
     }
 }
 
-/// Up to which a plate stays where it is, in steps of half a degree.
+/// Returns the angle, in steps of half a degree, at which a plate starts to slide without friction.
 fn angle_without_friction() -> f64 {
     let mut held = Held::new(Shear {
         stiffness: 100.0,
@@ -173,18 +173,18 @@ fn a_plate_sticks_below_the_angle_of_friction_and_leaves_above() {
             let case = format!("μ {friction} at {angle} of {most}");
             assert_eq!(held.step(gravity(angle)), Outcome::AtRest, "{case}");
             held.assert_balanced(gravity(angle), &case);
-            // The springs across and along the axes give way by millimetres at the most.
+            // The springs across and along the axes yield by a few millimetres at most.
             let way = held.balance.pose.translation - start;
             assert!(way.length() < 2e-3, "{case}: {way}");
         }
-        // What flanks of taxels between its spheres hold besides, they hold without friction, too.
+        // The flanks of taxels between the spheres also hold the plate without friction.
         let alone = f64::tan(angle_without_friction());
         let outcome = held.step(gravity(f64::atan(1.05 * (friction + alone))));
         assert!(matches!(outcome, Outcome::Escaped { .. }), "{outcome:?}");
     }
 }
 
-/// Level force: shear springs side by side carry it, as long as all stick.
+/// A horizontal force is carried by all shear springs in parallel, as long as all taxels stick.
 #[test]
 fn a_plate_that_is_drawn_a_little_goes_as_far_as_its_shear_springs_say() {
     let stiffness = 80.0;
@@ -198,7 +198,7 @@ fn a_plate_that_is_drawn_a_little_goes_as_far_as_its_shear_springs_say() {
     let n = held.tips.len() as f64;
     let way = held.balance.pose.translation - start.translation;
     let pull = MASS * G * angle.sin();
-    // What the flanks of the taxels carry of it is the slope's own.
+    // Part of the pull that the flanks of the taxels carry without friction.
     let of_flanks: f64 = held
         .balancer
         .loads()
@@ -214,7 +214,7 @@ fn a_plate_that_is_drawn_a_little_goes_as_far_as_its_shear_springs_say() {
     assert!((of_tips - of_flanks - pull).abs() < 1e-6 * MASS * G);
     let (_, turn) = (start.rotation.conjugate() * held.balance.pose.rotation).to_axis_angle();
     let expected = (pull + of_flanks) / (n * stiffness);
-    // Turning moves the points, which lie 4 mm below the centre.
+    // Rotation moves the contact points, which lie 4 mm below the centre.
     assert!(
         (way.x - expected).abs() <= 5e-3 * turn + 1e-9,
         "{way} {expected} {turn}"
@@ -233,7 +233,7 @@ fn a_skin_that_moves_takes_along_what_lies_on_it() {
         stiffness: 100.0,
         friction: 0.5,
     });
-    // Where what is left of the first rest has died down.
+    // This step removes the remaining motion of the first solution.
     held.step(gravity(0.0));
     let on_patch = held.balance.pose;
     let turn = DQuat::from_axis_angle(DVec3::Z, 0.01);
@@ -274,7 +274,7 @@ fn no_friction_is_none_to_the_bit() {
     assert_eq!(held.balance, free);
 }
 
-/// With the cones of the rest held fixed, no small motion lowers the energy.
+/// With the friction cones of the solution held fixed, no small motion lowers the energy.
 #[test]
 fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
     let friction = 0.4;
@@ -284,7 +284,7 @@ fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
     });
     let mut n_slipped = 0;
     for k in 1..=9 {
-        // Near its end some slip already, since the foot turns.
+        // Near the limit some taxels already slip, since the foot rotates.
         let angle = 0.11 * f64::from(k) * f64::atan(friction);
         assert_eq!(held.step(gravity(angle)), Outcome::AtRest);
         n_slipped += held
@@ -333,7 +333,7 @@ fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
                     DQuat::from_scaled_axis(turn) * rest.rotation,
                     rest.translation + shift,
                 );
-                // What the imbalance that is promised may gain.
+                // Energy that the accepted imbalance may gain.
                 let allowed = 1e-6 * MASS * G * 4.0 * size;
                 assert!(energy(&moved) >= least - allowed, "{angle} {size}");
             }
@@ -344,7 +344,7 @@ fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
     assert!(!held.tips.iter().all(still));
 }
 
-/// Two lumps of spheres side by side on a bed that tilts and turns, by whatever taxels they share.
+/// Two clusters of spheres lie side by side on a bed that tilts and turns, and share taxels.
 #[test]
 fn lumps_that_share_taxels_are_held_together() {
     let patch = bed();
@@ -355,7 +355,7 @@ fn lumps_that_share_taxels_are_held_together() {
             DVec3::from_array(std::array::from_fn(|_| rng.gen_range(-size..size)))
         };
         let unions = [0, 1].map(|_| {
-            // Each on four feet.
+            // Each cluster has four feet.
             let feet = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
             let spheres = feet.map(|(x, y)| Sphere {
                 center: 5e-3 * DVec3::new(x, y, 0.0) + random(8e-4),

@@ -1,4 +1,4 @@
-//! Laws of the contact stage, checked against a slow, obvious oracle.
+//! Laws of the contact stage, checked against a slow and simple oracle.
 
 use crate::random_scenes::Scene;
 use crate::scans::scan;
@@ -49,8 +49,8 @@ fn random_pose(rng: &mut ChaCha8Rng, distance: f64) -> Pose {
     )
 }
 
-/// Every sphere against every taxel, straight from the equations of the contact stage's title page; those on which the taxel would rest lower
-/// than `behind` do not count.
+/// Compares every sphere with every taxel, using the equations in the documentation of the contact module. A sphere does not count for a taxel that would rest
+/// on it lower than `behind`.
 fn oracle(scene: &Scene, poses: &[Pose], travel: f64, behind: f64) -> Vec<f64> {
     let (grid, taxel) = scene.grid();
     let mut deflections = vec![0.0_f64; grid.n_taxels()];
@@ -170,7 +170,7 @@ fn the_direct_press_equals_the_time_loop_without_a_damper_however_deep() {
         for pose in &mut poses {
             pose.translation.z += 0.1;
         }
-        // Steps of at most 1 mm, to where all is in front and to where all is behind the substrate.
+        // Steps of at most 1 mm, to a pose in front of the substrate and to a pose behind it.
         let speed = rng.gen_range(0.01..1.0);
         let approach = Phase {
             duration: 0.3,
@@ -221,7 +221,7 @@ fn what_comes_up_from_behind_or_around_the_patch_does_not_press_in_the_time_loop
         linear,
         angular: DVec3::ZERO,
     };
-    // Through the skin, 50 mm beyond it, out to its side, and back under it.
+    // Path through the skin, 50 mm beyond it, out to its side, and back under it.
     let way = [go(-DVec3::Z), go(DVec3::X), go(-DVec3::X)];
     let start = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     let plan = VelocityPlan::new(start, way.to_vec()).unwrap();
@@ -231,7 +231,7 @@ fn what_comes_up_from_behind_or_around_the_patch_does_not_press_in_the_time_loop
     assert_eq!(reads(99), 25.0 * TAXEL.stroke, "gone through");
     assert_eq!(reads(199), 0.0, "beside");
     assert_eq!(reads(299), 0.0, "under it again");
-    // Its top comes to 1 mm behind the substrate.
+    // The top of the object is 1 mm behind the substrate.
     let below = Pose::from_translation(DVec3::new(0.0, 0.0, -0.05));
     let up = VelocityPlan::new(below, vec![go(0.32 * DVec3::Z)]).unwrap();
     let recording = simulate(&scene.patch, &scene.objects, &still, &[up], 1e-3, 100).unwrap();
@@ -312,12 +312,13 @@ fn saturation_is_counted_and_stops_at_the_stroke() {
     assert!(workspace.deflections().iter().all(|&d| d == TAXEL.stroke));
 }
 
-/// Depths from nothing to 200 mm, metres.
+/// Depths of presses, metres, from nearly zero to 200 mm.
 const DEPTHS: [f64; 12] = [
     0.0, 1e-4, 1e-3, 3e-3, 5e-3, 8e-3, 12e-3, 0.02, 0.03, 0.06, 0.12, 0.2,
 ];
 
-/// The object lies as it is modelled; a coarse patch over its middle is pressed deeper and deeper, slightly tilted.
+/// Tests that the deflections never decrease with the depth. The object lies as modelled; a coarse, slightly tilted patch over its middle is pressed deeper and
+/// deeper.
 fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
     let grid = Grid {
         nx: 24,
@@ -347,7 +348,7 @@ fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
         if depth > TAXEL.stroke {
             assert!(contact.n_saturated > 0, "{name}: {depth} m deep");
         }
-        // Slow: only short of the stroke, past it, and at the end.
+        // The oracle is slow, so it is used only short of the stroke, past the stroke, and at the end.
         if model.spheres().is_some() && [3e-3, 0.02, 0.2].contains(&depth) {
             let expected = oracle(&scene, &[pose], contact.travel, f64::NEG_INFINITY);
             assert_close(now, &expected, 1e-12, name);
@@ -356,7 +357,7 @@ fn deeper_is_never_less(name: &str, model: &Model, workspace: &mut Workspace) {
         before.copy_from_slice(now);
     }
     if rest.height < 0.15 {
-        // It has gone through the skin as a whole.
+        // The whole object has passed through the skin.
         assert_eq!(n_touched, n_saturated, "{name}");
     }
 }
@@ -416,7 +417,7 @@ fn a_ball_leaves_taxel_by_taxel_on_its_way_through_the_substrate() {
         let pose = [Pose::IDENTITY];
         press_at_pose(&scene.patch, &scene.objects, &pose, &mut workspace)
     };
-    // S = 21 mm: over the middle, over the sides and over the corners the substrate leaves it at three heights.
+    // With S = 21 mm, the substrate leaves the sphere at three heights: over the middle, the sides and the corners.
     let leaves = |b: f64| -0.006 - (0.021_f64.powi(2) - b * b).sqrt();
     let heights = [2e-3 * 2_f64.sqrt(), 2e-3, 0.0].map(leaves);
     for (height, n_left) in heights.into_iter().zip([9, 5, 1]) {

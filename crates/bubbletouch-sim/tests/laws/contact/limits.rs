@@ -1,4 +1,4 @@
-//! Where contact could break: sizes, places and steps at their ends. Each case has the behaviour that `guide::limits` states.
+//! Limits of contact: extreme sizes, positions and steps. Each case has the behaviour that the guide's page on limits states.
 
 use crate::double_double::Double;
 use crate::random_scenes::{Scene, TAXEL, direction, random_pose, rng};
@@ -33,7 +33,7 @@ fn scene(object: SphereUnion) -> Scene {
     }
 }
 
-/// √(S² − b²) − h in twice the digits, of the numbers as they are; none where b ≥ S.
+/// Returns √(S² − b²) − h, computed with twice the digits of f64 from the exact inputs; `None` if b ≥ S.
 fn exactly_needed(taxel: DVec3, radius: f64, sphere: &Sphere) -> Option<f64> {
     let [dx, dy, height] = [0, 1, 2].map(|k| Double::from(sphere.center[k]) - taxel[k].into());
     let reach = Double::from(radius) + sphere.radius.into();
@@ -51,7 +51,7 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_th
         let size = rng.gen_range(-6.0..3.0);
         let radius = 10f64.powf(size);
         let reach = radius + TAXEL.radius;
-        // Anywhere on the sphere above a random taxel, and as deep as the stroke or less.
+        // The contact is anywhere on the sphere above a random taxel, at most as deep as the stroke.
         let (x, y) = (rng.gen_range(-8e-3..8e-3), rng.gen_range(-6e-3..6e-3));
         let beside = direction(&mut rng) * rng.gen_range(0.0..0.9) * reach;
         let height = (reach * reach - beside.truncate().length_squared()).sqrt();
@@ -69,7 +69,7 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_th
         press_with_contacts(&skin, &scene.objects, &[Pose::IDENTITY], &mut of_skin);
         for (taxel, &place) in skin.layout().centers().iter().enumerate() {
             let exact = exactly_needed(place, TAXEL.radius, &of_object).unwrap_or(0.0);
-            // A last bit of S², seen along the flank: √(S² − b²) = δ + h.
+            // Change of √(S² − b²) = δ + h due to the last bit of S².
             let up = (exact + center.z - place.z).max(1e-7 * reach);
             let rounding = 4.0 * f64::EPSILON * (reach * reach / up + center.length());
             let exact = exact.clamp(0.0, TAXEL.stroke);
@@ -88,7 +88,7 @@ fn spheres_from_a_micrometre_to_a_kilometre_press_right_to_the_last_digits_of_th
 
 #[test]
 fn a_million_metres_from_the_origin_a_press_is_the_same_to_the_bit() {
-    // The same numbers a million metres away: multiples of 2⁻³⁰ m, so that their places there are exact, too.
+    // A copy of the scene a million metres away. Coordinates are multiples of 2⁻³⁰ m, so that they are also exact there.
     let exact = |v: DVec3| (v * 2f64.powi(30)).round() / 2f64.powi(30);
     let still = |pose: Pose| VelocityPlan::new(pose, Vec::new()).unwrap();
     for case in 0..200 {
@@ -122,7 +122,7 @@ fn a_million_metres_from_the_origin_a_press_is_the_same_to_the_bit() {
 
 #[test]
 fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
-    // Objects that jump: each instant is looked at alone, what the damper remembers apart.
+    // Objects that jump: each frame is independent, except for the memory of the damper.
     let taxel = Taxel {
         damping: 0.3,
         ..TAXEL
@@ -138,7 +138,7 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
     for case in 0..3000 {
         let mut rng = rng("jumps", case);
         let dt = 10f64.powf(rng.gen_range(-9.0..6.0));
-        // From far above the skin to far below it: twelve strokes either way.
+        // Heights from far above the skin to far below it: twelve strokes in either direction.
         let height = rng.gen_range(-0.06..0.06);
         let place = DVec3::new(
             rng.gen_range(-8e-3..8e-3),
@@ -162,7 +162,7 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
                 center: place,
                 radius: 1e-2,
             };
-            // Its top is as far above its middle as the bottom is below.
+            // The top of the sphere is as far above its middle as the bottom is below.
             let is_ahead = |needed: &f64| needed + 2.0 * height >= behind;
             let needed = exactly_needed(at, taxel.radius, &moved).filter(is_ahead);
             let pushed = needed.unwrap_or(0.0).clamp(0.0, taxel.stroke);
@@ -179,7 +179,7 @@ fn a_step_of_any_length_takes_the_damper_where_the_closed_form_says() {
 #[test]
 fn what_jumps_through_the_skin_between_two_frames_is_not_felt_and_what_is_seen_to_go_through_stays_felt()
  {
-    // 0.1 m/s over steps of 1 s: from 50 mm above to 50 mm below. Steps of 10 ms feel it.
+    // Speed 0.1 m/s with steps of 1 s: from 50 mm above to 50 mm below in one step. Steps of 10 ms detect the contact.
     let fast = Phase {
         duration: 10.0,
         linear: DVec3::new(0.0, 0.0, -0.1),
@@ -222,7 +222,7 @@ fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
     let mut workspace = Workspace::new();
     for thickness in [1e-6, 1e-5, 1e-4, 1e-3] {
         let radius = 0.5 * thickness;
-        // Spheres in a row that stands up, 20 mm high.
+        // Spheres in a vertical row, 20 mm high.
         let along = |k: usize| DVec3::new(0.0, 0.0, 20e-3 * k as f64 / 400.0);
         let needle = (0..=400).map(|k| Sphere {
             center: along(k),
@@ -239,7 +239,7 @@ fn a_thin_needle_or_sheet_presses_as_deep_as_any() {
         .unwrap();
         let middle = workspace.deflections()[GRID.n_taxels() / 2];
         assert!((middle - 2e-3).abs() < 1e-15, "{thickness} m: {middle}");
-        // Pressed past the stroke its tip is behind the substrate, the rest of it is not: still saturated.
+        // If the patch is pressed past the stroke, the end of the object is behind the substrate and the rest is not; the taxel is still saturated.
         let deep = press_to_depth(
             &scene.patch,
             &scene.objects,
@@ -276,7 +276,7 @@ fn a_saturated_skin_is_counted_and_refuses_more_force_than_its_springs_have() {
         for share in [1e-9, 0.3, 0.999, 1.0] {
             press(share * all, &mut workspace).unwrap().unwrap();
             let carried: f64 = workspace.deflections().iter().sum::<f64>() * TAXEL.stiffness;
-            // What a last bit of the object's height is to all springs.
+            // Change of the total spring force due to the last bits of the object's height.
             let known = n as f64 * TAXEL.stiffness * 8.0 * f64::EPSILON * radius;
             let error = (carried - share * all).abs();
             assert!(
@@ -319,7 +319,7 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
         let mut rng = rng("grazing", case);
         let radius = 10f64.powf(rng.gen_range(-4.0..1.0));
         let reach = radius + TAXEL.radius;
-        // cos of the contact normal from 1e-8 to 1.
+        // Cosine of the contact normal, from 1e-8 to 1.
         let cosine = 10f64.powf(rng.gen_range(-8.0..0.0));
         let beside = reach * (1.0 - cosine * cosine).sqrt();
         let deflection = rng.gen_range(1e-6..TAXEL.stroke);
@@ -329,7 +329,7 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
         }
         let flank = Model::from(sphere(DVec3::new(beside, 0.0, height), radius));
         press_with_contacts(&skin, &[flank], &[Pose::IDENTITY], &mut workspace);
-        // Rounding may take the shallowest flanks out of reach altogether.
+        // Rounding may move the shallowest flanks out of reach entirely.
         let [contact] = workspace.contacts() else {
             assert!(cosine < 1e-7, "case {case}: {cosine}");
             continue;
@@ -341,7 +341,7 @@ fn grazing_flanks_push_with_a_bounded_force_and_are_counted() {
             "case {case}"
         );
         if cosine > 1.1 * GRAZING {
-            // F = f n_c / (n_c·n): along the axis it is the spring's.
+            // The force F = f n_c / (n_c·n) equals the spring force along the axis.
             assert!((push.z / force - 1.0).abs() < 1e-9, "case {case}: {push}");
         }
         assert_eq!(contact.is_grazing(), contact.cosine < GRAZING);

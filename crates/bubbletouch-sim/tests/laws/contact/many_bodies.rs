@@ -1,4 +1,4 @@
-//! Laws of several free objects at once: all forces balance, by geometry alone, and nothing enters anything.
+//! Laws of several free objects: all forces balance, as computed from the geometry alone, and no object penetrates a rigid one.
 
 use crate::{reference_data, scans};
 use bubbletouch_sim::contact::GRAZING;
@@ -19,21 +19,21 @@ use std::collections::BTreeMap;
 
 const G: f64 = 9.81;
 const DOWN: DVec3 = DVec3::new(0.0, 0.0, -G);
-/// What the largest imbalance may be, as a share of a weight.
+/// Largest allowed imbalance, relative to a weight.
 const BALANCED: f64 = 1e-6;
-/// What may be inside of what is rigid, metres.
+/// Largest allowed penetration of rigid objects, metres.
 const INSIDE: f64 = 1e-9;
 
 const NO_FAULTS: [&str; 0] = [];
 
-/// An object that is free.
+/// Free object: its shape, mass and centre of mass.
 #[derive(Clone, Copy)]
 struct Free<'a> {
     union: &'a SphereUnion,
     mass: f64,
-    /// Of mass, in its own frame.
+    /// Centre of mass in the object's own frame, metres.
     center: DVec3,
-    /// From there to its farthest point.
+    /// Distance from the centre of mass to the object's farthest point, metres.
     reach: f64,
 }
 
@@ -53,7 +53,7 @@ impl<'a> Free<'a> {
     }
 }
 
-/// A scene as it ended.
+/// Scene after the solver has finished.
 struct Rest<'a> {
     ground: Ground<'a>,
     objects: Vec<Free<'a>>,
@@ -76,7 +76,7 @@ fn equilibrium<'a>(ground: Ground<'a>, objects: &[Free<'a>], starts: &[Pose]) ->
     }
 }
 
-/// Of an object, by numbers.
+/// Part of an object or a skin, by two indices.
 type Part = (usize, usize);
 
 impl Rest<'_> {
@@ -103,9 +103,8 @@ impl Rest<'_> {
             .sum()
     }
 
-    /// How far a sphere needs a taxel to be in, straight from the formula, metres, on a grazing flank along its tangent; and what a newton along
-    /// the axis is on the sphere. `None` behind the
-    /// substrate, and past where the stop would hold it: there it is only if it has come from behind.
+    /// Returns the deflection that a sphere needs of a taxel, computed from the formula (on a grazing flank, along its tangent), metres. Also returns the force
+    /// on the sphere per newton along the axis. Returns `None` if the sphere is behind the substrate, or beyond the stop, which it can reach only from behind.
     fn needed(&self, (skin, taxel): Part, sphere: &Sphere) -> Option<(f64, DVec3)> {
         let skin = &self.ground.skins[skin];
         let layout = skin.patch.layout();
@@ -132,7 +131,7 @@ impl Rest<'_> {
         (!is_behind).then_some((needed, way))
     }
 
-    /// All pairs of a taxel and a sphere that touch, or would after a motion of `margin` metres.
+    /// Returns all pairs of a taxel and a sphere that touch, or would touch after a motion of `margin` metres.
     fn near(&self, margin: f64) -> BTreeMap<Part, Vec<Part>> {
         let poses = self.poses();
         let mut near: BTreeMap<Part, Vec<Part>> = BTreeMap::new();
@@ -162,7 +161,7 @@ impl Rest<'_> {
         near
     }
 
-    /// All pairs of spheres of different objects, or of an object and what is rigid, that are nearer than so.
+    /// Returns all pairs of spheres of different objects, or of an object and a rigid obstacle, that are nearer than `margin`, metres.
     fn rigid_pairs(&self, margin: f64) -> Vec<(Part, Touched)> {
         let poses = self.poses();
         let mut pairs = Vec::new();
@@ -198,7 +197,7 @@ impl Rest<'_> {
         pairs
     }
 
-    /// How far a sphere is from something rigid, metres.
+    /// Returns the distance of a sphere from a rigid counterpart, metres.
     fn gap(&self, sphere: &Sphere, touched: &Touched, poses: &[Pose]) -> f64 {
         let other = match *touched {
             Touched::Plane(plane) => {
@@ -216,7 +215,7 @@ impl Rest<'_> {
         sphere.center.distance(other.center) - sphere.radius - other.radius
     }
 
-    /// Everything that is not as a scene at rest must be.
+    /// Returns all violations of the conditions of a scene at rest.
     fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         let mut on_object = vec![[DVec3::ZERO; 2]; self.objects.len()];
@@ -249,7 +248,7 @@ impl Rest<'_> {
         faults
     }
 
-    /// The forces of taxels are those of their springs where the spheres are; stops are met, and shared taxels touch all that share them.
+    /// Checks the taxels: forces equal the spring forces at these poses, stops are reached, and spheres that share a taxel all touch it.
     fn check_taxels(&self, poses: &[Pose], on_object: &mut [[DVec3; 2]], faults: &mut Vec<String>) {
         let near = self.near(0.0);
         let loads = self.balancer.loads();
@@ -308,7 +307,7 @@ impl Rest<'_> {
         }
     }
 
-    /// What is rigid pushes, where it is met, and nothing enters it.
+    /// Checks the rigid contacts: forces only push and act where the objects touch, and nothing penetrates.
     fn check_touches(
         &self,
         poses: &[Pose],
@@ -353,8 +352,8 @@ impl Rest<'_> {
         }
     }
 
-    /// None of `n` small motions of all objects may lower what springs and heights hold. What enters something rigid costs more than it can
-    /// gain.
+    /// Checks that none of `n` small motions of all objects lowers the energy of springs and heights. Penetration of a rigid object costs more energy than it
+    /// can gain.
     fn try_motions(&self, n: usize, case: u64, faults: &mut Vec<String>) {
         const LONGEST: f64 = 1e-4;
         let near = self.near(LONGEST);
@@ -415,7 +414,7 @@ impl Rest<'_> {
     }
 }
 
-/// Taxels on the inside of a ball, about its lowest point at the origin; they point to its middle.
+/// Creates taxels on the inside of a ball, around its lowest point at the origin; their axes point to the ball's middle.
 fn bowl(radius: f64, half_angle: f64, pitch: f64, taxel: Taxel) -> Patch {
     let n_rings = (radius * half_angle / pitch) as usize;
     let (mut centers, mut axes) = (Vec::new(), Vec::new());
@@ -442,7 +441,7 @@ fn taxel(stiffness: f64) -> Taxel {
     }
 }
 
-/// n × n taxels, 2 mm apart.
+/// Creates a bed of n × n taxels, 2 mm apart.
 fn bed(n: usize, stiffness: f64) -> Patch {
     let grid = Grid {
         nx: n,
@@ -462,7 +461,7 @@ fn ball(radius: f64) -> SphereUnion {
     SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
 }
 
-/// Scanned objects, packed to a millimetre and a half; none without the scans.
+/// Returns scanned objects, packed to 1.5 mm; none if the scans are missing.
 fn scanned() -> Vec<SphereUnion> {
     let Some(folder) = reference_data::folder("BUBBLETOUCH_YCB") else {
         return Vec::new();
@@ -482,7 +481,7 @@ fn scanned() -> Vec<SphereUnion> {
     packed.collect()
 }
 
-/// Skins to rest on: two bowls, soft and stiff, and a bed that ends.
+/// Returns skins to rest on: two bowls, soft and stiff, and a bed with edges.
 fn skins() -> [Patch; 3] {
     let [soft, stiff] = [30.0, 300.0].map(|stiffness| bowl(0.12, 1.0, 6e-3, taxel(stiffness)));
     let grid = Grid {
@@ -494,8 +493,8 @@ fn skins() -> [Patch; 3] {
     [soft, stiff, bed.clone()]
 }
 
-/// Two to eight objects one above the other over a skin, half of them balls and half scans (all balls without the scans): in every second scene beside the skin, too, and
-/// with a table below it, level or not. What is wrong when they rest, how many are there, and have left.
+/// Solves a random scene of two to eight objects above a skin, half of them balls and half scans (all balls if there are no scans). Every second scene also has
+/// objects beside the skin and a table below, level or tilted. Returns the violations, and the numbers of objects that are at rest and that have left.
 fn random_scene(case: u64, scans: &[SphereUnion], skins: &[Patch]) -> (Vec<String>, [usize; 2]) {
     let mut rng = Seed::new(case).named("many bodies").rng();
     let mut random = |a: f64, b: f64| rng.gen_range(a..b);
@@ -523,7 +522,7 @@ fn random_scene(case: u64, scans: &[SphereUnion], skins: &[Patch]) -> (Vec<Strin
     let slope = if case % 4 == 1 { 0.02 } else { 0.0 };
     let table = [HalfSpace {
         normal: DVec3::new(random(-slope, slope + 1e-9), slope, 1.0).normalize(),
-        // So low beside a bowl that nothing on it is behind its taxels.
+        // The table is so low beside a bowl that no object on it is behind the taxels.
         height: random(-0.02, 0.0) - if is_bowl && is_wide { 0.2 } else { 0.0 },
     }];
     let ground = Ground {
@@ -543,7 +542,7 @@ fn random_scene(case: u64, scans: &[SphereUnion], skins: &[Patch]) -> (Vec<Strin
     (faults.collect(), [n_there, n - n_there])
 }
 
-/// Of these scenes all objects are at rest or have left, but for at most so many.
+/// Asserts that all objects of these scenes are at rest or have left, except in at most `n_others` scenes.
 fn all_settle_or_leave(cases: std::ops::Range<u64>, n_others: usize) {
     let (scans, skins) = (scanned(), skins());
     let all = cases.into_par_iter();
@@ -561,8 +560,8 @@ fn random_scenes_of_several_objects_settle_or_leave() {
     all_settle_or_leave(0..24, 0);
 }
 
-/// But for those that find no rest and say so, and those where a small sphere of a scan came through between taxels: it counts as behind
-/// their substrate until it is out again, which the oracle knows only of spheres farther back.
+/// Exceptions are scenes in which the solver reports no convergence, and scenes in which a small sphere of a scan slipped between taxels. Such a sphere counts
+/// as behind the substrate until it is out again, but the oracle recognises only spheres farther back.
 #[test]
 #[ignore = "takes seven minutes"]
 fn a_thousand_random_scenes_of_several_objects_settle_or_leave() {
@@ -637,7 +636,7 @@ fn stacks_of_two_and_four_balls_come_down_between_walls_and_in_a_bowl_and_the_sk
 
 #[test]
 fn what_has_no_room_is_said_not_to_rest_and_what_does_not_touch_it_rests() {
-    // A table, and a ceiling 30 mm above it.
+    // The planes are a table, and a ceiling 30 mm above it.
     let planes = [(DVec3::Z, 0.0), (DVec3::NEG_Z, -0.03)];
     let planes = planes.map(|(normal, height)| HalfSpace { normal, height });
     let ground = Ground {
@@ -686,7 +685,7 @@ fn what_slides_on_a_slope_escapes_down_it_and_what_lies_in_a_gutter_of_planes_st
 
 #[test]
 fn a_pyramid_of_balls_stands_in_a_corner_of_planes_and_says_what_each_touch_carries() {
-    // Three balls on a table, held together by three walls, carry a fourth: by statics each touch at its top carries W / (3 cos).
+    // Three balls on a table, held together by three walls, carry a fourth ball. By statics the load of each upper contact is W / (3 cos).
     let radius: f64 = 0.02;
     let unions = [ball(radius)];
     let side = |k: usize| DQuat::from_rotation_z(std::f64::consts::TAU * k as f64 / 3.0) * DVec3::X;

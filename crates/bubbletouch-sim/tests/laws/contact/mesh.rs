@@ -1,4 +1,4 @@
-//! Laws of contact with a mesh: one taxel and one triangle against a search, a patch against every triangle, closed forms.
+//! Laws of contact with a mesh: one taxel and one triangle against a search, a patch against every triangle, and closed forms.
 
 use crate::random_scenes::Scene;
 use bubbletouch_sim::contact::{
@@ -15,7 +15,7 @@ use rand::Rng;
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
 
-/// Size 1: of any shape, or thin, or in line, or a point, or upright, or flat, or with an upright edge.
+/// Returns a triangle of size 1: arbitrary, thin, collinear, a point, vertical, horizontal, or with a vertical edge.
 fn odd_triangle(rng: &mut impl Rng, kind: u64) -> Triangle {
     let [a, mut b, mut c] = [0; 3].map(|_| direction(rng) * rng.gen_range(0.1..1.0));
     match kind % 8 {
@@ -30,8 +30,8 @@ fn odd_triangle(rng: &mut impl Rng, kind: u64) -> Triangle {
     Triangle([a, b, c])
 }
 
-/// The lowest z at which a ball at (x, y) is a radius away from the triangle: by sampling for a place where it is nearer,
-/// then by bisection below it. The distance to a convex set is convex along the line.
+/// Returns the lowest z at which a ball at (x, y) is a radius away from the triangle. Sampling finds a point that is nearer, and bisection follows below it.
+/// The distance to a convex set is convex along the line.
 fn stopping_height_by_search(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f64> {
     let distance = |z: f64| {
         let point = at.extend(z);
@@ -42,7 +42,7 @@ fn stopping_height_by_search(triangle: &Triangle, radius: f64, at: DVec2) -> Opt
     let (mut low, mut high) = (bottom, top);
     for _ in 0..150 {
         let (l, h) = ((2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0);
-        // Ties go down: where the distance is flat the lower place is as near.
+        // Equal values count as lower: where the distance is flat, the lower position is as near.
         if distance(l) <= distance(h) {
             high = h
         } else {
@@ -90,7 +90,7 @@ fn a_taxel_stops_at_a_triangle_where_a_search_says() {
             }
             (None, None) => {}
             (found, searched) => {
-                // At the rim, where the height has no slope: within rounding of passing by.
+                // At the rim the height has no finite slope, and the ball misses the triangle only by rounding.
                 let larger = stopping_height_by_search(&triangle, radius * (1.0 + 1e-12), at);
                 let smaller = stopping_height_by_search(&triangle, radius * (1.0 - 1e-12), at);
                 assert!(
@@ -104,7 +104,7 @@ fn a_taxel_stops_at_a_triangle_where_a_search_says() {
     assert!(worst > 0.0, "{worst}");
 }
 
-/// Where each object's triangles stop each taxel, from the one-taxel closed form; infinite where none does.
+/// Returns the heights at which each object's triangles stop each taxel, from the closed form for one taxel; infinite if no triangle does.
 fn every_triangle(scene: &Scene, poses: &[Pose]) -> Vec<(f64, Vec<f64>)> {
     let (grid, taxel) = scene.grid();
     let heights = |(object, pose): (&Model, &Pose)| {
@@ -130,8 +130,8 @@ fn every_triangle(scene: &Scene, poses: &[Pose]) -> Vec<(f64, Vec<f64>)> {
     scene.objects.iter().zip(poses).map(heights).collect()
 }
 
-/// Deflections from those heights, by the words of the contact stage's title page; meshes that are lower than `behind` do not
-/// count.
+/// Computes deflections from the heights at which meshes stop the taxels, as the contact module's documentation defines. Meshes that are lower than `behind` do
+/// not count.
 fn deflections(scene: &Scene, heights: &[(f64, Vec<f64>)], travel: f64, behind: f64) -> Vec<f64> {
     let (grid, taxel) = scene.grid();
     let mut deflections = vec![0.0_f64; grid.n_taxels()];
@@ -145,7 +145,7 @@ fn deflections(scene: &Scene, heights: &[(f64, Vec<f64>)], travel: f64, behind: 
     deflections
 }
 
-/// A crumpled sheet, a box, a ball, or loose triangles of all kinds.
+/// Returns a crumpled surface, a box, a ball, or loose triangles of all kinds.
 fn random_mesh(rng: &mut impl Rng, kind: u64) -> TriangleMesh {
     let size = 10f64.powf(rng.gen_range(-2.5..-1.2));
     match kind % 4 {
@@ -192,7 +192,7 @@ fn random_scene(rng: &mut impl Rng, kind: u64) -> (Scene, Vec<Pose>) {
         .map(|k| MeshModel::new(random_mesh(rng, kind + k)).into())
         .collect();
     let poses = objects.iter().map(|_| match kind % 3 {
-        // Upright: flat faces and upright walls at the skin.
+        // Vertical pose: flat faces and vertical walls at the skin.
         0 => Pose::from_translation(0.01 * direction(rng)),
         _ => random_pose(rng, 0.01),
     });
@@ -263,7 +263,7 @@ fn a_box_pressed_flat_is_flat_and_its_edge_is_round() {
         pitch: 1e-3,
     };
     let patch = Patch::grid(grid, TAXEL).unwrap();
-    // The box reaches from x = −10.4 mm to 10.4 mm and from z = 0 up.
+    // The box extends from x = −10.4 mm to 10.4 mm, and upwards from z = 0.
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     let objects = vec![MeshModel::new(cuboid(DVec3::new(10.4e-3, 0.02, 0.05))).into()];
     let mut workspace = Workspace::new();
@@ -271,7 +271,7 @@ fn a_box_pressed_flat_is_flat_and_its_edge_is_round() {
     assert!((contact.travel - (2e-3 - TAXEL.radius)).abs() < 1e-16);
     for (column, &found) in workspace.deflections().iter().enumerate() {
         let beside: f64 = (grid.x(column).abs() - 10.4e-3).max(0.0);
-        // A taxel 0.6 mm beside the edge: 1 mm lower on its circle than one under the face, at 0.8 mm.
+        // A taxel 0.6 mm beside the edge stops 0.8 mm above the edge, whereas a taxel under the face stops 1 mm above it.
         let exact = if beside < TAXEL.radius {
             2e-3 - TAXEL.radius + (TAXEL.radius.powi(2) - beside * beside).sqrt()
         } else {
@@ -379,14 +379,14 @@ fn a_mesh_behind_the_substrate_does_not_count_unless_it_was_pressed_through_the_
         let pose = Pose::from_translation(DVec3::new(0.0, 0.0, height));
         press_at_pose(&scene.patch, &scene.objects, &[pose], &mut workspace).n_touched
     };
-    // Its top is at height + 10 mm; a taxel that rests on it is 1 mm higher, and the limit is 6 mm behind the skin.
+    // The top of the mesh is at height + 10 mm. A taxel that rests on it is 1 mm higher, and the limit is 6 mm behind the skin.
     assert_eq!(n_touched(-0.01701), 0);
     assert_eq!(n_touched(-0.01699), 64);
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.05));
     let through =
         press_to_depth(&scene.patch, &scene.objects, &[pose], 0.05, &mut workspace).unwrap();
     assert_eq!((through.n_touched, through.n_saturated), (64, 64));
-    // In steps of a millimetre, 60 mm on.
+    // The patch moves 60 mm in steps of a millimetre.
     let down = Phase {
         duration: 0.1,
         linear: -DVec3::Z,

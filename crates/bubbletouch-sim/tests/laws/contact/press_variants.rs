@@ -1,4 +1,4 @@
-//! A press of a grid gives the same bits with all vector instructions that the machine has.
+//! Presses of a grid give equal bits with all vector instructions that the machine has.
 
 use bubbletouch_sim::contact::{Instructions, Workspace, press_to_depth};
 use bubbletouch_sim::geometry::Pose;
@@ -9,7 +9,7 @@ use rand::Rng;
 
 use crate::random_scenes::{Scene, TAXEL, random_pose, rng};
 
-/// Some unions of spheres of any size about a grid.
+/// Returns a grid with some unions of spheres of any size around it.
 fn random_scene(rng: &mut impl Rng) -> (Scene, Vec<Pose>) {
     let poses: Vec<Pose> = (0..2)
         .map(|_| {

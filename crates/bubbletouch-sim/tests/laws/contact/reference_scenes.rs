@@ -1,6 +1,6 @@
-//! Every reference scene, frame by frame, against what the original BubbleTouch computed.
+//! Comparison of every reference scene, frame by frame, with the results of the original BubbleTouch.
 //!
-//! The scenes are found by BUBBLETOUCH_REFERENCE; without it the test says that it skips.
+//! The environment variable BUBBLETOUCH_REFERENCE contains the folder of the scenes; without it the test prints a note and is skipped.
 
 use bubbletouch_sim::contact::{Workspace, press_at_pose};
 use bubbletouch_sim::geometry::Pose;
@@ -31,7 +31,7 @@ fn every_reference_scene_agrees_within_a_picometre() {
     );
 }
 
-/// Checks all recorded frames of a scene and returns how many there were.
+/// Checks all recorded frames of a scene; returns their number.
 fn check_scene(folder: &Path) -> usize {
     let text = std::fs::read_to_string(folder.join("scene.json")).unwrap();
     let json: Value = serde_json::from_str(&text).unwrap();
@@ -70,7 +70,7 @@ fn patch(sensor: &Value) -> Patch {
     Patch::grid(grid, taxel).unwrap()
 }
 
-/// The recorded orientation is not always a rotation, so the spheres are brought to the patch frame here.
+/// Returns the deflections of a recorded frame. The recorded orientation is not always a rotation, so the spheres are transformed to the patch frame here.
 fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: &Patch) -> Vec<f64> {
     let rows: Vec<DVec3> = frame["orientation"]
         .as_array()
@@ -78,7 +78,7 @@ fn deflections(json: &Value, frame: &Value, spheres: &[Vec<f64>], patch: &Patch)
         .iter()
         .map(vector)
         .collect();
-    // glam takes columns; the recorded rows are the columns of the transpose, which is what is needed.
+    // The glam crate takes columns; the recorded rows are the columns of the required transpose.
     let patch_from_world = DMat3::from_cols(rows[0], rows[1], rows[2]);
     let position = vector(&frame["position"]);
     let rest = DVec3::Z * json["sensor"]["maxz"].as_f64().unwrap();

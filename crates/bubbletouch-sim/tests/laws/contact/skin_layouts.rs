@@ -11,7 +11,7 @@ use crate::mesh_shapes::{cuboid, icosphere};
 
 const PITCH: f64 = 4e-3;
 
-/// A ball, a box, a thin plate, a ball as coarse as an icosahedron, and a ball in fine facets.
+/// Returns test meshes: a ball, a box, a thin plate, a ball as coarse as an icosahedron, and a finely triangulated ball.
 fn meshes() -> [(&'static str, TriangleMesh); 5] {
     [
         ("ball", icosphere(0.03, 4)),
@@ -26,7 +26,7 @@ fn draped(mesh: &TriangleMesh) -> Layout {
     Layout::draped(mesh, PITCH, &Seed::new(3)).unwrap()
 }
 
-/// Random points of the surface, evenly, with the normals of their triangles.
+/// Returns random points, uniformly distributed on the surface, with the normals of their triangles.
 fn points_on(mesh: &TriangleMesh, n: usize) -> Vec<(DVec3, DVec3)> {
     let mut rng = Seed::new(9).rng();
     let mut ends = Vec::new();
@@ -138,7 +138,7 @@ fn what_cannot_be_draped_is_refused() {
     );
 }
 
-/// All triangles of some meshes.
+/// Joins all triangles of several meshes.
 fn together(parts: &[TriangleMesh]) -> TriangleMesh {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for part in parts {
@@ -149,13 +149,13 @@ fn together(parts: &[TriangleMesh]) -> TriangleMesh {
     TriangleMesh::new("parts", vertices, triangles).unwrap()
 }
 
-/// The same faces, looking the other way.
+/// Returns the mesh with all faces reversed.
 fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
     let triangles = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]);
     TriangleMesh::new("inside out", mesh.vertices().to_vec(), triangles.collect()).unwrap()
 }
 
-/// A mesh without some triangles.
+/// Returns a mesh without some of its triangles.
 fn without(mesh: &TriangleMesh, triangles: std::ops::Range<usize>) -> TriangleMesh {
     let kept = mesh.triangles().iter().enumerate();
     let kept = kept.filter(|(number, _)| !triangles.contains(number));
@@ -163,8 +163,7 @@ fn without(mesh: &TriangleMesh, triangles: std::ops::Range<usize>) -> TriangleMe
     TriangleMesh::new("open", mesh.vertices().to_vec(), kept).unwrap()
 }
 
-/// Meshes with inner faces: a housing with a cavity, a housing that holds loose parts, two plates that face each other, a housing
-/// without its lid.
+/// Returns meshes with inner faces: a housing with a cavity, a housing that holds loose parts, two plates that face each other, and a housing without its lid.
 fn hollow_meshes() -> [(&'static str, TriangleMesh); 4] {
     let at = |mesh: TriangleMesh, x: f64| {
         let shift = bubbletouch_sim::geometry::Pose::from_translation(DVec3::new(x, 0.0, 0.0));
@@ -191,7 +190,7 @@ fn hollow_meshes() -> [(&'static str, TriangleMesh); 4] {
     ]
 }
 
-/// Whether a ray from a place meets any triangle farther away than a micrometre.
+/// Returns whether a ray from a point meets a triangle farther away than a micrometre.
 fn meets(mesh: &TriangleMesh, place: DVec3, direction: DVec3) -> bool {
     let triangles = (0..mesh.n_triangles()).map(|number| mesh.triangle(number));
     let mut along = triangles.filter_map(|triangle| triangle.crossed_at(place, direction));
@@ -227,7 +226,7 @@ fn inner_faces_carry_no_taxel_and_are_counted_and_the_outer_surface_stays_covere
             let nearest = nearest.fold(f64::INFINITY, f64::min);
             assert!(nearest <= PITCH, "{name}: {nearest}");
         }
-        // As many taxels an area inside as outside.
+        // The number of taxels per area is equal inside and outside.
         let inside = layout.n_left_out() as f64 / f64::from(n_inner);
         let outside = layout.n_taxels() as f64 / f64::from(n_outer);
         assert!(
@@ -235,7 +234,7 @@ fn inner_faces_carry_no_taxel_and_are_counted_and_the_outer_surface_stays_covere
             "{name}: {inside} {outside}"
         );
     }
-    // A housing is felt as the part without its cavity.
+    // A housing is touched like the part without its cavity.
     let [(_, housing), ..] = hollow_meshes();
     let [solid, hollow] = [cuboid(DVec3::splat(0.021)), housing].map(|mesh| draped(&mesh));
     assert!(hollow.n_taxels().abs_diff(solid.n_taxels()) < solid.n_taxels() / 20);
@@ -250,7 +249,7 @@ fn a_region_carries_taxels_where_all_its_conditions_hold() {
     let on = |region: &DrapeRegion| Layout::draped_on(&mesh, PITCH, region, &Seed::new(3)).unwrap();
     let whole = on(&DrapeRegion::default());
     assert_eq!(whole, draped(&mesh));
-    // The last two triangles are the face at z = 0.02.
+    // The last two triangles form the face at z = 0.02.
     let top = DrapeRegion {
         triangles: Some(vec![10, 11]),
         ..DrapeRegion::default()
@@ -322,7 +321,7 @@ fn a_mesh_without_a_known_outside_is_refused() {
     let turned = draped(&inside_out(&cuboid(DVec3::splat(0.02))));
     let mut taxels = turned.centers().iter().zip(turned.axes());
     assert!(turned.n_left_out() == 0 && taxels.all(|(center, axis)| center.dot(*axis) > 0.0));
-    // Two triangles of a flat sheet that disagree.
+    // Two triangles of a flat surface with opposite orientations.
     let corners = [[0.0, 0.0], [0.05, 0.0], [0.05, 0.05], [0.0, 0.05]];
     let corners: Vec<DVec3> = corners
         .iter()

@@ -1,4 +1,4 @@
-//! Laws of contact of skins of any shape with meshes: against every triangle, the grid kernel, and a forearm on a table.
+//! Laws of contact between skins of any shape and meshes: comparison with every triangle, with the grid kernel, and with a forearm on a table.
 
 use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
 use bubbletouch_sim::geometry::Pose;
@@ -16,7 +16,7 @@ fn random_turn(rng: &mut impl Rng) -> DQuat {
     DQuat::from_scaled_axis(rng.gen_range(0.0..3.0) * direction(rng))
 }
 
-/// A crumpled sheet, its triangles turned alike.
+/// Returns a crumpled surface whose triangles are consistently oriented.
 fn crumpled_surface(rng: &mut impl Rng, size: f64) -> TriangleMesh {
     let n = 9_u32;
     let corner = |i: u32| DVec3::new(f64::from(i % n), f64::from(i / n), 0.0) / f64::from(n);
@@ -35,7 +35,7 @@ fn random_mesh(rng: &mut impl Rng, kind: u64) -> TriangleMesh {
     }
 }
 
-/// A skin of one taxel each, and a mesh with its pose somewhere on it.
+/// Returns a skin with individual taxels, and a mesh at a pose on the skin.
 fn random_scene(case: u64) -> (Patch, TriangleMesh, Pose) {
     let mut rng = rng("scene", case);
     let layout = match case % 4 {
@@ -123,7 +123,7 @@ fn balls_as_spheres_and_as_fine_meshes_press_nearly_the_same() {
     );
 }
 
-/// A closed skin around a forearm, its z axis level.
+/// Returns a closed skin around a forearm with a level z axis.
 fn forearm() -> Patch {
     let layout = Layout::cylinder(0.03, 0.1, TAU, 5e-3).unwrap();
     Patch::new("forearm", layout, Taxels::Equal(TAXEL)).unwrap()
@@ -133,7 +133,7 @@ fn forearm() -> Patch {
 fn what_a_forearm_lies_on_does_not_press_its_other_side() {
     let skin = forearm();
     let table: Model = MeshModel::new(cuboid(DVec3::new(0.01, 1.0, 1.0))).into();
-    // Its top is at x = −0.029: the taxels there, from x = −0.03 on and 1 mm round, are pushed by up to 2 mm.
+    // The top of the mesh is at x = −0.029. Taxels rest at x = −0.03 with a radius of 1 mm, so they are pushed by up to 2 mm.
     let pose = Pose::from_translation(DVec3::new(-0.039, 0.0, 0.0));
     let mut workspace = Workspace::new();
     let counts = press_with_contacts(&skin, &[table], &[pose], &mut workspace);
@@ -144,7 +144,7 @@ fn what_a_forearm_lies_on_does_not_press_its_other_side() {
     for contact in workspace.contacts() {
         let axis = skin.layout().axes()[contact.taxel];
         assert!(axis.x < -0.9, "{axis}");
-        // A taxel that leans by θ to a plane goes back until it is a radius away from it.
+        // A taxel whose axis is inclined by θ to a plane moves back until it is a radius away from the plane.
         let needed = (TAXEL.radius - 0.029) / -axis.x + 0.03;
         assert!((contact.needed - needed).abs() < 1e-12);
         assert!((contact.normal - DVec3::X).length() < 1e-9);

@@ -1,4 +1,4 @@
-//! Laws of contact on skins of any shape, against a search along each taxel's axis, and mirrored.
+//! Laws of contact on skins of any shape: comparison with a search along each taxel's axis, and with mirrored scenes.
 
 use crate::random_scenes::{TAXEL, direction, random_pose, rng};
 use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};
@@ -8,7 +8,7 @@ use bubbletouch_sim::world::{Grid, Layout, Patch, Taxel, Taxels};
 use glam::DVec3;
 use rand::Rng;
 
-/// A layout of each family in turn, some 5 cm large.
+/// Returns a layout about 5 cm large; the families of layouts take turns.
 fn random_layout(rng: &mut impl Rng, kind: u64) -> Layout {
     let pitch = rng.gen_range(1.5e-3..5e-3);
     let size = rng.gen_range(0.01..0.03);
@@ -47,7 +47,7 @@ fn random_skin(rng: &mut impl Rng, kind: u64) -> Patch {
     Patch::new("skin", layout, taxels).unwrap()
 }
 
-/// One to three objects of spheres from a micrometre to a metre, most of them near the skin's surface.
+/// Returns one to three objects of spheres from a micrometre to a metre, most of them near the skin's surface.
 fn random_objects(rng: &mut impl Rng, skin: &Patch) -> Vec<Model> {
     let n_objects = rng.gen_range(1..4);
     let mut sphere = || {
@@ -66,7 +66,7 @@ fn moved(model: &Model, pose: &Pose) -> Model {
     model.spheres().unwrap().moved(pose).into()
 }
 
-/// A skin and objects that are given in its frame, but reach it by poses.
+/// Returns a skin, objects given in the skin's frame, and the poses that bring the objects there.
 fn random_scene(name: &str, case: u64) -> (Patch, Vec<Model>, Vec<Pose>) {
     let mut rng = rng(name, case);
     let skin = random_skin(&mut rng, case);
@@ -79,8 +79,8 @@ fn random_scene(name: &str, case: u64) -> (Patch, Vec<Model>, Vec<Pose>) {
     (skin, objects.collect(), poses)
 }
 
-/// How far a taxel must go back to stay outside of a sphere: by a search for a place inside along its axis, then by bisection
-/// between there and far behind. 0 where nothing pushes it.
+/// Returns the distance that a taxel must move back to stay outside a sphere. A search along the axis finds a point inside, and bisection between this point
+/// and far behind finds the boundary. Returns 0 if nothing pushes the taxel.
 fn needed_by_search(center: DVec3, axis: DVec3, taxel: &Taxel, sphere: &Sphere) -> f64 {
     let reach = taxel.radius + sphere.radius;
     let height = (sphere.center - center).dot(axis);
@@ -110,14 +110,14 @@ fn needed_by_search(center: DVec3, axis: DVec3, taxel: &Taxel, sphere: &Sphere) 
             inside = middle
         }
     }
-    // As far ahead of the sphere's middle, the taxel would rest on its far side.
+    // At the corresponding distance ahead of the sphere's middle, the taxel would rest on the sphere's far side.
     match 2.0 * height - inside < -taxel.stroke - taxel.radius {
         true => 0.0,
         false => (-inside).max(0.0),
     }
 }
 
-/// Whether a taxel runs along the flank of a sphere, where its height has no bounded slope.
+/// Returns whether a taxel moves along the flank of a sphere, where its height has no bounded slope.
 fn is_on_a_flank(skin: &Patch, taxel: usize, objects: &[Model], share: f64) -> bool {
     let (center, axis) = (skin.layout().centers()[taxel], skin.layout().axes()[taxel]);
     let radius = skin.taxels().at(taxel).radius;
@@ -236,7 +236,7 @@ fn the_contacts_of_a_grid_are_those_of_the_same_taxels_one_by_one() {
         let loose = Patch::new("skin", loose, taxels.clone()).unwrap();
         let skin = Patch::new("skin", layout, taxels).unwrap();
         let mut objects = random_objects(&mut rng, &skin);
-        // Twice the same: at each taxel two parts need the same, and the first of them counts.
+        // Each object occurs twice, so two parts need equal deflections at each taxel, and the first part counts.
         let twice = objects[0].spheres().unwrap().spheres().repeat(2);
         objects[0] = SphereUnion::new(twice).unwrap().into();
         objects.push(objects[0].clone());
@@ -319,7 +319,7 @@ fn a_mirrored_scene_gives_mirrored_deflections() {
         let [a, b] = [(&skin, &here), (&mirrored, &there)]
             .map(|(skin, workspace)| spring_load(skin, workspace.contacts()));
         let largest = a.on_object.force.length();
-        // Where two spheres push the same, rounding may choose another; and flanks push aside with large forces.
+        // If two spheres need equal deflections, rounding may choose either; flanks also cause large lateral forces.
         if here.contacts().iter().all(|c| c.cosine > 0.1) {
             let difference = mirror(a.on_object.force) - b.on_object.force;
             assert!(

@@ -1,4 +1,4 @@
-//! A skin that is pressed and then drawn along: closed forms, mirrors, and a way of many small steps.
+//! Laws of a skin that is pressed and then dragged: closed forms, mirror symmetry, and a path of many small steps.
 
 use bubbletouch_sim::contact::{
     Approach, FrictionState, NormalForce, Workspace, press_with_contacts,
@@ -34,12 +34,12 @@ fn ball(radius: f64) -> [Model; 1] {
     [SphereUnion::new(vec![sphere]).unwrap().into()]
 }
 
-/// Forces on all taxels after a press and a slide.
+/// Returns the forces on all taxels after a press and a slide.
 fn forces(skin: &Patch, objects: &[Model], pose: Pose, motion: (f64, DVec3)) -> Vec<DVec3> {
     let approach = Approach::new(skin, DVec3::Z).unwrap();
     let mut friction = FrictionState::at_rest(skin, Shears::Equal(SHEAR)).unwrap();
     let mut workspace = Workspace::new();
-    // What it did before is forgotten.
+    // Earlier presses must not affect the result.
     let before = (2e-3, DVec3::new(1e-3, 2e-3, 0.0));
     for motion in [before, motion] {
         let state = Some(&mut friction);

@@ -1,5 +1,5 @@
-//! The laws of contact, for every way to press that there is, on the same random scenes: layouts of all families, spheres from a micrometre to a
-//! metre and meshes, at edges, at the stroke, grazing, and behind the substrate.
+//! Laws of contact for all press functions on shared random scenes: layouts of all families, spheres from a micrometre to a metre, and meshes. Contacts occur
+//! at edges, at the stroke, grazing, and behind the substrate.
 
 use crate::counting::allocations;
 use crate::mesh_shapes::{cuboid, icosphere};
@@ -19,7 +19,7 @@ use rand::Rng;
 const N_CASES: u64 = 180;
 const N_FAMILIES: u64 = 9;
 
-/// A patch and objects, which are given where they are (`shapes`, in the patch frame) and reach it by poses (`models`).
+/// Patch and objects. The objects are given in the patch frame (`shapes`), and as models with poses (`models`).
 struct Scene {
     patch: Patch,
     shapes: Vec<Shape>,
@@ -45,7 +45,7 @@ impl Shape {
     }
 }
 
-/// Of each family in turn, some centimetres large.
+/// Returns a layout some centimetres large; the families of layouts take turns.
 fn layout(rng: &mut impl Rng, family: u64) -> Layout {
     let (pitch, size) = (rng.gen_range(1.5e-3..5e-3), rng.gen_range(0.015..0.03));
     let grid = Grid {
@@ -109,7 +109,7 @@ impl Scene {
     }
 }
 
-/// Spheres or a mesh near taxels.
+/// Returns spheres or a mesh near the taxels of a patch.
 fn shape(rng: &mut impl Rng, patch: &Patch) -> Shape {
     if rng.gen_bool(0.7) {
         let spheres = (0..14).map(|k| {
@@ -128,7 +128,7 @@ fn shape(rng: &mut impl Rng, patch: &Patch) -> Shape {
     Shape::Mesh(mesh.moved(&Pose::new(turn, middle)))
 }
 
-/// Where the middle of a ball is that touches a taxel: lightly, at its stroke, past it, from the side, or from behind.
+/// Returns the centre of a ball that touches a taxel: lightly, at its stroke, past it, from the side, or from behind.
 fn near_a_taxel(rng: &mut impl Rng, patch: &Patch, radius: f64) -> DVec3 {
     let taxel = rng.gen_range(0..patch.n_taxels());
     let (place, axis) = (
@@ -146,7 +146,7 @@ fn near_a_taxel(rng: &mut impl Rng, patch: &Patch, radius: f64) -> DVec3 {
     place + (radius + height) * tilted
 }
 
-/// A way to press a patch on objects where they are; none of scenes that it does not know.
+/// Function that presses a patch on objects at their poses and returns the deflections; `None` for unsupported scenes.
 type Perturbation = fn(&Scene) -> Option<Vec<f64>>;
 
 const WAYS: [(&str, Perturbation); 4] = [
@@ -181,7 +181,7 @@ const WAYS: [(&str, Perturbation); 4] = [
     }),
 ];
 
-/// How far a taxel is pushed in by every part, and how well that is known (metres); behind its substrate nothing counts, or all.
+/// Returns the deflection of a taxel by all parts, and the tolerance of this value (metres). Parts behind the substrate count only if `behind_counts`.
 fn by_every_part(scene: &Scene, taxel: usize, behind_counts: bool) -> (f64, f64) {
     let (place, axis) = (
         scene.patch.layout().centers()[taxel],
@@ -200,7 +200,7 @@ fn by_every_part(scene: &Scene, taxel: usize, behind_counts: bool) -> (f64, f64)
                     let (away, reach) = (center - place, own.radius + radius);
                     let height = away.dot(axis);
                     let left = reach * reach - (away - height * axis).length_squared();
-                    // Rounding decides along a flank, and at the substrate.
+                    // Rounding decides whether a sphere touches along a flank and at the substrate.
                     let top = height + left.max(0.0).sqrt();
                     if left.abs() < 1e-9 * reach * reach || (top - behind).abs() < 1e-9 * reach {
                         tolerance = f64::INFINITY;
@@ -220,7 +220,7 @@ fn by_every_part(scene: &Scene, taxel: usize, behind_counts: bool) -> (f64, f64)
     (needed.min(own.stroke), tolerance)
 }
 
-/// In a frame that rests on the taxel's centre and looks along its axis.
+/// Returns the deflection of a taxel by every triangle, computed in the taxel's frame (origin at its centre, z along its axis).
 fn by_every_triangle(
     mesh: &TriangleMesh,
     (place, axis): (DVec3, DVec3),
@@ -236,7 +236,7 @@ fn by_every_triangle(
     }
     let heights = triangles.iter().filter_map(|triangle| {
         let height = stopping_height(triangle, own.radius, DVec2::ZERO)?;
-        // Seen from above it stops a taxel at the highest place where both touch.
+        // Seen from above, a triangle stops a taxel at the highest position where both touch.
         let mirrored = Triangle(triangle.0.map(|v| DVec3::new(v.x, v.y, -v.z)));
         let highest = -stopping_height(&mirrored, own.radius, DVec2::ZERO)?;
         (highest >= behind).then_some(height)
@@ -244,7 +244,7 @@ fn by_every_triangle(
     -heights.fold(0.0, f64::min)
 }
 
-/// Whether the axis comes into the mesh behind a height, and leaves it ahead.
+/// Returns whether the axis enters the mesh behind a height and leaves the mesh ahead of it.
 fn is_inside(triangles: &[Triangle], height: f64) -> bool {
     let crossed = triangles.iter().filter_map(|triangle| {
         let along = triangle.crossed_at(DVec3::new(0.0, 0.0, height), DVec3::Z)?;
@@ -278,7 +278,7 @@ fn every_way_pushes_every_taxel_as_far_as_every_part_says() {
                 let is_mesh = tolerance == 1e-9;
                 n_meshes += usize::from(is_mesh);
                 if (found - expected).abs() > tolerance {
-                    // Whether a substrate is in a mesh is looked for a hundredth of a radius beside the axis.
+                    // The test whether a substrate is in a mesh uses a ray a hundredth of a radius beside the axis.
                     assert!(
                         is_mesh,
                         "{name}, case {case}, taxel {taxel}: {found} for {expected}"
@@ -316,7 +316,7 @@ fn a_way_from_the_front_counts_all_and_takes_nothing_away_on_flat_patches() {
             );
             before.copy_from_slice(found);
         }
-        // Where it is now the parts are so much lower.
+        // At the present pose the parts are lower by this distance.
         let lower = Pose::from_translation(-0.018 * DVec3::Z);
         for shape in &mut scene.shapes {
             *shape = match shape {
@@ -433,7 +433,7 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
             continue;
         }
         let load = spring_load(&patch, workspace.contacts()).on_object;
-        // From one triangle to the next the slope of the energy has a kink.
+        // The slope of the energy has kinks between triangles.
         let mut is_smooth = true;
         let mut energy = |motion: Pose| {
             press_with_contacts(&patch, &objects, &[motion.compose(&pose)], &mut workspace);
@@ -470,7 +470,7 @@ fn force_and_torque_are_minus_the_gradient_of_the_energy() {
     assert!(n_checked.iter().all(|&n| n > 40), "{n_checked:?}");
 }
 
-/// Presses an object by a function of the library, with a workspace that was used before; the number of touched taxels.
+/// Function that presses an object with a reused workspace and returns the number of touched taxels.
 type Repeated = fn(&Patch, &[Model], &[Pose], &mut Workspace) -> usize;
 
 const ON_ANY_LAYOUT: [(&str, Repeated); 2] = [
@@ -524,7 +524,7 @@ fn presses_after_the_first_allocate_nothing() {
             let mut workspace = Workspace::new();
             let mut n_touched = Vec::with_capacity(50);
             let mut allocated = |step: u32| {
-                // Deepest first: later presses touch no more taxels.
+                // The deepest press comes first, so later presses touch no more taxels.
                 let height = radius - 2e-3 + 5e-5 * f64::from(step);
                 let pose = [Pose::from_translation(place + height * axis)];
                 allocations(|| n_touched.push(press(&patch, object, &pose, &mut workspace)))

@@ -1,4 +1,4 @@
-//! The built-in objects: what they are, where they stand, how well their spheres fit; and catalogue files that are wrong.
+//! Laws of the built-in objects: dimensions, rest positions and accuracy of their spheres; and errors of invalid catalogue files.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Catalogue, Entry, Shape, Solid, SphereUnion, surface_error};
@@ -96,7 +96,7 @@ fn every_object_rests_on_the_table_in_the_middle() {
     }
 }
 
-/// The spheres of an object at two surface errors, metres.
+/// Returns the spheres of an object at two surface errors, metres.
 fn packed(entry: &Entry) -> [(f64, SphereUnion); 2] {
     [0.5 * MM, 0.25 * MM].map(|tolerance| {
         let model = entry.build(tolerance).unwrap().model;
@@ -119,9 +119,9 @@ fn every_object_packs_within_its_surface_error() {
     }
 }
 
-/// Where lines from all around, evenly over directions and places, first meet the solid, and first meet the spheres.
+/// Returns the points where random lines first meet the solid, and where they first meet the spheres.
 ///
-/// Shares nothing with the code that lays spheres or measures them but the solid's distance function.
+/// The only shared code with packing and its measurement is the solid's distance function.
 fn first_hits(solid: &Solid, union: &SphereUnion, n_hits: usize) -> [Vec<DVec3>; 2] {
     let mut rng = Seed::new(9).named("lines").rng();
     let bounds = solid.bounds();
@@ -136,7 +136,7 @@ fn first_hits(solid: &Solid, union: &SphereUnion, n_hits: usize) -> [Vec<DVec3>;
             let out = (1.0 - z * z).sqrt();
             DVec3::new(out * turn.cos(), out * turn.sin(), z)
         };
-        // Through a point of a disc across the direction.
+        // The line passes through a point of a disc across the direction.
         let along = on_sphere();
         let (side, other) = along.any_orthonormal_pair();
         let (turn, share) = (

@@ -1,4 +1,4 @@
-//! Meshes and spheres from files: what is read, and what is refused with which words.
+//! Meshes and spheres from files: the contents that are read, and the messages of invalid files.
 
 use bubbletouch_sim::mesh::read_ply;
 use bubbletouch_sim::objects::{read_spheres, vertex_spheres, write_spheres};
@@ -113,10 +113,10 @@ fn the_three_encodings_of_a_ply_give_the_same_mesh() {
 #[test]
 fn a_ply_cut_off_anywhere_is_an_error() {
     for whole in [ascii().into_bytes(), little_endian()] {
-        // The ascii file may lack its very last line break.
+        // An ASCII file may lack its last line break.
         for length in 0..whole.len() - 1 {
             let result = read_ply("cup.ply", &whole[..length]);
-            // Ascii numbers can be cut into shorter numbers: those only in the last line.
+            // ASCII numbers can be truncated to shorter numbers, but only in the last line.
             if result.is_ok() {
                 assert!(
                     length > whole.len() - 3,
@@ -243,7 +243,7 @@ fn the_scanned_objects_are_read_and_get_spheres_of_millimetres() {
         assert!((8_000..8_200).contains(&mesh.vertices().len()), "{place}");
         let union = vertex_spheres(&place, mesh.vertices()).unwrap();
         let radius = union.spheres()[0].radius;
-        // From the dice to the pitcher; the median is 2.3 mm.
+        // Range from the dice to the pitcher; the median is 2.3 mm.
         assert!((0.6e-3..5.2e-3).contains(&radius), "{place}: {radius}");
         n_meshes += 1;
     }

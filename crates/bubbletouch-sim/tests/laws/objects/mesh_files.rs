@@ -1,4 +1,4 @@
-//! Meshes from files of three kinds, in four units, and what is said about them.
+//! Meshes from files of three formats in four units, and the messages of their readers.
 
 use bubbletouch_sim::mesh::{
     LengthUnit, MeshFormat, MeshReport, Surface, TriangleMesh, read_obj, read_ply, read_stl,
@@ -50,7 +50,7 @@ fn binary_stl(mesh: &TriangleMesh, header: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Corners of all triangles in order, whatever the order of the vertices.
+/// Returns the corners of all triangles in order, independent of the order of the vertices.
 fn corners(mesh: &TriangleMesh) -> Vec<DVec3> {
     (0..mesh.n_triangles())
         .flat_map(|t| mesh.triangle(t).0)
@@ -75,7 +75,7 @@ fn an_obj_gives_the_mesh_that_it_describes() {
     );
     let read = read.into_mesh("ball.obj").unwrap();
     assert_eq!(corners(&read), corners(&ball));
-    // From the end, and a square cut in two.
+    // A square divided into two triangles, with indices that count from the end.
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\n";
     let square = read_obj("s", square.as_bytes())
         .unwrap()
@@ -92,7 +92,7 @@ fn both_kinds_of_stl_give_the_mesh_with_its_corners_merged() {
     assert_eq!(ascii.vertices().len(), ball.vertices().len());
     let ascii = ascii.into_mesh("ball.stl").unwrap();
     assert_eq!(corners(&ascii), corners(&ball), "every digit counts");
-    // Some programs begin a binary file with the word of an ascii one.
+    // Some programs begin a binary file with the first word of an ASCII file.
     for header in [&b"made by hand"[..], b"solid ball"] {
         let binary = read_stl("ball.stl", &binary_stl(&ball, header)[..]).unwrap();
         let binary = binary.into_mesh("ball.stl").unwrap();
@@ -204,7 +204,7 @@ fn cut_or_garbled_files_never_panic() {
     }
 }
 
-/// What a reader returns for a file that it can read.
+/// Returns the mesh of a valid file.
 fn read(format: MeshFormat, bytes: &[u8]) -> TriangleMesh {
     let file = format.read("m", LengthUnit::Metre, bytes);
     file.unwrap().into_mesh("m").unwrap()
@@ -223,7 +223,7 @@ fn byte_order_marks_line_ends_and_comments_change_nothing() {
     for [a, b, c] in cube.triangles() {
         writeln!(ply, "3 {a} {b} {c}").unwrap();
     }
-    // The last vertex is unused, so that a lost first one would leave valid indices.
+    // The last vertex is unused, so that the loss of the first vertex would leave valid indices.
     let first_vertex_first = obj(&cube)
         .lines()
         .skip(3)
@@ -283,7 +283,7 @@ fn all_objects_of_a_file_are_read() {
         corners(&read(MeshFormat::Stl, with_blank_lines.as_bytes())),
         both
     );
-    // Indices count on over objects, from the start or from the last vertex so far.
+    // Indices continue across objects, counted from the start or from the last vertex read.
     let square = "v 0 0 Z\nv 1 0 Z\nv 1 1 Z\nv 0 1 Z\n";
     let object = |number: usize, face: &str| {
         format!(
@@ -297,7 +297,7 @@ fn all_objects_of_a_file_are_read() {
         assert_eq!((mesh.n_triangles(), mesh.area()), (4, 2.0), "{second}");
         assert_eq!(mesh.bounds().max, DVec3::ONE);
     }
-    // A face may come before its vertices.
+    // A face may precede its vertices.
     let mesh = read(
         MeshFormat::Obj,
         format!("f 1 2 3 4\n{}", square.replace('Z', "0")).as_bytes(),
@@ -379,7 +379,7 @@ fn a_box_is_a_solid_without_faults() {
     assert_eq!(report.to_string(), expected);
 }
 
-/// A box of 1 m half sides whose triangles are changed.
+/// Returns the report of a box of 1 m half sides whose triangles were changed.
 fn changed(change: impl Fn(&mut Vec<[u32; 3]>)) -> MeshReport {
     let whole = cuboid(DVec3::ONE);
     let mut triangles = whole.triangles().to_vec();

@@ -1,4 +1,4 @@
-//! Nearest points, signed distances and winding numbers of meshes, against closed forms and against trying everything.
+//! Nearest points, signed distances and winding numbers of meshes: comparison with closed forms and with exhaustive search.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{Bvh, Feature, Surface, Triangle, TriangleMesh};
@@ -8,7 +8,7 @@ use rand::Rng;
 use crate::mesh_shapes::{cuboid, icosphere};
 use crate::random_scenes::{direction, rng};
 
-/// Triangles of all sizes and shapes: slivers, points, some sharing corners.
+/// Creates random triangles of all sizes and shapes: slivers, points, and triangles with shared corners.
 fn soup(rng: &mut impl Rng, n: usize) -> TriangleMesh {
     let mut vertices: Vec<DVec3> = Vec::new();
     for _ in 0..n {
@@ -31,7 +31,7 @@ fn soup(rng: &mut impl Rng, n: usize) -> TriangleMesh {
     TriangleMesh::new("soup", vertices, triangles).unwrap()
 }
 
-/// Minimises over barycentric coordinates by nested ternary search: the distance is convex in each.
+/// Returns the distance from a point to a triangle by nested ternary search over barycentric coordinates; the distance is convex in each.
 fn distance_by_search(triangle: &Triangle, point: DVec3) -> f64 {
     let [a, b, c] = triangle.0;
     let at = |u: f64, v: f64| (a + u * (b - a) + (1.0 - u) * v * (c - a) - point).length();
@@ -59,7 +59,7 @@ fn the_nearest_point_of_a_triangle_is_what_a_search_finds() {
             found <= searched + 1e-12,
             "case {case}: {found} {searched} {feature:?}"
         );
-        // The search is stuck in no local minimum, but its last digits are noise where the distance is flat.
+        // The search has no local minimum, but its last digits are inaccurate where the distance is flat.
         assert!(
             found >= searched - 2e-8 * size,
             "case {case}: {found} {searched} {feature:?}"
@@ -194,7 +194,7 @@ fn winding_numbers_agree_with_the_sum_over_all_triangles_and_with_signs() {
         worst = worst.max((winding - exact).abs());
     }
     assert!(worst < 0.05, "{worst}");
-    // A ball with a hole: a fraction in the hole, still nearly 1 in the middle.
+    // A ball with a hole: the winding number is a fraction in the hole, and still nearly 1 in the middle.
     let mut rest = mesh.triangles().to_vec();
     rest.retain(|t| t.iter().any(|&v| mesh.vertices()[v as usize].z < 0.9));
     let open = Surface::new(TriangleMesh::new("open", mesh.vertices().to_vec(), rest).unwrap());

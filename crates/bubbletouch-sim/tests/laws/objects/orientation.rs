@@ -1,4 +1,4 @@
-//! Which way meshes face: closed parts are turned outwards, cavities stay, open parts are judged by rays.
+//! Orientation of meshes: closed parts are turned outwards, cavities stay, and rays decide about open parts.
 
 use crate::mesh_shapes::cuboid;
 use bubbletouch_sim::mesh::{Orientation, Surface, TriangleMesh};
@@ -11,7 +11,7 @@ fn inside_out(mesh: &TriangleMesh) -> TriangleMesh {
     TriangleMesh::new("turned", mesh.vertices().to_vec(), turned.collect()).unwrap()
 }
 
-/// One mesh of several, each moved.
+/// Joins several meshes, each moved by a vector.
 fn joined(parts: &[(TriangleMesh, DVec3)]) -> TriangleMesh {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for (part, shift) in parts {
@@ -30,7 +30,7 @@ fn volume(mesh: &TriangleMesh) -> f64 {
     mesh.volume_and_centroid().0
 }
 
-/// Turns a mesh outwards and checks how many of its triangles that takes, and that a second time takes none.
+/// Turns a mesh outwards; checks the number of turned triangles, and that a second call turns none.
 fn turned(mesh: &TriangleMesh, expected: usize) -> TriangleMesh {
     let (outward, orientation) = mesh.clone().turned_outwards();
     match orientation {
@@ -80,7 +80,7 @@ fn cavities_stay_and_parts_are_turned_one_by_one() {
     };
     assert!((volume(&turned(&housing(false), 0)) - 7.0).abs() < 1e-12);
     assert!((volume(&turned(&housing(true), 24)) - 7.0).abs() < 1e-12);
-    // The order of the parts does not matter.
+    // The order of the parts has no effect.
     let first_inner = joined(&[(cube(0.5), at(0.1)), (inside_out(&cube(1.0)), at(0.0))]);
     assert!((volume(&turned(&first_inner, 24)) - 7.0).abs() < 1e-12);
     let beside = joined(&[
@@ -94,7 +94,7 @@ fn cavities_stay_and_parts_are_turned_one_by_one() {
     let nested = |inner: TriangleMesh| joined(&[(housing(false), at(0.0)), (inner, at(0.1))]);
     assert!((volume(&turned(&nested(cube(0.1)), 0)) - 7.008).abs() < 1e-12);
     assert!((volume(&turned(&nested(inside_out(&cube(0.1))), 12)) - 7.008).abs() < 1e-12);
-    // Parts that overlap and both face inwards.
+    // Two parts that overlap and both face inwards.
     let crossing = joined(&[(cube(1.0), at(0.0)), (cube(1.0), at(0.5))]);
     assert_eq!(turned(&inside_out(&crossing), 24), crossing);
 }
@@ -118,7 +118,7 @@ fn open_meshes_are_judged_by_rays_and_never_turned() {
         error.starts_with("open.obj: an open mesh whose faces face inwards; "),
         "{error}"
     );
-    // Two of its ten triangles turned.
+    // A mesh of ten triangles, two of them turned.
     let mixed = open.triangles().iter().enumerate();
     let mixed = mixed.map(|(k, &[a, b, c])| if k % 5 == 0 { [a, c, b] } else { [a, b, c] });
     let mixed = TriangleMesh::new("mixed", open.vertices().to_vec(), mixed.collect()).unwrap();

@@ -1,4 +1,4 @@
-//! The packing promise, measured on every kind of solid.
+//! Tolerance of packings, measured on every kind of solid.
 
 use bubbletouch_sim::objects::{Shape, Solid, pack, surface_error};
 use bubbletouch_sim::random::Seed;
@@ -20,7 +20,7 @@ fn assert_packs(solid: &Solid, tolerance: f64, what: &str) -> usize {
 }
 
 fn random_shape(rng: &mut impl Rng) -> Shape {
-    // Lengths over four decades: thin plates, needles, tiny and huge.
+    // Lengths over four decades, for thin plates, needles, tiny and huge solids.
     let mut length = || MM * 10f64.powf(rng.gen_range(-1.0..2.5));
     let (a, b, c) = (length(), length(), length());
     match rng.gen_range(0..10) {

@@ -1,4 +1,4 @@
-//! Laws of sphere packing: what is promised holds on shapes of every kind, measured at points of the test's own choice.
+//! Laws of sphere packing: the stated tolerance holds on shapes of every kind, measured at points that the test chooses.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::mesh::{MeshReport, Surface, TriangleMesh};
@@ -23,7 +23,7 @@ fn torus() -> TriangleMesh {
     turned(&outline, 40)
 }
 
-/// Packs and checks both sides of the promise; how many spheres.
+/// Packs a mesh, checks protrusion and gap, and returns the number of spheres.
 fn assert_packs(mesh: TriangleMesh, body: Body, tolerance: f64, what: &str) -> usize {
     let surface = Surface::new(mesh);
     let packing = pack_mesh(&surface, body, tolerance).unwrap();
@@ -167,7 +167,7 @@ fn faces_inside_other_parts_take_no_spheres() {
     assert!((error.buried_share - 9.0 / 34.0).abs() < 1e-3, "{error:?}");
     let surface = Surface::new(both);
     let packing = pack_mesh(&surface, Body::Solid, MM).unwrap();
-    // The inner box still bounds how large balls are.
+    // The inner box still limits the size of balls.
     assert!(packing.spheres.n_spheres() < 2 * alone);
     assert!(
         packing
@@ -212,7 +212,7 @@ fn what_cannot_be_packed_is_an_error() {
     assert!(error.to_string().contains("volume"), "{error}");
 }
 
-/// Packs, and lets a judge look who shares no code with the packing.
+/// Packs a mesh and checks it with code that is independent of the packing.
 fn judge(what: &str, mesh: TriangleMesh, tolerance: f64, n_points: usize) -> (usize, String) {
     let surface = Surface::new(mesh);
     let packing = pack_mesh(&surface, Body::Solid, tolerance).unwrap();
@@ -239,7 +239,7 @@ fn parts_that_overlap_pack_within_the_tolerance_of_their_union() {
     assert_eq!(n.count(), few.len());
 }
 
-/// Takes minutes: `cargo test --release -p bubbletouch-sim packing_laws -- --ignored`.
+/// This test takes minutes. Run it with `cargo test --release -p bubbletouch-sim packing_laws -- --ignored`.
 #[test]
 #[ignore = "packs all objects that overlap themselves, twice"]
 fn all_parts_that_overlap_pack_within_the_tolerance_of_their_union() {
@@ -270,7 +270,7 @@ fn small_holes_are_closed_on_request_and_wide_ones_stay() {
     judge("ball with a closed hole", closed.mesh, 2.0 * MM, 1000);
     let wide = open.with_holes_closed(0.99 * edge).unwrap();
     assert_eq!((wide.widths.len(), &wide.mesh), (0, &open));
-    // Two holes; and one whose border passes a corner twice.
+    // A mesh with two holes; the border of one of them passes a corner twice.
     let far = without(&[0, 200]).with_holes_closed(MM * 6.0).unwrap();
     assert_eq!(far.widths.len(), 2);
     assert!(MeshReport::new(&far.mesh).is_solid());
@@ -309,7 +309,7 @@ fn scanned_objects_pack_within_half_a_millimetre() {
     }
 }
 
-/// Takes many minutes: `cargo test --release -p bubbletouch-sim packing_laws -- --ignored`.
+/// This test takes many minutes. Run it with `cargo test --release -p bubbletouch-sim packing_laws -- --ignored`.
 #[test]
 #[ignore = "packs all scans of the YCB set"]
 fn all_scanned_objects_pack_within_half_a_millimetre() {

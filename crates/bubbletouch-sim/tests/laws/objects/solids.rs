@@ -1,4 +1,4 @@
-//! Distances, boxes and packings of solids, against slow and obvious answers.
+//! Distances, boxes and packings of solids, compared with slow and simple computations.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Part, Shape, Solid, pack, surface_error};
@@ -8,7 +8,7 @@ use rand::Rng;
 
 const MM: f64 = 1e-3;
 
-/// One of each shape, about 10 to 60 mm large; the strand's balls are far enough apart for its inside to be exact.
+/// Returns one shape of each kind, about 10 to 60 mm large. The balls of the sphere sweep are far enough apart for its inside distance to be exact.
 fn one_of_each() -> Vec<Shape> {
     let corner = |&[x, y]: &[f64; 2]| DVec2::new(x, y) * MM;
     vec![
@@ -113,7 +113,7 @@ fn the_distance_is_the_distance_to_the_nearest_surface_point() {
                 .map(|p| (*p - point).length())
                 .fold(f64::INFINITY, f64::min);
             let distance = solid.distance(point);
-            // The nearest sample is less than a spacing beside the true foot.
+            // The nearest sample is less than one spacing away from the true foot.
             assert!(
                 nearest >= distance.abs() - 1e-12 && nearest <= distance.abs() + spacing,
                 "{shape:?}: distance {distance}, nearest sample {nearest}"
@@ -169,7 +169,7 @@ fn a_union_of_posed_parts_packs_within_the_tolerance() {
     }
 }
 
-/// An M8 nut; its hole ends exactly where the nut does, or reaches out of it.
+/// Creates an M8 nut whose hole ends exactly at the nut's faces or extends beyond them.
 fn nut(hole: f64) -> Solid {
     let prism = Shape::HexagonalPrism {
         across_flats: 13. * MM,
@@ -187,7 +187,7 @@ fn nut(hole: f64) -> Solid {
 fn a_nut_has_a_hole_that_no_sphere_closes() {
     for hole in [6.5 * MM, 10. * MM] {
         let solid = nut(hole);
-        // No membrane closes it, either.
+        // No membrane closes the hole.
         assert!(solid.distance(DVec3::new(1., 0., 3.25) * MM) > 0.0);
         for tolerance in [0.5 * MM, 0.1 * MM] {
             let union = pack(&solid, tolerance).unwrap();
@@ -196,7 +196,7 @@ fn a_nut_has_a_hole_that_no_sphere_closes() {
                 error.protrusion <= 0.5 * tolerance && error.gap <= tolerance,
                 "{error:?} at {tolerance}"
             );
-            // In the hole, and only there, up to the spheres' share of the tolerance from its wall.
+            // Only points in the hole, up to the spheres' share of the tolerance from its wall.
             let free = (4. * MM) - 0.5 * tolerance;
             for k in 0..200 {
                 let height = MM * (0.04 * f64::from(k) - 4.0);
@@ -285,7 +285,7 @@ fn simple_shapes_take_few_spheres() {
             .n_spheres()
     };
     assert_eq!(count(Shape::Ball { diameter: 65. * MM }, 0.1 * MM), 1);
-    // A row: each ball covers 2 · sqrt(0.375 · 10.375) = 3.9 mm of the 90 mm between the ends, which reach 1.6 mm each.
+    // Each ball of the row covers 2 · sqrt(0.375 · 10.375) = 3.9 mm of the 90 mm between the ends, which cover 1.6 mm each.
     assert_eq!(
         count(
             Shape::Capsule {
@@ -301,7 +301,7 @@ fn simple_shapes_take_few_spheres() {
         tube_diameter: 10. * MM,
     };
     assert_eq!(count(torus, 0.25 * MM), 52);
-    // Rims of balls of about 1.2 mm, one ball a slice of the barrel.
+    // The rims have balls of about 1.2 mm, one ball per slice of the barrel.
     assert!(
         count(
             Shape::Cylinder {
@@ -311,7 +311,7 @@ fn simple_shapes_take_few_spheres() {
             0.25 * MM
         ) <= 290
     );
-    // 12 edges at 5.66 e, then about 4 A / 8er spheres on 2 · 158 · 210 mm² and the four sides.
+    // Expected spheres: 12 edges at 5.66 e, then about 4 A / 8er spheres on 2 · 158 · 210 mm² and the four sides.
     let size = DVec3::new(158., 60., 210.) * MM;
     assert!(count(Shape::Box { size, rounding: 0. }, 0.5 * MM) <= 3_700);
 }

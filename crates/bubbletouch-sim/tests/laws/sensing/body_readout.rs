@@ -1,4 +1,4 @@
-//! What the taxels of a body read: the same alone as among others, and distributed as a chain's readings are.
+//! Laws of the readings of a whole body: a taxel reads equal values alone and among others, with the distributions of a chain's readings.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereClusters, SphereUnion};
@@ -26,7 +26,7 @@ fn taxel(damping: f64, stroke: f64) -> Taxel {
     }
 }
 
-/// A grid, a sleeve and a cap of unlike taxels, with numbers of taxels that no group divides.
+/// Creates a grid, a sleeve and a cap of different taxels, whose numbers are not multiples of any group size.
 fn body(damping: f64) -> WholeBody {
     let grid = Grid {
         nx: 101,
@@ -43,7 +43,7 @@ fn body(damping: f64) -> WholeBody {
     WholeBody::new(&patches).unwrap()
 }
 
-/// A ball in the middle of each patch, whose places are apart.
+/// Presses a ball into the middle of each patch; the patches are far apart.
 fn pressed(body: &WholeBody) -> BodyState {
     let mut state = BodyState::at_rest(body);
     let away = [0.0, 1.0, 2.0].map(|x| Pose::from_translation(x * DVec3::X));
@@ -74,7 +74,7 @@ fn noise(std: f64) -> SignalStep {
     SignalStep::Noise(Noise { std, unit })
 }
 
-/// Every step that a taxel takes by itself.
+/// Returns all signal steps that act on each taxel independently.
 fn steps() -> Vec<SignalStep> {
     vec![
         SensorError::Gain.step(&[0.1], skin()),
@@ -116,7 +116,7 @@ fn a_taxel_reads_the_same_alone_among_the_touched_and_with_all_of_its_patch() {
         for (taxel, value) in reading.iter() {
             assert_eq!(value, dense[taxel], "taxel {taxel}");
         }
-        // Alone, and in an order of chance.
+        // Reads the taxels one by one, and in random order.
         let felt = match force {
             true => body.frame(state.forces(&body)),
             false => body.frame(state.touched(&body)),
@@ -156,7 +156,7 @@ fn threads_change_nothing_and_a_second_reading_allocates_nothing() {
     assert_eq!(allocations(|| readout.read(&few, MOMENT, &mut values)), 0);
 }
 
-/// A flat skin of so many taxels, each of which feels half of its stroke.
+/// Creates a flat skin of `n` taxels, each deflected by half of its stroke.
 fn untouched(n: usize) -> (Patch, WholeBody) {
     let grid = Grid {
         nx: n,
@@ -168,7 +168,7 @@ fn untouched(n: usize) -> (Patch, WholeBody) {
     (patch, body)
 }
 
-/// What every taxel of a skin reads that feels `felt`, in strokes.
+/// Returns the readings of all `n` taxels of a skin, each with the deflection `felt`, in strokes.
 fn read(n: usize, steps: &[SignalStep], moment: Moment, felt: f64) -> Vec<f64> {
     let (_, body) = untouched(n);
     let readout = BodyReadout::new(steps, &body, &skin()).unwrap();
@@ -186,7 +186,8 @@ fn covariance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / a.len() as f64
 }
 
-/// Largest distance of a sample from a distribution function, times the root of its size: above 1.95 once in a thousand.
+/// Returns the largest distance between a sample and a distribution function, times the root of the sample size. The value exceeds 1.95 once in a thousand
+/// samples.
 fn kolmogorov(sample: &[f64], below: impl Fn(f64) -> f64) -> f64 {
     let mut sorted = sample.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -207,7 +208,7 @@ fn noise_is_normal_and_independent_between_taxels_and_frames() {
     let error = 1.0 / (N as f64).sqrt();
     for z in &frames {
         let moment = |power: i32| z.iter().map(|z| z.powi(power)).sum::<f64>() / N as f64;
-        // Five standard errors: the variance of zᵖ is (2p − 1)!! − (E zᵖ)².
+        // Tolerance of five standard errors: the variance of zᵖ is (2p − 1)!! − (E zᵖ)².
         let moments = [
             (1, 0.0, 1.0),
             (2, 1.0, 2.0),
@@ -225,7 +226,8 @@ fn noise_is_normal_and_independent_between_taxels_and_frames() {
         };
         let distance = kolmogorov(z, normal);
         assert!(distance < 1.95, "{distance}");
-        // Of neighbours, also of those that share a counter or a logarithm; of sizes, which linear correlation does not see.
+        // Correlations of neighbours, including taxels that share a counter or a logarithm. Correlations of squares detect dependence that linear correlation
+        // misses.
         let squares: Vec<f64> = z.iter().map(|z| z * z - 1.0).collect();
         for lag in [1, 2, 3, 4, 5, 7, 8, 31, 32, 33, 101] {
             let together = covariance(&z[lag..], &z[..N - lag]);
@@ -259,7 +261,7 @@ fn one_taxel_has_noise_that_is_normal_from_frame_to_frame() {
     for lag in [1, 2, 3, 10, 1000] {
         assert!(covariance(&z[lag..], &z[..N - lag]).abs() < 5.0 * error);
     }
-    // Two noises of one list, and those of two skins, are not the same.
+    // Two noise steps of one list are independent, as are the noises of two skins.
     let both = read(N, &[noise(1.0), noise(1.0)], at(3, 0.0), 0.0);
     assert!((covariance(&both, &both) / 2.0 - 1.0).abs() < 5.0 * error * 2f64.sqrt());
 }
@@ -277,14 +279,14 @@ fn zeros_drift_as_a_random_walk_does() {
     let at_times = times.map(zeros);
     for (s, early) in times.iter().zip(&at_times) {
         for (t, late) in times.iter().zip(&at_times) {
-            // Cov(W(s), W(t)) = min(s, t); of products of normal numbers, five standard errors.
+            // Expected covariance Cov(W(s), W(t)) = min(s, t), with five standard errors of products of normal numbers.
             let expected = s.min(*t);
             let error = ((s * t + expected * expected) / N as f64).sqrt();
             let found = covariance(early, late);
             assert!((found - expected).abs() < 5.0 * error, "{s}, {t}: {found}");
         }
     }
-    // Between two of the 64 times, along a straight line.
+    // Between two of the 64 times, the zero is linear.
     let between = zeros(0.25 + 0.25 / 64.0);
     for ((a, b), zero) in at_times[1].iter().zip(&at_times[2]).zip(between) {
         assert!((zero - (0.75 * a + 0.25 * b)).abs() < 1e-12);
@@ -313,7 +315,7 @@ fn faults_are_as_frequent_as_asked_stay_and_grow() {
     let levels: Vec<f64> = levels.copied().collect();
     let distance = kolmogorov(&levels, |level| level.clamp(0.0, 1.0));
     assert!(distance < 1.95, "{distance}");
-    // A skin with more faults has those of a skin with fewer.
+    // The faults of a skin with fewer faults are also faults of the skin with more.
     for (few, many) in values.iter().zip(faults(0.2, 0.4, 3)) {
         assert!(*few == 0.5 || *few == many);
     }
@@ -344,7 +346,7 @@ fn a_chain_reads_values_of_the_same_distribution() {
         );
         sparse.sort_by(f64::total_cmp);
         dense.sort_by(f64::total_cmp);
-        // Two samples of N: below 1.95 √(2 / N) in 999 of 1000 pairs, at values that are not shared by many.
+        // Two samples of size N differ by less than 1.95 √(2 / N) in 999 of 1000 pairs, at values that few readings share.
         for part in 1..100 {
             let value = dense[part * N / 100];
             let below =

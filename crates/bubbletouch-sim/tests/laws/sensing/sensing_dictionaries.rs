@@ -1,4 +1,4 @@
-//! Laws of dictionaries, of what a projection leaves of them, and of the statistics that say how much that is.
+//! Laws of dictionaries, of projected dictionaries, and of their coherence and isometry.
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::sensing::{Basis, Dictionary, Ensemble, Projection, SensedDictionary};
@@ -49,7 +49,7 @@ fn a_constant_frame_is_one_atom_and_a_plane_few() {
         assert_eq!(n_used, 1, "{basis:?}");
         assert!((coefficients[[0, 0]].abs() - 32.0).abs() < 1e-12);
     }
-    // Two vanishing moments: a slope is no detail, but for the jump at the periodic edge.
+    // Two vanishing moments: a linear slope has no details, except for the jump at the periodic edge.
     let slope = Array2::from_shape_fn((1, 64), |(_, j)| j as f64);
     let dictionary = Dictionary::complete(Basis::Daubechies4, (1, 64)).unwrap();
     let details = dictionary.analyse(slope.view());
@@ -161,14 +161,14 @@ fn coherence_is_the_largest_cosine_between_two_columns() {
     let coherence = sensed.coherence();
     assert!((coherence.mutual - slow).abs() < 1e-14);
     assert_eq!(coherence.n_invisible, 0);
-    // √((k − m) / (m (k − 1)))
+    // Welch's bound √((k − m) / (m (k − 1))).
     assert!((coherence.welch_bound - f64::sqrt(40.0 / 1512.0)).abs() < 1e-10);
     assert!(coherence.mutual > coherence.welch_bound);
 }
 
 #[test]
 fn atoms_that_averaging_wipes_out_are_counted_not_compared() {
-    // 2 × 2 averages of the finest Haar details are zero: three quarters of the atoms.
+    // Averages of 2 × 2 taxels of the finest Haar details are zero, which are three quarters of the atoms.
     let dictionary = Dictionary::complete(Basis::Haar, (8, 8)).unwrap();
     let projection = Projection::new(Ensemble::BlockAverage, (8, 8), 16, &Seed::new(2)).unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
@@ -190,7 +190,7 @@ fn full_sampling_keeps_every_support_an_isometry() {
 
 #[test]
 fn the_isometry_of_all_atoms_is_known_where_rows_are_orthonormal() {
-    // A Aᵀ = 1 (m × m), so AᵀA has m eigenvalues 1 and others 0; columns of mean square norm m / k scale them by k / m.
+    // With A Aᵀ = 1 (m × m), the matrix AᵀA has m eigenvalues 1 and others 0. Columns of mean square norm m / k scale the eigenvalues by k / m.
     let dictionary = Dictionary::complete(Basis::Dct, (8, 8)).unwrap();
     let projection = Projection::new(Ensemble::Sbhe, (8, 8), 16, &Seed::new(2)).unwrap();
     let sensed = SensedDictionary::new(&projection, &dictionary).unwrap();
@@ -249,7 +249,7 @@ fn bad_dictionaries_are_refused_by_a_clear_sentence() {
     for sparsity in [0, 17] {
         assert!(sensed.isometry(sparsity, 1, &seed).is_err());
     }
-    // Frames that are all the same have no principal component.
+    // Identical frames have no principal component.
     let same = Array2::from_elem((3, 16), 1.0);
     let flat = Dictionary::learned(Basis::Pca, (4, 4), same.view(), None, &seed).unwrap();
     assert!(SensedDictionary::new(&projection, &flat).is_err());

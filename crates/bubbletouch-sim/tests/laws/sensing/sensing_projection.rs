@@ -1,4 +1,4 @@
-//! Laws that every ensemble obeys.
+//! Laws of all ensembles.
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::sensing::{Ensemble, Projection};
@@ -14,7 +14,7 @@ const ENSEMBLES: [Ensemble; 7] = [
     Ensemble::Identity,
 ];
 
-/// Ensembles whose rows mix taxels at random.
+/// Ensembles whose rows mix taxels randomly.
 const RANDOM: [Ensemble; 4] = [
     Ensemble::Gaussian,
     Ensemble::Bernoulli,
@@ -131,7 +131,7 @@ fn a_frame_has_the_same_measurements_in_every_batch() {
 
 #[test]
 fn taxels_that_read_nothing_change_no_bit() {
-    // A frame of ones among them makes every taxel count.
+    // One frame of ones makes every taxel count.
     for ensemble in ENSEMBLES {
         for (grid, m) in [((64, 64), 70), ((31, 17), 100), ((5, 7), 35), ((9, 9), 1)] {
             let projection = projection(ensemble, grid, m);
@@ -221,8 +221,8 @@ fn random_ensembles_keep_distances_between_frames() {
                     difference.dot(&difference)
                 };
                 let ratio = square(&measured) * n as f64 / m as f64 / square(&frames);
-                // Johnson and Lindenstrauss: one pair strays by more than ε with probability
-                // 2 exp(−m (ε²/4 − ε³/6)) = 3e-5 at ε = 0.45; there are 132 pairs and the seed is fixed.
+                // By Johnson and Lindenstrauss, the distance of one pair changes by more than a factor 1 ± ε with probability
+                // 2 exp(−m (ε²/4 − ε³/6)) = 3e-5 at ε = 0.45. There are 132 pairs, and the seed is fixed.
                 assert!((ratio - 1.0).abs() < 0.45, "{ensemble:?}: {ratio}");
             }
         }
@@ -231,7 +231,7 @@ fn random_ensembles_keep_distances_between_frames() {
 
 #[test]
 fn independent_entries_have_mean_zero_and_variance_one_over_n() {
-    // Variance of z² for a standardised entry z: 2 for Gaussian, 0 for ±1, s − 1 for sparse.
+    // Variance of z² for a standardised entry z: 2 for Gaussian, 0 for ±1, s − 1 for sparse entries.
     for (ensemble, of_squares) in [
         (Ensemble::Gaussian, 2.0),
         (Ensemble::Bernoulli, 1e-20),
@@ -253,7 +253,7 @@ fn bernoulli_entries_have_one_magnitude_and_sparse_ones_three_values_at_a_densit
     let bernoulli = projection(Ensemble::Bernoulli, (16, 16), 100).matrix();
     assert!(bernoulli.iter().all(|v| v.abs() == 1.0 / 16.0));
     let sparse = projection(Ensemble::Sparse, (16, 16), 256).matrix();
-    // s = 16, so entries are ±√(16/256) = ±0.25.
+    // With s = 16, entries are ±√(16/256) = ±0.25.
     assert!(sparse.iter().all(|v| [0.0, 0.25].contains(&v.abs())));
     let n_set = sparse.iter().filter(|v| **v != 0.0).count() as f64;
     let (entries, density) = (65_536.0, 1.0 / 16.0);

@@ -1,4 +1,4 @@
-//! Laws of the solvers, slow oracles beside them, and numbers of an independent program.
+//! Laws of the solvers, compared with slow oracles and with numbers of an independent program.
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::sensing::{
@@ -18,7 +18,7 @@ fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
     values.into_iter().fold(0.0, |most, v| most.max(v.abs()))
 }
 
-/// s-sparse coefficients at scattered places, no two magnitudes the same.
+/// Returns s-sparse coefficients at scattered positions, all with different magnitudes.
 fn sparse_rows(n_frames: usize, k: usize, s: usize) -> Array2<f64> {
     let mut rows = Array2::zeros((n_frames, k));
     for frame in 0..n_frames {
@@ -72,7 +72,7 @@ fn pursuit_and_l1_recover_sparse_frames_from_enough_measurements_without_noise()
     }
 }
 
-/// Matching pursuit as in the textbook: residual, largest cosine, least squares on all chosen columns by normal equations.
+/// Orthogonal matching pursuit as in textbooks: residual, largest cosine, least squares on all chosen columns by normal equations.
 fn naive_omp(a: ArrayView2<f64>, y: ArrayView1<f64>, n_atoms: usize) -> Array1<f64> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut residual = y.to_owned();
@@ -97,7 +97,7 @@ fn naive_omp(a: ArrayView2<f64>, y: ArrayView1<f64>, n_atoms: usize) -> Array1<f
     coefficients
 }
 
-/// Gaussian elimination with pivots.
+/// Solves a linear system by Gaussian elimination with pivoting.
 fn gauss(mut a: Array2<f64>, mut b: Array1<f64>) -> Array1<f64> {
     let n = b.len();
     for i in 0..n {
@@ -215,7 +215,8 @@ fn a_penalty_above_every_correlation_leaves_nothing() {
     assert!(!found.capped.contains(&true));
 }
 
-/// 24 taxels in a row, 10 averages over blocks of 2, 2, 3, 2, 3, 2, 2, 3, 2, 3 taxels, all 24 cosines; y given.
+/// Returns a small problem with known solutions: 24 taxels in a row, 10 averages over blocks of 2, 2, 3, 2, 3, 2, 2, 3, 2, 3 taxels, all 24 cosines, and given
+/// y.
 fn golden_problem() -> (Projection, Dictionary, Array2<f64>) {
     let grid = (1, 24);
     let projection = Projection::new(Ensemble::BlockAverage, grid, 10, &Seed::new(1)).unwrap();
@@ -233,7 +234,7 @@ fn assert_golden(found: ArrayView1<f64>, golden: &[(usize, f64)], tolerance: f64
     assert!(error < tolerance, "{error}: {found}");
 }
 
-/// scikit-learn 1.9.1: `orthogonal_mp(A / norms, y, n_nonzero_coefs=s) / norms`.
+/// Reference: `orthogonal_mp(A / norms, y, n_nonzero_coefs=s) / norms` of scikit-learn 1.9.1.
 #[test]
 fn pursuit_agrees_with_scikit_learn() {
     let (projection, dictionary, y) = golden_problem();
@@ -265,7 +266,7 @@ fn pursuit_agrees_with_scikit_learn() {
     }
 }
 
-/// scikit-learn 1.9.1: `Lasso(alpha=lam / 10, fit_intercept=False, tol=1e-14, max_iter=1000000).fit(A, y).coef_`.
+/// Reference: `Lasso(alpha=lam / 10, fit_intercept=False, tol=1e-14, max_iter=1000000).fit(A, y).coef_` of scikit-learn 1.9.1.
 #[test]
 fn the_l1_solution_agrees_with_scikit_learn() {
     let (projection, dictionary, y) = golden_problem();
@@ -296,7 +297,7 @@ fn the_l1_solution_agrees_with_scikit_learn() {
     }
 }
 
-/// The covariance written out, and one system solved for each measurement.
+/// Computes the LMMSE estimate with the explicit covariance, solving one system per measurement.
 fn dense_lmmse(sensed: &SensedDictionary, noise_std: f64, y: ArrayView2<f64>) -> Array2<f64> {
     let (phi, dictionary) = (sensed.projection().matrix(), sensed.dictionary());
     let energy = dictionary.energy().unwrap();
@@ -323,7 +324,7 @@ fn the_linear_estimate_is_its_dense_formula() {
     let (grid, frames) = ((6, 6), wavy_frames(40, 36));
     let noise_std = 0.2;
     for ensemble in RANDOM.into_iter().chain([Ensemble::BlockAverage]) {
-        // 4 atoms go through coefficients, 30 straight to taxels.
+        // With 4 atoms the estimate goes through coefficients, with 30 directly to taxels.
         for (basis, k) in [(Basis::Pca, 4), (Basis::Dct, 30), (Basis::Dct, 36)] {
             let seed = Seed::new(7);
             let projection = Projection::new(ensemble, grid, 9, &seed).unwrap();
@@ -349,7 +350,7 @@ fn the_linear_estimate_trusts_training_alone_when_noise_drowns_the_measurements(
     let y = projection.measure(frames.view());
     let drowned = Lmmse::new(&sensed, 1e6).unwrap().estimate(y.view());
     assert!(largest(&(&drowned - dictionary.origin())) < 1e-9);
-    // Eight components show these frames, and 20 measurements without noise find them.
+    // Eight components represent these frames, and 20 noise-free measurements determine them.
     let clear = Lmmse::new(&sensed, 0.0).unwrap().estimate(y.view());
     let square = |a: &Array2<f64>| a.iter().map(|e| e * e).sum::<f64>();
     assert!(square(&(&clear - &frames)) < 1e-6 * square(&frames));

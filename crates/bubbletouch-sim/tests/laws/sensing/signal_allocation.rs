@@ -1,4 +1,4 @@
-//! A chain that has seen one frame allocates nothing for the next ones.
+//! A chain that has processed one frame makes no allocations for further frames.
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::{

@@ -1,4 +1,4 @@
-//! Laws of the signal stage, against SciPy and against slow obvious code.
+//! Laws of the signal stage, compared with SciPy and with slow, simple code.
 
 use crate::standard_errors::{assert_expected, mean_and_std, of_mean, of_std};
 use bubbletouch_sim::random::Seed;
@@ -37,7 +37,7 @@ fn applied(steps: &[SignalStep], patch: &Patch, frame: &[f64], touch: u64) -> Ve
     out
 }
 
-/// `scipy.ndimage.gaussian_filter(f, width)`, SciPy 1.17.1, f[i, j] = ((7 i + 5 j) mod 11) / 10, 4 × 6.
+/// Reference: `scipy.ndimage.gaussian_filter(f, width)`, SciPy 1.17.1, with f[i, j] = ((7 i + 5 j) mod 11) / 10, 4 × 6.
 #[rustfmt::skip]
 const SCIPY: [(f64, [f64; 24]); 3] = [
     (0.8, [
@@ -93,7 +93,7 @@ fn one_width_smooths_the_same_patch_of_skin_at_every_pitch() {
         let step = [SignalStep::Smoothing { width: 4e-3 }];
         applied(&step, &patch, &frame, 0)[(n * n) / 2]
     };
-    // A Gaussian of width a smoothed by w peaks at a² / (a² + w²).
+    // A Gaussian of width a smoothed by w has the peak a² / (a² + w²).
     let exact = 36.0 / 52.0;
     for (n, pitch) in [(41, 2e-3), (81, 1e-3), (161, 0.5e-3)] {
         assert!((blurred_at_centre(n, pitch) - exact).abs() < 1e-3);
@@ -151,7 +151,7 @@ fn two_noise_steps_of_one_chain_are_independent() {
 #[test]
 fn full_scale_noise_before_and_after_force_is_the_same_noise() {
     let patch = patch(8, 8);
-    // Far from zero, where the force's floor does not cut.
+    // Values far from zero, so that forces are not clipped at zero.
     let frame = vec![4.0; 64];
     let level = noise(0.1, NoiseUnit::FullScale);
     let before = applied(&[level, SignalStep::Force], &patch, &frame, 5);
@@ -171,7 +171,7 @@ fn the_order_of_steps_is_the_order_of_the_list() {
     let level = noise(0.1, NoiseUnit::FullScale);
     let smoothed_last = spread(&[level, smoothing(2.0)]);
     let smoothed_first = spread(&[smoothing(2.0), level]);
-    // Smoothing by σ = 2 taxels leaves about 1 / (2 √π σ) of white noise.
+    // Smoothing by σ = 2 taxels reduces white noise to about 1 / (2 √π σ).
     assert!(smoothed_last < 0.25 * smoothed_first);
 }
 

@@ -1,4 +1,4 @@
-//! What real skins do to a signal, in chains: strengths, order, history, time, units.
+//! Laws of sensor errors in signal chains: strengths, order, history, time, units.
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::{
@@ -35,7 +35,7 @@ fn is_error(step: &SignalStep, wanted: SensorError) -> bool {
     matches!(step, SignalStep::Error { error, .. } if *error == wanted)
 }
 
-/// Every imperfection at a multiple of some strength.
+/// Returns a list of all imperfections, each at a multiple of a base strength.
 fn imperfections(times: f64) -> Vec<SignalStep> {
     let skin = skin();
     vec![
@@ -50,7 +50,7 @@ fn imperfections(times: f64) -> Vec<SignalStep> {
     ]
 }
 
-/// A press through so many frames, deeper and deeper, 2 mm at most.
+/// Returns a press of `n_frames` frames with increasing depth, 2 mm at most.
 fn press(n_frames: usize) -> Vec<f64> {
     let value = |frame: usize, taxel: usize| {
         let depth = 2e-3 * (frame + 1) as f64 / n_frames as f64;
@@ -59,7 +59,7 @@ fn press(n_frames: usize) -> Vec<f64> {
     (0..n_frames * N).map(|i| value(i / N, i % N)).collect()
 }
 
-/// What a chain reads of frames of which some came before the touch.
+/// Returns the readings of a chain for frames of which the first `n_before` came before the touch.
 fn read(steps: &[SignalStep], frames: &[f64], n_before: usize, touch: u64) -> Vec<f64> {
     let mut frames = frames.to_vec();
     let recording = Recording {
@@ -114,7 +114,7 @@ fn gains_and_faults_stay_with_the_skin_and_zeros_wander_from_touch_to_touch() {
     }
     let drift = imperfections(1.0)[4];
     let zeros = read(&[drift], &[0.0; 3 * N], 0, 4);
-    // A zero does not wander within a touch.
+    // The zeros are constant within a touch.
     assert_eq!(zeros[..N], zeros[N..2 * N]);
     assert_eq!(zeros[..N], zeros[2 * N..]);
     let of = |skin| {
@@ -133,7 +133,7 @@ fn steps_act_in_the_order_of_the_list() {
     for (first, second) in [(crosstalk, gain), (faults, crosstalk), (converter, NOISE)] {
         let one_way = read(&[first, second], &frames, 0, 4);
         assert_ne!(one_way, read(&[second, first], &frames, 0, 4));
-        // The second step acts on what the first one made.
+        // The second step acts on the output of the first step.
         if second != NOISE {
             let by_hand = read(&[second], &read(&[first], &frames, 0, 4), 0, 4);
             assert_eq!(one_way, by_hand);
@@ -166,7 +166,7 @@ fn frames_of_a_chain_without_time_are_read_as_if_each_were_alone() {
         chain.apply(&mut alone, None, name, &mut SignalWorkspace::default());
         assert_eq!(together[frame * N..(frame + 1) * N], alone);
     }
-    // What came before such a chain's touch is nothing to it.
+    // Frames before the touch do not change the readings of a chain without memory.
     assert_eq!(read(&steps, &[press(1), frames].concat(), 1, 4), together);
 }
 
@@ -183,18 +183,18 @@ fn a_skin_that_was_pressed_deeper_and_let_go_reads_a_touch_differently_and_no_to
     assert_eq!(history(&[0.0; N], &press(2)), fresh);
     let after = history(&deep, &press(2));
     assert!(after.iter().zip(&fresh).all(|(after, fresh)| after > fresh));
-    // What is left is below twice the width of the loop.
+    // The residual is below twice the width of the loop.
     let left = history(&deep, &[0.0; N]);
     let most = 2.0 * 0.1 * 5e-3;
     assert!(left.iter().all(|&value| value > 0.0 && value < most));
-    // A shallower press before a deeper one is forgotten.
+    // A shallower press before a deeper press has no effect.
     let shallow = history(&[1e-3; N], &[3e-3; N]);
     assert_eq!(shallow, read(&[hysteresis], &[3e-3; N], 0, 4));
 }
 
 #[test]
 fn a_fraction_of_the_full_scale_means_the_same_before_and_after_force() {
-    // Neither at zero, where force ends, nor near the full scale, where a converter does.
+    // Deflections away from zero, where forces are clipped, and from the full scale, where a converter clips.
     let frames: Vec<f64> = press(2).iter().map(|d| d + 1.5e-3).collect();
     for step in imperfections(0.5) {
         let before = read(&[step, SignalStep::Force], &frames, 0, 4);

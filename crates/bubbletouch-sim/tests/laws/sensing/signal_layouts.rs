@@ -1,4 +1,4 @@
-//! The signal of skins that are no grid: what a grid's is where both can be asked, and what symmetry says elsewhere.
+//! Laws of the signal of skins other than grids: comparison with grids, and symmetries.
 
 use bubbletouch_sim::random::Seed;
 use bubbletouch_sim::signal::{
@@ -25,7 +25,7 @@ fn grid(nx: usize, ny: usize) -> Patch {
     Patch::grid(Grid { nx, ny, pitch }, TAXEL).unwrap()
 }
 
-/// The taxels of a grid in a layout that does not know that it is one.
+/// Returns the taxels of a grid in a layout without the rule of a grid.
 fn scattered(patch: &Patch) -> Patch {
     let layout = patch.layout();
     skin(Layout::new(layout.centers().to_vec(), layout.axes().to_vec()).unwrap())
@@ -43,7 +43,7 @@ fn refused(steps: &[SignalStep], skin: &Patch) -> String {
     Chain::new(steps, skin).unwrap_err().to_string()
 }
 
-/// Any deflections, metres.
+/// Returns arbitrary deflections, metres.
 fn frame(n: usize) -> Vec<f64> {
     (0..n)
         .map(|k| 2e-3 * (1.0 + (3.7 * k as f64).sin()))
@@ -88,7 +88,7 @@ fn crosstalk_over_neighbours_is_that_of_the_grid() {
         let found = read(&[crosstalk(0.3)], &scattered(&patch), &frame);
         let sums: [f64; 2] = [&of_grid, &found].map(|values| values.iter().sum());
         assert!((sums[0] - sums[1]).abs() < 1e-15);
-        // A line has two neighbours: each gets half of the leak and not a quarter.
+        // On a line a taxel has two neighbours; each receives half of the leak instead of a quarter.
         if nx > 1 && ny > 1 {
             for (a, b) in found.iter().zip(&of_grid) {
                 assert!((a - b).abs() < 1e-17);
@@ -110,7 +110,7 @@ fn smoothing_along_the_surface_is_that_of_the_grid_away_from_its_edges() {
         for (taxel, (a, b)) in found.iter().zip(&of_grid).enumerate() {
             let (x, y) = (taxel % nx, taxel / nx);
             let is_inner = x.min(nx - 1 - x).min(y.min(ny - 1 - y)) >= edge;
-            // What is beyond four widths has a weight of 3e-4.
+            // Taxels beyond four widths have a total weight of 3e-4.
             assert!(!is_inner || (a - b).abs() < 2e-3 * 4e-3, "{width}: {a} {b}");
         }
     }
@@ -195,7 +195,7 @@ fn what_a_layout_or_unlike_taxels_cannot_read_is_refused() {
     );
 }
 
-/// Every taxel over every other: weights of the distance along a plane, within four widths.
+/// Smooths a frame by the definition: weights by the distance along a plane, for every pair of taxels within four widths.
 fn smoothed_by_definition(skin: &Patch, frame: &[f64], width: f64) -> Vec<f64> {
     let centers = skin.layout().centers();
     let of_taxel = |center: &DVec3| {
@@ -250,7 +250,7 @@ fn smoothing_reaches_as_far_as_its_width_whatever_the_spacing() {
             }
         }
     }
-    // An impulse along the middle of three rows, by rows.
+    // An impulse along the middle of three rows, given by rows.
     let skin = rows(3.1e-3);
     let mut impulse = vec![0.0; 63];
     impulse[21..42].fill(1.0);

@@ -1,5 +1,5 @@
-//! Where frames and measurements could break: noise of ten times the full scale, smoothing wider than the array, one measurement
-//! and as many as taxels. Each case has the behaviour that `guide::limits` states.
+//! Limits of frames and measurements: noise of ten times the full scale, smoothing wider than the array, one measurement, and as many measurements as taxels.
+//! Each case has the behaviour that the guide's page on limits states.
 
 use crate::standard_errors::assert_expected;
 use bubbletouch_sim::random::Seed;
@@ -75,7 +75,7 @@ fn noise_of_ten_times_the_full_scale_is_neither_clipped_nor_bounded() {
             std < 1.0 || beyond > 0.5,
             "{std}: {beyond} beyond the full scale"
         );
-        // A converter behind it clips.
+        // A converter after the noise clips the values.
         let clipped = applied(
             &[noise, SensorError::Quantisation.step(&[8.0], Seed::new(1))],
             &patch,
@@ -97,7 +97,7 @@ fn smoothing_wider_than_the_array_is_the_weighted_mean_of_the_mirrored_array() {
     for pitches in [1.0, 3.0, 6.0, 20.0, 300.0, 1e4] {
         let width = pitches * patch.layout().as_grid().unwrap().pitch;
         let found = applied(&[SignalStep::Smoothing { width }], &patch, &frame);
-        // Slowly: every tap of the truncated Gaussian on the endlessly mirrored array.
+        // Slow oracle: every weight of the truncated Gaussian on the endlessly mirrored array.
         let reach = (4.0 * pitches + 0.5) as i64;
         let taps: Vec<f64> = (-reach..=reach)
             .map(|t| (-0.5 * (t as f64 / pitches).powi(2)).exp())
@@ -127,7 +127,7 @@ fn smoothing_wider_than_the_array_is_the_weighted_mean_of_the_mirrored_array() {
     }
 }
 
-/// Solves Φx = y by elimination with pivots: slow and obvious.
+/// Solves Φx = y by elimination with pivoting, as a slow and simple oracle.
 fn solve(matrix: &Array2<f64>, measured: &[f64]) -> Vec<f64> {
     let n = measured.len();
     let mut rows: Vec<Vec<f64>> = (0..n)
@@ -156,9 +156,9 @@ fn as_many_measurements_as_taxels_lose_nothing() {
             let projection = Projection::new(ensemble, (side, side), n, &Seed::new(4)).unwrap();
             let measured = projection.measure(frame.view());
             let back = solve(&projection.matrix(), measured.row(0).as_slice().unwrap());
-            // Blocks of 32 taxels that are filled up with zeros: of their coefficients only so many as taxels are kept.
+            // Blocks of 32 taxels are padded with zeros; only as many of their coefficients as there are taxels are kept.
             let is_padded = ensemble == Ensemble::Sbhe && side == 12;
-            // Sparse matrices of a few taxels may have rows of nothing.
+            // Sparse matrices of a few taxels may have empty rows.
             let is_empty = ensemble == Ensemble::Sparse && side == 2;
             if is_padded || is_empty {
                 let is_lost = back.iter().any(|x| !x.is_finite() || x.abs() > 1.0);

@@ -1,4 +1,4 @@
-//! Laws of resting poses, on unions whose poses are known.
+//! Laws of resting poses, on unions of spheres whose poses are known.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
@@ -15,7 +15,7 @@ fn union(points: impl IntoIterator<Item = DVec3>, radius: f64) -> SphereUnion {
     SphereUnion::new(points.into_iter().map(sphere).collect()).unwrap()
 }
 
-/// A block of spheres of 2 mm radius with these edge lengths.
+/// Creates a block of spheres of 2 mm radius with these edge lengths.
 fn block(size: DVec3) -> SphereUnion {
     let radius = 2e-3;
     let counts = (size / 3e-3).ceil();
@@ -35,7 +35,7 @@ fn block(size: DVec3) -> SphereUnion {
     union(points, radius)
 }
 
-/// A solid of revolution of height `length`, `profile(z)` its radius, as rings of spheres of 2 mm radius on its surface.
+/// Creates a solid of revolution of height `length` and radius `profile(z)`, as rings of spheres of 2 mm radius on its surface.
 fn revolution(length: f64, n_around: usize, profile: impl Fn(f64) -> f64) -> SphereUnion {
     let radius = 2e-3;
     let n_rings = 40;
@@ -68,7 +68,7 @@ fn heights(poses: &[RestPose]) -> Vec<f64> {
     heights
 }
 
-/// h(d) = max (c · d + r) − com · d over every sphere.
+/// Returns the height h(d) = max (c · d + r) − com · d over all spheres.
 fn standing(spheres: &SphereUnion, com: DVec3, down: DVec3) -> f64 {
     let reach = |s: &Sphere| (s.center - com).dot(down) + s.radius;
     spheres
@@ -112,8 +112,8 @@ fn a_block_rests_on_its_six_faces_the_largest_likeliest() {
         assert!((pose.height - exact).abs() < 1e-9, "{poses:?}");
         assert_rests_on_table(&block(size), pose);
     }
-    // Spheres round the edges off, so the centres' box decides. A face's solid angle, seen from the middle, is
-    // 4 asin(bc / √((a² + b²)(a² + c²))), a the distance between the faces.
+    // Spheres round the edges off, so the box of the centres decides. The solid angle of a face, seen from the middle, is
+    // 4 asin(bc / √((a² + b²)(a² + c²))), where a is the distance between the faces.
     let [a, b, c] = (size - 4e-3).to_array();
     let share = |a: f64, b: f64, c: f64| {
         let root = ((a * a + b * b) * (a * a + c * c)).sqrt();
@@ -166,7 +166,7 @@ fn a_can_stands_on_either_end_or_lies_on_its_side() {
     let can = revolution(length, 60, |_| radius);
     let poses = stable_poses(&can.clone().into());
     assert_eq!(poses.len(), 3, "{poses:?}");
-    // The side is the band of directions up to where the centre of mass stands over the rim's sphere centres.
+    // The side corresponds to the band of directions up to where the centre of mass is over the rim's sphere centres.
     let (half, rim) = (length / 2.0 - 2e-3, radius - 2e-3);
     let side = half / half.hypot(rim);
     assert!(
@@ -190,7 +190,7 @@ fn a_cone_rests_on_its_base_or_its_flank() {
 
 #[test]
 fn a_weighted_ball_stands_with_its_weight_down() {
-    // Smooth minimum: no face, no edge.
+    // A smooth minimum, without faces and edges.
     let ball = union([DVec3::ZERO], 0.05);
     let com = DVec3::new(0.006, -0.012, 0.004);
     let poses = stable_poses_about(&ball.into(), com);

@@ -18,7 +18,7 @@ fn listed(values: &[f64]) -> Spread {
     Spread::Values(values.to_vec())
 }
 
-/// 2 offsets × 3 yaws × 2 depths.
+/// Returns a placement of 2 offsets × 3 yaws × 2 depths.
 fn grid() -> Placement {
     Placement {
         rest: RestPoses::Stable,
@@ -101,7 +101,7 @@ fn each_combination_is_equally_likely_to_be_drawn() {
             count[touch.rest * 12 + within + index(TouchAxis::Depth)] += 1;
         }
     }
-    // Six of 24 in each of 4,000 placements.
+    // Each of 4,000 placements draws six of 24 combinations.
     for count in count {
         let share = f64::from(count) / 4000.0;
         assert_expected("combination", share, 0.25, of_share(0.25, 4000));

@@ -1,4 +1,4 @@
-//! Robots and bodies in time: smooth between waypoints, and within limits at all times.
+//! Laws of trajectories of robots and bodies: smooth between waypoints, and within limits at all times.
 
 use crate::counting::allocations;
 use bubbletouch_sim::geometry::Pose;
@@ -16,11 +16,11 @@ const INTERPOLATIONS: [Interpolation; 3] = [
     Interpolation::Monotone,
 ];
 
-/// The waypoints of robots/splines.py.
+/// Times of the waypoints in robots/splines.py.
 const TIMES: [f64; 5] = [0.0, 0.5, 1.7, 2.0, 4.0];
 const VALUES: [f64; 5] = [0.0, 1.0, 1.2, -0.7, 0.4];
 
-/// Two hinges and a slide; `follower` turns twice as far as `hinge`, the other way.
+/// Creates a robot with two hinges and a slide; `follower` turns twice as far as `hinge`, in the opposite direction.
 fn robot(hinge_limits: &str) -> Robot {
     let text = format!(
         r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
@@ -38,7 +38,7 @@ fn free() -> Robot {
     robot(r#"lower="-9" upper="9" velocity="90""#)
 }
 
-/// The hinge through these values at 0, 1, 2, … s, the slide at rest.
+/// Returns a trajectory of the hinge through these values at 0, 1, 2, … s; the slide stays at rest.
 fn hinge(
     robot: &Robot,
     values: &[f64],
@@ -103,7 +103,7 @@ fn the_ends_hold_and_way_points_are_passed_exactly() {
 fn a_limit_passed_between_legal_way_points_is_found() {
     let robot = robot(r#"lower="-1" upper="1.05" velocity="90""#);
     let values = [0.0, 1.0, 1.0, 0.0];
-    // All waypoints are legal, and so are straight lines between them.
+    // All waypoints and the straight lines between them are within the limits.
     for kind in [Interpolation::Linear, Interpolation::Monotone] {
         hinge(&robot, &values, kind).expect("nothing leaves the way-points");
     }
@@ -118,7 +118,7 @@ fn a_limit_passed_between_legal_way_points_is_found() {
 #[test]
 fn a_velocity_passed_between_slow_way_points_is_found() {
     let robot = robot(r#"lower="-9" upper="9" velocity="1.2""#);
-    // Still at both ends, one radian in one second: 1.5 rad/s half-way.
+    // At rest at both ends, one radian in one second has a speed of 1.5 rad/s half-way.
     hinge(&robot, &[0.0, 1.0], Interpolation::Linear).expect("1 rad/s");
     for kind in [Interpolation::Cubic, Interpolation::Monotone] {
         let error = hinge(&robot, &[0.0, -1.0], kind).unwrap_err();
@@ -169,7 +169,7 @@ fn a_quarter_turn_is_within_a_limit_of_six_digits_and_no_more_is() {
     }
 }
 
-/// The closed form against a search at 10,000 times a second, on curves of all kinds.
+/// The closed form is compared with a search at 10,000 samples per second, on curves of all kinds.
 #[test]
 fn a_trajectory_is_refused_exactly_when_a_fine_search_finds_it_beyond() {
     let mut rng = Seed::new(2018).named("trajectories").rng();
@@ -355,7 +355,7 @@ fn a_pose_passes_its_way_points_and_a_steady_turn_stays_steady() {
             assert!(found.translation == pose.translation);
             assert!((found.rotation.dot(pose.rotation).abs() - 1.0).abs() < 1e-15);
         }
-        // Far from the ends, rotation goes as position does.
+        // Far from the ends, a rotation is interpolated like a position.
         for time in [1.25, 2.0, 2.6] {
             let angle = 2.0 * trajectory.pose_at(time).rotation.z.asin();
             assert!(

@@ -1,5 +1,4 @@
-//! Kinds of URDF files that are public and that a strict reader refuses: each is read, what is left out has a note, and links are where the
-//! file says.
+//! Public URDF files that a strict reader rejects. Each file is read, omitted parts have a note, and the poses of links are those of the file.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::world::{JointKind, LinkGeometry, Robot};
@@ -9,7 +8,7 @@ fn read(text: &str) -> Robot {
     Robot::from_urdf("r.urdf", text).expect(text)
 }
 
-/// A robot of two links: `<joint name="j" TYPE>` with `inside`, its child 0.1 m above its parent.
+/// Returns a robot of two links with `<joint name="j" TYPE>` that contains `inside`; the child is 0.1 m above its parent.
 fn jointed(kind: &str, inside: &str) -> Robot {
     read(&format!(
         r#"<robot name="r"><link name="a"/><link name="b"/>
@@ -19,7 +18,7 @@ fn jointed(kind: &str, inside: &str) -> Robot {
     ))
 }
 
-/// A robot of one link with this shape.
+/// Returns a robot of one link with this shape.
 fn shaped(form: &str) -> Robot {
     read(&format!(
         r#"<robot name="r"><link name="a"><collision>{form}</collision></link></robot>"#
@@ -39,7 +38,7 @@ fn has_note(robot: &Robot, part: &str) {
     );
 }
 
-/// Where the second link is at rest.
+/// Returns the pose of the second link at rest.
 fn second(robot: &Robot) -> Pose {
     robot
         .forward(&Pose::IDENTITY, &robot.rest_positions())
@@ -165,7 +164,7 @@ fn a_joint_rests_at_zero_or_at_the_nearest_limit() {
     }
 }
 
-/// Three links in a row: joint `first` with `of_first`, joint `second` with `of_second`, both 0.1 m along x, axes along z.
+/// Returns three links in a row: joint `first` with `of_first`, joint `second` with `of_second`, both 0.1 m along x, axes along z.
 fn in_a_row(first: &str, second: &str) -> Robot {
     let joint = |name: &str, [a, b]: [&str; 2], inside: &str| {
         let (kind, inside) = inside.split_once(' ').unwrap_or((inside, ""));
@@ -341,7 +340,7 @@ fn what_xacro_left_is_passed_over_with_a_note() {
         ));
         has_note(&robot, "of xacro; plain URDF: expand it first");
     }
-    // What is missing is what xacro would have made.
+    // The missing parts are those that xacro would have created.
     let error = Robot::from_urdf("r.urdf", "<robot name='r'>\n<xacro:make_links/></robot>");
     let said = error.unwrap_err().to_string();
     assert!(

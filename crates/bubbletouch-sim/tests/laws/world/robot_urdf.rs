@@ -1,4 +1,4 @@
-//! Robots from URDF: where their links are, and what is said of a file that is no robot.
+//! Robots from URDF: poses of links, and error messages of invalid files.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::random::Seed;
@@ -7,7 +7,7 @@ use bubbletouch_sim::{Error, Result};
 use glam::{DMat3, DQuat, DVec3};
 use rand::Rng;
 
-/// The arm of the project's own robots.
+/// Returns the text of the arm in the project's own robots.
 fn arm_urdf() -> String {
     std::fs::read_to_string("../../objects/robots/arm.urdf").unwrap()
 }
@@ -15,7 +15,7 @@ fn arm_urdf() -> String {
 const SIX_AXIS: &str = include_str!("../../robots/six_axis.urdf");
 const GRIPPER: &str = include_str!("../../robots/gripper.urdf");
 const ROVER: &str = include_str!("../../robots/rover.urdf");
-/// By another program: robots/forward.py.
+/// Link poses computed by another program, robots/forward.py.
 const FORWARD: &str = include_str!("../../robots/forward.csv");
 
 fn robot(text: &str) -> Robot {
@@ -155,7 +155,7 @@ fn a_folder_is_no_urdf_file() {
     assert_eq!(Robot::read_urdf(folder.path()).unwrap_err().exit_code(), 2);
 }
 
-/// The error of the first robot below with `old` replaced.
+/// Returns the error for the first robot below if `old` is replaced by `new`.
 fn refused(text: &str, old: &str, new: &str) -> String {
     assert!(
         text.contains(old),
@@ -279,7 +279,7 @@ fn names_that_are_not_there_are_met_with_those_that_resemble_them() {
     );
 }
 
-/// A robot of one link with one shape.
+/// Reads a robot of one link with one shape.
 fn one_shape(inside: &str) -> Result<Robot> {
     let text = format!("<robot name='r'><link name='l'><visual>{inside}</visual></link></robot>");
     Robot::from_urdf("r.urdf", &text)
@@ -353,7 +353,7 @@ fn other_tools_elements_are_passed_over() {
            <transmission name="t"><joint name="pan"><hardwareInterface>x</hardwareInterface></joint></transmission>"#,
         1,
     );
-    // A namespace for all, as some tools write it.
+    // A default namespace, as some tools write it.
     let with_more = with_more.replacen("<robot ", r#"<robot xmlns="http://example.org/urdf" "#, 1);
     let (with_more, plain) = (robot(&with_more), robot(SIX_AXIS));
     let positions = [0.3; 6];
@@ -384,7 +384,7 @@ fn a_chain_of_fifty_thousand_links_is_read_and_moved() {
     assert_eq!(poses[n - 1].translation.x, (n - 1) as f64);
 }
 
-/// What a careless hand or a broken disk does to a text of tags.
+/// Returns the text with random damage, as careless editing or a broken disk may cause.
 fn mutilated(text: &str, rng: &mut impl Rng) -> String {
     const VALUES: [&str; 14] = [
         "",
@@ -415,7 +415,7 @@ fn mutilated(text: &str, rng: &mut impl Rng) -> String {
     };
     let mut tags = spans("<", ">");
     if rng.gen_bool(0.8) {
-        // Without these the text is still XML.
+        // Without these tags the text is still valid XML.
         tags.retain(|&(_, end)| text[..end].ends_with("/>"));
     }
     let values = spans("=\"", "\"");
@@ -465,7 +465,7 @@ fn a_mutilated_file_is_a_robot_or_bad_input_and_never_a_panic() {
     assert!(n_sound > 200 && n_refused > 1000, "{n_sound}, {n_refused}");
 }
 
-/// Reads a robot and moves it.
+/// Reads a robot and computes its link poses.
 fn used(text: &str) -> Result<()> {
     let robot = Robot::from_urdf("r.urdf", text)?;
     for position in [0.0, 1.3] {

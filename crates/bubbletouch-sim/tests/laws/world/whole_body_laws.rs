@@ -1,4 +1,4 @@
-//! Laws of a whole body: what its kernel finds is what the kernel for skins of any shape finds, and nothing costs but touch.
+//! Laws of a whole body: its kernel agrees with the kernel for skins of any shape, and its cost depends only on the contact.
 
 use bubbletouch_sim::contact::{DamperState, Workspace, press_with_contacts, relaxation_factor};
 use bubbletouch_sim::geometry::Pose;
@@ -17,7 +17,7 @@ use crate::random_scenes::{TAXEL, direction, random_pose, rng};
 
 const DT: f64 = 1e-3;
 
-/// A flat patch or a part of a cylinder, some centimetres large.
+/// Returns a flat patch or a part of a cylinder, some centimetres large.
 fn random_extrusion(rng: &mut impl Rng) -> Extrusion {
     let pitch = rng.gen_range(1e-3..4e-3);
     let extrusion = if rng.gen_bool(0.4) {
@@ -33,7 +33,7 @@ fn random_extrusion(rng: &mut impl Rng) -> Extrusion {
     extrusion.unwrap()
 }
 
-/// A part of a ball, some centimetres large.
+/// Returns a part of a ball, some centimetres large.
 fn random_dome(rng: &mut impl Rng) -> Dome {
     let (radius, pitch) = (rng.gen_range(0.01..0.06), rng.gen_range(1e-3..4e-3));
     let (polar, arc) = (rng.gen_range(0.2..PI), rng.gen_range(0.2..TAU));
@@ -54,7 +54,7 @@ fn random_body(rng: &mut impl Rng, taxel: Taxel) -> WholeBody {
     WholeBody::new(&patches.collect::<Result<Vec<_>, _>>().unwrap()).unwrap()
 }
 
-/// Spheres from a tenth of a millimetre to centimetres.
+/// Returns spheres from a tenth of a millimetre to centimetres.
 fn random_union(rng: &mut impl Rng) -> SphereUnion {
     let n = 10f64.powf(rng.gen_range(0.0..2.5)) as usize;
     let spheres = (0..n).map(|_| Sphere {
@@ -64,7 +64,7 @@ fn random_union(rng: &mut impl Rng) -> SphereUnion {
     SphereUnion::new(spheres.collect()).unwrap()
 }
 
-/// The same patches as skins of any layout.
+/// Returns the patches of a body as skins with any layout.
 fn as_skins(body: &WholeBody) -> Vec<Patch> {
     let skin = |patch: &BodyPatch| {
         Patch::new(patch.name(), patch.layout(), Taxels::Equal(*patch.taxel())).unwrap()
@@ -72,7 +72,7 @@ fn as_skins(body: &WholeBody) -> Vec<Patch> {
     body.patches().iter().map(skin).collect()
 }
 
-/// Objects, and where they and the patches are.
+/// Objects, and the poses of the objects and the patches.
 struct Touch {
     unions: Vec<SphereUnion>,
     objects: Vec<Pose>,
@@ -101,7 +101,7 @@ impl Touch {
         self.unions.iter().map(SphereClusters::new).collect()
     }
 
-    /// What the kernel for any skin finds on one patch: deflections and saturated taxels.
+    /// Returns the result of the kernel for any skin on one patch: deflections and number of saturated taxels.
     fn slowly(&self, patch: usize, skin: &Patch) -> (Vec<f64>, usize) {
         let models: Vec<Model> = self.unions.iter().cloned().map(Model::from).collect();
         let patch_from_world = self.patches[patch].inverse();
@@ -124,7 +124,7 @@ fn deflections_are_those_of_the_kernel_for_any_skin() {
         let body = random_body(&mut rng, TAXEL);
         let skins = as_skins(&body);
         let mut state = BodyState::at_rest(&body);
-        // The second and third touch come to a body that is still deflected.
+        // The second and third touch begin with a body that is still deflected.
         for _ in 0..3 {
             let touch = Touch::random(&mut rng, &body);
             state.place(&body, &touch.patches);
@@ -147,7 +147,7 @@ fn deflections_are_those_of_the_kernel_for_any_skin() {
                     .count();
                 expected_saturated += saturated;
             }
-            // A taxel that is only just touched may be so for one and not for the other.
+            // A taxel that is only just touched may be touched in one kernel and not in the other.
             assert!(
                 contact.n_touched.abs_diff(expected_touched) <= 1,
                 "case {case}"
@@ -247,7 +247,7 @@ fn damped_taxels_relax_and_push_as_dampers_do_until_they_are_at_rest() {
             }
             let forces = body.frame(state.forces(&body));
             let slow_forces = slow.iter().flat_map(|slow| &slow.force);
-            // What an earlier step has put to rest is pushed out anew.
+            // Taxels that an earlier step has put to rest are pushed out again.
             let slack = taxel.stiffness * AT_REST / (1.0 - relaxation_factor(&taxel, dt));
             for (fast, slow) in forces.iter().zip(slow_forces) {
                 assert!(
@@ -261,7 +261,7 @@ fn damped_taxels_relax_and_push_as_dampers_do_until_they_are_at_rest() {
                 .iter_mut()
                 .for_each(|pose| pose.translation += 1e-3 * direction(&mut rng));
         }
-        // e^(−20 · 50 ms · k / c) is far below a nanometre over the stroke.
+        // The factor e^(−20 · 50 ms · k / c) is far below a nanometre relative to the stroke.
         for _ in 0..40 {
             state.press(&body, &clusters, &touch.objects, 0.05);
         }
@@ -422,7 +422,7 @@ fn taxels_of_a_covered_robot_are_a_pitch_apart_across_seams_too() {
     let still = vec![0.0; robot.n_positions()];
     let links = robot.forward(&Pose::IDENTITY, &still).unwrap();
     covered.patch_poses(&links, &mut poses);
-    // Those of one limb, so that nothing else is near; of its half balls, whose poles are less even, only as neighbours.
+    // Only patches of one limb are used, so that nothing else is near. Its half balls, whose poles are less even, only serve as neighbours.
     let patches = covered.body().patches().iter().zip(&poses);
     let limb = patches.filter(|(patch, _)| patch.name().starts_with("left_shank "));
     let centers: Vec<(bool, DVec3)> = limb
@@ -498,7 +498,7 @@ fn a_robot_with_nothing_to_cover_and_a_pitch_that_is_none_are_refused() {
     );
 }
 
-/// A hand of a box and two fingers: one ends flat and in the open, one in a ball; both begin within the box.
+/// Robot hand made of a box and two fingers. One finger ends flat and free, the other in a ball, and both begin within the box.
 const HAND: &str = r#"<robot name="hand"><link name="palm">
     <collision><origin xyz="0 0 0.02"/><geometry><box size="0.08 0.03 0.1"/></geometry></collision>
     <collision><origin xyz="0.02 0 0.09"/><geometry><cylinder radius="0.01" length="0.06"/></geometry></collision>
@@ -519,7 +519,7 @@ fn faces_of_boxes_are_covered_and_flat_ends_in_the_open_if_they_are_asked_for() 
     };
     assert_eq!(names(&bare, " end "), [""; 0]);
     assert_eq!(names(&covered, " end "), ["palm end 1"]);
-    // 30 mm are whole, 100 mm are cut in three.
+    // Sides of 30 mm stay whole; sides of 100 mm are divided into three.
     let face = ["palm face 1 1.1", "palm face 1 2.1", "palm face 1 3.1"];
     assert_eq!(names(&bare, "face 1 "), face);
     assert_eq!(names(&covered, "face 1 "), face);

@@ -1,5 +1,5 @@
-//! Every way to compute a touch gives the same: with any vector instructions, any number of threads, sparse and dense; and what all
-//! spheres against all taxels give.
+//! All computations of a touch agree: with any vector instructions and any number of threads, sparse and dense. They also agree with an exhaustive comparison
+//! of all spheres and taxels.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
@@ -15,7 +15,7 @@ use crate::random_scenes::{TAXEL, direction, random_pose, rng};
 
 const DT: f64 = 1e-3;
 
-/// A patch of each surface there is, some of them with as many taxels as make threads worth while.
+/// Creates a patch of each kind of surface, some with enough taxels for several threads.
 fn body(rng: &mut impl Rng, taxel: Taxel, pitch: f64) -> WholeBody {
     let grid = Grid {
         nx: rng.gen_range(1..60),
@@ -24,7 +24,7 @@ fn body(rng: &mut impl Rng, taxel: Taxel, pitch: f64) -> WholeBody {
     };
     let cap = Layout::sphere_cap(rng.gen_range(0.02..0.05), rng.gen_range(0.5..PI), pitch).unwrap();
     let (cap, _) = cap.with_neighbours_together();
-    // In an order in which neighbours are apart: slower, and as right.
+    // Neighbours are not adjacent in this order, which is slower but must give equal results.
     let mixed = Layout::cylinder(0.03, 0.05, TAU, pitch).unwrap();
     let n = mixed.n_taxels();
     let step = (1..n).rev().find(|&step| gcd(step, n) == 1).unwrap_or(1) / 2 + 1;
@@ -61,12 +61,12 @@ fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 
-/// The first number from `step` on that has no divisor in common with n.
+/// Returns the first number from `step` on that is coprime to n.
 fn coprime(step: usize, n: usize) -> usize {
     (step..).find(|&step| gcd(step, n) == 1).unwrap_or(1)
 }
 
-/// Small ones beside some that are larger than a patch.
+/// Returns small spheres, and some that are larger than a patch.
 fn union(rng: &mut impl Rng) -> SphereUnion {
     let n = 10f64.powf(rng.gen_range(0.0..2.7)) as usize;
     let spheres = (0..n).map(|_| {
@@ -79,12 +79,12 @@ fn union(rng: &mut impl Rng) -> SphereUnion {
     SphereUnion::new(spheres.collect()).unwrap()
 }
 
-/// A body, and a walk of objects over it.
+/// A body, and objects that move over it.
 struct Scene {
     body: WholeBody,
     patches: Vec<Pose>,
     unions: Vec<SphereUnion>,
-    /// Of each step and object.
+    /// Poses of the objects at each step.
     steps: Vec<Vec<Pose>>,
 }
 
@@ -123,7 +123,7 @@ impl Scene {
         }
     }
 
-    /// What each step gives: the counts, the touched taxels to the bit, and all deflections.
+    /// Returns the result of each step: the counts, the exact values of the touched taxels, and all deflections.
     fn walk(&self, instructions: Instructions, n_threads: usize) -> Vec<Step> {
         let clusters: Vec<SphereClusters> = self.unions.iter().map(SphereClusters::new).collect();
         let pool = rayon::ThreadPoolBuilder::new()
@@ -148,7 +148,7 @@ impl Scene {
         })
     }
 
-    /// All spheres against all taxels, without dampers.
+    /// Compares all spheres with all taxels, without dampers.
     fn slowly(&self, poses: &[Pose]) -> Vec<f64> {
         let mut all = Vec::new();
         for (patch, pose) in self.body.patches().iter().zip(&self.patches) {
