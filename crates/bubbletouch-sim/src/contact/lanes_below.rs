@@ -2,7 +2,6 @@
 
 /// Iterator over the indices of lanes whose values are below a limit, ascending. Implemented as a named type because the compiler does not use vector
 /// instructions in closures.
-/// instructions in closures.
 #[derive(Clone, Copy, Default)]
 pub struct LanesBelow {
     /// One bit per lane that is still to be visited.

@@ -2,7 +2,6 @@
 //!
 //! A rigid surface is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the contact
 //! force as the force of the stop.
-//! contact force as force of the stop.
 
 use super::reach::Reach;
 use super::rigid_contact::{Touched, Touching};

@@ -2,7 +2,6 @@
 //!
 //! A rigid contact is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the contact
 //! force as the force of the stop. Taxels and rigid contacts thus share one pair type.
-//! contact force as force on the stop. Taxels and rigid contacts thus share one pair type.
 
 use super::super::taxel_contact::GRAZING;
 use super::body::Body;

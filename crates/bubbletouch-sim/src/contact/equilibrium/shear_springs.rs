@@ -10,7 +10,6 @@
 //!
 //! The derivative is the force k_t v, limited to the friction cone. The radius r depends on the force f in equilibrium. Each round of a descent therefore takes
 //! r from the solution of the previous round, until both agree: a fixed-point iteration of Tresca's friction \[NJ\].
-//! from the solution of the last round, until both agree: a fixed-point iteration of Tresca's friction \[NJ\].
 
 use super::body::{Body, along, unit_motions};
 use super::free_object::{Ground, PlacedSkin};

@@ -14,7 +14,6 @@
 //!
 //! For a free object the motion is unknown before its equilibrium, which depends on the shear springs. The step of a free object therefore omits b and returns
 //! u + Δ radially to the cone (module `shear_springs`). On a straight path both rules give equal u.
-//! returns u + Δ radially to the cone (`equilibrium::shear_springs`). On a straight path both rules give the same u.
 //!
 //! **Normal direction**: the sensor's axis, f_n = f = k δ (+ c δ̇ with a damper), not the contact normal n_c. Friction perpendicular to the axis
 //! has no component along it, so δ and f keep their frictionless closed form and no wedge can jam a taxel. The cone then refers
@@ -25,7 +24,6 @@
 //!
 //! The force on the object is therefore the frictionless one, −∇ Σ ½ k δ², minus Σ f_t at the contact points. For μ = 0 every u is exactly zero, and the total
 //! load is bitwise equal to [`spring_load`](crate::contact::spring_load).
-//! exactly zero, and the [load](FrictionState::load) equals [`spring_load`](crate::contact::spring_load) to the bit.
 //!
 //! **Laws**: the friction cone holds after any step, and no step size is unstable. The work of f_t on the object is at most the energy released by the shear
 //! springs, at any step size, so friction only dissipates. While f is constant, one step along a straight path equals many steps. If f changes, the error of a

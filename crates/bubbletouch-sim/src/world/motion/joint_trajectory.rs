@@ -14,7 +14,6 @@ use std::io::Read;
 ///
 /// Invariant: a joint that mimics no other joint never violates its limits of position and velocity by more than 1e-6 rad or m, or these per second. A
 /// mimicking joint follows its `<mimic>`; if it leaves its own limits, the trajectory has a [note](Self::notes).
-/// second. A joint that mimics another follows its `<mimic>`; if it leaves its own limits, there is a [note](Self::notes).
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTrajectory {
     times: Vec<f64>,

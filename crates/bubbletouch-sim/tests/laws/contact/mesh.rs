@@ -271,7 +271,7 @@ fn a_box_pressed_flat_is_flat_and_its_edge_is_round() {
     assert!((contact.travel - (2e-3 - TAXEL.radius)).abs() < 1e-16);
     for (column, &found) in workspace.deflections().iter().enumerate() {
         let beside: f64 = (grid.x(column).abs() - 10.4e-3).max(0.0);
-        // A taxel 0.6 mm beside the edge stops 0.8 mm above the edge, whereas a taxel under the face stops 1 mm above it.
+        // A taxel 0.6 mm beside the edge stops 0.8 mm below the edge, whereas a taxel under the face stops 1 mm below it.
         let exact = if beside < TAXEL.radius {
             2e-3 - TAXEL.radius + (TAXEL.radius.powi(2) - beside * beside).sqrt()
         } else {
