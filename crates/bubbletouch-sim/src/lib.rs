@@ -13,6 +13,7 @@
 //! | [`calibration`] | recorded frames → the parameters of the signal chain |
 //! | [`sensing`] | frames → compressed measurements, and reconstructed frames |
 //! | [`features`] | frames → features that are invariant to place, turn or pressure |
+//! | [`raster`] | spheres or another surface → shaded pictures |
 //!
 //! A stage imports only from stages above it in this table and from the shared modules:
 //!
@@ -93,6 +94,7 @@ pub mod mesh;
 pub mod objects;
 pub mod packing;
 pub mod random;
+pub mod raster;
 pub mod sensing;
 pub mod signal;
 pub mod statistics;

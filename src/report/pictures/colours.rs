@@ -1,9 +1,10 @@
 //! Colours of lines, distinguishable for colour-blind readers, and colour maps of values.
 
+pub use bubbletouch_sim::raster::Rgb;
 use kuva::plot::ColorMap;
 
-/// Colour: red, green and blue, 0 to 255.
-pub type Rgb = [u8; 3];
+/// Colour of objects without colours of their own: slate blue.
+pub(crate) const PAINT: Rgb = [142, 178, 214];
 
 /// Colour of text and axes.
 pub const INK: Rgb = [0x1f, 0x23, 0x28];

@@ -6,6 +6,7 @@
 use crate::error::Result;
 use crate::report::pictures::colours::{INK, PAPER, Rgb};
 use crate::report::pictures::picture::{Picture, unfit};
+use bubbletouch_sim::raster::pixels::darken;
 use kuva::backend::svg::SvgBackend;
 use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
@@ -376,9 +377,7 @@ fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
 impl Picture {
     /// Prints a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
     pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
-        for (value, ink) in self.rgb.iter_mut().zip(drawing.pixels(1)?.rgb) {
-            *value = (*value).min(ink);
-        }
+        darken(&mut self.rgb, &drawing.pixels(1)?.rgb);
         Ok(())
     }
 }

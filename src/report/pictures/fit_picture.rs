@@ -5,13 +5,12 @@ use crate::mesh::Surface;
 use crate::objects::{Solid, SphereUnion};
 use crate::packing::Body;
 use crate::quantile::quantile;
-use crate::report::pictures::canvas::{Canvas, Hit, three_quarter_view};
-use crate::report::pictures::colours::diverging;
+use crate::report::pictures::colours::{PAINT, diverging};
 use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
 use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
-use crate::report::pictures::shaded_view::{Lighting, PAINT};
 use crate::table::short_number;
+use bubbletouch_sim::raster::{Canvas, Hit, Lighting, three_quarter_view};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -53,7 +52,7 @@ pub fn fit_picture(
     let bounds = spheres.bounds();
     let (middle, radius) = (bounds.center(), bounds.size().length());
     let whole = canvas.cast(
-        |start, direction| original.first_hit(start, direction, 2.0 * radius),
+        &|start, direction| original.first_hit(start, direction, 2.0 * radius),
         middle,
         radius,
     );
@@ -65,10 +64,10 @@ pub fn fit_picture(
     let distances: Vec<f64> = seen.par_iter().enumerate().map(distance).collect();
     let scale = Scale::new(&seen, &distances);
     let paint = |_: usize, _: &Hit| PAINT;
-    canvas.paint(&mut picture, [0, 0], &whole, Lighting::Plain, paint);
-    canvas.paint(&mut picture, [tile, 0], &seen, Lighting::Plain, paint);
+    picture.paint(&canvas, [0, 0], &whole, Lighting::Plain, &paint);
+    picture.paint(&canvas, [tile, 0], &seen, Lighting::Plain, &paint);
     let error = |ray: usize, _: &Hit| diverging(distances[ray] / scale.end);
-    canvas.paint(&mut picture, [2 * tile, 0], &seen, Lighting::Unlit, error);
+    picture.paint(&canvas, [2 * tile, 0], &seen, Lighting::Unlit, &error);
 
     let mut drawing = Drawing::new(3.0 * side, side);
     let style = TextStyle::new((0.030 * side).clamp(9.0, 18.0) as u32).align(Align::Middle);

@@ -1,6 +1,5 @@
 //! Pictures: vector drawings, and raster pictures of frames, spheres and objects.
 
-pub(crate) mod canvas;
 pub mod colours;
 pub mod drawing;
 pub(crate) mod even_ticks;
@@ -11,5 +10,4 @@ pub mod object_picture;
 pub(crate) mod picture;
 pub(crate) mod picture_axes;
 pub mod pressure_map;
-pub(crate) mod shaded_view;
 pub mod snapshots;

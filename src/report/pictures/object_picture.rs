@@ -2,11 +2,11 @@
 
 use crate::error::{Error, Result};
 use crate::objects::SphereUnion;
-use crate::report::pictures::canvas::{Canvas, three_quarter_view};
+use crate::report::pictures::colours::PAINT;
 use crate::report::pictures::drawing::{Align, Drawing, TextStyle};
 pub use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::draw_scale_bar;
-use crate::report::pictures::shaded_view::{Lighting, PAINT};
+use bubbletouch_sim::raster::{Canvas, Lighting, three_quarter_view};
 use glam::DVec2;
 
 /// Draws objects, each at its own scale, in rows of `n_columns` tiles of `tile` × `tile` pixels. The view is orthographic with z up, on a light background.
@@ -43,7 +43,7 @@ pub fn contact_sheet(
         let canvas = Canvas::new(view, union.spheres(), [tile; 2], room);
         let hits = canvas.hits(union.spheres());
         let lighting = Lighting::Smoothed;
-        canvas.paint(&mut picture, corner, &hits, lighting, |_, _| PAINT);
+        picture.paint(&canvas, corner, &hits, lighting, &|_, _| PAINT);
         let (middle, top) = (corner[0] as f64 + 0.5 * side, corner[1] as f64);
         let above = top + 0.55 * margin + 0.5 * f64::from(size);
         drawing.text((middle, above), name, style);

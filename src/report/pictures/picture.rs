@@ -1,9 +1,8 @@
 //! Raster picture and its PNG file.
 
 use crate::error::{Error, Result};
-
-/// Brightness of the blank background, 0 to 255.
-pub(crate) const BACKGROUND: u8 = 250;
+use bubbletouch_sim::raster::pixels::{halved, without_opacity};
+use bubbletouch_sim::raster::{BACKGROUND, Canvas, Hit, Lighting, Rgb};
 
 /// Opaque raster picture, rows from the top, 3 bytes for each pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,46 +40,17 @@ impl Picture {
         let info = reader.next_frame(&mut elements).map_err(unfit)?;
         let (width, height) = (info.width as usize, info.height as usize);
         let n_samples = info.color_type.samples();
-        let mut rgb = vec![0; 3 * width * height];
-        // Slices and plain loops: this crate is compiled without optimisation. Iterators over 5 million pixels would take most of the time of a small study.
-        let (from, to) = (&elements[..], &mut rgb[..]);
-        let (mut source, mut target) = (0, 0);
-        while target < to.len() {
-            to[target] = from[source];
-            to[target + 1] = from[source + 1];
-            to[target + 2] = from[source + 2];
-            source += n_samples;
-            target += 3;
-        }
+        let rgb = without_opacity(&elements, n_samples);
         Ok(Self { width, height, rgb })
     }
 
     /// Returns the picture at half the size (rounded down); each pixel is the mean of four.
     pub(crate) fn halved(&self) -> Self {
-        let (width, height) = (self.width / 2, self.height / 2);
-        let mut rgb = vec![0; 3 * width * height];
-        let (from, to) = (&self.rgb[..], &mut rgb[..]);
-        let mut target = 0;
-        for y in 0..height {
-            let mut above = 6 * y * self.width;
-            let mut below = above + 3 * self.width;
-            let end = target + 3 * width;
-            // A slice and a plain loop, as in `of_png`.
-            while target < end {
-                let mut channel = 0;
-                while channel < 3 {
-                    let sum = from[above] as u16
-                        + from[above + 3] as u16
-                        + from[below] as u16
-                        + from[below + 3] as u16;
-                    to[target] = ((sum + 2) / 4) as u8;
-                    (above, below, target, channel) =
-                        (above + 1, below + 1, target + 1, channel + 1);
-                }
-                (above, below) = (above + 3, below + 3);
-            }
+        Self {
+            width: self.width / 2,
+            height: self.height / 2,
+            rgb: halved(&self.rgb, self.width),
         }
-        Self { width, height, rgb }
     }
 
     /// Creates a blank picture, each side 64 to 20,000 pixels.
@@ -96,6 +66,20 @@ impl Picture {
         }
         let rgb = [BACKGROUND; 3].repeat(width * height);
         Ok(Self { width, height, rgb })
+    }
+
+    /// Paints the hits of all rays of a canvas on the part of the picture with the given top left corner.
+    pub(crate) fn paint(
+        &mut self,
+        canvas: &Canvas,
+        corner: [usize; 2],
+        hits: &[Option<Hit>],
+        lighting: Lighting,
+        paint: &(dyn Fn(usize, &Hit) -> Rgb + Sync),
+    ) {
+        let (width, height) = (canvas.width / 2, canvas.height / 2);
+        let rgb = canvas.paint(hits, lighting, paint);
+        self.paste(&Self { width, height, rgb }, corner);
     }
 
     /// Copies another picture to the given top left corner. Parts outside this picture are cut off.

@@ -7,7 +7,6 @@ use crate::report::pictures::heat_map::{ColourScale, check_frame, largest_of_blo
 use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::{Side, draw_colour_bar, draw_map_axis};
 use crate::report::recording::cells::{Cells, whole_pixels};
-use crate::report::recording::pixels::paint;
 use crate::report::text_width::shorten;
 use crate::signal::Quantity;
 use crate::world::Grid;
@@ -88,7 +87,7 @@ pub fn snapshots(set: &Snapshots) -> Result<Picture> {
     let mut picture = drawing.picture()?;
     for (cells, shown) in &maps {
         let colours = shown.iter().map(|&value| scale.colour(value));
-        paint(&mut picture, cells, 2.0, &colours.collect::<Vec<_>>());
+        cells.paint(&mut picture, 2.0, &colours.collect::<Vec<_>>());
     }
     Ok(picture)
 }

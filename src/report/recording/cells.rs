@@ -2,11 +2,13 @@
 
 use super::header::RecordedPatch;
 use super::unrolled::unroll;
-use crate::report::pictures::colours::{GRID, INK};
+use crate::report::pictures::colours::{GRID, INK, Rgb};
 use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
 use crate::report::pictures::heat_map::{block_sentence, grid_sentence};
+use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::{Side, draw_map_axis, draw_scale_bar};
 use crate::world::Grid;
+use bubbletouch_sim::raster::pixels::{CellShape, paint_cells};
 use glam::DVec2;
 
 /// Height of a map, pixels. The width is at most twice the height.
@@ -27,8 +29,7 @@ pub(crate) struct Cells {
     pub places: Vec<DVec2>,
     /// Half the side of a square, or the radius of a disc, pixels.
     pub radius: f64,
-    /// Norm of the distances along x and y: the maximum norm gives squares, the Euclidean norm gives discs.
-    pub distance: fn(f64, f64) -> f64,
+    pub shape: CellShape,
     /// Number of grid taxels along each side of a cell.
     pub block: usize,
     /// Sentence that describes the view for the reader.
@@ -37,6 +38,13 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
+    /// Paints all cells, one colour each, in a picture that is `fine` times as large as the drawing.
+    pub fn paint(&self, picture: &mut Picture, fine: f64, colours: &[Rgb]) {
+        let places: Vec<DVec2> = self.places.iter().map(|&place| fine * place).collect();
+        let rgb = (&mut picture.rgb[..], picture.width);
+        paint_cells(rgb, &places, (self.shape, fine * self.radius), colours);
+    }
+
     /// Creates the cells of a patch: squares for a grid, discs for another layout.
     pub fn new(patch: &RecordedPatch) -> Self {
         match &patch.grid {
@@ -66,7 +74,7 @@ impl Cells {
             area,
             places: (0..rows * columns).map(place).collect(),
             radius: 0.5 * side,
-            distance: f64::max,
+            shape: CellShape::Square,
             block,
             sentence: size + &block_sentence(block),
             pixels_per_metre: side / (block as f64 * grid.pitch),
@@ -93,7 +101,7 @@ impl Cells {
             area: Area::new((LEFT, TOP), (scale * size.x, scale * size.y)),
             places: places.iter().map(place).collect(),
             radius: scale * radius,
-            distance: f64::hypot,
+            shape: CellShape::Disc,
             block: 1,
             sentence: format!("{} taxel{plural}, {}", places.len(), unrolled.sentence),
             pixels_per_metre: scale,

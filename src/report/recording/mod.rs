@@ -25,7 +25,6 @@
 pub mod animation;
 pub(super) mod cells;
 mod header;
-pub(super) mod pixels;
 mod reader;
 pub mod skin_picture;
 mod summary;

@@ -2,7 +2,6 @@
 
 use super::cells::{Cells, LEFT};
 use super::header::RecordedPatch;
-use super::pixels::paint;
 use crate::error::{Error, Result};
 use crate::report::pictures::colours::{INK, MUTED, Rgb};
 use crate::report::pictures::drawing::{Area, Drawing, TextStyle};
@@ -74,7 +73,7 @@ impl SkinPicture {
             ));
         }
         let mut picture = self.background.clone();
-        paint(&mut picture, &self.cells, FINE, &self.colours(values));
+        self.cells.paint(&mut picture, FINE, &self.colours(values));
         write_note(&mut picture, note)?;
         Ok(picture)
     }

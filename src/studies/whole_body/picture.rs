@@ -2,15 +2,14 @@
 
 use crate::error::Result;
 use crate::objects::Sphere;
-use crate::report::pictures::canvas::{Canvas, Hit, view_from};
-use crate::report::pictures::colours::tint;
+use crate::report::pictures::colours::{PAINT, Rgb, tint};
 use crate::report::pictures::drawing::{Align, Area, Drawing, TextStyle};
 use crate::report::pictures::picture::Picture;
 use crate::report::pictures::picture_axes::{draw_colours, draw_scale_bar};
-use crate::report::pictures::shaded_view::{Lighting, PAINT};
 use crate::report::study_content::NamedPicture;
 use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
 use crate::table::{Table, short_number};
+use bubbletouch_sim::raster::{Canvas, Hit, Lighting, view_from};
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -118,27 +117,21 @@ fn draw(name: &str, scene: &SceneView) -> Result<Picture> {
     let room = DVec2::new(0.62 * width, height - 150.0);
     let canvas = Canvas::new(view_from(AZIMUTH, ELEVATION), &both, PANEL, room);
     let highest = scene.skin.iter().map(|place| place.1).fold(0.0, f64::max);
-    let pressure = |_: usize, hit: &Hit| match scene.skin.get(hit.part) {
-        Some(&(_, pressure)) if pressure > 0.0 => tint(pressure / highest),
-        Some(_) => BARE,
-        None => TOUCHED,
-    };
-    let colour = |_: usize, hit: &Hit| match hit.part {
-        part if part < scene.skin.len() => BARE,
-        part if part < alone.len() => TOUCHED,
-        _ => PAINT,
-    };
+    let pressures = scene.skin.iter().map(|&(_, pressure)| match pressure {
+        pressure if pressure > 0.0 => tint(pressure / highest),
+        _ => BARE,
+    });
+    let touched = scene.touched.iter().map(|_| TOUCHED);
+    let object = scene.object.iter().map(|_| PAINT);
+    let bare = scene.skin.iter().map(|_| BARE);
+    let left: Vec<Rgb> = bare.chain(touched.clone()).chain(object).collect();
+    let right: Vec<Rgb> = pressures.chain(touched).collect();
     let mut picture = Picture::blank(2 * PANEL[0], PANEL[1])?;
-    let lighting = Lighting::Smoothed;
-    canvas.paint(&mut picture, [0, 0], &canvas.hits(&both), lighting, colour);
-    let right = [PANEL[0], 0];
-    canvas.paint(
-        &mut picture,
-        right,
-        &canvas.hits(&alone),
-        lighting,
-        pressure,
-    );
+    for (spheres, colours, corner) in [(&both, left, 0), (&alone, right, PANEL[0])] {
+        let colour = |_: usize, hit: &Hit| colours[hit.part];
+        let hits = canvas.hits(spheres);
+        picture.paint(&canvas, [corner, 0], &hits, Lighting::Smoothed, &colour);
+    }
 
     let mut drawing = Drawing::new(2.0 * width, height);
     let style = |size| TextStyle::new(size).align(Align::Middle);

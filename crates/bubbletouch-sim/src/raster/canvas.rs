@@ -1,4 +1,4 @@
-//! Ray casting of pictures: rays, and their hits on spheres or another surface.
+//! Ray casting: the rays of a picture, and their hits on spheres or another surface.
 
 use crate::objects::Sphere;
 use glam::{DMat3, DVec2, DVec3};
@@ -8,8 +8,8 @@ use rayon::prelude::*;
 const SUPERSAMPLING: usize = 2;
 
 /// First hit of a ray.
-#[derive(Clone, Copy)]
-pub(crate) struct Hit {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
     /// Coordinate towards the viewer, metres.
     pub height: f64,
     /// Unit normal in the picture frame: right, up, towards the viewer.
@@ -19,20 +19,24 @@ pub(crate) struct Hit {
 }
 
 /// Returns the axes right, up and towards the viewer, in the object frame. The viewer is in front of the object (−y), 30° to the right and 38° up.
-pub(crate) fn three_quarter_view() -> DMat3 {
+pub fn three_quarter_view() -> DMat3 {
     view_from(30f64.to_radians(), 38f64.to_radians())
 }
 
 /// Returns the axes right, up and towards the viewer. The viewer is in front of the object (−y), turned by both angles, radians.
-pub(crate) fn view_from(azimuth: f64, elevation: f64) -> DMat3 {
+pub fn view_from(azimuth: f64, elevation: f64) -> DMat3 {
     let right = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0);
     let back = DVec3::new(azimuth.sin(), -azimuth.cos(), 0.0);
     let towards_eye = elevation.cos() * back + elevation.sin() * DVec3::Z;
     DMat3::from_cols(right, towards_eye.cross(right), towards_eye)
 }
 
+/// Function that takes start and direction of a ray and returns the hit point and the outward unit normal (metres, object frame); `None` if the ray hits nothing.
+pub type SurfaceHit<'a> = dyn Fn(DVec3, DVec3) -> Option<(DVec3, DVec3)> + Sync + 'a;
+
 /// Supersampled part of a picture that shows an object.
-pub(crate) struct Canvas {
+#[derive(Clone, Debug)]
+pub struct Canvas {
     /// Number of rays in a row.
     pub width: usize,
     /// Number of rays in a column.
@@ -100,16 +104,10 @@ impl Canvas {
         hits
     }
 
-    /// Returns the hits of all rays on a surface. `first_hit` takes start and direction of a ray and returns the hit point and the outward unit normal
-    /// (metres, object frame).
+    /// Returns the hits of all rays on a surface.
     ///
     /// Rays start outside a ball with this centre (`middle`) and `radius`, which must contain the object.
-    pub fn cast(
-        &self,
-        first_hit: impl Fn(DVec3, DVec3) -> Option<(DVec3, DVec3)> + Sync,
-        middle: DVec3,
-        radius: f64,
-    ) -> Vec<Option<Hit>> {
+    pub fn cast(&self, first_hit: &SurfaceHit<'_>, middle: DVec3, radius: f64) -> Vec<Option<Hit>> {
         let towards_eye = self.view.z_axis;
         let start = middle.dot(towards_eye) + radius;
         let ray = |index: usize| {

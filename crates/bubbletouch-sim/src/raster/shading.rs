@@ -1,17 +1,19 @@
-//! Shaded pictures of surfaces: orthographic, with soft light and outlines.
+//! Colours of pixels from the hits of rays: light, outlines, and paint.
 
-use crate::report::pictures::canvas::{Canvas, Hit};
-use crate::report::pictures::colours::Rgb;
-use crate::report::pictures::picture::{BACKGROUND, Picture};
+use super::canvas::{Canvas, Hit};
+use super::pixels::halved;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Slate blue, for objects without colours of their own.
-pub(crate) const PAINT: Rgb = [142, 178, 214];
+/// Colour: red, green and blue, 0 to 255.
+pub type Rgb = [u8; 3];
+
+/// Brightness of rays that hit nothing, 0 to 255.
+pub const BACKGROUND: u8 = 250;
 
 /// Lighting of a surface.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Lighting {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lighting {
     /// Smoothed normals, so that the shape is visible and not the single spheres.
     Smoothed,
     /// True normals: every sphere and every face is visible.
@@ -21,15 +23,14 @@ pub(crate) enum Lighting {
 }
 
 impl Canvas {
-    /// Paints the hits of all rays on the part of a picture with the given top left corner.
+    /// Returns the pixels of the part of the picture, rows from the top, 3 bytes each. `paint` takes the number of a ray and its hit, and returns the colour of
+    /// the surface.
     pub fn paint(
         &self,
-        picture: &mut Picture,
-        corner: [usize; 2],
         hits: &[Option<Hit>],
         lighting: Lighting,
-        paint: impl Fn(usize, &Hit) -> Rgb + Sync,
-    ) {
+        paint: &(dyn Fn(usize, &Hit) -> Rgb + Sync),
+    ) -> Vec<u8> {
         let normals = match lighting {
             Lighting::Smoothed => self.smooth_normals(hits),
             Lighting::Plain | Lighting::Unlit => normals_of(hits),
@@ -51,12 +52,7 @@ impl Canvas {
             paint(index, hit).map(|value| (f64::from(value) * light * outline).round() as u8)
         };
         let rays: Vec<Rgb> = (0..hits.len()).into_par_iter().map(ray).collect();
-        let rays = Picture {
-            width: self.width,
-            height: self.height,
-            rgb: rays.into_flattened(),
-        };
-        picture.paste(&rays.halved(), corner);
+        halved(rays.as_flattened(), self.width)
     }
 
     /// Returns whether a neighbouring ray hits a point far behind this one: an inner or outer outline of the object.
