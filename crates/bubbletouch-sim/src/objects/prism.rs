@@ -189,3 +189,40 @@ impl Cell {
         [self.middle - step, self.middle + step].map(|middle| Self { middle, half })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_patches_of_a_wall_and_of_a_face_end_where_the_wall_and_the_outline_do() {
+        let corners = [
+            [0.0, 0.0],
+            [3.0, 0.0],
+            [3.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 2.0],
+            [0.0, 2.0],
+        ];
+        let prism = Prism::new(&corners.map(DVec2::from), 0.5);
+        let patches = prism.patches();
+        let middle = |patch: &SurfacePatch| patch.at(0.5 * (patch.low + patch.high));
+        for (wall, edge) in patches.iter().zip(&prism.outline.edges) {
+            let [a, b] = [edge.start, edge.point(edge.length)];
+            let ends = [wall.at(wall.low).0, wall.at(wall.high).0];
+            for (end, expected) in ends.iter().zip([a.extend(-0.25), b.extend(0.25)]) {
+                assert!(end.distance(expected) < 1e-12, "{end} for {expected}");
+            }
+            let (middle, normal) = middle(wall);
+            assert!((prism.distance(middle + 0.1 * normal) - 0.1).abs() < 1e-12);
+        }
+        assert_eq!(patches.len(), 6 + 2);
+        for (face, z) in patches[6..].iter().zip([0.25, -0.25]) {
+            let corners = [face.at(face.low).0, face.at(face.high).0];
+            let (low, high) = (corners[0].min(corners[1]), corners[0].max(corners[1]));
+            assert!(low.distance(DVec3::new(0.0, 0.0, z)) < 1e-12);
+            assert!(high.distance(DVec3::new(3.0, 2.0, z)) < 1e-12);
+            assert!((face.at(face.low).1 - z.signum() * DVec3::Z).length() < 1e-12);
+        }
+    }
+}

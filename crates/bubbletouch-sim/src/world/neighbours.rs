@@ -314,6 +314,13 @@ mod tests {
     }
 
     #[test]
+    fn both_ends_of_a_wide_gap_in_a_line_are_not_neighbours() {
+        let places = [0.0, 1.0, 2.0, 10.0, 11.0, 12.0].map(|along| PITCH * along * DVec3::X);
+        let line = Layout::new(places.to_vec(), vec![DVec3::Z; 6]).unwrap();
+        assert_eq!(counts(&Neighbours::new(&skin(line))), [1, 2, 1, 1, 2, 1]);
+    }
+
+    #[test]
     fn taxels_at_one_place_have_the_neighbours_of_the_place_and_one_another() {
         let place = |k: u32| PITCH * DVec3::new(f64::from(k / 3 % 4), f64::from(k / 12), 0.0);
         let tripled = Layout::new((0..36).map(place).collect(), vec![DVec3::Z; 36]);

@@ -209,3 +209,62 @@ fn phalanges(hand: &Hand, digit: usize) -> Vec<Sphere> {
     });
     pairs.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+
+    const SURFACE: f64 = 0.04;
+
+    fn grab(number: u64) -> Posture {
+        let mut rng = Seed::new(3).named("posture").numbered(number).rng();
+        Posture::draw(TouchKind::Grab, (0.19, 5, 0.4), &mut rng)
+    }
+
+    #[test]
+    fn a_ball_is_in_the_skin_as_deep_as_the_hand_is_lower_than_at_its_first_contact() {
+        let posture = grab(0);
+        let mut n_above = 0;
+        for ball in spheres(&posture.open).spheres() {
+            let Some(contact) = posture.touches_at(ball, SURFACE) else {
+                continue;
+            };
+            assert!(posture.sunk(*ball, SURFACE, contact).abs() < 1e-12);
+            // A ball above the axis of the arm moves along the radius.
+            let above = Sphere {
+                center: posture.anchor,
+                ..*ball
+            };
+            for depth in [-5e-3, 3e-3] {
+                let contact = posture.touches_at(&above, SURFACE).unwrap();
+                let sunk = posture.sunk(above, SURFACE, contact - depth);
+                assert!((sunk - depth).abs() < 1e-12, "{sunk} of {depth}");
+                n_above += 1;
+            }
+        }
+        assert!(n_above > 100);
+    }
+
+    #[test]
+    fn a_closed_finger_is_as_deep_as_its_grip_or_is_a_fist() {
+        let (depth, grip) = (1e-3, 2e-3);
+        let fist = Hand::curled(1.0);
+        let mut n_gripping = 0;
+        for number in 0..4 {
+            let mut posture = grab(number);
+            posture.close(SURFACE, depth, grip);
+            let height = posture.first_contact(SURFACE) - depth;
+            for digit in 0..4 {
+                let balls = phalanges(&posture.closed, digit).into_iter();
+                let sunk = balls.map(|ball| posture.sunk(ball, SURFACE, height));
+                let deepest = sunk.fold(f64::NEG_INFINITY, f64::max);
+                if posture.closed.fingers[digit] != fist.fingers[digit] {
+                    assert!((deepest - grip).abs() < 1e-4, "{deepest}");
+                    n_gripping += 1;
+                }
+            }
+        }
+        assert!(n_gripping > 8, "{n_gripping}");
+    }
+}
