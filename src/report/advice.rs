@@ -1,20 +1,20 @@
 //! Advice from a result table, based on the roles of its columns.
 //!
-//! Within one condition, the advised row is the cheapest choice whose value meets a bound, or the best choice within a budget.
+//! For each condition, the advised row is the cheapest choice whose value meets a bound, or the best choice within a budget.
 
 use crate::error::{Error, Result};
 use crate::report::swept::{Setting, Swept};
 use crate::table::{Better, Column, Role, Scale, Table, Value, column_name, front};
 use std::collections::HashSet;
 
-/// Selector of a column in the tables, by role and name.
+/// Selector of a table column, by role and name.
 struct ColumnSelector {
-    /// Command-line option that names the column.
+    /// Command-line option that sets the column's name.
     option: &'static str,
-    /// Default name, used if no name is given and a table has such a column. Otherwise, the first column of the role is used.
+    /// Default column name, used if no name is given and a table has this column. Otherwise, the first column of the role is used.
     usual: &'static str,
     has_role: fn(Role) -> bool,
-    /// Names that are valid for all kinds of study. Each name is listed with the columns that it selects.
+    /// Column names that are valid for all kinds of studies, each with the columns that it selects.
     shared: &'static [(&'static str, &'static [&'static str])],
 }
 
@@ -40,61 +40,61 @@ const COST: ColumnSelector = ColumnSelector {
     ],
 };
 
-/// Query for advice. A field that is `None` is chosen automatically.
+/// Query for advice; a field of `None` is chosen automatically.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AdviceQuery {
-    /// File name of the table.
+    /// File name of the table to search.
     pub table: Option<String>,
-    /// Column of values to optimise.
+    /// Name of the value column to optimise.
     pub value: Option<String>,
-    /// Column of costs to keep small, or a name that is valid for all kinds of study.
+    /// Name of the cost column to minimise, or a name that is valid for all kinds of studies.
     pub cost: Option<String>,
-    /// Fixed conditions, each as `noise=0.05`.
+    /// Fixed conditions, each of the form `noise=0.05`.
     pub given: Vec<String>,
-    /// Upper bounds of cost columns, by column name. Rows above a bound are left out.
+    /// Upper bounds of cost columns, by column name; rows above a bound are omitted.
     pub limits: Vec<(String, f64)>,
 }
 
-/// Requirement: a bound on the value or on the cost.
+/// Requirement of the user: a bound on the value or on the cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Requirement {
-    /// Minimum quality: the cheapest choice whose value is at least this good.
+    /// Minimum quality: selects the cheapest choice whose value is at least this good.
     Value(f64),
-    /// Maximum cost, positive: the choice of best value within this budget.
+    /// Maximum cost, positive: selects the choice with the best value within this budget.
     Budget(f64),
-    /// No bound: the choice of best value at any cost.
+    /// No bound: selects the choice with the best value at any cost.
     Best,
 }
 
-/// Candidate: a row of the table with its value and its cost.
+/// Candidate for advice: a row of the table with its value and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
     /// Index of the candidate's row in the table.
     pub row: usize,
-    /// Value, in the unit of the value column.
+    /// Value of the candidate, in the unit of the value column.
     pub value: f64,
-    /// Cost, in the unit of the cost column.
+    /// Cost of the candidate, in the unit of the cost column.
     pub cost: f64,
 }
 
 /// Advice for one condition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advice {
-    /// The cheapest choice whose value is sufficient, or the best choice within the budget.
+    /// Advised choice: the cheapest with a sufficient value, or the best within the budget.
     pub choice: Candidate,
-    /// The cheapest choice whose whole confidence interval is sufficient. `None` if it equals `choice` or does not exist.
+    /// Cheapest choice whose whole confidence interval is sufficient; `None` if it equals `choice` or does not exist.
     pub certain: Option<Candidate>,
-    /// The next choice on the Pareto front: the cheapest one with a better value than `choice`.
+    /// Next choice on the Pareto front: the cheapest one with a better value than `choice`.
     pub next_up: Option<Candidate>,
 }
 
-/// Candidates of one table, restricted to the given conditions.
+/// Candidates of one table that satisfy the given conditions.
 pub struct Candidates<'a> {
-    /// The table of the candidates.
+    /// Table that contains the candidates.
     pub table: &'a Table,
-    /// Column of values to optimise.
+    /// Value column to optimise.
     pub value: &'a Column,
-    /// Column of costs to keep small.
+    /// Cost column to minimise.
     pub cost: &'a Column,
     swept: Swept<'a>,
     /// Rows that satisfy the given conditions and have both a value and a cost.
@@ -136,7 +136,7 @@ impl<'a> Candidates<'a> {
         Ok(found)
     }
 
-    /// Removes the rows whose cost in the named column exceeds the limit or is absent.
+    /// Removes all rows whose cost in the named column exceeds the limit or is absent.
     ///
     /// # Errors
     /// If no such cost column exists, the limit is not a positive number, or no row satisfies the limit.
@@ -172,7 +172,7 @@ impl<'a> Candidates<'a> {
         Ok(())
     }
 
-    /// Returns the candidates from all rows of a table that have both a value and a cost.
+    /// Creates candidates from all rows of a table that have both a value and a cost.
     pub fn of_columns(table: &'a Table, value: &'a Column, cost: &'a Column) -> Self {
         let rows: Vec<usize> = (0..table.n_rows).collect();
         let mut found = Self {
@@ -187,7 +187,7 @@ impl<'a> Candidates<'a> {
         found
     }
 
-    /// Returns `None` if the value or the cost of the row is absent.
+    /// Returns the candidate of a row; `None` if its value or cost is absent.
     fn offer(&self, row: usize) -> Option<Candidate> {
         let value = self.table.number(&self.value.name, row);
         let cost = self.table.number(&self.cost.name, row);
@@ -203,8 +203,8 @@ impl<'a> Candidates<'a> {
         conditions.map(offers).collect()
     }
 
-    /// Returns each choice with its worst value and its highest cost over all conditions: a guarantee for any of these conditions.
-    /// Choices that were not measured in every condition are left out.
+    /// Returns each choice with its worst value and its highest cost over all conditions, which hold for any of these conditions. Choices that were not
+    /// measured in every condition are omitted.
     pub fn worst(&self) -> Vec<Candidate> {
         let n_conditions = self.swept.by_condition(&self.rows).len();
         let choices = self.swept.of_role(Role::Choice);
@@ -225,7 +225,7 @@ impl<'a> Candidates<'a> {
         measured.filter_map(worst).collect()
     }
 
-    /// Returns the advice for a requirement, from candidates of one condition.
+    /// Returns the advice for a requirement, selected from the candidates of one condition.
     ///
     /// # Errors
     /// If the requirement is out of range, there are no candidates, or no candidate meets the requirement; the error names the nearest candidate.
@@ -287,7 +287,8 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// Returns the Pareto front, cheapest first: each candidate is better than all that cost the same or less. Among equal candidates, the first is kept.
+    /// Returns the Pareto front, cheapest first: each candidate is better than all candidates of equal or lower cost. Among equal candidates, the first is
+    /// kept.
     pub fn front(&self, offers: &[Candidate]) -> Vec<Candidate> {
         let points: Vec<(f64, f64)> = offers.iter().map(|o| (o.cost, o.value)).collect();
         let is_on = front(&points, |a, b| self.is_better(a, b));
@@ -320,7 +321,7 @@ impl<'a> Candidates<'a> {
         )
     }
 
-    /// Describes value, interval and cost: `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
+    /// Describes value, interval and cost, such as `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
     pub fn gives(&self, offer: &Candidate) -> String {
         let interval = match self.table.interval(self.value, offer.row) {
             Some(ends) => {
@@ -342,12 +343,12 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    /// Describes value, cost and choices: `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
+    /// Describes value, cost and choices, such as `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
     pub fn in_words(&self, offer: &Candidate) -> String {
         format!("{}: {}", self.gives(offer), self.setting(offer))
     }
 
-    /// Describes the choices, or returns "the only setting" if no choice varies.
+    /// Describes the candidate's choices, or returns "the only setting" if no choice varies.
     pub fn setting(&self, offer: &Candidate) -> String {
         match self.choices(offer) {
             words if words.is_empty() => "the only setting".to_owned(),
@@ -355,17 +356,17 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    /// Describes the choices. Empty if no choice varies.
+    /// Describes the candidate's choices; empty if no choice varies.
     pub fn choices(&self, offer: &Candidate) -> String {
         self.swept.choice_words(offer.row)
     }
 
-    /// Describes the condition. Empty if there is only one condition.
+    /// Describes the candidate's condition; empty if there is only one condition.
     pub fn condition(&self, offer: &Candidate) -> String {
         self.swept.condition_words(offer.row)
     }
 
-    /// Returns a JSON object: the choices and the condition as text, and the entry of every column by column name.
+    /// Returns the candidate as a JSON object: its choices and condition as text, and the entry of every column by name.
     pub fn json(&self, offer: &Candidate) -> serde_json::Value {
         let mut row = serde_json::Map::new();
         row.insert("setting".to_owned(), self.setting(offer).into());
@@ -380,7 +381,7 @@ impl<'a> Candidates<'a> {
 }
 
 impl ColumnSelector {
-    /// Returns the matching numeric columns of a table, by name or, if `name` is `None`, all of the role. Columns that vary come first.
+    /// Returns the numeric columns of a table that match a name or, if `name` is `None`, that have the role. Columns that vary come first.
     fn columns<'t>(&self, table: &'t Table, name: Option<&str>) -> Vec<&'t Column> {
         let shared = self.shared.iter().find(|(known, _)| Some(*known) == name);
         let is_named = |column: &str| match name {
@@ -397,7 +398,7 @@ impl ColumnSelector {
         found.into_iter().map(|one| one.column).collect()
     }
 
-    /// Keeps the tables that have the requested column, or the default column if any table has one. Returns the name that was used.
+    /// Removes the tables without the requested column, or without the default column if any table has it. Returns the column name that was used.
     fn narrow<'n>(
         &self,
         tables: &mut Vec<&Table>,
@@ -428,7 +429,7 @@ fn refuse_none<T>(found: &[T], (option, given): (&str, &str), mut known: Vec<&st
     }
 }
 
-/// Returns the rows that satisfy a condition, for example `noise=0.05`.
+/// Returns the rows that satisfy a condition of the form `noise=0.05`.
 fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
     let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
     let (key, value) = text.split_once('=').ok_or_else(refuse)?;
@@ -481,7 +482,7 @@ fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>>
     }
 }
 
-/// Parses a number, optionally with its unit (`0.5 mm`, `5 %`), or a word. Returns `None` if the unit differs from the column's unit.
+/// Parses a word, or a number with an optional unit (`0.5 mm`, `5 %`). Returns `None` if the unit differs from the column's unit.
 fn given_value(text: &str, unit: &str) -> Option<Value> {
     if let Ok(number) = text.parse() {
         return Some(Value::Number(number));
@@ -564,7 +565,7 @@ mod tests {
         }
     }
 
-    /// Returns the designs of `choice`, `certain` and `next_up`.
+    /// Returns the design names of `choice`, `certain` and `next_up`.
     fn advised(asked: &AdviceQuery, wish: Requirement) -> Result<[Option<String>; 3]> {
         let tables = settings();
         let offers = Candidates::new(&tables, asked)?;

@@ -1,20 +1,20 @@
-//! Advice for each condition, as text for the command and as JSON for programs.
+//! Answers of `bubbletouch advise`: advice for each condition, as text and as JSON.
 
 use super::advice::{Advice, Candidate, Candidates, Requirement};
 use crate::error::{Error, Result};
 
-/// Advice for one condition, or the reason why there is none.
+/// Advice for one condition, or the reason why no advice exists.
 pub struct Answer {
-    /// Description of the condition. Empty if there is only one condition.
+    /// Description of the condition; empty if there is only one condition.
     pub condition: String,
-    /// The advice, or the error that names the requirement and the nearest candidate.
+    /// Advice, or an error with the requirement and the nearest candidate.
     pub advice: Result<Advice>,
 }
 
-/// Returns one answer for each condition. If `worst` is true, returns one answer for all, based on the worst value of each choice over the conditions.
+/// Returns one answer per condition. If `worst` is true, returns a single answer that is based on the worst value of each choice over all conditions.
 ///
 /// # Errors
-/// If no condition has advice: the error of the first condition.
+/// If no condition has advice; the error is that of the first condition.
 pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Vec<Answer>> {
     let conditions = offers.by_condition();
     let answer = |condition: String, choices: &[Candidate]| Answer {
@@ -43,7 +43,7 @@ pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Ve
     })
 }
 
-/// Returns JSON: the table, its value and cost columns, and for each condition the advised choices with all columns by name.
+/// Returns the answers as JSON: the table, its value and cost columns, and the advised choices of each condition with all columns by name.
 pub fn answers_json(offers: &Candidates, answers: &[Answer]) -> serde_json::Value {
     let in_json = |offer: &Candidate| offers.json(offer);
     let answers = answers

@@ -1,25 +1,25 @@
 //! Reader of result tables in CSV files.
 //!
-//! Floats have the shortest form that reads back as the same bits, so that equal tables have equal bytes. An absent value is an empty field. A table without
-//! rows has a header without the optional columns.
+//! Floating-point numbers have the shortest form that reads back as the same bits, so that equal tables have equal bytes. An absent value is an empty field. A
+//! table without rows has a header without the optional columns.
 
 use crate::error::{Error, Result};
 use crate::table::csv_place;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
-/// File of failed work items and their errors.
+/// File name of the table of failed work items.
 pub const FAILURES_FILE: &str = "failures.csv";
 
-/// File that counts how often limits of the model were reached.
+/// File name of the table of reached limits of the model.
 pub const LIMITS_FILE: &str = "limits.csv";
-/// Name of the row that counts touches without contact.
+/// Name of the row in [`LIMITS_FILE`] that counts touches without contact.
 pub const MISSED_TOUCHES: &str = "touches that met nothing";
 
-/// Expected content, for error messages.
+/// Description of the expected content, for error messages.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 
-/// Reads a table.
+/// Reads the rows of a table from a CSV file.
 ///
 /// # Errors
 /// If the file cannot be read or has invalid rows; the error contains the file and the line.

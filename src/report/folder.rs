@@ -1,4 +1,4 @@
-//! Files of a study's folder. All contents are computed before the first file is written.
+//! Files of a result folder. All contents are computed before the first file is written.
 
 use crate::error::{Error, Result};
 use crate::files::write_bytes;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Name and content of a file in a folder.
 pub type NamedFile = (String, Vec<u8>);
 
-/// Returns the files of tables.
+/// Returns the CSV files of all tables.
 pub fn table_files(tables: &[Table]) -> Vec<NamedFile> {
     // A table that is derived from others has no file.
     let files = tables.iter().filter(|table| !table.csv.is_empty());
@@ -17,7 +17,7 @@ pub fn table_files(tables: &[Table]) -> Vec<NamedFile> {
     files.collect()
 }
 
-/// Creates a folder if it is missing and writes all files in order, each completely or not at all. Returns their paths.
+/// Creates a folder if it is missing and writes all files in order, each completely or not at all. Returns the paths of the files.
 ///
 /// # Errors
 /// If the folder's path is a file, or a file cannot be written.

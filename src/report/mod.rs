@@ -1,12 +1,12 @@
-//! Report: tables → files for people.
+//! Reports: result tables are converted to files for readers.
 //!
-//! In: the result tables ([`Table`](crate::table::Table)) with their chart specifications, frames (ny × nx, metres or newtons), and the
-//! metadata of the study ([`StudyAbout`](page::StudyAbout)). Out: CSV files, charts and pictures (SVG and PNG), terminal text, and
-//! one self-contained HTML page. Equal input gives equal bytes. Each file is written completely or not at all.
+//! The inputs are the result tables ([`Table`](crate::table::Table)) with their chart specifications, frames (ny × nx, metres or newtons), and the metadata of
+//! the study ([`StudyAbout`](page::StudyAbout)). The outputs are CSV files, charts and pictures (SVG and PNG), terminal text, and one self-contained HTML page.
+//! Equal inputs give equal bytes. Each file is written completely or not at all.
 //!
-//! [`study_folder::files_with`] makes the files of a study's folder. [`terminal::table_text`] makes the table that is printed after a run.
-//! [`frame_files::write_frame`] and [`pressure_map`] show a single frame. [`recording`] writes frames over time to a file and
-//! draws them as still pictures or animations.
+//! [`study_folder::files_with`] returns the files of a result folder. [`terminal::table_text`] returns the table that is printed after a run.
+//! [`frame_files::write_frame`] and [`pressure_map`] output a single frame. [`recording`] writes frames over time to a file and draws them as pictures or
+//! animations.
 
 pub mod advice;
 pub mod advice_answers;

@@ -1,4 +1,4 @@
-//! Progress of a run: bars on a terminal, one line for each stage elsewhere, and JSON lines for programs that start a run.
+//! Progress of a run: bars on a terminal, one line per stage without a terminal, and JSON lines for other programs.
 //!
 //! ```text
 //! {"event":"stage","name":"recognise 32×32 at 2 mm","total":240}
@@ -16,13 +16,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 use std::{fmt, thread};
 
-/// Interval between two reports on a stage, even without progress. A longer interval delays the reports; a shorter one writes more lines.
+/// Time between two reports on a stage, even without progress. If longer, reports are delayed; if shorter, more lines are written.
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Template of a progress bar.
 const BAR: &str = "{prefix:>14} [{bar:32}] {pos}/{len}, {rate}, {left}";
 
-/// Returns the progress listener for standard error: bars, or plain lines if it is not a terminal.
+/// Creates the progress listener for standard error: bars, or plain lines if it is not a terminal.
 pub fn to_stderr() -> Box<dyn Progress> {
     let is_dumb = std::env::var("TERM").is_ok_and(|term| term == "dumb");
     match std::io::stderr().is_terminal() && !is_dumb {
@@ -31,7 +31,7 @@ pub fn to_stderr() -> Box<dyn Progress> {
     }
 }
 
-/// Returns a progress listener that writes one event per line. A writer that fails does not stop the run.
+/// Creates a progress listener that writes one JSON event per line. A failing writer does not stop the run.
 pub fn json_lines(writer: impl Write + Send + 'static) -> Box<dyn Progress> {
     Box::new(Events::new(Form::Json, writer))
 }
@@ -58,14 +58,14 @@ impl Stage {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// Returns the line that remains after the end of the stage.
+    /// Returns the line that remains on the terminal after the end of the stage.
     fn summary(&self) -> String {
         let Self { name, done, .. } = self;
         format!("{name:>14}: {done} in {:.1} s", self.seconds())
     }
 }
 
-/// Progress bars: one for the stage and one for all work items of the run.
+/// Progress bars: one for the current stage and one for all work items of the run.
 struct Bars {
     screen: MultiProgress,
     shown: Mutex<Shown>,
@@ -99,7 +99,7 @@ impl Bars {
         bar
     }
 
-    /// Prints a line above the bars. A closed standard error does not end a run.
+    /// Prints a line above the bars. A closed standard error does not stop the run.
     fn print(&self, line: &str) {
         let _ = self.screen.println(line);
     }
@@ -156,13 +156,13 @@ impl Drop for Bars {
     }
 }
 
-/// Writes the steps per second of a bar.
+/// Writes the number of steps per second of a bar.
 fn write_rate(state: &ProgressState, text: &mut dyn fmt::Write) {
     // Writing to the text of a bar cannot fail.
     let _ = write!(text, "{:.2}/s", state.per_sec());
 }
 
-/// Writes the remaining time of a bar.
+/// Writes the estimated remaining time of a bar.
 fn write_left(state: &ProgressState, text: &mut dyn fmt::Write) {
     let _ = match state.pos() {
         0 => write!(text, "no rate yet"),
@@ -170,7 +170,7 @@ fn write_left(state: &ProgressState, text: &mut dyn fmt::Write) {
     };
 }
 
-/// Format of the output without a terminal.
+/// Format of progress output without a terminal.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     /// One line at the end of each stage.
@@ -179,7 +179,7 @@ enum Form {
     Json,
 }
 
-/// Progress listener that writes lines or events. The threads of a run share the state.
+/// Progress listener that writes lines or JSON events. All threads of a run share its state.
 struct Events<W: Write>(Arc<Mutex<State<W>>>);
 
 struct State<W: Write> {
@@ -246,7 +246,7 @@ impl<W: Write + Send + 'static> Progress for Events<W> {
     }
 }
 
-/// Writes a progress event at every interval until the run is over.
+/// Writes a progress event at every interval until the run ends.
 fn report_regularly<W: Write>(state: &Weak<Mutex<State<W>>>) {
     loop {
         thread::sleep(INTERVAL);
@@ -259,7 +259,7 @@ fn report_regularly<W: Write>(state: &Weak<Mutex<State<W>>>) {
 }
 
 impl<W: Write> State<W> {
-    /// Writes and flushes a complete line, so that readers never receive a part. A closed output must not end a run.
+    /// Writes and flushes a complete line, so that readers never receive a part of it. A closed output does not stop the run.
     fn write(&mut self, line: &impl std::fmt::Display) {
         let written = self.writer.write_all(format!("{line}\n").as_bytes());
         let _ = written.and_then(|()| self.writer.flush());
@@ -297,7 +297,7 @@ impl<W: Write> State<W> {
     }
 }
 
-/// Rounds seconds to milliseconds.
+/// Rounds a time in seconds to milliseconds.
 fn round_to_ms(s: f64) -> f64 {
     (s * 1e3).round() / 1e3
 }

@@ -11,7 +11,7 @@ pub struct RunClock {
 }
 
 impl RunClock {
-    /// Starts the clock of a run with `n_items` work items.
+    /// Creates the clock of a run with `n_items` work items, and starts it.
     pub fn start(n_items: usize) -> Self {
         Self {
             start: Instant::now(),
@@ -20,23 +20,23 @@ impl RunClock {
         }
     }
 
-    /// Counts a finished work item.
+    /// Counts one finished work item.
     pub fn item_finished(&mut self) {
         self.n_finished += 1;
     }
 
-    /// Returns the numbers of finished and of all work items.
+    /// Returns the number of finished work items and the number of all work items.
     pub fn counts(&self) -> (usize, usize) {
         (self.n_finished, self.n_items)
     }
 
-    /// Returns the seconds from the start to the instant `now`.
+    /// Returns the time from the start of the run to the instant `now`, s.
     pub fn elapsed_s(&self, now: Instant) -> f64 {
         now.duration_since(self.start).as_secs_f64()
     }
 
-    /// Returns the estimated seconds until the last work item is finished. The estimate is the mean time of finished items times the number of pending ones.
-    /// Returns `None` if no item is finished.
+    /// Returns the estimated time until the last work item is finished, s: the mean time of finished items times the number of pending ones. Returns `None` if
+    /// no item is finished.
     pub fn left_s(&self, now: Instant) -> Option<f64> {
         let n_pending = self.n_items.saturating_sub(self.n_finished);
         match (n_pending, self.n_finished) {

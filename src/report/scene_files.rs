@@ -7,7 +7,7 @@ use crate::scene::{Frame, FrameSink, PatchReading, PlannedPatch, PlannedSignal, 
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Row of `wrenches.csv`: wrench and contact counts of one patch at one instant, in the patch frame. Numbers have enough digits to read back as the same bits.
+/// Row of `wrenches.csv`: wrench and contact counts of one patch at one time, in the patch frame. Numbers have enough digits to read back as the same bits.
 #[derive(Serialize)]
 struct WrenchRow<'a> {
     time_s: f64,
@@ -17,15 +17,15 @@ struct WrenchRow<'a> {
     fx_n: f64,
     fy_n: f64,
     fz_n: f64,
-    /// Torque about the patch's origin.
+    /// Torque about the x axis through the patch's origin, N·m.
     tx_nm: f64,
     ty_nm: f64,
     tz_nm: f64,
-    /// Centre of pressure; empty without contact.
+    /// Centre of pressure along x, metres; empty without contact.
     cop_x_m: Option<f64>,
     cop_y_m: Option<f64>,
     cop_z_m: Option<f64>,
-    /// Contact modes; empty for a patch without friction.
+    /// Number of sticking contacts; empty for a patch without friction.
     n_sticking: Option<usize>,
     n_slipping: Option<usize>,
 }
@@ -34,7 +34,7 @@ const RECORDING: &str = "recording.npz";
 const WRENCHES: &str = "wrenches.csv";
 const SCENE: &str = "scene.toml";
 
-/// Writer of the files of a scene in one folder: `recording.npz`, `wrenches.csv` (wrenches on each patch, in its frame) and `scene.toml`.
+/// Writer of a scene's output files in one folder: `recording.npz`, `wrenches.csv` (wrenches on each patch, in its frame) and `scene.toml`.
 /// [`finish`](Self::finish) completes the files. If the writer is dropped before, no file remains.
 pub struct SceneFiles {
     folder: PathBuf,
@@ -46,11 +46,11 @@ pub struct SceneFiles {
 }
 
 impl SceneFiles {
-    /// Starts the files in an existing folder.
+    /// Creates the output files in an existing folder.
     ///
     /// # Errors
-    /// If the folder contains one of these files and no simulation wrote it. Also if a file cannot be written, or a name with a slash or another invalid
-    /// character cannot be recorded.
+    /// If the folder contains one of these files and no simulation wrote it; if a file cannot be written; or if a name contains a slash or another invalid
+    /// character.
     pub fn create(folder: &Path, plan: &ScenePlan) -> Result<Self> {
         let claimed = DataFolder::claim(folder, "simulate", [RECORDING, WRENCHES, SCENE])?;
         let header = RecordingHeader {
@@ -81,7 +81,7 @@ impl SceneFiles {
         })
     }
 
-    /// Completes all files.
+    /// Completes all output files.
     ///
     /// # Errors
     /// If a file cannot be written.

@@ -1,17 +1,17 @@
-//! Content of a study's page and folder.
+//! Content of a study's page and result folder.
 
 use crate::report::page::Section;
 use crate::table::{ChartSpec, Table};
 
-/// Picture that is not a chart: frames, spheres, objects.
+/// Picture that is not a chart, for example of frames, spheres or objects.
 pub struct NamedPicture {
-    /// File name without extension.
+    /// File name of the picture, without extension.
     pub name: String,
     /// Title of the picture.
     pub title: String,
     /// Content of the PNG file.
     pub png: Vec<u8>,
-    /// Width and height in the page, pixels.
+    /// Width and height of the picture on the page, pixels.
     pub size: (usize, usize),
 }
 
@@ -26,7 +26,7 @@ pub struct Found<'a> {
     pub answers: &'a [String],
 }
 
-/// Additional content of a study's folder.
+/// Additional content of a study's result folder, besides tables and charts.
 #[derive(Default)]
 pub struct Beyond {
     /// Pictures that are not charts.

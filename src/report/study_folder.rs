@@ -1,4 +1,4 @@
-//! Files of a study's folder except the tables: charts, pictures and the page.
+//! Files of a result folder except the tables: charts, pictures and the page.
 
 use crate::error::Result;
 use crate::report::chart;
@@ -10,10 +10,10 @@ use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
 
-/// Maximum number of charts in the page, and of drawn charts unless all are requested. More charts make the page too large for a phone and take minutes.
+/// Maximum number of charts on the page, and of drawn charts unless all are requested. If larger, the page is too large for a phone and drawing takes minutes.
 pub const MAX_CHARTS: usize = 24;
 
-/// Returns the files of charts, pictures and the page. `beyond` computes additional content while charts are drawn. Charts without drawable rows are left out.
+/// Returns the files of charts, pictures and the page. `beyond` computes additional content while charts are drawn. Charts without drawable rows are omitted.
 ///
 /// # Errors
 /// If a chart or picture cannot be drawn.
@@ -61,7 +61,7 @@ pub fn files_with(
     Ok(files)
 }
 
-/// Returns only the page.
+/// Returns only the page of a result folder, as HTML.
 ///
 /// # Errors
 /// If a chart cannot be drawn.
@@ -77,7 +77,7 @@ pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
     Ok(study_page(about, found, &beside))
 }
 
-/// Returns the terminal summary of a run, wrapped at about `width` characters: the first table, the answers, then the other tables.
+/// Returns the terminal summary of a run, wrapped at about `width` characters: the first table, the answers, and the other tables.
 pub fn words_of(tables: &[&Table], answers: &[String], width: usize) -> String {
     let first = tables.first();
     let mut words = first.map_or_else(String::new, |table| table_text(table, width) + "\n");
@@ -90,7 +90,7 @@ pub fn words_of(tables: &[&Table], answers: &[String], width: usize) -> String {
     words
 }
 
-/// Returns the first table with rows that has a value or outcome column.
+/// Returns the first table that has rows and a value or outcome column.
 pub fn first_found(tables: &[Table]) -> Option<&Table> {
     let is_found = |role: Role| matches!(role, Role::Value(_) | Role::Outcome);
     let mut tables = tables.iter().filter(|table| table.n_rows > 0);

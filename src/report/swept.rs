@@ -1,7 +1,7 @@
-//! Settings that vary over the rows of a table.
+//! Swept settings: columns that vary over the rows of a table.
 //!
-//! Charts, sentences and terminal tables show the columns that vary and state the others once. A column is dependent if other varying columns
-//! determine its value, as m and the array determine the compression ratio. Dependent columns are not shown separately.
+//! Charts, sentences and terminal tables show the columns that vary and state the others once. A column is dependent if other varying columns determine its
+//! value; for example, m and the array determine the compression ratio. Dependent columns are not shown separately.
 
 use crate::table::{Column, Data, Role, Table, Value};
 use std::collections::HashSet;
@@ -27,36 +27,36 @@ const GIVEN_UP_FIRST: [&str; 16] = [
     "features",
 ];
 
-/// A column and its values.
+/// Setting: a column and its values.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
     /// Description of the column.
     pub column: &'a Column,
-    /// The values of the column, one for each row.
+    /// Values of the column, one per row.
     pub data: &'a Data,
 }
 
-/// The choices and conditions of a table, divided into varying, dependent and constant ones.
+/// Choices and conditions of a table, divided into varying, dependent and constant ones.
 pub struct Swept<'a> {
     table: &'a Table,
     /// Independent varying settings, in the order of the table.
     pub free: Vec<Setting<'a>>,
-    /// Dependent settings: they vary only because other settings vary.
+    /// Dependent settings, which vary only because other settings vary.
     pub following: Vec<Setting<'a>>,
-    /// Independent settings, if each row changes at most one of them from its value in the first row. Empty otherwise, or if there are fewer than two.
+    /// Independent settings, if each row changes at most one of them from its value in the first row. Empty otherwise, or if there are fewer than two settings.
     pub one_at_a_time: Vec<Setting<'a>>,
-    /// Settings with a single value in all rows.
+    /// Settings with the same value in all rows.
     pub fixed: Vec<Setting<'a>>,
 }
 
 impl<'a> Setting<'a> {
-    /// Returns all columns of a table.
+    /// Iterates over all columns of a table.
     pub fn all(table: &'a Table) -> impl Iterator<Item = Self> {
         let columns = table.columns.iter().zip(&table.data);
         columns.map(|(column, data)| Self { column, data })
     }
 
-    /// Returns the columns that have one of the given roles.
+    /// Iterates over the columns that have one of the given roles.
     pub fn of_roles(table: &'a Table, roles: &[Role]) -> impl Iterator<Item = Self> {
         Self::all(table).filter(|one| roles.contains(&one.column.role))
     }
@@ -67,23 +67,23 @@ impl<'a> Setting<'a> {
         table.groups(&names, rows.iter().copied())
     }
 
-    /// Returns whether the values differ between the given rows.
+    /// Returns whether the setting has different values in the given rows.
     pub fn varies(&self, rows: &[usize]) -> bool {
         self.data.varies(rows.iter().copied())
     }
 
-    /// Returns whether every given row has a value: a number, a word, or a named absent value.
+    /// Returns whether the setting has a value in every given row: a number, a word, or a named absent value.
     pub fn applies(&self, rows: &[usize]) -> bool {
         let has_name = !self.column.word("").is_empty();
         has_name || rows.iter().all(|&row| self.data.value(row).is_some())
     }
 
-    /// Returns whether the values are numbers.
+    /// Returns whether the values of the setting are numbers.
     pub fn is_number(&self) -> bool {
         matches!(self.data, Data::Numbers(_))
     }
 
-    /// Describes name and value in a row: `m = 64`. For a word that needs no name, only the value.
+    /// Describes the setting in a row by name and value, such as `m = 64`. A word that needs no name is returned alone.
     pub fn phrase(&self, row: usize) -> String {
         match self.data.value(row) {
             Some(value) => self.column.phrase(&value),
@@ -101,7 +101,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Formats the value in a row for a title. A number includes the column's name.
+    /// Formats the value in a row for a title; a number includes the column's name.
     pub fn title(&self, row: usize) -> String {
         match self.is_number() {
             true => self.phrase(row),
@@ -109,7 +109,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Returns one row for each distinct value: numbers ascending, words in the order of their first rows.
+    /// Returns one row for each distinct value: numbers ascending, words in the order of first occurrence.
     pub fn levels(&self, rows: &[usize]) -> Vec<usize> {
         let mut firsts = rows.to_vec();
         if let Data::Numbers(numbers) = self.data {
@@ -122,7 +122,7 @@ impl<'a> Setting<'a> {
 }
 
 impl<'a> Swept<'a> {
-    /// Classifies the settings of the given rows of a table.
+    /// Classifies the settings of the given rows as varying, dependent or constant.
     pub fn new(table: &'a Table, rows: &[usize]) -> Self {
         let all = Setting::of_roles(table, &[Role::Choice, Role::Condition]);
         let (mut free, fixed): (Vec<Setting>, Vec<Setting>) =
@@ -162,19 +162,20 @@ impl<'a> Swept<'a> {
         Setting::groups(settings, self.table, rows)
     }
 
-    /// Returns the varying settings of a role.
+    /// Returns the varying settings that have a given role.
     pub fn of_role(&self, role: Role) -> Vec<Setting<'a>> {
         let of_role = self.varying().filter(|one| one.column.role == role);
         of_role.copied().collect()
     }
 
-    /// Returns the varying settings: independent ones, then dependent ones.
+    /// Iterates over the varying settings: independent ones first, then dependent ones.
     pub fn varying(&self) -> impl Iterator<Item = &Setting<'a>> {
         self.free.iter().chain(&self.following)
     }
 
-    /// Returns the main setting for charts and tables: the independent numeric setting with the most values. Among equals, the last column is taken, because
-    /// columns follow the order of processing. A setting that is absent in some rows comes after words: its axis has no place for such a row.
+    /// Returns the main setting for charts and tables: the independent numeric setting with the most values. If several have equally many, the last column is
+    /// taken, because columns follow the order of processing. A setting that is absent in some rows comes after words, because its axis has no place for such a
+    /// row.
     pub fn main(&self, rows: &[usize]) -> Option<Setting<'a>> {
         let numbers = self.free.iter().filter(|setting| setting.is_number());
         let numbers = numbers.filter(|setting| numbers_are_there(setting, rows));
@@ -183,7 +184,7 @@ impl<'a> Swept<'a> {
         main.or(words).or(self.free.first()).copied()
     }
 
-    /// Describes the conditions of a row. If at most one condition differs at a time, only that one is stated. Empty if there is one condition.
+    /// Describes the conditions of a row. If at most one condition differs at a time, only this one is stated. Returns an empty text if there is one condition.
     pub fn condition_words(&self, row: usize) -> String {
         let conditions = self.of_role(Role::Condition);
         let is_absent = |setting: &Setting| {
@@ -201,7 +202,7 @@ impl<'a> Swept<'a> {
 
     /// Describes the varying choices of a row.
     pub fn choice_words(&self, row: usize) -> String {
-        // A choice that does not apply to the row is left out.
+        // Choices that do not apply to the row are omitted.
         let applies =
             |one: &&Setting| one.data.value(row).is_some() || !one.column.word("").is_empty();
         let choices = self.of_role(Role::Choice);
@@ -220,7 +221,7 @@ fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
     rows.iter().all(|&row| setting.data.value(row).is_some())
 }
 
-/// Returns all settings but one.
+/// Returns all settings except one.
 pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> {
     let others = settings.iter().copied();
     others
@@ -228,7 +229,7 @@ pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> 
         .collect()
 }
 
-/// Returns all numeric settings if each row changes at most one of them from its value in the first row. Otherwise, tries the settings of the signal.
+/// Returns all numeric settings if each row changes at most one of them from its value in the first row; otherwise tries only the settings of the signal.
 fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     let is_signal = |setting: &Setting| {
         setting.column.role == Role::Condition || setting.column.name == "smoothing_mm"

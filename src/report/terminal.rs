@@ -1,4 +1,4 @@
-//! Text for the terminal: tables that fit its width.
+//! Text output for the terminal: tables that fit the terminal's width.
 
 use crate::report::pictures::colours::Rgb;
 use crate::report::swept::{Setting, Swept, without};
@@ -19,9 +19,9 @@ const COLUMN_GAP: usize = 3;
 /// Colours that an output stream supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// No colours: a pipe, a file, `TERM=dumb`, or `NO_COLOR` is set.
+    /// No colours: the output is a pipe or a file, `TERM=dumb`, or `NO_COLOR` is set.
     Plain,
-    /// The 256 colours of xterm.
+    /// 256 colours of xterm.
     Colours256,
     /// 24-bit colours (true colour).
     TrueColour,
@@ -41,12 +41,12 @@ impl Ink {
         }
     }
 
-    /// Returns the escape code for a text colour.
+    /// Returns the escape code for a text colour; empty without colours.
     pub fn letter(self, colour: Rgb) -> String {
         self.code(38, colour)
     }
 
-    /// Returns the escape code for a background colour.
+    /// Returns the escape code for a background colour; empty without colours.
     pub fn ground(self, colour: Rgb) -> String {
         self.code(48, colour)
     }
@@ -72,16 +72,16 @@ impl Ink {
     }
 }
 
-/// A column of a table as text.
+/// Table column as text.
 struct TextColumn {
     head: String,
-    /// Text of each line in this column.
+    /// Text of the column in each line.
     said: Vec<String>,
     is_number: bool,
 }
 
-/// Returns a table as text without escape codes, in lines of at most `width` characters. Settings that are equal in all rows come first, once. Then each row
-/// has a line with its varying settings, values and costs, as far as there is room.
+/// Returns a table as text without escape codes, in lines of at most `width` characters. Settings that are equal in all rows are stated once, at the start.
+/// Each row then has a line with its varying settings, values and costs, as far as there is space.
 ///
 /// A table of more than 40 rows is shown as a pivot table: one setting runs along the columns. If the settings do not distinguish all rows, the text contains
 /// the first 40 rows and the number of all rows.
@@ -189,14 +189,14 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
     (lines, columns.len())
 }
 
-/// Describes the settings that are equal in all rows. Empty if there are none.
+/// Describes the settings that are equal in all rows; empty if there are none.
 fn constants(table: &Table, width: usize) -> String {
     let rows: Vec<usize> = (0..table.n_rows).collect();
     if rows.len() < 2 {
         return String::new();
     }
     let fixed = Swept::new(table, &rows).fixed;
-    // Conditions that are zero (ideal) are left out.
+    // Conditions of zero (ideal ones) are omitted.
     let is_said = |setting: &&Setting| {
         let value = setting.data.value(0);
         let is_ideal = setting.column.role == Role::Condition && value == Some(Value::Number(0.0));
@@ -212,7 +212,7 @@ fn constants(table: &Table, width: usize) -> String {
     }
 }
 
-/// Returns a pivot table for tables with more rows than a terminal shows: one setting along the columns, the others along the rows. Returns `None` if the
+/// Returns a pivot table for a table with more rows than a terminal shows: one setting along the columns, the others along the rows. Returns `None` if the
 /// settings do not distinguish all rows.
 fn pivot_text(table: &Table, width: usize) -> Option<String> {
     let rows: Vec<usize> = (0..table.n_rows).collect();
@@ -262,7 +262,7 @@ fn pivot_text(table: &Table, width: usize) -> Option<String> {
     Some(constants(table, width) + &head + &text + &paragraph(&remark, width))
 }
 
-/// Formats rows as aligned columns without lines. The columns with indices in `texts` are left-aligned, all others right-aligned.
+/// Formats rows as aligned columns without ruled lines. The columns with indices in `texts` are left-aligned, all others right-aligned.
 pub fn rows_text(
     header: &[&str],
     texts: &[usize],
@@ -279,7 +279,7 @@ pub fn rows_text(
     table.to_string()
 }
 
-/// Creates a table with a line below its header, at least 20 characters wide. Its texts wrap to fit the width.
+/// Creates a table with a ruled line below its header, at least 20 characters wide; its texts wrap to fit the width.
 fn ruled_table(width: usize) -> TextTable {
     let mut table = TextTable::new();
     table.load_preset(presets::NOTHING);
@@ -298,7 +298,7 @@ fn letters(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Wraps a text at spaces (not at U+00A0) into lines of at most `width` characters, each with a line end.
+/// Wraps a text at spaces (not at U+00A0) into lines of at most `width` characters, each with a line break.
 pub(crate) fn paragraph(text: &str, width: usize) -> String {
     break_lines(text, |line| letters(line) <= width).join("\n") + "\n"
 }

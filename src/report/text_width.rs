@@ -1,4 +1,4 @@
-//! Width of text in DejaVu Sans, the font of the pictures.
+//! Text width in DejaVu Sans, the font of the pictures.
 
 /// Advance widths of U+0020 … U+007E in thousandths of the font size (DejaVu Sans 2.37, read with fontTools 4).
 const ASCII: [u16; 95] = [
@@ -9,7 +9,7 @@ const ASCII: [u16; 95] = [
     278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636, 337, 636, 838,
 ];
 
-/// Returns the width of one line of text at a font size, in the unit of the size.
+/// Returns the width of one line of text at a given font size, in the unit of the size.
 ///
 /// A character outside ASCII counts as 0.7 em, slightly more than the mean, so that the reserved space is sufficient.
 pub fn text_width(text: &str, size: f64) -> f64 {
@@ -21,12 +21,12 @@ pub fn text_width(text: &str, size: f64) -> f64 {
     thousandths as f64 * size / 1000.0
 }
 
-/// Wraps a text at spaces (not at U+00A0) into lines of at most `width`. A longer word has its own line.
+/// Wraps a text at spaces (not at U+00A0) into lines of at most `width`. A longer word has a line of its own.
 pub fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     break_lines(text, |line| text_width(line, size) <= width)
 }
 
-/// Wraps a text at spaces (not at U+00A0) into lines that fit. A word that does not fit has its own line.
+/// Wraps a text at spaces (not at U+00A0) into lines for which `fits` is true. A word that does not fit has a line of its own.
 pub(super) fn break_lines(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {
@@ -42,7 +42,7 @@ pub(super) fn break_lines(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String
     lines
 }
 
-/// Returns the text, or the longest beginning that fits together with an ellipsis.
+/// Returns the text, or the longest prefix that fits together with an ellipsis.
 pub fn shorten(text: &str, size: f64, width: f64) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();

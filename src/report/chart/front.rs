@@ -1,4 +1,4 @@
-//! Pareto front of a chart's points. Each panel has one front for each condition of the world, because a designer cannot choose the condition.
+//! Pareto front of a chart's points. Each panel has one front per condition of the world, because a designer cannot choose the condition.
 
 use super::view::{Place, View};
 use crate::report::swept::Setting;
@@ -11,7 +11,7 @@ const MAX_NAMED: usize = 24;
 /// Pareto fronts of a chart.
 pub(super) struct Front<'a> {
     view: &'a View<'a>,
-    /// For each front, the index of its panel and its points along x.
+    /// Panel index and points along x of each front.
     pub fronts: Vec<(usize, Vec<&'a Place>)>,
 }
 
@@ -31,7 +31,7 @@ pub(super) fn words(view: &View) -> String {
 }
 
 impl<'a> Front<'a> {
-    /// Computes the Pareto fronts of a chart. Empty if the specification has no front.
+    /// Computes the Pareto fronts of a chart; none if the specification requests no front.
     pub fn new(view: &'a View) -> Self {
         let conditions = Setting::of_roles(view.table, &[Role::Condition]);
         let conditions: Vec<Setting> = conditions.collect();
@@ -45,7 +45,7 @@ impl<'a> Front<'a> {
             let rows: Vec<usize> = here.map(|place| place.row).collect();
             for group in Setting::groups(&conditions, view.table, &rows) {
                 let group = group.iter().map(|row| places[row]);
-                // The mapping of values to places is monotonic, so places replace values here.
+                // The mapping of values to positions is monotonic, so positions replace values here.
                 let points: Vec<(f64, f64)> = group.clone().map(|p| (p.x, p.y)).collect();
                 let is_on = front(&points, |a, b| if more { a > b } else { a < b });
                 let on = group.zip(is_on).filter(|(_, is_on)| *is_on);
@@ -57,13 +57,13 @@ impl<'a> Front<'a> {
         Self { view, fronts }
     }
 
-    /// Returns whether a row is on a front.
+    /// Returns whether a row is on a Pareto front.
     pub fn has(&self, row: usize) -> bool {
         let mut points = self.fronts.iter().flat_map(|(_, front)| front);
         points.any(|place| place.row == row)
     }
 
-    /// Returns the points with their numbers, panel by panel along x. Empty if there are more than can be listed.
+    /// Returns the front points with their numbers, panel by panel along x; none if there are more than can be listed.
     pub fn numbered(&self) -> impl Iterator<Item = (usize, &'a Place)> {
         let all = self.fronts.iter().flat_map(|front| &front.1);
         let n = all.clone().count();
@@ -76,7 +76,7 @@ impl<'a> Front<'a> {
         self.said(self.numbered().map(|(_, place)| place))
     }
 
-    /// Describes each point: its settings, its value and its cost.
+    /// Describes each point by its settings, its value and its cost.
     fn said(&self, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
         let view = self.view;
         let settings =

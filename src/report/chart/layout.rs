@@ -1,4 +1,4 @@
-//! Pixel layout of a chart: the heading, below it a grid of panels, with ticks and titles around them.
+//! Pixel layout of a chart: the heading, and below it a grid of panels with ticks and titles.
 
 use super::legend::{Heading, LEFT, LegendEntry, RIGHT};
 use super::scale::{Scale, Tick, thin};
@@ -13,7 +13,7 @@ pub(super) const TICK: f64 = 12.0;
 const LABEL: u32 = 13;
 /// Gap between panels, pixels.
 const GAP: f64 = 26.0;
-/// Minimum width of a chart, pixels, so that the title has room.
+/// Minimum width of a chart, pixels; leaves enough space for the title.
 const NARROWEST: f64 = 560.0;
 /// Maximum width of a label beside a row, pixels.
 const WIDEST: f64 = 230.0;
@@ -42,16 +42,16 @@ pub(super) struct Layout {
     heading: Heading,
 }
 
-/// Labels below a panel: the lines of each tick's label. A label without room has no lines.
+/// Labels below a panel: the lines of each tick's label. A label without space has no lines.
 struct XLabels {
     is_turned: bool,
     lines: Vec<Vec<String>>,
-    /// Height of the labels, pixels.
+    /// Height of the labels below a panel, pixels.
     depth: f64,
 }
 
 impl Layout {
-    /// Arranges panels of a given size in a number of columns.
+    /// Creates the layout of panels of a given size in a number of columns.
     pub fn new(view: &View, entries: Vec<LegendEntry>, columns: usize, size: (f64, f64)) -> Self {
         let labels = view.y.ticks.iter();
         let labels = labels.map(|tick| text_width(&tick.label, TICK).min(WIDEST));
@@ -82,13 +82,13 @@ impl Layout {
         }
     }
 
-    /// Returns the lower edge of the titles, pixels.
+    /// Returns the lower edge of the heading, pixels.
     pub fn bottom(&self) -> f64 {
         let panels = self.panels();
         panels.y + panels.height + self.labels.depth + 26.0
     }
 
-    /// Returns the area of all panels.
+    /// Returns the area that contains all panels, pixels.
     fn panels(&self) -> Area {
         let (across, down) = (self.columns, self.titles.len().div_ceil(self.columns));
         let top = self.heading.height() + self.above_first + self.above;
@@ -154,7 +154,7 @@ impl Layout {
     }
 }
 
-/// Draws grid lines at ticks, a dashed line between zero and the decades of a logarithmic axis, and the axes.
+/// Draws the axes, grid lines at the ticks, and a dashed line between zero and the decades of a logarithmic axis.
 fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
     let grid = Stroke::new(GRID, 1.0);
     let shelf = Stroke {
@@ -177,7 +177,7 @@ fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
 }
 
 impl XLabels {
-    /// Wraps the labels. If one is too wide or has too many lines, all labels are rotated.
+    /// Wraps the tick labels. If one is too wide or has too many lines, all labels are rotated.
     fn new(scale: &Scale, width: f64) -> Self {
         let labels = scale.ticks.iter().map(|tick| &tick.label[..]);
         let mut is_turned = false;

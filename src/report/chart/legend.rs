@@ -21,22 +21,22 @@ const SWATCH_GAP: f64 = 6.0;
 /// Gap between two entries, pixels.
 const GAP: f64 = 20.0;
 
-/// Title, fixed settings and legend, above the panels, so that nothing covers data.
+/// Heading of a chart: title, fixed settings and legend, above the panels, so that nothing covers data.
 pub(super) struct Heading {
     title: Vec<String>,
     settings: Vec<String>,
     legend: Vec<Vec<LegendEntry>>,
 }
 
-/// Draws a mark into an area.
+/// Function that draws a mark into an area.
 type DrawMark = Box<dyn Fn(&mut Drawing, Area)>;
 
 /// Legend entry: a mark and its meaning.
 pub(super) struct LegendEntry {
     text: String,
-    /// `None` for a text without a mark, as the legend's title.
+    /// Function that draws the mark; `None` for a text without a mark, such as the legend's title.
     mark: Option<DrawMark>,
-    /// Whether the entry is a series of marks, which the reader of a page can hide.
+    /// Whether the entry is a series of marks, which readers of the page can hide.
     is_series: bool,
 }
 
@@ -82,7 +82,7 @@ impl Heading {
 }
 
 impl LegendEntry {
-    /// Creates an entry without a mark.
+    /// Creates a legend entry without a mark.
     pub(super) fn title(text: String) -> Self {
         Self {
             text,
@@ -91,7 +91,7 @@ impl LegendEntry {
         }
     }
 
-    /// Creates an entry with a mark, drawn like the marks in the chart.
+    /// Creates a legend entry with a mark, drawn like the marks in the chart.
     pub(super) fn new(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         let mark: DrawMark = Box::new(mark);
         Self {
@@ -101,7 +101,7 @@ impl LegendEntry {
         }
     }
 
-    /// Creates the entry of a series. In a page, it hides and shows the groups whose `data-series` equals its text.
+    /// Creates the legend entry of a series. On a page, a click on it hides or shows the groups whose `data-series` equals its text.
     pub(super) fn series(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         Self {
             is_series: true,
@@ -109,7 +109,7 @@ impl LegendEntry {
         }
     }
 
-    /// Returns the width of the entry with the gap behind it, pixels.
+    /// Returns the width of the legend entry including the gap after it, pixels.
     fn width(&self) -> f64 {
         self.mark_width() + text_width(&self.text, f64::from(SMALL)) + GAP
     }
@@ -136,7 +136,7 @@ impl LegendEntry {
     }
 }
 
-/// Arranges entries in rows of at most `width` pixels.
+/// Arranges legend entries in rows of at most `width` pixels.
 fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
     let mut rows: Vec<Vec<LegendEntry>> = Vec::new();
     let mut used = f64::INFINITY;
@@ -153,7 +153,7 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
     rows
 }
 
-/// Returns the stroke of a line, by its index. If there are more lines than colours, the marker shapes repeat with other colours.
+/// Returns the stroke of the line with this index. If there are more lines than marker shapes, the shapes repeat with other colours.
 pub(super) fn line_stroke(line: usize) -> Stroke {
     let colour = line + 3 * (line / LINES.len());
     Stroke::new(LINES[colour % LINES.len()], 2.0)

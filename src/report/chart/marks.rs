@@ -135,7 +135,7 @@ impl Panel<'_> {
         self.draw_numbers(drawing);
     }
 
-    /// Draws a part of a line in a group with the line's name. If the chart has only one line, there is no group.
+    /// Draws a part of a line inside a group with the line's name; without a group if the chart has only one line.
     fn draw_series(&self, drawing: &mut Drawing, line: usize, draw: impl FnOnce(&mut Drawing)) {
         match &self.view.lines.names[line][..] {
             "" => draw(drawing),
@@ -143,7 +143,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the intervals of a line as a band or as error bars.
+    /// Draws the confidence intervals of a line as a band or as error bars.
     fn draw_intervals(&self, drawing: &mut Drawing, line: usize, places: &[&Place]) {
         let colour = line_stroke(line).colour;
         if self.view.has_bands() && places.len() > 1 {
@@ -156,7 +156,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a line and its markers. Markers on the Pareto front come last.
+    /// Draws a line and its markers; markers on the Pareto front are drawn last.
     fn draw_points(&self, drawing: &mut Drawing, line: usize, places: &[&Place]) {
         let view = self.view;
         if view.is_joined && places.len() > 1 {
@@ -185,7 +185,7 @@ impl Panel<'_> {
         self.frame.at(place.x, place.y)
     }
 
-    /// Returns radius and colour of markers that are not on the front: paler if there is a front, and smaller if there are many points.
+    /// Returns radius and colour of markers that are not on the front: paler if there is a front, smaller if there are many points.
     fn behind(&self, colour: Rgb) -> (f64, Rgb) {
         let radius = match self.view.places.len() > MANY {
             true => 0.55 * MARKER_RADIUS,
@@ -209,7 +209,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the numbers of front points on the side that contains no points. If two numbers overlap, the later one is left out.
+    /// Draws the numbers of front points on the side without points. If two numbers overlap, the later one is omitted.
     fn draw_numbers(&self, drawing: &mut Drawing) {
         let up = match front::is_more_better(self.view) {
             true => -8.0,

@@ -1,8 +1,8 @@
-//! Charts: a [`ChartSpec`] and a table → a [`Drawing`].
+//! Charts: a [`ChartSpec`] and a table are converted to a [`Drawing`].
 //!
-//! All charts have one renderer. `view` selects rows, lines and panels of the table. `scale` maps values to fractions of an axis. `layout` computes the pixels
-//! of the panels. `marks` and `tiles` draw the data. The page embeds the drawings: each mark is a group with its row number, so that the page's script finds
-//! the row's values.
+//! All charts have one renderer. `view` selects rows, lines and panels of the table. `scale` maps values to fractions of an axis. `layout` computes the pixel
+//! positions of the panels. `marks` and `tiles` draw the data. The page embeds the drawings: each mark is a group with its row number, so that the page's
+//! script finds the row's values.
 
 mod front;
 mod layout;
@@ -40,7 +40,7 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
     }
 }
 
-/// Returns the places of all drawn rows, as fractions of the width (from the left) and height (from below) of their panels.
+/// Returns the positions of all drawn rows, as fractions of the width (from the left) and height (from below) of their panels.
 ///
 /// # Errors
 /// If the specification names a table or a column that does not exist.
@@ -49,7 +49,7 @@ pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
     Ok(view.places)
 }
 
-/// Returns the text on the chart about rows that are not drawn: their number and the reasons. Empty if all rows are drawn.
+/// Returns the chart's text about rows that are not drawn: their number and the reasons. The text is empty if all rows are drawn.
 ///
 /// # Errors
 /// If the specification names a table or a column that does not exist.

@@ -1,4 +1,4 @@
-//! Reference lines of a chart: chance level, limits, published values.
+//! Reference lines of a chart, such as a chance level, a limit, or a published value.
 
 use super::legend::LegendEntry;
 use super::view::View;
@@ -6,10 +6,10 @@ use crate::report::pictures::colours::{INK, MUTED, PAPER};
 use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
 use crate::table::{Along, At, Rule};
 
-/// Dash patterns of the reference lines, in order: pixels on and off.
+/// Dash patterns of the reference lines, in order: lengths of dash and gap, pixels.
 const DASHES: [(u32, u32); 4] = [(5, 4), (2, 3), (9, 3), (1, 2)];
 
-/// Returns one legend entry for each reference line. Lines with equal labels share an entry.
+/// Returns one legend entry per reference line; lines with equal labels share an entry.
 pub(super) fn entries(view: &View) -> Vec<LegendEntry> {
     let rules = view.spec.rules.iter().enumerate();
     let rules = rules.filter(|(number, rule)| first_of(view, rule) == *number);

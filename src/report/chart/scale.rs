@@ -1,24 +1,24 @@
-//! Axis scale of all charts: maps values to fractions of an axis.
+//! Axis scale of charts: maps values to fractions of an axis.
 
 use crate::report::pictures::even_ticks::{even_ticks, tick_step};
 use crate::table::{Along, Column, Role, Scale as Spacing};
 
-/// Fraction of a logarithmic axis that is reserved for zero.
+/// Fraction of a logarithmic axis that is reserved for the value zero.
 pub(super) const SHELF: f64 = 0.09;
-/// Maximum number of distinct values of a swept axis for which each value has a tick. More values get round ticks.
+/// Maximum number of distinct values of a swept axis for which each value has a tick. With more values, ticks are at round numbers.
 const MAX_SWEPT: usize = 40;
 
 /// Axis scale: maps values to fractions of the axis length.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scale {
-    /// Values (or their logarithms) in ascending order, with their places. Values between two anchors are interpolated linearly.
+    /// Values (or their logarithms) in ascending order, with their positions. Between two of them, positions are interpolated linearly.
     anchors: Vec<(f64, f64)>,
     is_log: bool,
-    /// End of the part of a logarithmic axis that is reserved for zero.
+    /// End of the range that a logarithmic axis reserves for zero, as a fraction of the axis; `None` without zero.
     pub shelf: Option<f64>,
     /// Number of words or tiles along the axis; 0 for a continuous axis.
     pub n_levels: usize,
-    /// Whether the axis has words, with nothing between them.
+    /// Whether the axis shows words, with nothing between them.
     pub is_words: bool,
     /// Possible labels, in ascending order of their values.
     pub ticks: Vec<Tick>,
@@ -26,14 +26,14 @@ pub(super) struct Scale {
     pub title: String,
 }
 
-/// Place on an axis that may have a label.
+/// Position on an axis that may have a label.
 #[derive(Clone, Debug)]
 pub(super) struct Tick {
     /// Fraction of the axis length.
     pub at: f64,
     /// Text of the tick's label.
     pub label: String,
-    /// Whether the label has priority over others if there is no room for all.
+    /// Whether the label has priority over others if there is not enough space for all.
     pub is_round: bool,
 }
 
@@ -78,7 +78,7 @@ impl Scale {
         scale.with_ticks(&ticks, |&tick| column.tick(tick))
     }
 
-    /// Creates a scale with one place for each value of a column. Words have the given order (from the top along y); numbers of tiles are ascending.
+    /// Creates a scale with one position per value of a column. Words keep the given order (from the top along y); numbers of tiles are ascending.
     pub fn of_levels(column: &Column, (values, words): (&[f64], &[String]), along: Along) -> Self {
         let is_words = column.scale == Spacing::Words;
         let levels = match is_words {
@@ -128,7 +128,7 @@ impl Scale {
         }
     }
 
-    /// Returns the place of a value as a fraction of the axis, or `None` if it has no place.
+    /// Returns the position of a value as a fraction of the axis, or `None` if it has no position.
     pub fn place(&self, value: f64) -> Option<f64> {
         if self.is_log && value == 0.0 {
             return self.shelf.map(|shelf| 0.5 * shelf);
@@ -158,7 +158,7 @@ fn distinct(values: &[f64]) -> Vec<f64> {
     distinct
 }
 
-/// Returns logarithmic ends with a margin of at least a twelfth of a decade, so that data do not lie on the edges.
+/// Returns the ends of a logarithmic axis, with a margin of at least a twelfth of a decade around the values.
 fn log_ends(values: &[f64]) -> (f64, f64) {
     let mut positive = values.iter().copied().filter(|&v| v > 0.0);
     let (low, high) = match (positive.next(), values.last()) {
@@ -169,7 +169,7 @@ fn log_ends(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Returns round ends around the values. Includes zero if it is near.
+/// Returns round ends of an axis around the values; includes zero if it is near.
 fn round_ends(values: &[f64]) -> (f64, f64) {
     let (mut low, mut high) = ends(values);
     if low > 0.0 && low < 0.6 * high {
@@ -185,7 +185,7 @@ fn round_ends(values: &[f64]) -> (f64, f64) {
     )
 }
 
-/// Returns the first and the last of sorted values; if they are equal, adds a margin.
+/// Returns the first and the last of sorted values; adds a margin if they are equal.
 fn ends(values: &[f64]) -> (f64, f64) {
     let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
         return (0.0, 1.0);
@@ -197,7 +197,8 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Returns the powers of ten. If there are fewer than three, returns 1, 2 and 5 times powers of ten; if these are too few, round numbers at equal steps.
+/// Returns the ticks of a logarithmic axis: powers of ten. If there are fewer than three, 1, 2 and 5 times powers of ten; if still too few, evenly spaced
+/// numbers.
 fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     let multiples = |factors: &[u32]| -> Vec<f64> {
         let powers = low.floor() as i32..=high.ceil() as i32;
@@ -213,7 +214,7 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     enough.unwrap_or_else(|| even_ticks(10f64.powf(low), 10f64.powf(high)))
 }
 
-/// Selects the ticks whose labels have room, `half` of the axis to either side. The order of priority is: the ends, round ticks, other ticks.
+/// Selects the ticks whose labels have enough space, `half` of the axis length on either side. Priority: the ends, round ticks, other ticks.
 pub(super) fn thin(ticks: &[Tick], half: impl Fn(&Tick) -> f64) -> Vec<bool> {
     let last = ticks.len().saturating_sub(1);
     let rank = |place: usize| match (place == 0 || place == last, ticks[place].is_round) {

@@ -1,4 +1,4 @@
-//! Tile charts: a tile at each x and y, filled by an outcome or a number.
+//! Tile charts: a tile for each x and y, coloured by an outcome or a number.
 
 use super::layout::{Layout, TICK};
 use super::legend::LegendEntry;
@@ -11,15 +11,15 @@ use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
 use crate::table::{Data, Role, Scale, Value};
 
-/// Colours of outcomes, in the order of their first rows. The colours also differ in lightness.
+/// Colours of outcomes, in the order of first occurrence. The colours also differ in lightness.
 const OUTCOMES: [Rgb; 8] = [
     LINES[5], LINES[4], LINES[1], LINES[7], INK, LINES[2], LINES[3], LINES[0],
 ];
 const SIGN: u32 = 11;
-/// Number of rows and columns from which on tiles are small.
+/// Number of rows and columns above which tiles are small.
 const MANY: usize = 20;
 
-/// Appearance of tiles.
+/// Appearance of the tiles: how values are converted to colours and texts.
 struct Look<'a> {
     fill: Setting<'a>,
     sign: Option<Setting<'a>>,
@@ -27,7 +27,7 @@ struct Look<'a> {
     ends: (f64, f64),
 }
 
-/// Draws a chart of tiles. `fill` and `sign` are column names.
+/// Draws a tile chart. `fill` and `sign` are column names.
 pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawing> {
     let look = Look::new(
         view,
@@ -78,7 +78,7 @@ pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawin
     Ok(drawing)
 }
 
-/// Draws the sign on its own background, so that no reference line crosses it: a crossed minus is mistaken for a plus.
+/// Draws the sign on a background of its own, so that no reference line crosses it; a crossed minus would look like a plus.
 fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
     let (x, y) = place.at(0.5, 0.5);
@@ -140,7 +140,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Returns the first letters of an outcome that distinguish it from all outcomes before it.
+    /// Returns the first letters of an outcome that distinguish it from all previous outcomes.
     fn letter(&self, outcome: &str) -> String {
         let Data::Words { levels, .. } = self.fill.data else {
             return String::new();

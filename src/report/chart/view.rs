@@ -1,4 +1,4 @@
-//! Data of a chart: rows, lines, panels, and the place of each row.
+//! Data of a chart: rows, lines, panels, and the position of each row.
 
 use super::scale::Scale;
 use crate::error::{Error, Result};
@@ -7,34 +7,34 @@ use crate::report::swept::Setting;
 use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table, Value};
 use std::collections::{HashMap, HashSet};
 
-/// Maximum number of lines with confidence bands. Bands of more lines would hide each other; error bars replace them.
+/// Maximum number of lines with confidence bands. Bands of more lines would hide each other, so error bars replace them.
 const MAX_BANDS: usize = 4;
-/// Maximum number of points with error bars. More bars would not be distinguishable.
+/// Maximum number of points with error bars; more bars would not be distinguishable.
 const MAX_WHISKERS: usize = 80;
 
-/// A chart specification, applied to its table.
+/// Chart specification applied to its table.
 pub(super) struct View<'a> {
     pub spec: &'a ChartSpec,
     pub table: &'a Table,
     /// Rows that pass the filters.
     pub rows: Vec<usize>,
-    /// Line of each row, and the names of the lines.
+    /// Line index of each row, and the names of the lines.
     pub lines: Groups,
-    /// Panel of each row, and the names of the panels.
+    /// Panel index of each row, and the names of the panels.
     pub panels: Groups,
     pub x: Scale,
     pub y: Scale,
-    /// Whether points are joined by lines along x. Words and named numbers are not joined.
+    /// Whether points are joined by lines along x; words and named numbers are not joined.
     pub is_joined: bool,
-    /// Title of each panel: `noise 10 %`, `RBF SVM`. Empty if there is one panel, and in later rows of tiles.
+    /// Title of each panel, such as `noise 10 %` or `RBF SVM`. Empty if there is one panel, and in later rows of tiles.
     pub titles: Vec<String>,
-    /// Title of each row of panels. A tile chart has one row for each line group.
+    /// Title of each row of panels. A tile chart has one row of panels per line group.
     pub row_titles: Vec<String>,
-    /// Places of the rows, line by line along x.
+    /// Positions of the rows, line by line along x.
     pub places: Vec<Place>,
 }
 
-/// Place of a row in its panel.
+/// Position of a row in its panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// Index of the row in the table.
@@ -43,24 +43,24 @@ pub struct Place {
     pub panel: usize,
     /// Index of the row's line.
     pub line: usize,
-    /// Fraction of the panel's width, from the left.
+    /// Horizontal position as a fraction of the panel's width, from the left.
     pub x: f64,
-    /// Fraction of the panel's height, from below.
+    /// Vertical position as a fraction of the panel's height, from below.
     pub y: f64,
-    /// Ends of the confidence interval, on the scale of `y`. `None` if there is no interval.
+    /// Ends of the confidence interval, on the scale of `y`; `None` without an interval.
     pub interval: Option<[f64; 2]>,
 }
 
 /// Groups of rows with equal values in some columns.
 #[derive(Default)]
 pub(super) struct Groups {
-    /// Names of the columns: `classifier`. Empty without columns.
+    /// Names of the grouping columns, such as `classifier`; empty without columns.
     pub heading: String,
-    /// Values of each group as text. Without columns, one empty name.
+    /// Values of each group as text; a single empty text without columns.
     pub names: Vec<String>,
-    /// Values of each group as a title, in which numbers have the column's name.
+    /// Values of each group as a title, in which numbers include the column's name.
     titles: Vec<String>,
-    /// Group of each table row; 0 for rows that are not shown.
+    /// Group index of each table row; 0 for rows that are not shown.
     pub of: Vec<usize>,
 }
 
@@ -98,7 +98,7 @@ impl<'a> View<'a> {
         let (mut x, y) = (column(&spec.x)?, column(&spec.y)?);
         x.column = spec.x_is.as_ref().unwrap_or(x.column);
         let y_values = values(&y, &rows, &[]);
-        // Equal words have equal positions in rows and columns, so that matches of both lie on the diagonal.
+        // Equal words have equal positions along x and y, so that matching pairs are on the diagonal.
         let x_values = values(&x, &rows, if is_tiles { &y_values.1 } else { &[] });
         let interval = y.column.interval.as_ref();
         let interval =
@@ -165,7 +165,7 @@ impl<'a> View<'a> {
         places
     }
 
-    /// Returns the horizontal offset of a line at a word, so that error bars of several lines do not overlap.
+    /// Returns the horizontal offset of a line on a word axis, so that error bars of several lines do not overlap.
     fn beside(&self, line: usize) -> f64 {
         if !self.x.is_words || self.spec.mark != Mark::Line {
             return 0.0;
@@ -180,7 +180,7 @@ impl<'a> View<'a> {
         matches!(self.spec.mark, Mark::Tiles { .. })
     }
 
-    /// Returns whether intervals are bands. Only charts with few lines have bands.
+    /// Returns whether intervals are drawn as bands, which is the case for charts with few lines.
     pub fn has_bands(&self) -> bool {
         self.has_interval() && self.is_joined && self.lines.names.len() <= MAX_BANDS
     }
@@ -191,18 +191,18 @@ impl<'a> View<'a> {
         !is_many && self.places.iter().any(|place| place.interval.is_some())
     }
 
-    /// Returns the index of the panel that contains a place.
+    /// Returns the index of the panel that contains a position.
     pub fn panel_of(&self, place: &Place) -> usize {
         let row = if self.is_tiles() { place.line } else { 0 };
         row * self.panels.names.len() + place.panel
     }
 
-    /// Returns a column, by name.
+    /// Returns the column with this name.
     pub fn column(&self, name: &str) -> Result<Setting<'a>> {
         column_of(self.spec, self.table, name)
     }
 
-    /// Draws the mark of a row in a group with its data: row number, and values along the axes with their units.
+    /// Draws the mark of a row inside a group with its data: row number, and values along the axes with their units.
     pub fn draw_mark(&self, drawing: &mut Drawing, place: &Place, draw: impl FnOnce(&mut Drawing)) {
         let spec = self.spec;
         let words = |name: &str| {
@@ -236,7 +236,7 @@ impl<'a> View<'a> {
         drawing.group(&data, draw);
     }
 
-    /// Describes the interval: the common text of both column names before a comma, or else both names.
+    /// Describes the interval by the common text of both column names before a comma, or by both names; `None` without an interval.
     pub fn interval_words(&self) -> Option<String> {
         let words = |name: &str| Some(self.column(name).ok()?.column.words.as_ref());
         let [low, high] = self.column(&self.spec.y).ok()?.column.interval.as_ref()?;
@@ -247,7 +247,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// Describes the rows that are not drawn: their number and the reasons. Empty if all rows are drawn.
+    /// Describes the rows that are not drawn: their number and the reasons. The text is empty if all rows are drawn.
     pub fn omitted(&self) -> String {
         let (n, n_shown) = (self.table.n_rows, self.rows.len());
         let drawn = self.drawn();
@@ -285,7 +285,7 @@ impl<'a> View<'a> {
         format!("{n_drawn} of {n} rows are drawn; {}.", said.join(", "))
     }
 
-    /// Returns the visible rows. A tile hides earlier tiles in the same place.
+    /// Returns the visible rows; a tile hides earlier tiles at the same position.
     pub fn drawn(&self) -> Vec<usize> {
         let Mark::Tiles { fill, .. } = &self.spec.mark else {
             return self.places.iter().map(|place| place.row).collect();
@@ -328,7 +328,7 @@ impl<'a> View<'a> {
 }
 
 impl Groups {
-    /// Groups rows by the values of columns, in the order of their first rows. Groups of a single numeric column are in ascending order.
+    /// Groups rows by the values of columns, in the order of first occurrence. Groups of a single numeric column are in ascending order.
     fn new(table: &Table, settings: &[Setting], rows: &[usize]) -> Self {
         let mut groups = Setting::groups(settings, table, rows);
         if let [one] = settings

@@ -1,8 +1,8 @@
 //! Differences between two result folders, for rows with equal settings, and their statistical significance.
 //!
-//! Rows of two tables correspond if their choices, conditions and subjects are equal. If settings are repeated in trials, the means over shared trials
-//! are compared. If the table contains the numbers of training and test rows, a t-test paired over trials gives the significance.
-//! If values have confidence intervals and no trials, a difference is significant if the two intervals are disjoint.
+//! Rows of two tables correspond if their choices, conditions and subjects are equal. If settings are repeated in trials, the means over common trials are
+//! compared. If the table contains the numbers of training and test rows, a t-test paired over trials determines the significance. If values have confidence
+//! intervals and no trials, a difference is significant if the two intervals are disjoint.
 
 use crate::error::{Error, Result};
 use crate::report::swept::Setting;
@@ -19,11 +19,11 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Significance {
-    /// Significant: p < 0.05 after correction, or the intervals are disjoint.
+    /// Significant difference: p < 0.05 after correction, or disjoint intervals.
     Significant,
-    /// Not tested: there are no intervals, and no trials or too few.
+    /// Difference without a test: there are no intervals, and no trials or too few.
     Untested,
-    /// Not significant: chance explains the difference.
+    /// Difference that is not significant: chance can explain it.
     NotSignificant,
     /// No difference: both values are equal.
     Same,
@@ -37,58 +37,58 @@ const SIGNIFICANCE: &[(&str, &str)] = &[
 ];
 
 row! {
-/// Comparison of one number in both folders: a row of the tables that `bubbletouch compare` writes.
+/// Comparison of one number in two result folders: a row of the tables that `bubbletouch compare` writes.
 pub struct Difference {
     /// File name of the table that contains the number.
     table: String => Subject;
-    /// Column that contains the number.
+    /// Name of the column that contains the number.
     column: String => Subject;
     /// Description of the choices, conditions and subjects that vary.
     setting: String => Subject;
-    /// First row of the second folder's table that has this setting, counted from 0.
+    /// Row index of this setting in the second folder's table, counted from 0; the first such row.
     row: usize => Note: Linear;
-    /// Number of trials in both folders; 1 if the setting is not repeated.
+    /// Number of common trials; 1 if the setting is not repeated.
     n_trials: usize => Note "trials of both": Linear;
-    /// Value in the first folder, as the mean over shared trials.
+    /// Value in the first folder, averaged over common trials.
     first: f64 => Value(Neither): Linear;
-    /// Value in the second folder, as the mean over shared trials.
+    /// Value in the second folder, averaged over common trials.
     second: f64 => Value(Neither): Linear;
     /// Value in the second folder minus value in the first folder.
     difference: f64 => Value(Neither): Linear between [difference_low, difference_high];
-    /// Lower end of the 95 % confidence interval of the difference; absent if trials are not paired.
+    /// Lower end of the 95 % confidence interval of the difference; empty if trials are not paired.
     difference_low: Option<f64> => Note "95 % interval, lower end": Linear;
-    /// Upper end of the 95 % confidence interval of the difference; absent if trials are not paired.
+    /// Upper end of the 95 % confidence interval of the difference; empty if trials are not paired.
     difference_high: Option<f64> => Note "95 % interval, upper end": Linear;
-    /// Significance of the difference between both folders.
+    /// Significance of the difference between the folders.
     significance: Significance => Outcome "difference" named SIGNIFICANCE;
-    /// Two-sided p-value of the hypothesis of no difference; absent if there are too few trials.
+    /// Two-sided p-value of the hypothesis that there is no difference; empty if there are too few trials.
     p_value: Option<f64> => Note "p-value": Linear;
-    /// The p-value after Holm's correction for all settings of the column.
+    /// p-value after Holm's correction over all settings of the column.
     p_holm: Option<f64> => Value(Neither) "p (Holm)": Linear;
-    /// Reason why a p-value is present or absent.
+    /// Reason why the p-value is present or empty.
     p_status: Option<PStatus> => Outcome "test";
-    /// Number of trials that a p-value requires; absent if no number of trials is sufficient.
+    /// Number of trials that a p-value requires; empty if no number of trials is sufficient.
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }
 
-/// Differences in one column of a table that both folders have.
+/// Differences in one column of a table that both folders contain.
 pub struct ColumnDifferences {
     /// Description of the compared column.
     pub column: Column,
-    /// Settings that have a number in both folders.
+    /// Differences of all settings that have a number in both folders.
     pub rows: Vec<Difference>,
-    /// Number of settings in both folders, with or without numbers.
+    /// Number of settings that both folders contain, with or without numbers.
     pub n_both: usize,
-    /// Number of settings in the first folder alone.
+    /// Number of settings that only the first folder contains.
     pub n_first_only: usize,
-    /// Number of settings in the second folder alone.
+    /// Number of settings that only the second folder contains.
     pub n_second_only: usize,
 }
 
-/// Returns the differences in all value and cost columns of the shared tables. If several tables have a column for equal settings, the first is used.
+/// Returns the differences in all value and cost columns of the common tables. If several tables have a column for equal settings, the first one is used.
 ///
 /// # Errors
-/// If no setting is in both folders, or the two folders share no trial of a setting.
+/// If no setting occurs in both folders, or the folders have no common trial of a setting.
 pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDifferences>> {
     let mut told = HashSet::new();
     let mut found = Vec::new();
@@ -123,15 +123,16 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
 /// Settings of a table and their rows.
 struct Settings<'a> {
     table: &'a Table,
-    /// Columns that distinguish the settings.
+    /// Columns whose values distinguish the settings.
     columns: Vec<Setting<'a>>,
-    /// Groups of rows with equal settings, one row for each trial. The groups are in the order of their first rows.
+    /// Groups of rows with equal settings, one row per trial, in the order of first occurrence.
     groups: Vec<Vec<usize>>,
     is_repeated: bool,
 }
 
 impl<'a> Settings<'a> {
-    /// Returns `None` if the table names configurations by numbers, which differ between runs, or if several rows of an unrepeated table share a setting.
+    /// Groups the rows of a table by setting. Returns `None` if the table identifies configurations by numbers, which differ between runs, or if several rows
+    /// of a table without trials have the same setting.
     fn new(table: &'a Table) -> Option<Self> {
         let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
         let columns = columns.filter(|one| one.column.name != "trial");
@@ -150,7 +151,7 @@ impl<'a> Settings<'a> {
         })
     }
 
-    /// Returns a setting as its values with their units. Absent values are left out.
+    /// Returns the setting of a row as a set of values with their units; absent values are omitted.
     fn key(&self, row: usize) -> BTreeSet<String> {
         let columns = self.columns.iter();
         let said = columns.filter_map(|Setting { column, data }| {
@@ -160,7 +161,7 @@ impl<'a> Settings<'a> {
         said.collect()
     }
 
-    /// Describes a setting by the columns that vary.
+    /// Describes the setting of a row by the columns that vary.
     fn words(&self, row: usize) -> String {
         let columns = self.columns.iter();
         let varying = columns.filter(|one| one.data.varies(0..self.table.n_rows));
@@ -168,13 +169,13 @@ impl<'a> Settings<'a> {
         said.collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns a count, or `None` if the table does not have the column or the row has no number there.
+    /// Returns a count from a column; `None` if the table does not have the column or the row has no number there.
     fn count(&self, column: &str, row: usize) -> Option<usize> {
         let number = self.table.numbers(column)?[row];
         (!number.is_nan()).then_some(number as usize)
     }
 
-    /// Returns the numbers of a column in the given rows, one for each trial.
+    /// Returns the numbers of a column in the given rows as scores of trials.
     fn repeats(&self, column: &str, rows: &[usize]) -> Vec<Repeat> {
         let repeats = rows.iter().map(|&row| {
             let trial = self.count("trial", row).unwrap_or(0);
@@ -192,7 +193,7 @@ impl<'a> Settings<'a> {
         repeats.filter(|repeat| !repeat.score.is_nan()).collect()
     }
 
-    /// Returns the numbers of training and test touches of a trial, or `None` if the table does not contain them.
+    /// Returns the numbers of training and test touches of a row's trial, or `None` if the table does not contain them.
     fn trial_size(&self, row: usize) -> Option<TrialSize> {
         self.is_repeated.then_some(())?;
         Some(TrialSize {
@@ -240,7 +241,7 @@ fn explained(is_by_chance: bool) -> Significance {
 
 type Rows<'a> = (&'a Settings<'a>, &'a [usize]);
 
-/// Compares one setting. Returns `None` if a number is absent.
+/// Compares one setting in both folders; returns `None` if a number is absent.
 fn of_setting(
     column: &Column,
     (first, theirs): Rows,
@@ -294,7 +295,8 @@ fn of_setting(
 }
 
 impl ColumnDifferences {
-    /// Counts the selected rows that improved and that became worse. If neither direction is better, counts larger and smaller values.
+    /// Returns the numbers of selected rows that improved and that became worse. If neither direction is better, returns the numbers of larger and smaller
+    /// values.
     pub fn counts(&self, is_counted: impl Fn(&Difference) -> bool) -> [usize; 2] {
         let less = matches!(self.column.role, Role::Cost | Role::Value(Better::Less));
         let count = |better: bool| {

@@ -1,48 +1,48 @@
-//! Exact comparison of two versions of a table: rows that both versions have, and columns in which the entries of such rows differ.
+//! Exact comparison of two versions of a table: common rows, and columns in which the entries of such rows differ.
 //!
-//! [`differences`](super::differences) compares means over trials. This comparison has no such tolerance: it covers outcomes, notes, numbers that one
-//! version lacks, and tables that name configurations by number.
+//! The module [`differences`](super::differences) compares means over trials. This module compares single entries exactly. It includes outcomes, notes, numbers
+//! that one version lacks, and tables that identify configurations by number.
 
 use crate::report::swept::Setting;
 use crate::table::{Column, Role, Table, Value};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Columns whose numbers name configurations. Another run can number the configurations differently.
+/// Columns whose numbers identify configurations; another run may number the configurations differently.
 const CONFIGURATION_NUMBERS: [&str; 2] = ["configuration", "best_configuration"];
 
-/// Roles of the columns that distinguish rows.
+/// Roles of the columns that identify a row.
 const KEY_ROLES: [Role; 3] = [Role::Choice, Role::Condition, Role::Subject];
 
-/// Row indices of corresponding rows: first version, second version.
+/// Row indices of a pair of corresponding rows: in the first version and in the second version.
 type Pair = (usize, usize);
 
-/// The rows of two versions of a table.
+/// Result of comparing the rows of two versions of a table.
 pub struct TableEntries {
-    /// The file of the table.
+    /// File name of the table.
     pub file: &'static str,
-    /// Rows that both versions have.
+    /// Number of rows that both versions contain.
     pub n_both: usize,
-    /// Rows that only the first version has.
+    /// Number of rows that only the first version contains.
     pub n_first_only: usize,
-    /// Rows that only the second version has.
+    /// Number of rows that only the second version contains.
     pub n_second_only: usize,
-    /// Columns that only one version has.
+    /// Names of the columns that only one version contains.
     pub one_sided: Vec<String>,
-    /// Columns in which rows of both versions differ.
+    /// Columns in which corresponding rows differ.
     pub columns: Vec<ColumnEntries>,
 }
 
-/// A column in which rows differ.
+/// Column in which corresponding rows differ.
 pub struct ColumnEntries {
     /// Description of the compared column.
     pub column: Column,
-    /// Rows of both versions that have the same entry.
+    /// Number of corresponding rows with equal entries.
     pub n_same: usize,
-    /// The changed entries as text (first version, second version), each with its number of rows, in the order of their first rows.
+    /// Changed entries as text (first version, second version), each with its number of rows, in the order of first occurrence.
     pub changes: Vec<(String, String, usize)>,
-    /// Rows with a value in the first version alone.
+    /// Number of rows with a value in the first version only.
     pub n_first_only: usize,
-    /// Rows with a value in the second version alone.
+    /// Number of rows with a value in the second version only.
     pub n_second_only: usize,
 }
 
@@ -53,7 +53,7 @@ impl ColumnEntries {
     }
 }
 
-/// Compares the table files that both folders have, in the order of the second folder.
+/// Compares the table files that both folders contain, in the order of the second folder.
 pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
     let numbers = [first, second].map(configurations);
     let with_files = second.iter().filter(|table| !table.csv.is_empty());
@@ -64,14 +64,14 @@ pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
     found.collect()
 }
 
-/// Returns the names of the table files that `one` has and `other` lacks.
+/// Returns the names of the table files that `one` contains and `other` lacks.
 pub fn files_of_one<'a>(one: &'a [Table], other: &[Table]) -> Vec<&'a str> {
     let files = one.iter().filter(|table| !table.csv.is_empty());
     let alone = files.filter(|table| other.iter().all(|known| known.file != table.file));
     alone.map(|table| table.file).collect()
 }
 
-/// The settings of each configuration, by its number.
+/// Settings of each configuration, by the configuration's number.
 type Configurations = HashMap<u64, String>;
 
 fn configurations(tables: &[Table]) -> Configurations {
@@ -81,7 +81,7 @@ fn configurations(tables: &[Table]) -> Configurations {
         let Some((column, numbers)) = table.column("configuration") else {
             continue;
         };
-        // In a table of configurations the number is a note beside their settings.
+        // In a table of configurations, the number is a note beside their settings.
         if column.role == Role::Note {
             // Seeds are subjects, too. The trial is left out, because a configuration has several trials.
             let columns = Setting::of_roles(table, &KEY_ROLES);
@@ -104,7 +104,7 @@ fn configurations(tables: &[Table]) -> Configurations {
     known
 }
 
-/// Returns the settings of a row with their units. An absent entry equals an absent column: in both cases the setting does not apply.
+/// Returns the settings of a row with their units. An absent entry and an absent column are equivalent: the setting does not apply.
 fn settings(table: &Table, row: usize, roles: &[Role], configurations: &Configurations) -> String {
     let columns = Setting::of_roles(table, roles);
     let said = columns.filter_map(|one| entry(one, row, configurations));
@@ -154,7 +154,7 @@ fn of_table(tables: [&Table; 2], configurations: &[Configurations; 2]) -> TableE
     }
 }
 
-/// Compares a column of both versions. Returns `None` if all entries are equal.
+/// Compares a column of both versions; returns `None` if all entries are equal.
 fn of_column(
     one: Setting,
     [first, _]: [&Table; 2],
@@ -193,7 +193,7 @@ fn of_column(
     })
 }
 
-/// Formats an entry. Numbers are not rounded.
+/// Formats an entry; numbers are not rounded.
 fn words(one: Setting, row: usize) -> String {
     match one.data.value(row) {
         None => "nothing".to_owned(),

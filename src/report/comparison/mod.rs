@@ -1,7 +1,7 @@
 //! Comparison of two result folders.
 //!
-//! In: the tables of both folders. Out: rows and columns that differ (`entries`), differences of values with their significance (`differences`), and the
-//! agreement of both rankings of designs (`rank_agreement`). `compared` reports these results as text and as a page.
+//! The inputs are the tables of both folders. The outputs are rows and columns that differ (`entries`), differences of values with their significance
+//! (`differences`), and the agreement of both rankings of designs (`rank_agreement`). `compared` reports these results as text and as a page.
 
 pub mod compared;
 pub mod differences;

@@ -1,10 +1,10 @@
-//! Agreement of the rankings of designs in two studies, for example of a simulated skin and a real one, whose settings are not all equal.
+//! Agreement between the rankings of designs in two studies, for example of a simulated and a real skin, whose settings may differ.
 //!
-//! A design is a combination of the choices and conditions for which both tables have common values. Rows with a value that only one table has are left out.
-//! The mean is taken over all other columns.
+//! A design is a combination of the choices and conditions for which both tables have common values. Rows with a value that only one table has are omitted. The
+//! accuracy is averaged over all other columns.
 //!
-//! Two values are equal if their numbers and units are exactly equal. "Does not apply" (a k-NN has no C) is a value, too. Compression ratios of two tables are
-//! equal if one nominal ratio r gives both numbers of measurements. For n taxels, the number is m = n / r, rounded if n is not divisible by r.
+//! Two values are equal if their numbers and units are exactly equal. "Does not apply" (such as C of a k-NN classifier) is also a value. Compression ratios of
+//! two tables are equal if one nominal ratio r gives both numbers of measurements m. For n taxels, m = n / r, rounded if n is not divisible by r.
 
 use crate::report::swept::Setting;
 use crate::statistics::p_status::CONFIDENCE;
@@ -15,24 +15,24 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Name of the column by which designs are ranked.
 const RANKED: &str = "accuracy";
-/// Minimum number of designs for a comparison of rankings.
+/// Minimum number of common designs for a comparison of rankings.
 const FEWEST: usize = 5;
 
-/// Agreement of the rankings of designs in two studies.
+/// Agreement between the rankings of designs in two studies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RankAgreement {
-    /// Number of designs in both studies.
+    /// Number of designs that both studies contain.
     pub n_designs: usize,
     /// Kendall's τ of the accuracies, −1 ≤ τ ≤ 1.
     pub tau: f64,
     /// Bootstrap confidence interval of τ over designs.
     pub interval: Interval,
-    /// For each choice: its description, and two counts of pairs of designs that differ in this choice alone. The first count is the pairs
-    /// that both studies order alike; the second is all pairs without a tie.
+    /// Description of each choice, with two counts of pairs of designs that differ only in this choice. The first is the number of pairs that both studies
+    /// order alike; the second is the number of all pairs without a tie.
     pub choices: Vec<(String, usize, usize)>,
 }
 
-/// Compares the first table with accuracies of either study. Returns `None` if both studies share too few designs.
+/// Compares the first table with accuracies of each study. Returns `None` if the studies have too few common designs.
 pub fn rank_agreement(first: &[Table], second: &[Table]) -> Option<RankAgreement> {
     let ranked = |tables: &'_ [Table]| {
         let mut places = 0..tables.len();
@@ -92,19 +92,19 @@ impl RankAgreement {
     }
 }
 
-/// A choice that distinguishes designs, and its values that both tables have.
+/// Choice that distinguishes designs, with the values that both tables contain.
 struct Choice<'a> {
     column: &'a Column,
     values: BTreeSet<String>,
 }
 
-/// The values of all choices of a design.
+/// Values of all choices of a design.
 type Design = Vec<String>;
 
-/// A table and the mapping of its compression ratios to those of another table.
+/// Table, and the mapping of its compression ratios to those of the other table.
 struct Ranked<'a> {
     table: &'a Table,
-    /// The equal ratio of the other table, for each ratio by its bits.
+    /// Equal ratio of the other table for each ratio of this table, by the bits of the ratio.
     ratios: HashMap<u64, f64>,
 }
 
@@ -114,7 +114,7 @@ impl<'a> Ranked<'a> {
         Self { table, ratios }
     }
 
-    /// Maps each ratio to the nearest ratio of the other table if one nominal ratio gives both.
+    /// Maps each ratio to the nearest ratio of the other table for which one nominal ratio gives both.
     fn like(table: &'a Table, other: &Table) -> Self {
         let (ours, theirs) = (nominal_ratios(table), nominal_ratios(other));
         let nearest = |of: &NominalRatio, among: &[NominalRatio]| {
@@ -145,7 +145,7 @@ impl<'a> Ranked<'a> {
     }
 }
 
-/// A compression ratio, and the range of nominal ratios that round to its number of measurements.
+/// Compression ratio, with the range of nominal ratios that give its number of measurements.
 #[derive(Clone, Copy, PartialEq)]
 struct NominalRatio {
     ratio: f64,
@@ -200,7 +200,7 @@ fn shared_choices<'a>(first: &Ranked<'a>, second: &Ranked) -> Vec<Choice<'a>> {
     choices.collect()
 }
 
-/// Returns the mean accuracy of each design that has only shared values.
+/// Returns the mean accuracy of each design that has only common values.
 fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     let mut sums: BTreeMap<Design, (f64, f64)> = BTreeMap::new();
     for row in 0..ranked.table.n_rows {
@@ -221,7 +221,7 @@ fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     means.collect()
 }
 
-/// Counts pairs of designs without a tie that differ in one choice alone. Returns the pairs that both studies order alike, and all pairs.
+/// Counts the pairs of designs without a tie that differ only in one choice. Returns the number of pairs that both studies order alike, and of all pairs.
 fn in_order(designs: &[(&Design, [f64; 2])], choice: usize) -> (usize, usize) {
     let without = |design: &Design| {
         let mut others = design.clone();

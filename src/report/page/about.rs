@@ -3,24 +3,24 @@
 use crate::engine::provenance::Manifest;
 use crate::report::chart_format::ChartFormat;
 
-/// Metadata of a study: name, question, provenance and report options.
+/// Metadata of a study for its page: name, question, provenance and report options.
 #[derive(Clone, Debug, Default)]
 pub struct StudyAbout {
     /// Name of the study.
     pub name: String,
-    /// Question of the study, one sentence.
+    /// Question that the study answers, in one sentence.
     pub question: String,
-    /// Result that was expected before the run; may be empty.
+    /// Answer that the author expected before the run; may be empty.
     pub expected: String,
     /// Duration of the run, seconds; NaN if unknown.
     pub wall_s: f64,
-    /// Command that reproduces the folder.
+    /// Command that reproduces the result folder.
     pub command: String,
-    /// Program and version: `bubbletouch 0.1.0`.
+    /// Name and version of the program, such as `bubbletouch 0.1.0`.
     pub program: String,
     /// Provenance of the results, if known.
     pub manifest: Option<Manifest>,
-    /// Whether all charts are written as files, without an upper limit.
+    /// Whether all charts are written as files, without a maximum number.
     pub all_charts: bool,
     /// File format of the charts.
     pub chart_format: ChartFormat,

@@ -1,4 +1,4 @@
-//! The section "What to choose": Pareto fronts of the table that contains choices with values and costs.
+//! Page section "What to choose": Pareto fronts of the table with choices, values and costs.
 
 use crate::report::advice::{AdviceQuery, Candidate, Candidates};
 use crate::report::pictures::drawing::escape;
@@ -6,10 +6,11 @@ use crate::report::study_content::Found;
 use crate::report::swept::Setting;
 use crate::table::{Role, Value};
 
-/// Maximum number of listed rows of a front.
+/// Maximum number of listed rows per Pareto front.
 const MAX_ROWS: usize = 200;
 
-/// Returns a table for each cost: in each condition, the choices that are better than all of equal or lower cost. Empty if no table has choices with costs.
+/// Returns the HTML of one table per cost. It lists, for each condition, the choices that are better than all choices of equal or lower cost. Empty if no table
+/// has choices with costs.
 pub(crate) fn choices_html(found: &Found) -> String {
     let Ok(offers) = Candidates::new(found.tables, &AdviceQuery::default()) else {
         return String::new();

@@ -1,11 +1,11 @@
-//! Common parts of all pages: head, question, contents, sections, foot.
+//! Common parts of all pages: head, question, table of contents, sections, and footer.
 
 use super::about::StudyAbout;
 use crate::report::pictures::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-/// Scripts of the page. `elements.js` comes first, because the others use it.
+/// Scripts of the page. `elements.js` comes first, because the other scripts use it.
 const SCRIPT: [&str; 3] = [
     include_str!("script/elements.js"),
     include_str!("script/charts.js"),
@@ -15,16 +15,16 @@ const SCRIPT: [&str; 3] = [
 /// Section of a page.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
-    /// Anchor of links to the section; letters and hyphens.
+    /// Anchor for links to the section; letters and hyphens only.
     pub id: &'static str,
     /// Heading of the section.
     pub title: &'static str,
-    /// HTML below the heading. A section with an empty body is left out.
+    /// HTML below the heading. Sections with an empty body are omitted.
     pub body: String,
 }
 
 impl Section {
-    /// Creates a section.
+    /// Creates a section with an anchor, a heading and a body.
     pub fn new(id: &'static str, title: &'static str, body: String) -> Self {
         Self { id, title, body }
     }
@@ -41,7 +41,7 @@ impl Section {
     }
 }
 
-/// Returns a page of sections. `foot` is the HTML of the page's foot. Sections without a body are left out.
+/// Returns a page of sections as HTML. `foot` is the HTML of the footer. Sections without a body are omitted.
 pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> String {
     let sections = sections.iter().filter(|section| !section.body.is_empty());
     let paragraph = |class: &str, before: &str, text: &str| match text {
@@ -66,7 +66,7 @@ pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> Stri
     })
 }
 
-/// Returns an entry of a definition list. The name is HTML, the value is text.
+/// Returns an entry of a definition list. The name is HTML, the value is plain text.
 pub(crate) fn definition(name: &str, value: &str) -> String {
     let class = match value.len() > 60 {
         true => " class=\"long\"",
@@ -76,7 +76,7 @@ pub(crate) fn definition(name: &str, value: &str) -> String {
     format!("<div{class}><dt>{name}</dt><dd>{value}</dd></div>")
 }
 
-/// Returns the first sentence in large type and the others as a list. Empty if there is none.
+/// Returns the first sentence in large type and the others as a list; empty if there are no sentences.
 pub(crate) fn sentences_html(sentences: &[String]) -> String {
     let Some((first, others)) = sentences.split_first() else {
         return String::new();
@@ -98,7 +98,7 @@ pub(crate) fn unbroken(text: &str) -> String {
     })
 }
 
-/// Replaces each `{{name}}` of a template once, from left to right. Inserted text is not searched again.
+/// Replaces each `{{name}}` of a template once, from left to right; inserted text is not searched.
 fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
     let mut parts = template.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();

@@ -1,7 +1,7 @@
-//! The page `report.html`: one HTML file with all results, which works without a network.
+//! Page `report.html`: one HTML file with all results, which works without a network.
 //!
-//! In: tables, charts as SVG, pictures, and the name and question of the study. Out: HTML with all charts and tables. The script adds tooltips, hides series,
-//! and sorts, searches and saves tables.
+//! The inputs are tables, charts as SVG, pictures, and the name and question of the study. The output is HTML with all charts and tables. The script adds
+//! tooltips, hides series, and sorts, searches and saves tables.
 
 mod about;
 mod choices;

@@ -1,4 +1,4 @@
-//! Pictures of a page.
+//! HTML elements for pictures on a page.
 
 use crate::report::pictures::drawing::escape;
 

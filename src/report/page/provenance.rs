@@ -1,4 +1,4 @@
-//! Provenance of the results, for the page.
+//! Page section on the provenance of the results.
 
 use super::frame::definition;
 use crate::engine::provenance::Manifest;
@@ -6,7 +6,7 @@ use crate::report::pictures::drawing::escape;
 use crate::spelling::counted;
 use std::collections::BTreeMap;
 
-/// Returns program, machine, times and hashes as HTML.
+/// Returns the provenance as HTML: program, machine, times and hashes.
 pub(crate) fn provenance_html(manifest: &Manifest) -> String {
     let Manifest { program, cpu, .. } = manifest;
     let [cores, threads] = [(manifest.cores, "core"), (manifest.threads, "thread")]

@@ -12,12 +12,12 @@ use crate::report::study_content::{Beyond, Found, NamedPicture};
 use crate::table::{ChartSpec, Mark, Table, short_number};
 use std::collections::HashMap;
 
-/// Maximum size of all charts in a page, bytes. A larger value makes the page slow; with a smaller one, charts of some hundred points become links.
+/// Maximum size of all charts on a page, bytes. If larger, the page is slow; if smaller, charts of some hundred points become links.
 const MAX_CHART_BYTES: usize = 1_200_000;
-/// Maximum size of all tables in a page, bytes. A larger value makes the page slow; with a smaller one, tables of some hundred rows are cut.
+/// Maximum size of all tables on a page, bytes. If larger, the page is slow; if smaller, tables of some hundred rows are truncated.
 const MAX_TABLE_BYTES: usize = 1_200_000;
 
-/// Parts of a page other than tables and answers.
+/// Parts of a page besides tables and answers.
 #[derive(Default)]
 pub(crate) struct Beside {
     /// Charts as SVG with the data of their marks, in the order of the specifications.
@@ -56,7 +56,7 @@ fn picture_html(picture: &NamedPicture) -> String {
     )
 }
 
-/// Returns the charts as HTML. Charts that are too large for the page become links to their files.
+/// Returns the charts as HTML; charts that are too large for the page become links to their files.
 fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     let mut bytes = 0;
     let ending = match about.chart_format {
@@ -110,7 +110,7 @@ fn not_drawn(left_out: &[String]) -> String {
     )
 }
 
-/// Returns all tables as HTML. Charted tables come first, then small ones, until the page is full. The remaining tables are cut to their first rows.
+/// Returns all tables as HTML. Tables of charts come first, then small ones, until the page is full. The remaining tables are truncated to their first rows.
 fn tables_html(found: &Found) -> String {
     let is_charted = |table: &Table| found.charts.iter().any(|chart| chart.table == table.file);
     let mut order: Vec<&Table> = found.tables.iter().filter(|t| t.n_rows > 0).collect();

@@ -1,4 +1,4 @@
-//! Sample touches as heat maps, side by side on one colour scale.
+//! Sample touches as heat maps, side by side with one colour scale.
 
 use crate::error::Result;
 use crate::report::page::picture::png_element;
@@ -12,14 +12,14 @@ use crate::report::pictures::snapshots::Snapshots;
 use crate::table::short_number;
 use ndarray::Array2;
 
-/// Maximum number of pixels along each side of a heat map. Larger frames show the largest value of each block of taxels.
+/// Maximum number of pixels along each side of a heat map. In larger frames, each pixel shows the largest value of a block of taxels.
 const MAX_CELLS: usize = 96;
-/// Maximum number of touches in a page; each has some kilobytes.
+/// Maximum number of touches on a page; each needs some kilobytes.
 const MAX_TOUCHES: usize = 120;
 /// Number of colour steps of a heat map.
 const N_COLOURS: f64 = 128.0;
 
-/// Returns a set of touches as HTML. The error contains the name of a frame that cannot be drawn.
+/// Returns a set of touches as HTML. An error contains the name of the frame that cannot be drawn.
 pub fn touches_html(set: &Snapshots) -> Result<String> {
     for (name, frame) in &set.frames {
         check_frame(frame).map_err(|error| error.under(format!("{name}: ")))?;
@@ -71,7 +71,7 @@ fn image(places: &Array2<f64>, title: &str) -> Result<String> {
     Ok(png_element(&pixels.png()?, size, title))
 }
 
-/// Returns one pixel for each value from 0 to 1. Row 0, the lowest y, is at the bottom.
+/// Returns a picture with one pixel per value from 0 to 1. Row 0, the lowest y, is at the bottom.
 fn pixels(places: &Array2<f64>) -> Picture {
     let (height, width) = places.dim();
     let rows = places.outer_iter().rev();

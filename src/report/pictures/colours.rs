@@ -1,4 +1,4 @@
-//! Colours of lines, distinguishable for colour-blind readers, and colour maps of values.
+//! Colours of lines that colour-blind readers can distinguish, and colour maps of values.
 
 pub use bubbletouch_sim::raster::Rgb;
 use kuva::plot::ColorMap;
@@ -15,7 +15,7 @@ pub const GRID: Rgb = [0xe4, 0xe6, 0xe9];
 /// Background colour of charts and drawings.
 pub const PAPER: Rgb = [0xff, 0xff, 0xff];
 
-/// Line colours: palette of Okabe and Ito (2008) without yellow, which is too pale on white, and purple, because a study can compare eight classifiers.
+/// Line colours: the palette of Okabe and Ito (2008), without yellow (too pale on white) and with purple, because a study may compare eight classifiers.
 pub const LINES: [Rgb; 8] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],
@@ -27,17 +27,17 @@ pub const LINES: [Rgb; 8] = [
     [0x6a, 0x3d, 0x9a],
 ];
 
-/// Returns the colour of a value from 0 to 1 (others are clamped) in a perceptually uniform map; low values are dark.
+/// Returns the colour of a value from 0 to 1 (other values are clamped) in a perceptually uniform colour map; low values are dark.
 pub fn heat(value: f64) -> Rgb {
     of_map(&ColorMap::Viridis, value)
 }
 
-/// Returns the colour of a value from 0 to 1 (others are clamped): pale to dark blue. The colour of 0 is not white, because white means absent.
+/// Returns a blue for a value from 0 to 1 (other values are clamped), from pale to dark. The colour of 0 is not white, because white means absent.
 pub fn tint(part: f64) -> Rgb {
     of_map(&ColorMap::Blues, 0.12 + 0.88 * part.clamp(0.0, 1.0))
 }
 
-/// Returns the colour of a value from −1 to 1 (others are clamped): dark blue, white at 0, dark red. The map is suitable for colour-blind readers.
+/// Returns the colour of a value from −1 to 1 (other values are clamped): dark blue, white at 0, dark red. Colour-blind readers can distinguish the colours.
 pub fn diverging(value: f64) -> Rgb {
     of_map(&ColorMap::RedBlue, 0.5 * (1.0 - value))
 }

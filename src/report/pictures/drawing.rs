@@ -1,7 +1,7 @@
 //! Vector drawing: text, lines and areas at pixel positions, written as SVG and as PNG.
 //!
-//! The crate kuva provides the primitives, the font and both writers. Its ready-made plots are not used for two reasons. First, the plots place ticks at
-//! powers of ten, but a sweep needs ticks at its own values. Second, the plots number clip paths per process, so that equal tables could give different bytes.
+//! The crate kuva provides the primitives, the font and both writers. Its complete plots are not used for two reasons. First, the plots place ticks at powers
+//! of ten, but a sweep needs ticks at its own values. Second, the plots number clip paths per process, so that equal tables could give different bytes.
 
 use crate::error::Result;
 use crate::report::pictures::colours::{INK, PAPER, Rgb};
@@ -12,9 +12,9 @@ use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
 use kuva::render::render::{PathData, Primitive, Scene, TextSpan, build_path};
 
-/// Scale of the rendering before [`Drawing::picture`] averages blocks of 2 × 2 pixels.
+/// Scale at which kuva renders before [`Drawing::picture`] averages blocks of 2 × 2 pixels.
 ///
-/// kuva renders rotated text and slanted lines with jagged edges. A scale of 4 makes them smooth; a smaller one does not.
+/// kuva renders rotated text and slanted lines with jagged edges. At a scale of 4 they are smooth; at a smaller scale they are not.
 const FINE: u32 = 4;
 
 /// Position in a drawing, pixels from the top left corner: `(x, y)`.
@@ -49,7 +49,7 @@ impl Area {
         Self::new((x - 0.5 * width, y - 0.5 * height), (width, height))
     }
 
-    /// Returns a point, by its fraction of the width (from the left) and of the height (from below).
+    /// Returns the point at a fraction of the area's width (from the left) and height (from below).
     pub fn at(&self, across: f64, up: f64) -> Point {
         (
             self.x + across * self.width,
@@ -65,14 +65,14 @@ pub struct TextStyle {
     pub size: u32,
     /// Colour of the text.
     pub colour: Rgb,
-    /// Part of the text that lies at the given position.
+    /// Part of the text that is placed at the given position.
     pub align: Align,
     /// Clockwise rotation about the given position, degrees.
     pub angle: f64,
 }
 
 impl TextStyle {
-    /// Creates the style of horizontal, left-aligned text in the ink colour.
+    /// Creates the style of horizontal, left-aligned text in the standard text colour.
     pub const fn new(size: u32) -> Self {
         Self {
             size,
@@ -120,7 +120,7 @@ impl Stroke {
     }
 }
 
-/// Number of marker shapes. With shapes, lines differ not only by colour.
+/// Number of different marker shapes, so that lines differ not only by colour.
 pub const N_MARKERS: usize = 8;
 
 /// Vector drawing on a white background.
@@ -134,7 +134,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Creates an empty drawing, size in pixels.
+    /// Creates an empty drawing of the given size in pixels.
     pub fn new(width: f64, height: f64) -> Self {
         Self {
             width: width.ceil(),
@@ -143,7 +143,7 @@ impl Drawing {
         }
     }
 
-    /// Draws one line of text with its baseline at `at`.
+    /// Draws one line of text with its baseline at the position `at`.
     pub fn text(&mut self, at: Point, text: &str, style: TextStyle) {
         self.elements.push(Primitive::Text {
             x: snap(at.0),
@@ -176,7 +176,7 @@ impl Drawing {
         self.polyline(&[from, to], stroke);
     }
 
-    /// Draws a line through points.
+    /// Draws a line through several points.
     pub fn polyline(&mut self, points: &[Point], stroke: Stroke) {
         self.elements.push(Primitive::PolyLine {
             points: points.iter().map(|&(x, y)| (snap(x), snap(y))).collect(),
@@ -186,7 +186,7 @@ impl Drawing {
         });
     }
 
-    /// Draws a filled polygon. The opacity is from 0 to 1.
+    /// Draws a filled polygon with an opacity from 0 to 1.
     pub fn polygon(&mut self, points: &[Point], fill: Rgb, opacity: f64) {
         let corners: Vec<Point> = points.iter().map(|&(x, y)| (snap(x), snap(y))).collect();
         self.elements.push(Primitive::Path(Box::new(PathData {
@@ -220,7 +220,7 @@ impl Drawing {
         self.polyline(&corners, stroke);
     }
 
-    /// Draws a filled marker whose shape depends on the line's index. Radius in pixels. A white rim separates the marker from the background.
+    /// Draws a filled marker of a given radius (pixels). Its shape depends on the line's index. A white rim separates the marker from the background.
     pub fn marker(&mut self, line: usize, at: Point, radius: f64, fill: Rgb) {
         for (radius, fill) in [(radius + 1.2, PAPER), (radius, fill)] {
             match line % N_MARKERS {
@@ -238,7 +238,7 @@ impl Drawing {
         }
     }
 
-    /// Draws a group of elements with `data-` attributes. Only [`Self::svg_with_data`] contains the group.
+    /// Draws a group of elements with `data-` attributes. Only [`Self::svg_with_data`] contains the group element.
     pub fn group(&mut self, data: &[(&str, &str)], draw: impl FnOnce(&mut Self)) {
         let attributes = data
             .iter()
@@ -261,7 +261,7 @@ impl Drawing {
         self.svg_of(elements.cloned().collect(), title)
     }
 
-    /// Returns the SVG with the groups and their `data-` attributes, for the script of a page.
+    /// Returns the SVG file with the groups and their `data-` attributes, for the script of a page.
     pub fn svg_with_data(&self, title: &str) -> String {
         self.svg_of(self.elements.clone(), title)
     }
@@ -345,7 +345,7 @@ fn visible(text: &str) -> String {
     text.replace(char::is_control, " ")
 }
 
-/// Rounds to a quarter of a pixel, which is not visible and keeps SVG files small.
+/// Rounds a position to a quarter of a pixel; the difference is not visible and keeps SVG files small.
 fn snap(position: f64) -> f64 {
     (position * 4.0).round() / 4.0
 }
@@ -375,7 +375,7 @@ fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
 }
 
 impl Picture {
-    /// Prints a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
+    /// Draws a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
     pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
         darken(&mut self.rgb, &drawing.pixels(1)?.rgb);
         Ok(())

@@ -1,6 +1,6 @@
-//! Round, evenly spaced values for axes.
+//! Round, evenly spaced numbers for axes.
 
-/// Returns the multiples of a round step between two ends.
+/// Returns the multiples of a round step size between two ends.
 pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
     let step = tick_step(high - low);
     let (first, last) = (
@@ -15,7 +15,7 @@ pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
     (first..=last).map(value).collect()
 }
 
-/// Returns 1, 2 or 5 times a power of ten, so that a length has about five steps.
+/// Returns a step size of 1, 2 or 5 times a power of ten that divides a length into about five steps.
 pub(crate) fn tick_step(length: f64) -> f64 {
     let raw = length / 5.0;
     let power = 10f64.powf(raw.log10().floor());

@@ -1,4 +1,4 @@
-//! Picture of a fit: an object, the spheres that approximate it, and the distance between both.
+//! Picture of a sphere approximation: the object, the spheres, and the distance between them.
 
 use crate::error::{Error, Result};
 use crate::mesh::Surface;
@@ -14,11 +14,11 @@ use bubbletouch_sim::raster::{Canvas, Hit, Lighting, three_quarter_view};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Object that the spheres approximate.
+/// Object that is approximated by spheres.
 pub enum Original {
-    /// A mesh, and its interpretation as a solid body or an open surface.
+    /// Mesh, with its interpretation as a solid body or an open surface.
     Mesh(Box<Surface>, Body),
-    /// A solid made of primitive shapes.
+    /// Solid that consists of primitive shapes.
     Solid(Solid),
 }
 
@@ -94,7 +94,7 @@ pub fn fit_picture(
 }
 
 impl Original {
-    /// Returns the first hit of a ray from outside, within a length, and the unit normal there, towards the start of the ray.
+    /// Returns the point and unit normal where a ray first hits the object, within a length. The normal points towards the start of the ray.
     fn first_hit(&self, start: DVec3, direction: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
         match self {
             Self::Mesh(surface, _) => {
@@ -112,7 +112,7 @@ impl Original {
         }
     }
 
-    /// Returns the signed distance of a point from the surface, metres.
+    /// Returns the signed distance of a point from the surface of the object, metres.
     fn distance(&self, point: DVec3) -> f64 {
         match self {
             Self::Mesh(surface, Body::Solid) => surface.signed_distance(point),
@@ -147,11 +147,11 @@ fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(
     None
 }
 
-/// Colour scale of the third panel, metres.
+/// Colour scale of the distances in the third panel, metres.
 struct Scale {
     lowest: f64,
     highest: f64,
-    /// The colours cover the range from −`end` to `end`.
+    /// Largest absolute distance of the scale: the colours cover −`end` to `end`.
     end: f64,
 }
 
@@ -184,7 +184,7 @@ impl Scale {
     }
 }
 
-/// Formats a length in millimetres with its sign. A negative number has a true minus sign.
+/// Formats a length in millimetres with its sign; a negative number has a true minus sign.
 fn signed_millimetres(metres: f64) -> String {
     let sign = if metres < 0.0 { "−" } else { "+" };
     format!("{sign}{}", short_number((1e6 * metres.abs()).round() / 1e3))
@@ -197,7 +197,7 @@ mod tests {
     use crate::mesh::TriangleMesh;
     use crate::objects::{Part, Shape, Sphere};
 
-    /// Creates a square of side 2 at z = 0, seen from above.
+    /// Creates a square surface of side 2 at z = 0, seen from above.
     fn square() -> Surface {
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0));

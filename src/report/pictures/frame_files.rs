@@ -1,4 +1,4 @@
-//! One frame as a file; the file extension selects the format.
+//! Output of one frame to a file; the file extension selects the format.
 
 use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};
@@ -14,14 +14,14 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Writes deflections of a grid (ny × nx, metres) as `.csv`, `.npz` or `.png`, by the file extension.
+/// Writes deflections of a grid (ny × nx, metres) as `.csv`, `.npz` or `.png`, depending on the file extension.
 ///
 /// - `.csv`: ny lines of nx numbers with 17 significant digits, no header.
 /// - `.npz`: arrays `deflection` (ny × nx), `x` (nx) and `y` (ny), metres, f64; opens with `np.load`.
 /// - `.png`: a heat map.
 ///
 /// # Errors
-/// If the extension is another one, the shape differs from the grid, or a picture would contain values that are not finite.
+/// If the extension is not supported, the shape differs from the grid, or a picture would contain values that are not finite.
 pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result<()> {
     let ending = path.extension().and_then(|ending| ending.to_str());
     if deflection.dim() != (grid.ny, grid.nx) {

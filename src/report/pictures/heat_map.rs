@@ -6,12 +6,12 @@ use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::{Array2, ArrayView2};
 
-/// Describes size and pitch of a grid: `64 × 64 taxels, pitch 3.5 mm`.
+/// Describes the size and pitch of a grid, such as `64 × 64 taxels, pitch 3.5 mm`.
 pub(crate) fn grid_sentence((nx, ny): (usize, usize), pitch_mm: f64) -> String {
     format!("{nx} × {ny} taxels, pitch {} mm", short_number(pitch_mm))
 }
 
-/// Describes cells of `block` × `block` taxels, as the end of a sentence. Empty for single taxels.
+/// Describes cells of `block` × `block` taxels, as the end of a sentence; empty for single taxels.
 pub(crate) fn block_sentence(block: usize) -> String {
     match block {
         1 => String::new(),
@@ -19,7 +19,7 @@ pub(crate) fn block_sentence(block: usize) -> String {
     }
 }
 
-/// Colour scale: the displayed values of the darkest and lightest colours.
+/// Colour scale of a heat map: the values of the darkest and lightest colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
     /// Physical quantity of the values, which sets their unit.
@@ -31,7 +31,7 @@ pub struct ColourScale {
 }
 
 impl ColourScale {
-    /// Returns the scale that covers the given stored values. If all values are zero, the scale is 0 … 1.
+    /// Creates the scale that covers the given stored values. If all values are zero, the scale is 0 to 1.
     pub fn over<'a>(values: impl IntoIterator<Item = &'a f64>, quantity: Quantity) -> Self {
         let mut scale = Self {
             quantity,
@@ -48,7 +48,7 @@ impl ColourScale {
         scale
     }
 
-    /// Returns the place of a stored value on the scale, 0 … 1.
+    /// Returns the position of a stored value on the scale, 0 to 1.
     pub fn place(&self, value: f64) -> f64 {
         let shown = value * self.quantity.factor();
         ((shown - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
@@ -60,7 +60,7 @@ impl ColourScale {
     }
 }
 
-/// Checks that a frame can be drawn.
+/// Checks that a frame can be drawn as a heat map.
 ///
 /// # Errors
 /// If the frame has no taxels, or a value that is not finite.
@@ -84,7 +84,7 @@ pub fn check_frame(frame: &Array2<f64>) -> Result<()> {
     }
 }
 
-/// Returns a smaller frame with the largest value of each block of taxels. `block` is (rows, columns); blocks at the far edges may be smaller.
+/// Returns a smaller frame with the largest value of each block of taxels. `block` is (rows, columns); blocks at the upper and right edge may be smaller.
 pub fn largest_of_blocks(frame: &Array2<f64>, block: (usize, usize)) -> Array2<f64> {
     let (ny, nx) = frame.dim();
     let (down, across) = (block.0.max(1), block.1.max(1));

@@ -4,14 +4,14 @@ use crate::error::{Error, Result};
 use bubbletouch_sim::raster::pixels::{halved, without_opacity};
 use bubbletouch_sim::raster::{BACKGROUND, Canvas, Hit, Lighting, Rgb};
 
-/// Opaque raster picture, rows from the top, 3 bytes for each pixel.
+/// Opaque raster picture; rows from the top, 3 bytes per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Width of the picture, pixels.
     pub width: usize,
     /// Height of the picture, pixels.
     pub height: usize,
-    /// Red, green, blue; length 3 × width × height.
+    /// Red, green and blue of each pixel, 0 to 255; length 3 × width × height.
     pub rgb: Vec<u8>,
 }
 
@@ -44,7 +44,7 @@ impl Picture {
         Ok(Self { width, height, rgb })
     }
 
-    /// Returns the picture at half the size (rounded down); each pixel is the mean of four.
+    /// Returns the picture at half its size (rounded down); each pixel is the mean of four.
     pub(crate) fn halved(&self) -> Self {
         Self {
             width: self.width / 2,
@@ -53,7 +53,7 @@ impl Picture {
         }
     }
 
-    /// Creates a blank picture, each side 64 to 20,000 pixels.
+    /// Creates a blank picture; each side has 64 to 20,000 pixels.
     pub(crate) fn blank(width: usize, height: usize) -> Result<Self> {
         // The maximum is the side of a table of 100 × 100 tiles of 200 pixels.
         let sides = 64..=20_000;
@@ -92,7 +92,7 @@ impl Picture {
     }
 }
 
-/// Converts an error of the PNG or drawing crate.
+/// Converts an error of the PNG or drawing crate to an error of this crate.
 pub(crate) fn unfit(said: impl std::fmt::Display) -> Error {
     Error::input("picture", said, "a size that fits into a PNG file")
 }

@@ -6,7 +6,7 @@ use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, Text
 use crate::report::pictures::heat_map::ColourScale;
 use crate::table::short_number;
 
-/// Side of an area where an axis is drawn.
+/// Side of an area at which an axis is drawn.
 #[derive(Clone, Copy)]
 pub(crate) enum Side {
     Below,
@@ -60,7 +60,7 @@ pub(crate) fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, area: A
     draw_axis(drawing, area, Side::Right, (scale.low, scale.high), &title);
 }
 
-/// Draws colours for 0 to 1 along the longer side of an area, to the right or upwards.
+/// Draws the colours of 0 to 1 along the longer side of an area, to the right or upwards.
 pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f64) -> Rgb) {
     const STEPS: usize = 64;
     for step in 0..STEPS {
@@ -76,7 +76,7 @@ pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f6
     }
 }
 
-/// Draws a scale bar of a round length, at most `longest` pixels, with the length above it.
+/// Draws a scale bar of a round length, at most `longest` pixels, with the length written above it.
 pub(crate) fn draw_scale_bar(
     drawing: &mut Drawing,
     (x, y): Point,
@@ -90,7 +90,7 @@ pub(crate) fn draw_scale_bar(
     drawing.text((x, y - 5.0), &text, TextStyle::new(12).align(Align::Middle));
 }
 
-/// Returns the largest of 1, 2, 5, 10, … that is at most `largest`.
+/// Returns the largest number of the series 1, 2, 5, 10, … that is at most `largest`.
 fn bar_length(largest: f64) -> f64 {
     let power = 10f64.powf(largest.log10().floor());
     let steps = [5.0, 2.0, 1.0].map(|step| step * power);

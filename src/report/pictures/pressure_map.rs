@@ -1,4 +1,4 @@
-//! Pressure map of one frame as terminal text.
+//! Pressure map of one frame as text for the terminal.
 
 use crate::error::Result;
 use crate::report::pictures::colours::heat;
@@ -10,13 +10,13 @@ use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::Array2;
 
-/// Characters of the plain pressure map, from zero to the peak.
+/// Characters of the colourless pressure map, from zero to the peak.
 const RAMP: &[u8] = b" .:-=+*#%@";
 
-/// Draws a frame with characters, at most `width` columns wide, with the highest y on top.
+/// Draws a frame as text, at most `width` columns wide, with the highest y at the top.
 ///
-/// With colours, half-block characters show two rows of taxels in each line. Without colours, ten ASCII characters from blank to `@` show the values. For a
-/// wide array, each place shows the largest value of a block of taxels, and the text states the block size.
+/// With colours, half-block characters show two rows of taxels in each line. Without colours, ten ASCII characters from blank to `@` show the values. If the
+/// array is too wide, each character shows the largest value of a block of taxels, and the text states the block size.
 ///
 /// # Errors
 /// If the frame has no taxels, or a value that is not finite.

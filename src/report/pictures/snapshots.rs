@@ -1,4 +1,4 @@
-//! Several frames side by side on one colour scale, as in Figure 4 of \[BT\].
+//! Picture of several frames side by side with one colour scale, as in Figure 4 of \[BT\].
 
 use crate::error::{Error, Result};
 use crate::report::pictures::colours::{INK, MUTED};
@@ -12,9 +12,9 @@ use crate::signal::Quantity;
 use crate::world::Grid;
 use ndarray::Array2;
 
-/// Maximum number of cells along each side of a frame. A larger frame is shown by the largest value of each block of taxels.
+/// Maximum number of cells along each side of a frame. In a larger frame, each cell shows the largest value of a block of taxels.
 const MAX_CELLS: usize = 128;
-/// Maximum number of frames in a row.
+/// Maximum number of frames per row of the picture.
 const MAX_COLUMNS: usize = 4;
 
 /// Frames of touches with a common colour scale.
@@ -30,7 +30,7 @@ pub struct Snapshots {
     pub caption: String,
 }
 
-/// Draws named frames, four in a row, with a common colour bar and the caption below. The picture has two image pixels for each drawing pixel.
+/// Draws named frames, four per row, with a common colour bar and the caption below. The picture has two image pixels per drawing pixel.
 ///
 /// # Errors
 /// If there are no frames, or [`check_frame`] rejects one.

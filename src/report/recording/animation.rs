@@ -1,6 +1,6 @@
-//! Animation of a recording: an animated PNG, which browsers and image viewers play, in the colours of all other pictures.
+//! Animation of a recording as an animated PNG, which browsers and image viewers play. The colours equal those of all other pictures.
 //!
-//! GIF is not supported: it would need another crate, and has fewer colours and larger files.
+//! GIF is not supported, because it would need another crate and has fewer colours and larger files.
 
 use super::reader::RecordingFile;
 use super::skin_picture::{Picture, SkinPicture};
@@ -11,15 +11,15 @@ use crate::signal::Quantity;
 use png::{BitDepth, BlendOp, ColorType, Encoder, EncodingError};
 use std::path::Path;
 
-/// Maximum number of frames of an animation. Longer recordings show fewer frames per second; larger files are slow in browsers.
+/// Maximum number of frames of an animation. Longer recordings show fewer frames per second, because larger files are slow in browsers.
 pub const MAX_SHOWN: usize = 600;
 
 /// Playback settings of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Playback {
-    /// Speed, seconds of the recording per second of the animation, positive. At 0.1, the animation is ten times slower than real time.
+    /// Playback speed, seconds of the recording per second of the animation, positive. At 0.1, the animation is ten times slower than real time.
     pub speed: f64,
-    /// Maximum number of pictures per second, above 0 and up to 50, the limit of browsers.
+    /// Maximum number of pictures per second, above 0 and at most 50, the limit of browsers.
     pub fps: f64,
 }
 
@@ -32,10 +32,10 @@ impl Default for Playback {
     }
 }
 
-/// Frame of an animation with its duration.
+/// Frame of an animation, with the time for which it is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShownFrame {
-    /// Frame index in the recording.
+    /// Index of the frame in the recording.
     pub frame: usize,
     /// Time for which the frame is shown, milliseconds.
     pub milliseconds: u64,
@@ -44,7 +44,8 @@ pub struct ShownFrame {
 /// Selects the frames of an animation and their durations: the newest recorded frame at each tick of the playback, without repetitions.
 ///
 /// The first and the last frame are always selected. If there would be more than [`MAX_SHOWN`] frames, ticks are further apart. A frame is shown until the
-/// next one was recorded. The last frame is shown as long as the one before it; a single frame, for one second. `time` is in seconds, increasing.
+/// recording time of the next one. The last frame is shown as long as the previous one; a single frame is shown for one second. `time` is in seconds,
+/// increasing.
 ///
 /// # Errors
 /// If a playback setting is out of its range, or there are no frames.
@@ -84,12 +85,12 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
     Ok(shown)
 }
 
-/// Writes a patch of a recording as an animated PNG that loops, with one colour scale for all frames. Returns the shown frames.
+/// Writes a patch of a recording as an animated PNG that loops, with one colour scale for all frames. Returns the frames that are shown.
 ///
-/// The memory holds one picture and the file.
+/// Only one picture and the file are in memory.
 ///
 /// # Errors
-/// As for [`shown_frames`]. Also if the recording cannot be read or the file cannot be written.
+/// Returns the errors of [`shown_frames`], or an error if the recording cannot be read or the file cannot be written.
 pub fn write_animation(
     path: &Path,
     recording: &mut RecordingFile,
@@ -121,7 +122,7 @@ pub fn write_animation(
     Ok(shown)
 }
 
-/// Returns the line above a frame: its index and its time, with as many digits as the recording's steps need.
+/// Returns the line above a frame: its index and its time, with as many digits as the time steps of the recording need.
 pub fn frame_note(time: &[f64], frame: usize) -> String {
     let n = time.len();
     let step = (time[n - 1] - time[0]) / n.saturating_sub(1).max(1) as f64;
@@ -149,7 +150,7 @@ fn start(
     encoder.write_header()
 }
 
-/// Appends a frame: only the rows that changed since the frame before, with unchanged pixels transparent. This needs a tenth of the bytes.
+/// Appends a frame to the animation: only the rows that changed since the previous frame, with unchanged pixels transparent. This needs a tenth of the bytes.
 fn add(
     film: &mut png::Writer<&mut Vec<u8>>,
     before: Option<&Picture>,

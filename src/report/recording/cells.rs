@@ -1,4 +1,4 @@
-//! Positions of taxels in a picture of a skin: adjacent squares for a grid, discs for any other layout.
+//! Cells of a skin picture: adjacent squares for a grid, discs at the taxels for any other layout.
 
 use super::header::RecordedPatch;
 use super::unrolled::unroll;
@@ -11,28 +11,29 @@ use crate::world::Grid;
 use bubbletouch_sim::raster::pixels::{CellShape, paint_cells};
 use glam::DVec2;
 
-/// Height of a map, pixels. The width is at most twice the height.
+/// Height of a map, pixels; the width is at most twice the height.
 const SIDE: f64 = 400.0;
-/// Maximum number of cells along each side of a grid. A larger grid is shown by the largest value of each block of taxels.
+/// Maximum number of cells along each side of a grid. In a larger grid, each cell shows the largest value of a block of taxels.
 const MAX_CELLS: usize = 400;
-/// Left edge of maps, pixels.
+/// Left edge of all maps, pixels.
 pub(super) const LEFT: f64 = 70.0;
 const TOP: f64 = 76.0;
 /// Maximum radius of a disc, pixels.
 const LARGEST_DISC: f64 = 24.0;
 
-/// Cells of a skin, pixels from the top left corner of the drawing.
+/// Cells of a skin picture, in pixels from the top left corner of the drawing.
 pub(crate) struct Cells {
     /// Area that contains all cells, pixels.
     pub area: Area,
-    /// Centres of the cells: for a grid row by row, otherwise one for each taxel.
+    /// Centres of the cells: for a grid row by row, otherwise one per taxel.
     pub places: Vec<DVec2>,
     /// Half the side of a square, or the radius of a disc, pixels.
     pub radius: f64,
+    /// Norm of a cell's shape, from distances along x and y: the maximum norm gives squares, the Euclidean norm gives discs.
     pub shape: CellShape,
-    /// Number of grid taxels along each side of a cell.
+    /// Number of taxels along each side of a cell, for a grid.
     pub block: usize,
-    /// Sentence that describes the view for the reader.
+    /// Sentence for the reader that describes the view.
     pub sentence: String,
     pub pixels_per_metre: f64,
 }
@@ -58,7 +59,7 @@ impl Cells {
         }
     }
 
-    /// Creates cells for blocks of grid taxels, from a top left corner. `side` is the size of a cell, pixels.
+    /// Creates cells for blocks of grid taxels, starting at a top left corner. `side` is the side length of a cell, pixels.
     pub fn of_grid(grid: &Grid, block: usize, side: f64, (x, y): Point) -> Self {
         let (rows, columns) = (grid.ny.div_ceil(block), grid.nx.div_ceil(block));
         let area = Area::new((x, y), (side * columns as f64, side * rows as f64));
@@ -125,12 +126,12 @@ impl Cells {
     }
 }
 
-/// Returns the cell size for `n_cells` cells in the given room: a whole number of pixels, so that there are no seams.
+/// Returns the cell size for `n_cells` cells in the given space: a whole number of pixels, so that there are no gaps between cells.
 pub(crate) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
     (room / n_cells as f64).floor().max(1.0)
 }
 
-/// Returns the median distance to the nearest taxel, metres, estimated from about 200 taxels. Only the appearance of the picture depends on this distance.
+/// Returns the median distance to the nearest taxel, metres, estimated from about 200 taxels. It affects only the appearance of the picture.
 fn typical_distance(places: &[DVec2]) -> Option<f64> {
     let sample = places.iter().step_by(places.len().div_ceil(200).max(1));
     let nearest = sample.filter_map(|place| {

@@ -1,4 +1,4 @@
-//! Header of a recording: all data that are constant in time.
+//! Header of a recording: all data that do not change over time.
 
 use crate::error::{Error, Result};
 use crate::signal::Quantity;
@@ -8,39 +8,39 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashSet;
 
-/// Form of the recorded forces.
+/// Form of the recorded forces: normal forces or force vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceKind {
-    /// Force along the axis, one number for each taxel.
+    /// Force along the taxel's axis, one number per taxel.
     Normal,
-    /// Force vector in the patch frame, three numbers for each taxel.
+    /// Force vector in the patch frame, three numbers per taxel.
     Vector,
 }
 
-/// Patch of a recording: name, taxels, and form of the recorded data.
+/// Patch of a recording: its name, its taxels, and the form of the recorded data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedPatch {
-    /// Name, unique among patches and objects.
+    /// Name of the patch, unique among patches and objects.
     pub name: String,
-    /// Rest centres of the taxels, metres, patch frame; at least one.
+    /// Rest centres of the taxels in the patch frame, metres; at least one.
     #[serde(skip)]
     pub centers: Vec<DVec3>,
-    /// Unit vectors away from the substrate, one for each taxel.
+    /// Axes of the taxels: unit vectors away from the substrate, one per taxel.
     #[serde(skip)]
     pub axes: Vec<DVec3>,
-    /// Grid layout, if the taxels form a grid: taxel = row · nx + column.
+    /// Grid layout, if the taxels form a grid, with taxel = row · nx + column; `None` otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grid: Option<Grid>,
     /// Form of the recorded forces.
     pub force: ForceKind,
-    /// Quantity of the signal. `None` if the patch has no signal chain.
+    /// Quantity of the signal; `None` if the patch has no signal chain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub signal: Option<Quantity>,
 }
 
 impl RecordedPatch {
-    /// Returns the number of taxels.
+    /// Returns the number of taxels of the patch.
     pub fn n_taxels(&self) -> usize {
         self.centers.len()
     }
@@ -92,19 +92,19 @@ pub struct RecordingHeader {
     pub patches: Vec<RecordedPatch>,
     /// Names of the objects with recorded poses.
     pub objects: Vec<String>,
-    /// Additional metadata (seed, step, scene …), any JSON.
+    /// Additional metadata as JSON, for example seed, step and scene.
     #[serde(default)]
     pub about: Value,
 }
 
-/// Floating-point type with the least significant byte first; NumPy names `<f4`, `<f8`.
+/// Little-endian floating-point type of array elements; NumPy's names are `<f4` and `<f8`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Element {
     Single = 4,
     Double = 8,
 }
 
-/// Numeric array in the zip file, with one row for each frame.
+/// Numeric array in the zip file, with one row per frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Member {
     pub name: String,
@@ -122,17 +122,17 @@ impl Member {
         }
     }
 
-    /// Returns the NumPy type: `<f4` or `<f8`.
+    /// Returns the NumPy name of the element type: `<f4` or `<f8`.
     pub fn descr(&self) -> String {
         format!("<f{}", self.element as usize)
     }
 
-    /// Returns the number of numbers in one row.
+    /// Returns the number of elements per row.
     pub fn n_numbers(&self) -> usize {
         self.row.iter().product()
     }
 
-    /// Returns the size of one row, bytes.
+    /// Returns the size of one row in bytes.
     pub fn row_bytes(&self) -> usize {
         self.n_numbers() * self.element as usize
     }
@@ -147,7 +147,7 @@ impl RecordingHeader {
     /// Checks that the header is valid for a recording.
     ///
     /// # Errors
-    /// If a patch is invalid, or a name is repeated or cannot be the name of a member.
+    /// If a patch is invalid, or if a name occurs twice or cannot be the name of an archive member.
     pub fn check(&self) -> Result<()> {
         self.patches.iter().try_for_each(RecordedPatch::check)?;
         let refuse = |given: String, allowed: &str| Err(Error::input("recording", given, allowed));
@@ -168,7 +168,7 @@ impl RecordingHeader {
         Ok(())
     }
 
-    /// Returns the members with one row for each frame: time; deflection, force, signal (if any) and pose of each patch; pose of each object.
+    /// Returns the arrays with one row per frame: time; deflection, force, signal (if any) and pose of each patch; pose of each object.
     pub(super) fn members(&self) -> Vec<Member> {
         use Element::{Double, Single};
         let pose = |name: &String| Member::new(format!("{name}/pose"), Double, &[7]);
@@ -189,7 +189,7 @@ impl RecordingHeader {
         members
     }
 
-    /// Returns the member with a quantity of a patch.
+    /// Returns the array that contains a quantity of a patch.
     pub(super) fn member(&self, patch: usize, quantity: Quantity) -> Member {
         let name = format!("{}/{}", self.patches[patch].name, quantity.name());
         let mut members = self.members().into_iter();
@@ -197,7 +197,7 @@ impl RecordingHeader {
         member.expect("a patch has a member of each quantity")
     }
 
-    /// Returns the JSON text of `meta`.
+    /// Returns the JSON text of the archive member `meta`.
     pub(super) fn meta(&self) -> String {
         let mut meta = serde_json::to_value(self).expect("strings and numbers make JSON");
         for (number, patch) in self.patches.iter().enumerate() {
@@ -208,7 +208,7 @@ impl RecordingHeader {
         meta.to_string()
     }
 
-    /// Parses the JSON text of `meta`. The header has no centres and axes yet. The error describes the fault.
+    /// Parses the JSON text of `meta`. The header has no centres and axes yet. An error describes the defect.
     pub(super) fn of_meta(text: &str) -> std::result::Result<Self, String> {
         let meta: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
         let (format, version) = (&meta["format"], &meta["version"]);

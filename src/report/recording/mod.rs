@@ -1,8 +1,8 @@
 //! Recordings: skin readings over time, written frame by frame to an `.npz` file that NumPy opens.
 //!
-//! In: a scene's [`Frame`](crate::scene::Frame)s ([`RecordingWriter`]). Out: a zip of `.npy` members, stored without compression, as ZIP64 if necessary;
-//! `np.load(path)` opens it without pickle. Only a block of rows is in memory: earlier blocks are stored in an unnamed temporary file until the recording is
-//! complete. [`RecordingFile`] reads a recording row by row.
+//! [`RecordingWriter`] receives the [`Frame`](crate::scene::Frame)s of a scene and writes a zip file of `.npy` members, stored without compression, as ZIP64 if
+//! necessary; `np.load(path)` opens it without pickle. Only a block of rows is in memory: earlier blocks are stored in an unnamed temporary file until the
+//! recording is complete. [`RecordingFile`] reads a recording row by row.
 //!
 //! | member | shape | holds |
 //! |---|---|---|
@@ -16,9 +16,9 @@
 //! | `PATCH/pose` | n_frames × 7 | f64, world from patch: x, y, z in metres, unit quaternion w, x, y, z |
 //! | `OBJECT/pose` | n_frames × 7 | f64, world from object, the same |
 //!
-//! `meta` is an object with `format` ("bubbletouch recording"), `version` (1), `patches`, `objects` (names) and `about` (any metadata of the writer). Each
-//! patch has `name`, `n_taxels` and `force` ("normal" or "vector"). If the taxels form a grid, the patch also has `grid` with `nx`, `ny`, `pitch_m`: taxel =
-//! row · nx + column.
+//! `meta` is a JSON object with `format` ("bubbletouch recording"), `version` (1), `patches`, `objects` (names) and `about` (any metadata of the writer). Each
+//! patch has `name`, `n_taxels` and `force` ("normal" or "vector"). If the taxels form a grid, the patch also has `grid` with `nx`, `ny` and `pitch_m`, where
+//! taxel = row · nx + column.
 //!
 //! [`skin_picture`] draws still pictures of recordings, [`animation`] draws moving ones.
 

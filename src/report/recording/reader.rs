@@ -1,4 +1,4 @@
-//! Reader of recordings, which reads one row or one block of rows at a time.
+//! Reader of recordings: reads one row or one block of rows at a time.
 
 use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};
@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-/// Expected content, for error messages.
+/// Description of the expected content, for error messages.
 const A_RECORDING: &str = "a whole recording as bubbletouch writes it";
 
-/// Open recording. Header and times are in memory (8 bytes for each frame, 48 for each taxel); the other data stay on disk.
+/// Recording that is open for reading. Header and times are in memory (8 bytes per frame, 48 per taxel); the other data stay on disk.
 pub struct RecordingFile {
     path: PathBuf,
     archive: ZipArchive<BufReader<File>>,
@@ -23,7 +23,7 @@ pub struct RecordingFile {
 }
 
 impl RecordingFile {
-    /// Opens a recording and checks that all members exist and have the right shapes.
+    /// Opens a recording and checks that all members exist and have the correct shapes.
     ///
     /// # Errors
     /// If the file cannot be read, or a member is missing, damaged or inconsistent with `meta`. Other members are ignored.
@@ -71,7 +71,8 @@ impl RecordingFile {
         &self.time
     }
 
-    /// Returns a quantity of a patch in one frame, one number for each taxel: metres, or newtons (length of vectors). Reads only this row and no checksum.
+    /// Returns a quantity of a patch in one frame, one number per taxel: metres, or newtons (length of vectors). Only this row is read, and no checksum is
+    /// checked.
     ///
     /// # Errors
     /// If there is no such frame, or the file cannot be read.
@@ -94,10 +95,10 @@ impl RecordingFile {
 
     /// Calls `visit(frame, values)` for a quantity of a patch in every frame, in order. Only one frame is in memory.
     ///
-    /// At the end, the zip checksum is compared.
+    /// The zip checksum is compared at the end.
     ///
     /// # Errors
-    /// As for [`frame`](Self::frame). Also if the checksum differs.
+    /// Returns the errors of [`frame`](Self::frame), or an error if the checksum differs.
     pub fn each_frame(
         &mut self,
         patch: usize,
@@ -141,8 +142,8 @@ impl RecordingFile {
     }
 }
 
-/// Returns a member after its header, and its number of rows. This number follows from the size in the zip directory and must agree with the header. No memory
-/// is allocated for a false header. An error describes a missing or invalid member.
+/// Opens an archive member, reads its header, and returns the member and its number of rows. This number is computed from the size in the zip directory and
+/// must agree with the header, so no memory is allocated for a wrong header. An error describes a missing or invalid member.
 fn open_rows<'a>(
     archive: &'a mut ZipArchive<BufReader<File>>,
     member: &Member,
@@ -161,7 +162,7 @@ fn open_rows<'a>(
     }
 }
 
-/// Calls `visit` for all rows. At the end, the zip checksum is compared.
+/// Calls `visit` for each row of a member. The zip checksum is compared at the end.
 fn visit_rows(
     archive: &mut ZipArchive<BufReader<File>>,
     member: &Member,
@@ -191,7 +192,7 @@ fn read_row(
     Ok(decode(&bytes, member))
 }
 
-/// Returns the numbers of a row. For force vectors, returns their lengths, one for each taxel.
+/// Decodes the numbers of a row; force vectors are converted to their lengths, one per taxel.
 fn decode(bytes: &[u8], member: &Member) -> Vec<f64> {
     let numbers: Vec<f64> = match member.element {
         Element::Single => {

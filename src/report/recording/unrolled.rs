@@ -1,7 +1,7 @@
-//! Projection of a skin onto a plane: the position of each taxel in the picture.
+//! Projection of a skin to a plane: the position of each taxel in the picture.
 //!
-//! Flat skins are seen from above. Cylinders are unrolled. Parts of spheres are flattened about their middle with true distances from it (azimuthal
-//! equidistant projection). Cylinders and spheres are detected by p = c + R n for their places p and axes n (for a cylinder, without the axial parts). Any
+//! Flat skins are seen from above. Cylinders are unrolled. Parts of spheres are flattened about their middle with true distances from it (azimuthal equidistant
+//! projection). A skin is detected as a cylinder or sphere if its rest centres p and axes n satisfy p = c + R n (for a cylinder, without the axial parts). Any
 //! other skin is seen along the mean of its axes or, if there is none, on its broad side. If some taxels face away, the picture also shows the view from
 //! behind.
 
@@ -10,16 +10,16 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Minimum cosine between the axes of a flat skin and their mean (10°). The projection then shortens lengths by at most 1.5 %.
 const FLAT: f64 = 0.985;
-/// Maximum residual of p = c + R n, relative to R. A larger value accepts ellipsoids as spheres; a smaller one rejects printed shapes.
+/// Maximum residual of p = c + R n, relative to R. If larger, ellipsoids are accepted as spheres; if smaller, printed shapes are rejected.
 const FIT: f64 = 0.05;
-/// Maximum angle from the middle of a flattened sphere, radians. Beyond it, the rim is drawn more than twice as long as it is.
+/// Maximum angle from the middle of a flattened sphere, radians. At larger angles, the rim would be drawn more than twice as long as it is.
 const WIDEST_CAP: f64 = 1.9;
 
-/// Positions of taxels in a plane.
+/// Positions of the taxels in a plane.
 pub(super) struct Unrolled {
-    /// Position of each taxel, metres to the right and up.
+    /// Position of each taxel to the right and up, metres.
     pub places: Vec<DVec2>,
-    /// Sentence that describes the projection for the reader.
+    /// Sentence for the reader that describes the projection.
     pub sentence: String,
 }
 
@@ -49,7 +49,7 @@ fn mean(vectors: &[DVec3]) -> DVec3 {
     vectors.iter().sum::<DVec3>() / vectors.len() as f64
 }
 
-/// Returns R of p = c + R n if all places satisfy the equation. A negative R is a concave surface.
+/// Returns the radius R of p = c + R n if all places satisfy this equation. A negative R means a concave surface.
 fn radius_of(places: &[DVec3], axes: &[DVec3]) -> Option<f64> {
     let (mean_place, mean_axis) = (mean(places), mean(axes));
     let pairs = || places.iter().zip(axes);
@@ -122,7 +122,7 @@ fn cap(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
     })
 }
 
-/// Projects a skin from the mean direction of its axes. If there is none, projects from the broad side along +x, +y or +z.
+/// Projects a skin from the mean direction of its axes. If there is no mean direction, it is projected from its broad side along +x, +y or +z.
 fn sides(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
     let mean = mean(axes);
     let towards_eye = if mean.length() > 0.1 {
@@ -162,14 +162,14 @@ fn larger(a: f64, b: f64) -> f64 {
     if b.abs() > a.abs() { b } else { a }
 }
 
-/// Describes a shape: `a sphere of radius 20 mm`. A negative radius means the inside.
+/// Describes a shape in words, such as `a sphere of radius 20 mm`. A negative radius means the inside of the shape.
 fn round(shape: &str, radius: f64) -> String {
     let side = if radius < 0.0 { "the inside of " } else { "" };
     let radius_mm = short_number(radius.abs() * 1e3);
     format!("{side}a {shape} of radius {radius_mm} mm")
 }
 
-/// Describes a direction: `+z` if it is within half a degree of an axis, or three components.
+/// Describes a direction in words: `+z` if it is within half a degree of an axis, otherwise three components.
 fn direction(vector: DVec3) -> String {
     for (axis, name) in DVec3::AXES.into_iter().zip(["x", "y", "z"]) {
         let along = vector.dot(axis);

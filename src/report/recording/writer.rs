@@ -13,12 +13,12 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// Size of the rows in memory, bytes. A smaller value causes more and shorter reads and writes; with a larger one, the rows exceed the processor's cache.
+/// Maximum size of the rows in memory, bytes. If smaller, there are more and shorter reads and writes; if larger, the rows exceed the processor's cache.
 const BLOCK: usize = 2 << 20;
 
 /// Writer of an `.npz` recording. [`finish`](Self::finish) completes the file; if the writer is dropped before, no file remains.
 ///
-/// The writer keeps about 2 MiB of rows in memory (or one frame, if it is larger), for any number of frames. A member of a zip file is contiguous. Therefore,
+/// The writer keeps about 2 MiB of rows in memory (or one frame, if it is larger), for any number of frames. Because a member of a zip file is contiguous,
 /// earlier rows are stored in an unnamed temporary file beside the target. While the recording is completed, the disk contains the data twice.
 ///
 /// Invariant: `blocks` starts with `n_blocks` blocks. Each block contains the rows of all members, one member after the other.
@@ -26,7 +26,7 @@ pub struct RecordingWriter {
     header: RecordingHeader,
     target: WholeFile,
     members: Vec<Member>,
-    /// Rows of each member since the last block.
+    /// Rows of each member since the last complete block.
     rows: Vec<Vec<u8>>,
     rows_per_block: usize,
     blocks: File,
@@ -36,10 +36,10 @@ pub struct RecordingWriter {
 }
 
 impl RecordingWriter {
-    /// Starts a recording at `path`.
+    /// Creates a recording at `path`.
     ///
     /// # Errors
-    /// As for [`RecordingHeader::check`]. Also if the file cannot be created.
+    /// Returns the errors of [`RecordingHeader::check`], or an error if the file cannot be created.
     pub fn create(path: &Path, header: RecordingHeader) -> Result<Self> {
         header.check()?;
         let target = WholeFile::create(path)?;
@@ -62,10 +62,11 @@ impl RecordingWriter {
         })
     }
 
-    /// Appends a frame with its patches and objects in the order of the header.
+    /// Appends a frame; its patches and objects must have the order of the header.
     ///
     /// # Errors
-    /// If the time does not increase, the patches, objects or taxels differ from the header, or a write fails. The frame is then not part of the recording.
+    /// If the time does not increase; if the patches, objects or taxels differ from the header; or if a write fails. The frame is then not part of the
+    /// recording.
     pub fn push(&mut self, frame: &Frame) -> Result<()> {
         let place = || format!("recording, frame {}", self.n_frames);
         let (time, last) = (frame.time, self.last_time);
@@ -143,12 +144,12 @@ impl RecordingWriter {
     }
 }
 
-/// Returns the size of a frame over all members, bytes.
+/// Returns the size of a frame over all members, in bytes.
 fn frame_bytes(members: &[Member]) -> usize {
     members.iter().map(Member::row_bytes).sum()
 }
 
-/// Starts a member, which may exceed 4 GiB. All members have the same modification time, so that equal recordings give equal bytes.
+/// Starts an archive member, which may exceed 4 GiB. All members have the same modification time, so that equal recordings give equal bytes.
 fn start(zip: &mut ZipWriter<&mut BufWriter<File>>, name: &str) -> io::Result<()> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
@@ -157,7 +158,7 @@ fn start(zip: &mut ZipWriter<&mut BufWriter<File>>, name: &str) -> io::Result<()
     Ok(zip.start_file(format!("{name}.npy"), options)?)
 }
 
-/// Returns the members that are constant in time: `meta`, centres and axes.
+/// Returns the members that do not change over time: `meta`, centres and axes.
 fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
     let meta = header.meta();
     let code_points = meta.chars().flat_map(|c| u32::from(c).to_le_bytes());

@@ -4,7 +4,7 @@ use crate::objects::Sphere;
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Number of rays for each pixel, along each side. The picture of the rays is then scaled down by this factor.
+/// Number of rays per pixel, along each side. The picture of the rays is scaled down by this factor.
 const SUPERSAMPLING: usize = 2;
 
 /// First hit of a ray.
@@ -12,9 +12,9 @@ const SUPERSAMPLING: usize = 2;
 pub struct Hit {
     /// Coordinate towards the viewer, metres.
     pub height: f64,
-    /// Unit normal in the picture frame: right, up, towards the viewer.
+    /// Unit normal at the hit, in the picture frame: right, up, towards the viewer.
     pub normal: DVec3,
-    /// Index of the sphere; 0 for another surface.
+    /// Index of the hit sphere; 0 for another surface.
     pub part: usize,
 }
 
@@ -39,9 +39,9 @@ pub type SurfaceHit<'a> = dyn Fn(DVec3, DVec3) -> Option<(DVec3, DVec3)> + Sync 
 pub struct Canvas {
     /// Number of rays in a row.
     pub width: usize,
-    /// Number of rays in a column.
+    /// Number of rays per column of the canvas.
     pub height: usize,
-    /// Number of rays per metre.
+    /// Number of rays per metre of the view plane.
     pub scale: f64,
     /// Centre of the canvas in the view plane, metres.
     middle: DVec2,
@@ -50,7 +50,7 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// Creates a canvas with the spheres in the middle of width × height pixels, as large as `room` (width and height, pixels) allows.
+    /// Creates a canvas of width × height pixels with the spheres in the middle, as large as `room` (width and height, pixels) allows.
     pub fn new(view: DMat3, spheres: &[Sphere], [width, height]: [usize; 2], room: DVec2) -> Self {
         let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
         for sphere in spheres {
@@ -67,12 +67,12 @@ impl Canvas {
         }
     }
 
-    /// Returns the number of pixels per metre.
+    /// Returns the number of picture pixels per metre.
     pub fn pixels_per_metre(&self) -> f64 {
         self.scale / SUPERSAMPLING as f64
     }
 
-    /// Returns the hits of all rays on spheres.
+    /// Returns the hit of each ray on the spheres; `None` for a ray that hits nothing.
     pub fn hits(&self, spheres: &[Sphere]) -> Vec<Option<Hit>> {
         let mut hits: Vec<Option<Hit>> = vec![None; self.width * self.height];
         let size = DVec2::new(self.width as f64, self.height as f64);
@@ -122,7 +122,7 @@ impl Canvas {
         rays.map(ray).collect()
     }
 
-    /// Returns the point of a ray at the coordinate `height` towards the viewer, object frame.
+    /// Returns the point of a ray at the coordinate `height` towards the viewer, in the object frame.
     pub fn point(&self, index: usize, height: f64) -> DVec3 {
         let ray = DVec2::new(
             (index % self.width) as f64 + 0.5 - 0.5 * self.width as f64,

@@ -16,9 +16,9 @@ pub const BACKGROUND: u8 = 250;
 pub enum Lighting {
     /// Smoothed normals, so that the shape is visible and not the single spheres.
     Smoothed,
-    /// True normals: every sphere and every face is visible.
+    /// True normals, which show every sphere and every face.
     Plain,
-    /// No shading: colours represent values.
+    /// No shading, for colours that represent values.
     Unlit,
 }
 
@@ -55,7 +55,7 @@ impl Canvas {
         halved(rays.as_flattened(), self.width)
     }
 
-    /// Returns whether a neighbouring ray hits a point far behind this one: an inner or outer outline of the object.
+    /// Returns whether a neighbouring ray hits a point far behind this one, which is the case at an inner or outer outline of the object.
     fn is_outline(&self, hits: &[Option<Hit>], index: usize, hit: &Hit) -> bool {
         // A slope of 80° between rays does not count as an outline.
         let step = 8.0 / self.scale;
@@ -69,7 +69,7 @@ impl Canvas {
             .any(|stride| is_behind(index.checked_sub(stride)) || is_behind(Some(index + stride)))
     }
 
-    /// Returns normals averaged over neighbours of similar depth.
+    /// Returns the normals of all hits, averaged over neighbours of similar depth.
     fn smooth_normals(&self, hits: &[Option<Hit>]) -> Vec<DVec3> {
         let reach = (self.width.min(self.height) / 150).max(1);
         let mut normals = normals_of(hits);
@@ -96,7 +96,7 @@ impl Canvas {
     }
 }
 
-/// Returns the brightness under a main light and a weaker fill light.
+/// Returns the brightness of a surface with this normal under a main light and a weaker fill light.
 fn lit(normal: DVec3) -> f64 {
     let lamp = DVec3::new(-0.45, 0.65, 0.62).normalize();
     let fill = DVec3::new(0.8, 0.1, 0.6).normalize();
