@@ -9,7 +9,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 
 /// Error with a message for the user.
 ///
-/// A message contains where the error is, what was given, and what is allowed: `<where>: <what was given>; <what is allowed>`.
+/// A message has the form `<where>: <what was given>; <what is allowed>`.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Invalid input. The command exits with code 2.
@@ -92,7 +92,7 @@ impl Error {
         Self::input(path.display(), given, allowed)
     }
 
-    /// Creates an input error from a TOML error, with the text `file:line:column: what was given; what is allowed`.
+    /// Creates an input error from a TOML error, with file, line and column.
     pub fn toml(place: &str, text: &str, error: &toml::de::Error) -> Self {
         let position = error.span().map_or(String::new(), |span| {
             let before = &text[..span.start.min(text.len())];

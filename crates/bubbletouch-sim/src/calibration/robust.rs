@@ -25,8 +25,8 @@ pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / f64::from(n)
 }
 
-/// Returns the biweight midvariance, divided by its value for normal data of variance 1 (Mosteller and Tukey, *Data analysis and regression*, 1977). The
-/// biweight midvariance is n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1 − 5u²))² over |u| < 1, with u = (x − M) / (9 MAD) and the median M. If most values are equal,
+/// Returns the biweight midvariance, divided by its value for normal data of variance 1 (Mosteller and Tukey, *Data analysis and regression*, 1977). With the
+/// median M and u = (x − M) / (9 MAD), the biweight midvariance is n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1 − 5u²))² over |u| < 1. If most values are equal,
 /// returns the ordinary variance.
 pub fn variance(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
@@ -76,9 +76,9 @@ pub fn mode(values: &mut [f64]) -> f64 {
     found
 }
 
-/// Returns an estimate from n ordered units with its 95 % interval, by the jackknife over [`N_GROUPS`] runs of adjacent units with Student's t. (Efron and
-/// Tibshirani, *An introduction to the bootstrap*, 1993, chapter 11.) The closure computes the estimate from the units that it must keep, and returns `None` if
-/// that is impossible.
+/// Returns an estimate from n ordered units with its 95 % interval, by the jackknife over [`N_GROUPS`] runs of adjacent units with Student's t. Source: Efron
+/// and Tibshirani, *An introduction to the bootstrap*, 1993, chapter 11. The closure computes the estimate from the units that it must keep, and returns `None`
+/// if that is impossible.
 pub fn jackknife(
     n: usize,
     estimate: impl Fn(&dyn Fn(usize) -> bool) -> Option<f64>,

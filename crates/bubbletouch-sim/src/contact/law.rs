@@ -17,10 +17,10 @@
 //!
 //! ([`is_in_front`]). A press from the front has B = −∞: all spheres with q > 0 count.
 //!
-//! Every layout has its own evaluator of this law, which finds the pairs of taxels and spheres with q > 0 and shares q and h among taxels.
-//! The evaluators are `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), and `equilibrium::reach` (with derivatives).
-//! In `whole_body` they are `row_press` (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). For a mesh the rule is applied to the
-//! heights at which the mesh stops a taxel ([`reaches_front`]).
+//! Every layout has its own evaluator of this law, which finds the pairs of taxels and spheres with q > 0 and shares q and h among taxels. The evaluators are
+//! `placed_sphere` (rows of a flat grid), `near_spheres` (leaves of the taxel tree), and `reach` (with derivatives). In `whole_body` they are `row_press`
+//! (extrusions), `dome_patch` (rings) and `draped_patch` (tiles). For a mesh the rule is applied to the heights at which the mesh stops a taxel
+//! ([`reaches_front`]).
 
 use super::LanesBelow;
 

@@ -289,7 +289,7 @@ fn to_force(
     }
 }
 
-/// Presses at the given poses without recording contacts; otherwise like [`press_with_contacts`](super::press_with_contacts).
+/// Presses at the given poses as `press_with_contacts` does, but without recording contacts.
 ///
 /// # Panics
 /// If the number of poses differs from the number of objects.

@@ -1,5 +1,5 @@
-//! Feature "aligned": the image with its centroid shifted to the middle and its principal axes rotated to the axes of the array, sampled at a quarter of its
-//! taxels.
+//! Feature "aligned": the image with its centroid shifted to the middle and its principal axes rotated to the axes of the array. The image is sampled at a
+//! quarter of its taxels.
 //!
 //! With the central moments μ_pq = Σ δ (x − x̄)ᵖ (y − ȳ)^q, the longer principal axis is at the angle φ = ½ atan2(2 μ₁₁, μ₂₀ − μ₀₂). Its direction
 //! is chosen so that Σ δ a³ > 0, a along it; the other axis is a quarter turn from it. Values are sampled at every second

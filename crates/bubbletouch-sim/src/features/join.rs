@@ -6,7 +6,7 @@ use super::image::Cut;
 use crate::error::{Error, Result};
 use std::fmt::{self, Debug};
 
-/// One or several image features, one after the other in the order of `ImageFeature::ALL`.
+/// One or several image features, one after the other in the order of the list of all features.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Join(u8);
 

@@ -19,9 +19,9 @@
 //! | [`Descriptors`](ImageFeature::Descriptors) | 126 | exact by taxels | exact by 90° | all but 3 | 51 of them | 24 of them |
 //! | [`Aligned`](ImageFeature::Aligned) | 1,024 | exact by taxels | exact by 90° | | | |
 //!
-//! "Exact by taxels" means for shifts by a whole number of taxels while the contact stays on the array. "Exact by 90°" means up to rounding, on a square array.
-//! Other shifts and rotations change the features as much as the sampling by taxels changes the image. Four times the pressure doubles magnitudes and
-//! harmonics, because these are square roots.
+//! The entry "exact by taxels" means for shifts by a whole number of taxels while the contact stays on the array. The entry "exact by 90°" means up to
+//! rounding, on a square array. Other shifts and rotations change the features as much as the sampling by taxels changes the image. Four times the pressure
+//! doubles magnitudes and harmonics, because these are square roots.
 
 mod chart;
 mod feature;

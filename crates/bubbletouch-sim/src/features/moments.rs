@@ -9,8 +9,8 @@
 //!
 //! The last number changes its sign in a mirror image. All nine are functions of Hu's seven moments.
 //!
-//! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179; Flusser (2000), *On the independence of rotation moment
-//! invariants*, Pattern Recognition 33, 1405 (the complex form).
+//! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179, and Flusser (2000), *On the independence of rotation moment invariants*, Pattern
+//! Recognition 33, 1405 (the complex form).
 
 use super::image::{Image, Touched};
 use multiversion::multiversion;

@@ -1,12 +1,12 @@
-//! Feature "polar harmonics": square roots of angular harmonics of the image, in rings about the centroid of its pressure; 416 numbers.
+//! Feature "polar harmonics": square roots of angular harmonics of the image, in rings about the centroid of its pressure (416 numbers).
 //!
 //! The centroid is (x̄, ȳ) = Σ δ (x, y) / Σ δ. With rings of radius r = (j + ½) h / 26, j = 0 … 25, where h is half the shorter side, the feature is
 //!
 //! f(j, k)² = |Σ_θ δ(x̄ + r cos θ, ȳ + r sin θ) exp(−ikθ)| / 32, θ in 32 equal steps, k = 0 … 15.
 //!
 //! The value δ between taxels is interpolated bilinearly, and is 0 beyond the array. The centroid moves with the contact, and a rotation of the image rotates
-//! the rings. The feature is exactly invariant to quarter turns. It is also exactly invariant to shifts by whole taxels as long as no ring that meets the
-//! contact leaves the array. For other motions the sampling by taxels limits the invariance. The root brings weak harmonics closer to strong ones.
+//! the rings. The feature is exactly invariant to quarter turns. The feature is also exactly invariant to shifts by whole taxels as long as no ring that meets
+//! the contact leaves the array. For other motions the sampling by taxels limits the invariance. The root brings weak harmonics closer to strong ones.
 //!
 //! Source: the angular part of Sheng and Arsenault (1986), JOSA A 3, 771, without the transform before it.
 
@@ -67,7 +67,7 @@ mod tests {
     use super::super::tests::features_of;
     use super::*;
 
-    /// Compares the harmonics of a plane with the exact ones. A plane δ = 1 + 0.1 (x − x̄) over a disc has harmonic 0 of 1 and harmonic 1 of 0.05 r; bilinear
+    /// Compares the harmonics of a plane with the exact ones. A plane δ = 1 + 0.1 (x − x̄) over a disc has harmonic 0 of 1 and harmonic 1 of 0.05 r. Bilinear
     /// interpolation is exact on planes.
     #[test]
     fn harmonics_of_a_plane_are_its_height_and_its_slope() {

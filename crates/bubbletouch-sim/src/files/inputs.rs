@@ -1,7 +1,7 @@
 //! Input files of a command, which no command may overwrite.
 //!
 //! The functions [`open`], [`read`] and [`read_to_string`] record input files after [`protect_inputs`] has been called.
-//! A [`WholeFile`](super::WholeFile) does not replace a recorded file under any path.
+//! A `WholeFile` does not replace a recorded file under any path.
 
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;

@@ -55,7 +55,7 @@ impl BoxTree {
     }
 
     /// Visits leaves by branch and bound. A leaf is visited if all nodes above it have a `bound` below the limit; the child with the lower bound comes first.
-    /// `visit` receives the leaf's positions in the tree's [order](Self::order) and the limit, and returns the new limit.
+    /// `visit` receives the leaf's positions in the tree's order and the limit, and returns the new limit.
     pub fn search(
         &self,
         limit: f64,

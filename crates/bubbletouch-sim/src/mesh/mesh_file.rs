@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// Vertices and polygons of a mesh file. A file without polygons is a point cloud, which suffices for spheres around vertices.
 ///
-/// Invariant: at least one vertex, all finite; three or more corners per polygon, each index below the number of vertices.
+/// Invariant: there is at least one vertex, and all are finite. Polygons have at least three corners, each index below the number of vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
     vertices: Vec<DVec3>,

@@ -1,4 +1,4 @@
-//! Meshes from Wavefront OBJ files: positions and faces; groups, materials, normals and texture are ignored.
+//! Meshes from Wavefront OBJ files. Positions and faces are read; groups, materials, normals and texture are ignored.
 
 use super::MeshFile;
 use super::text_lines::{coordinates, each_line};

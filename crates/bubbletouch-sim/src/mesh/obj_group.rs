@@ -6,8 +6,8 @@ use crate::text::spelling::nearest_names;
 use std::collections::BTreeMap;
 use std::io::BufRead;
 
-/// Returns the indices of the triangles of a group (`g`) or object (`o`) in an OBJ file. The indices refer to the mesh that [`read_obj`](super::read_obj) and
-/// [`into_mesh`](super::MeshFile::into_mesh) create. A face belongs to the most recent groups and the most recent object before it.
+/// Returns the indices of the triangles of a group (`g`) or object (`o`) in an OBJ file. The indices refer to the mesh that `read_obj` and
+/// `into_mesh` create. A face belongs to the most recent groups and the most recent object before it.
 ///
 /// # Errors
 /// If the file cannot be read, or has no face in a group or object with this name.

@@ -29,7 +29,7 @@ const MIN_VOLUME: f64 = 1e-9;
 /// triangles are rejected. If larger, a skin on the part may point both ways.
 const MAX_DISAGREEING: f64 = 0.05;
 
-/// Orientation of the triangles of a mesh, after [`TriangleMesh::turned_outwards`].
+/// Orientation of the triangles of a mesh, as `turned_outwards` determines it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Orientation {
     /// The triangles faced outwards as given. Flat surfaces and open parts without an outside count as outwards if their faces are consistent.
@@ -49,7 +49,7 @@ impl Orientation {
     /// Returns an error if the outside of the mesh is unknown.
     ///
     /// # Errors
-    /// If the orientation is undecided ([`NotConverged`](Self::NotConverged)); the error begins with `place`.
+    /// If the orientation is undecided (`NotConverged`); the error begins with `place`.
     pub fn require(&self, place: &str) -> Result<()> {
         match self {
             Self::NotConverged(given) => {

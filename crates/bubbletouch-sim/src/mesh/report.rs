@@ -33,7 +33,7 @@ pub struct MeshReport {
     pub holes: Vec<f64>,
     /// Sum of the triangles' areas, m².
     pub area: f64,
-    /// Enclosed volume, m³; negative if the triangles face inwards; approximate for a mesh with holes.
+    /// Enclosed volume, m³, negative if the triangles face inwards; approximate for a mesh with holes.
     pub volume: f64,
     /// Bounding box of all triangles, metres.
     pub bounds: Aabb,

@@ -68,12 +68,12 @@ impl Surface {
         self.normals.at(closest.triangle, closest.feature)
     }
 
-    /// Returns the winding number of the surface around a point: 1 inside a closed mesh, 0 outside; the error is about 0.1.
+    /// Returns the winding number of the surface around a point, with an error of about 0.1. It is 1 inside a closed mesh and 0 outside.
     pub fn winding_number(&self, point: DVec3) -> f64 {
         self.winding.winding_number(&self.bvh, point)
     }
 
-    /// Returns whether a point is in the [solid](crate::mesh#the-solid-of-a-mesh) of the mesh, that is, whether its winding number exceeds one half. The result
+    /// Returns whether a point is in the solid of the mesh, that is, whether its winding number exceeds one half. The result
     /// is exact if every edge has equally many faces in both directions.
     pub fn contains(&self, point: DVec3) -> bool {
         match self.is_balanced {
@@ -101,7 +101,7 @@ impl Surface {
     /// Returns the signed distance to the nearest point of the mesh, metres, negative inside. The sign is determined by pseudonormals on a closed mesh,
     /// otherwise by the winding number.
     ///
-    /// On a closed mesh that intersects itself the sign refers to the nearest surface; use [`contains`](Self::contains) instead.
+    /// On a closed mesh that intersects itself the sign refers to the nearest surface; use `contains` instead.
     pub fn signed_distance(&self, point: DVec3) -> f64 {
         let Some(closest) = self.closest(point, f64::INFINITY) else {
             // Squared distances overflow beyond 1e154 m; such points are outside.

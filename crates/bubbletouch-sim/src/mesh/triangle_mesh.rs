@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// Triangle mesh with shared corners, in the frame of the object. The mesh may have holes and any orientation.
 ///
-/// Invariant: at least one triangle; every vertex finite; every index below the number of vertices.
+/// Invariant: there is at least one triangle, every vertex is finite, and every index is below the number of vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriangleMesh {
     vertices: Vec<DVec3>,

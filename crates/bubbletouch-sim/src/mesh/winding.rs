@@ -1,8 +1,7 @@
 //! Generalised winding number of an open or closed surface around a point.
 //!
-//! The winding number is the sum of the solid angles of all triangles divided by 4π \[GWN\]. It is 1 inside a closed mesh, 0 outside, and
-//! intermediate near a hole. A distant part of the mesh is approximated by one dipole, its area vector A at its centre c
-//! \[FWN\]: `A·(c − x) / (4π |c − x|³)`.
+//! The winding number is the sum of the solid angles of all triangles divided by 4π \[GWN\]. The number is 1 inside a closed mesh, 0 outside, and intermediate
+//! near a hole. A distant part of the mesh is approximated by one dipole, its area vector A at its centre c \[FWN\]: `A·(c − x) / (4π |c − x|³)`.
 
 use super::{Bvh, Triangle};
 use glam::DVec3;

@@ -1,7 +1,6 @@
 //! Catalogue of named objects, given as parametric solids with real dimensions.
 //!
-//! A catalogue file is a list of objects. Each object is a union of parts minus subtracted shapes
-//! ([all shapes and keys](crate::guide::own_objects)):
+//! A catalogue file is a list of objects. Each object is a union of parts minus subtracted shapes; the guide lists all shapes and keys. For example:
 //!
 //! ```toml
 //! [[object]]
@@ -18,7 +17,7 @@
 //!   position_mm = [0, 0, 35]
 //! ```
 //!
-//! After reading, each object is moved so that it rests on z = 0 with the middle of its bounding box on the z axis, wherever its parts were.
+//! After reading, each object is moved so that it rests on z = 0 with the middle of its bounding box on the z axis.
 
 use super::solid_toml::WrittenPart;
 use super::{Hand, Object, Part, Solid, pack};

@@ -3,7 +3,7 @@
 use super::Sphere;
 use glam::DVec3;
 
-/// Maximum number of spheres per part in [`pack`](super::pack). If larger, packings need more than 100 MB and a touch takes hours; if smaller, fine tolerances
+/// Maximum number of spheres per part in `pack`. If larger, packings need more than 100 MB and a touch takes hours; if smaller, fine tolerances
 /// of large parts are rejected.
 pub const MAX_SPHERES: usize = 2_000_000;
 

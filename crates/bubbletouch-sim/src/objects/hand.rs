@@ -156,8 +156,9 @@ impl Hand {
         Solid::new(parts.collect::<Result<_>>()?)
     }
 
-    /// Returns chains of balls at the joints, metres; the hand is the union of the convex hulls of consecutive balls. The chains are the index, middle, ring
-    /// and little finger (start of the metacarpal, then the end of each bone); the palm between the metacarpals; the thumb; and the ball of the thumb.
+    /// Returns chains of balls at the joints, metres; the hand is the union of the convex hulls of consecutive balls. The first chains are the index, middle,
+    /// ring and little finger: the start of the metacarpal, then the end of each bone. The palm between the metacarpals, the thumb, and the ball of the thumb
+    /// follow.
     pub fn strands(&self) -> [Vec<Sphere>; 9] {
         // Scale from the model's millimetres to the metres of this hand.
         let scale = self.length / MODEL_LENGTH;

@@ -141,8 +141,8 @@ impl Lathe {
 
     /// Returns the interval of an edge that a ring covers all around.
     ///
-    /// Half-way between two balls the squared distance of the profile point (ρ, z) from the two centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. It is
-    /// quadratic along an edge, and the point is covered if it is at most `(r + h)²`.
+    /// Half-way between two balls the squared distance of the profile point (ρ, z) from the two centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. The
+    /// squared distance is quadratic along an edge, and the point is covered if it is at most `(r + h)²`.
     fn covered(&self, ring: &Ring, edge: usize, fit: Fit) -> Option<[f64; 2]> {
         let edge = &self.outline.edges[edge];
         let from_center = edge.start - ring.center;

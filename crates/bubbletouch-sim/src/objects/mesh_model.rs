@@ -24,9 +24,9 @@ struct Data {
 pub struct ContactFace {
     /// Unit normal of the triangle; zero if the triangle is too thin.
     pub normal: DVec3,
-    /// Unit normal of the neighbour across each side. The neighbour's corners are ordered as if it passed the side in the direction of this triangle, so on a
-    /// smooth surface this normal is approximately minus the normal of this triangle. The normal is zero if there is not exactly one neighbour, or if the
-    /// neighbour is too thin.
+    /// Unit normal of the neighbour across each side. The neighbour's corners are ordered as if it passed the side in the direction of this triangle. On a
+    /// smooth surface this normal is therefore approximately minus the normal of this triangle. The normal is zero if there is not exactly one neighbour, or if
+    /// the neighbour is too thin.
     pub across: [DVec3; 3],
     /// Whether this triangle owns the side from each corner to the next.
     pub has_edge: [bool; 3],

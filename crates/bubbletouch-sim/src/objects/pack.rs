@@ -20,7 +20,7 @@ use crate::error::{Error, Result};
 /// Packs a solid with spheres whose union approximates it within `tolerance` (metres, positive).
 ///
 /// No sphere reaches more than half of `tolerance` outside the solid. No point of the solid's outer surface lies more than `tolerance` outside the spheres.
-/// [`surface_error`](super::surface_error) measures both distances. On average the two surfaces have equal height. A ball becomes one
+/// `surface_error` measures both distances. On average the two surfaces have equal height. A ball becomes one
 /// sphere. Equal inputs give equal spheres, in the order of the parts.
 ///
 /// # Errors

@@ -77,7 +77,7 @@ pub enum Shape {
         /// Height of the bar along z.
         height: f64,
     },
-    /// Ball swept along a polyline; its diameter changes linearly between points: handles, rings, bananas.
+    /// Ball swept along a polyline with a diameter that changes linearly between points: handles, rings, bananas.
     SphereSweep {
         /// Points of the polyline; the sweep is closed if the last ball equals the first.
         points: Vec<DVec3>,

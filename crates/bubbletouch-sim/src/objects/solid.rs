@@ -1,4 +1,4 @@
-//! Solids: unions of shapes with poses, minus other shapes; the objects of the catalogue.
+//! Solids: unions of shapes with poses, minus other shapes. The objects of the catalogue are solids.
 
 use super::block::Block;
 use super::fit::Fit;

@@ -31,11 +31,11 @@ pub(super) fn relief(e: f64) -> f64 {
 }
 
 /// Distance from a ball's centre on the surface, relative to the tolerance, at which the code tests whether the centre lies in the solid. If larger than the
-/// rounding reserve of [`Target::new`], the protrusion exceeds the tolerance; if too small, rounding decides the test.
+/// target's rounding reserve, the protrusion exceeds the tolerance; if too small, rounding decides the test.
 const BESIDE: f64 = 1e-7;
 
 impl Ball {
-    /// Returns the largest ball that touches the surface from inside at `foot`. If the mesh represents a surface ([`Body::Sheet`]), returns a ball of radius 0
+    /// Returns the largest ball that touches the surface from inside at `foot`. If the mesh represents a surface without thickness, returns a ball of radius 0
     /// at `foot`.
     pub fn at(target: &Target, foot: DVec3, normal: DVec3) -> Self {
         let largest = Self::largest(target, foot, -normal, 0.0, target.largest_radius());
@@ -43,7 +43,7 @@ impl Ball {
     }
 
     /// Shifts the centre, and returns the largest ball that touches the surface at the point nearest to the shifted centre. If the mesh represents a surface
-    /// ([`Body::Sheet`]), returns a ball of radius 0 at this point. Returns `None` if the shifted centre is outside a solid.
+    /// without thickness, returns a ball of radius 0 at this point. Returns `None` if the shifted centre is outside a solid.
     pub fn beside(&self, target: &Target, shift: DVec3) -> Option<Self> {
         let center = self.center + shift;
         let nearest = target.surface.closest(center, f64::INFINITY)?;

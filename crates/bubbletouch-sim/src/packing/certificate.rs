@@ -7,8 +7,8 @@
 //! - the middle of the piece is on the outer surface, and no ball contains the piece (a gap),
 //! - the piece is smaller than a limit (counted as a gap).
 //!
-//! If parts overlap, a triangle can lie partly inside another part. Testing a few points cannot show this; pieces are only classified
-//! if no other face crosses them ([`Target::buries`]).
+//! If parts overlap, a triangle can lie partly inside another part. Testing a few points cannot show this, so pieces are only classified if no other face
+//! crosses them.
 
 use super::ball::Ball;
 use super::sampling::Sample;

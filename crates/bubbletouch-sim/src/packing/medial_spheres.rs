@@ -17,7 +17,7 @@ const THINNEST: f64 = 1e-6;
 /// (2011) approximate shapes by such spheres.
 ///
 /// # Errors
-/// If [`pack_mesh`](super::pack_mesh) would reject the mesh, or if no sphere remains.
+/// If `pack_mesh` would reject the mesh, or if no sphere remains.
 pub fn medial_spheres(surface: &Surface, n: usize) -> Result<SphereUnion> {
     let size = surface.bounds().size().length();
     let target = Target::new(surface, Body::Solid, THINNEST * size)?;

@@ -14,7 +14,7 @@ const LIFT: f64 = 1e-3;
 /// Kind of body that a mesh represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// [Solid](crate::mesh#the-solid-of-a-mesh) that the mesh encloses; the union of closed parts that overlap. The mesh must have no
+    /// Solid that the mesh encloses; the union of closed parts that overlap. The mesh must have no
     /// holes.
     Solid,
     /// Surface of the mesh without thickness, covered by many spheres as small as the tolerance, centred on the surface. Holes stay open.

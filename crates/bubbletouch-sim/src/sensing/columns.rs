@@ -94,8 +94,8 @@ impl Columns {
         size_of_val(&self.starts[..]) + size_of_val(&self.entries[..])
     }
 
-    /// Measures a frame that is zero except for `touched` (taxel, value), and overwrites `measurements` (m). The result equals
-    /// [`Projection::measure`] of the whole frame up to rounding. The function allocates no memory.
+    /// Measures a frame that is zero except for `touched` (taxel, value), and overwrites `measurements` (m). The result equals the measurements of the whole
+    /// frame up to rounding. The function allocates no memory.
     ///
     /// # Panics
     /// If a taxel does not exist, or `measurements` does not have length m.

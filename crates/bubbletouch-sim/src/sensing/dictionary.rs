@@ -72,7 +72,7 @@ impl Dictionary {
     /// Returns all n atoms of a fixed basis of an ny × nx array, with origin zero.
     ///
     /// # Errors
-    /// If the basis is PCA, which needs training frames; if a wavelet basis has sides that are not powers of two; if there are no taxels.
+    /// If the basis is PCA (which needs training frames), if a wavelet basis has sides that are not powers of two, or if there are no taxels.
     pub fn complete(basis: Basis, grid: (usize, usize)) -> Result<Self> {
         let n = grid.0 * grid.1;
         if n == 0 {
@@ -106,11 +106,11 @@ impl Dictionary {
         })
     }
 
-    /// Returns the atoms with the largest energy in the training frames (n_frames × n): at most `n_atoms`, in the order of the basis; for PCA the
+    /// Returns the atoms with the largest energy in the training frames (n_frames × n), at most `n_atoms`, in the order of the basis. For PCA they are the
     /// first components. `None` selects all atoms (for PCA at most 256).
     ///
     /// # Errors
-    /// If [`complete`](Self::complete) fails, if there are no frames, if frames have another length, if a value is not finite, or if `n_atoms` is 0.
+    /// If `complete` fails, if there are no frames, if frames have another length, if a value is not finite, or if `n_atoms` is 0.
     pub fn learned(
         basis: Basis,
         grid: (usize, usize),

@@ -1,13 +1,13 @@
 //! Estimates of images of a skin from compressed measurements.
 //!
 //! Frames of training touches give statistics of images: their mean x₀, k principal components ψⱼ with mean squares λⱼ, and a remainder of mean square τ per
-//! taxel. The [linear estimate](super::Lmmse) of least mean square error is α̂ = Λ Aᵀ (A Λ Aᵀ + τ ΦΦᵀ)⁻¹ (y − Φx₀), with A = ΦΨ.
+//! taxel. The linear estimate of least mean square error is α̂ = Λ Aᵀ (A Λ Aᵀ + τ ΦΦᵀ)⁻¹ (y − Φx₀), with A = ΦΨ.
 //!
 //! Training frames contain the noise of the signal, and so does λⱼ: readings of the untouched skin have a mean square νⱼ along ψⱼ. The estimate of
 //! the image without noise reduces each coefficient (Wiener): x̂ = x₀ + Σ max(0, 1 − νⱼ / λⱼ) α̂ⱼ ψⱼ.
 //!
-//! Pressure is never negative, but the linear estimate has negative oscillations around a contact. Starting from x̂, two steps alternate: negative values
-//! are set to 0, and the nearest image with the measurements y is computed:
+//! Pressure is never negative, but the linear estimate has negative oscillations around a contact. Starting from x̂, two steps alternate. Negative values are
+//! set to 0, and the nearest image with the measurements y is computed:
 //!
 //! x ← x₊ + Φ⁺ (y − Φx₊), Φ⁺ = Φᵀ (ΦΦᵀ)⁻¹.
 //!

@@ -32,7 +32,7 @@ pub struct Projection {
 impl Projection {
     /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`.
     ///
-    /// The ensemble [`Ensemble::Identity`] has n measurements for any m.
+    /// The identity ensemble has n measurements for any m.
     ///
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the ensemble is learned.
@@ -76,13 +76,13 @@ impl Projection {
         })
     }
 
-    /// Prepares the scrambled block Hadamard ensemble with blocks of `block` taxels; \[SBHE\] and `Projection::new` use 32.
+    /// Prepares the scrambled block Hadamard ensemble with blocks of `block` taxels. Block size 32 is used in \[SBHE\] and by the constructor `new`.
     ///
     /// m measurements use at most m · `block` taxels. If this is far below n, as on a body with millions of taxels, most taxels are never
     /// used. A block of about n / m taxels or more uses every taxel, with few entries per taxel.
     ///
     /// # Errors
-    /// If `Projection::new` would fail, or if `block` is not a power of two.
+    /// If the size is invalid, as for `new`, or if `block` is not a power of two.
     pub fn sbhe(grid: (usize, usize), m: usize, block: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
         if !block.is_power_of_two() {

@@ -1,12 +1,12 @@
 //! Readings of the taxels of a whole body, computed taxel by taxel; the cost is proportional to the number of taxels read.
 //!
-//! A [`Chain`](super::Chain) draws the noise of a frame taxel after taxel, so two million taxels cost two million normal numbers per frame.
-//! A [`BodyReadout`] computes noise, zeros, gains and faults with [counter-based random numbers](crate::random::CounterKey).
+//! A `Chain` draws the noise of a frame taxel after taxel, so two million taxels cost two million normal numbers per frame.
+//! A [`BodyReadout`] computes noise, zeros, gains and faults with counter-based random numbers.
 //! These are functions of the skin's name, the taxel, the frame and the time. A taxel therefore reads the same value alone,
 //! among the touched taxels, or with its whole patch.
 //!
 //! Steps and strengths have the same meaning and distributions as in a chain, but different random draws. A sensor error is supported
-//! if its description has [`by_taxel`](super::ErrorAbout::by_taxel).
+//! if its description has `by_taxel`.
 
 use super::noise::NoiseByNumber;
 use super::taxel_effect::{CHUNK, Chunk, TaxelEffect};
@@ -114,7 +114,7 @@ impl BodyReadout {
     }
 
     /// Reads the taxels that the last press deflected, in ascending order. Other taxels also have noise, zeros and faults; use
-    /// [`read_patch`](Self::read_patch) or [`read`](Self::read) to obtain their readings.
+    /// `read_patch` or `read` to obtain their readings.
     ///
     /// # Panics
     /// If `body` has another number of taxels, or the time is not from 0 to 1.

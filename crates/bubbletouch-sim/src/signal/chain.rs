@@ -45,7 +45,7 @@ pub struct Recording<'a> {
     pub frames: &'a mut [f64],
     /// Rates of deflection δ̇, m/s, one per deflection; `None` if the patch is at rest. Only the force step uses them.
     pub rates: Option<&'a [f64]>,
-    /// Number of leading frames that came before the touch. If the chain [depends on history](Chain::remembers), these frames change the readings of the touch.
+    /// Number of leading frames that came before the touch. If the chain depends on history, these frames change the readings of the touch.
     /// Their own values have no meaning after the chain.
     pub n_before: usize,
     /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
@@ -144,7 +144,7 @@ impl Chain {
 
     /// Converts the deflections of a touch with a single frame to readings, in place.
     ///
-    /// Equivalent to [`apply_recording`](Self::apply_recording) with one frame (metres, ny × nx, row after row) and no history.
+    /// Equivalent to `apply_recording` with one frame (metres, ny × nx, row after row) and no history.
     ///
     /// # Panics
     /// If the frame or the rates do not have one number per taxel.

@@ -9,7 +9,7 @@
 //! The zero at any time can be computed without earlier times, so touches need no order. The 64 terms contain 99.7 % of the
 //! variance; the factor c makes the variance at the end exactly σ².
 //!
-//! A [`BodyReadout`](super::BodyReadout) uses counter-based random numbers. Its W is linear between 2⁶ + 1 equally spaced times of the session.
+//! A `BodyReadout` uses counter-based random numbers. Its W is linear between 2⁶ + 1 equally spaced times of the session.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};

@@ -3,7 +3,7 @@
 //! The faulty taxels and their levels are fixed for a skin. Taxels fail in a random order: dead taxels are taken from its beginning and stuck
 //! taxels from its end. If a fraction increases, taxels that were faulty at the lower fraction remain faulty.
 //!
-//! In a [`BodyReadout`](super::BodyReadout) each taxel fails independently, and the fractions are probabilities.
+//! In a `BodyReadout` each taxel fails independently, and the fractions are probabilities.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{CHUNK, Chunk, Moment, TaxelEffect};

@@ -1,7 +1,7 @@
 //! Gain mismatch: each taxel has its own sensitivity.
 //!
-//! xᵢ ← gᵢ xᵢ with gᵢ = exp(s zᵢ − s²/2), zᵢ ~ N(0, 1), s² = ln(1 + std²): log-normal gains of mean 1 and standard
-//! deviation `std`, positive at any strength. The effect is called fixed-pattern noise in imaging and mismatching in \[SD\].
+//! The operation is xᵢ ← gᵢ xᵢ with gᵢ = exp(s zᵢ − s²/2), zᵢ ~ N(0, 1), s² = ln(1 + std²). The gains are log-normal with mean 1 and standard deviation `std`,
+//! and positive at any strength. The effect is called fixed-pattern noise in imaging and mismatching in \[SD\].
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};

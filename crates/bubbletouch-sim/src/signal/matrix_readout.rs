@@ -1,9 +1,8 @@
 //! Matrix readout: resistive taxels at the crossings of rows and columns are read through shared lines.
 //!
-//! The conductance of a taxel is proportional to its value: g = x/X, where X is the full scale; a fully pressed taxel has conductance 1.
-//! The electronics apply 1 V to one row, hold all other lines at 0 V, and measure the current of one column. Each line (wire and
-//! switch) has a resistance ε, relative to a fully pressed taxel's resistance. The readings of taxels on one line therefore depend on each other \[DA\].
-//! With t = 1/ε the voltages v of all lines obey A v = t eᵢ,
+//! The conductance of a taxel is proportional to its value, g = x/X with the full scale X. A fully pressed taxel has conductance 1. The electronics apply 1 V
+//! to one row, hold all other lines at 0 V, and measure the current of one column. Each line (wire and switch) has a resistance ε, relative to a fully pressed
+//! taxel's resistance. The readings of taxels on one line therefore depend on each other \[DA\]. With t = 1/ε the voltages v of all lines obey A v = t eᵢ,
 //!
 //! A = ⎡ diag(t + Σⱼ gᵢⱼ)       −G        ⎤  and what is read is  xᵢⱼ ← X t² (A⁻¹)ᵢⱼ,
 //!     ⎣       −Gᵀ        diag(t + Σᵢ gᵢⱼ) ⎦

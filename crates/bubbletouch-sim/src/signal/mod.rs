@@ -1,8 +1,8 @@
 //! Signal: converts deflections to the frames that a sensor reads.
 //!
-//! A [`Chain`] is a list of [`SignalStep`]s, applied to one frame at a time in the order in which the study lists them.
-//! A frame has one number per taxel: shape ny × nx on a grid, row = patch y, ascending, stored row after row; otherwise in the order of the layout.
-//! On a layout other than a grid, crosstalk and smoothing use the [neighbours](crate::world::Neighbours); a matrix readout needs a grid.
+//! A [`Chain`] is a list of [`SignalStep`]s, applied to one frame at a time in the order in which the study lists them. A frame has one number per taxel. On a
+//! grid its shape is ny × nx, row = patch y, ascending, stored row after row; on other layouts it has the order of the layout. On a layout other than a grid,
+//! crosstalk and smoothing use the [neighbours](crate::world::Neighbours); a matrix readout needs a grid.
 //!
 //! | step | equation | symbols |
 //! |---|---|---|
@@ -19,7 +19,7 @@
 //! | [`PinkNoise`](SensorError::PinkNoise) | xᵢ ← xᵢ + σ pᵢ, p of a 1/f spectrum in the order of reading | σ of the full scale |
 //! | [`Quantisation`] | x ← q round(x / q), clipped to the full scale | b bits |
 //!
-//! Smoothing is a filter; the steps below it are sensor errors of real skins: mismatching, drift, hysteresis and crosstalk \[SD\], and errors of the readout
+//! Smoothing is a filter. The steps below it are sensor errors of real skins: mismatching, drift, hysteresis and crosstalk \[SD\], and errors of the readout
 //! electronics. A step of zero strength has no effect. The table has the physical order: first the material, then the readout of each taxel, then the
 //! converter. Noise belongs after drift.
 //!
@@ -27,9 +27,9 @@
 //! standard deviation to the current unit of the frame; so does each step whose strength is a fraction of the full scale.
 //!
 //! **Randomness.** The draws z depend on the touch (a [`Seed`](crate::random::Seed)) and on the position among the noise steps of the chain, but not on the
-//! level σ. Two chains that differ only in σ add the same pattern with another amplitude, so a sweep over noise compares paired frames. Properties of one
-//! piece of hardware (gains, the drift's walk, faults) are constant over all touches: they depend on the `skin`'s seed and are drawn in [`Chain::new`].
-//! Errors that change from touch to touch are drawn in [`Chain::apply`]. Their patterns do not depend on the strengths either.
+//! level σ. Two chains that differ only in σ add the same pattern with another amplitude, so a sweep over noise compares paired frames. Properties of one piece
+//! of hardware (gains, the drift's walk, faults) are constant over all touches. They depend on the `skin`'s seed and are drawn when the chain is created.
+//! Errors that change from touch to touch are drawn when the chain is applied. Their patterns do not depend on the strengths either.
 //!
 //! **Whole bodies.** A [`BodyReadout`] supports the steps that act on each taxel independently. Its random numbers are counter-based instead of streams, so
 //! the touched taxels among millions are read at a cost proportional to their number.

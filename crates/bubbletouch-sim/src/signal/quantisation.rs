@@ -1,7 +1,7 @@
 //! Quantisation: an analogue-to-digital converter with b bits over the full scale.
 //!
-//! x ← q round(min(max(x, 0), X) / q), q = X / (2ᵇ − 1): 2ᵇ codes from 0 to the full scale X, both included, or from −X to X if values have
-//! a sign. Values outside the range are clipped to its nearest end.
+//! The operation is x ← q round(min(max(x, 0), X) / q) with q = X / (2ᵇ − 1). There are 2ᵇ codes from 0 to the full scale X, both included, or from −X to X if
+//! values have a sign. Values outside the range are clipped to its nearest end.
 
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};

@@ -96,7 +96,7 @@ mod tests {
         let out = scanned(&frames, n, 0.02, 0.05);
         for (place, value) in out.iter().enumerate() {
             let (frame, taxel) = (place / n, place % n);
-            // The press moves one unit in 50 ms; taxel i is read 2 i ms late; the press is at rest from frame 3 on.
+            // The press moves one unit in 50 ms, taxel i is read 2 i ms late, and the press is at rest from frame 3 on.
             let expected = frame as f64 + if frame < 3 { 0.04 * taxel as f64 } else { 0.0 };
             assert!(
                 (value - expected).abs() < 1e-14,

@@ -28,8 +28,8 @@ pub struct Strength {
 /// Constructor of a sensor error: checks the strengths, at least one of them nonzero, and prepares the effect on the signal of a skin.
 pub type Prepare = fn(&[f64; MAX_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
 
-/// Constructor of a sensor error for the taxels of a whole body. Arguments: allowed strengths, at least one of them nonzero; the full scale
-/// in metres or newtons; the key of the random draws.
+/// Constructor of a sensor error for the taxels of a whole body. Its arguments are allowed strengths (at least one of them nonzero), the full scale in metres
+/// or newtons, and the key of the random draws.
 pub type PrepareByTaxel =
     fn(&[f64; MAX_STRENGTHS], f64, CounterKey) -> Result<Box<dyn TaxelEffect>>;
 
@@ -52,7 +52,7 @@ pub struct ErrorAbout {
     pub needs_places: bool,
     /// Function that checks the strengths, at least one of them nonzero, and prepares the effect.
     pub prepare: Prepare,
-    /// Function that prepares the error for a [`BodyReadout`](super::BodyReadout); `None` if the error depends on other taxels or on other frames.
+    /// Function that prepares the error for a `BodyReadout`; `None` if the error depends on other taxels or on other frames.
     pub by_taxel: Option<PrepareByTaxel>,
 }
 

@@ -1,6 +1,6 @@
 //! Effects on single taxels: the reading of a taxel depends on its index, the frame and the time, and on no other taxel.
 //!
-//! The random numbers are [counter-based](crate::random::CounterKey). Four adjacent taxels share a counter, and [`LANES`] counters are computed at
+//! The random numbers are counter-based. Four adjacent taxels share a counter, and [`LANES`] counters are computed at
 //! a time.
 
 use crate::contact::{Instructions, for_instructions};
@@ -21,7 +21,7 @@ pub struct Moment {
     pub time: f64,
 }
 
-/// Step of a [`BodyReadout`](super::BodyReadout), prepared for one patch. Acts on each taxel independently.
+/// Step of a `BodyReadout`, prepared for one patch. Acts on each taxel independently.
 pub trait TaxelEffect: Debug + Send + Sync {
     /// Replaces the true values of the taxels in `chunk` by readings, in the unit of their patch.
     fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]);

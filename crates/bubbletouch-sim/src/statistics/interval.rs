@@ -61,9 +61,9 @@ impl Interval {
 
     /// Returns the Wilson score interval of the mean accuracy of several tests, such as the trials of a study.
     ///
-    /// The proportion is Σ n_correct / Σ n_rows if all tests have equally many rows, otherwise the mean of the tests' accuracies. Tests of one
-    /// part (fold) test identical rows, or other rows of identical touches. The interval therefore counts the rows of one test per part: repeated
-    /// trials of one part add no rows, and k folds add up the rows of all k parts.
+    /// The proportion is Σ n_correct / Σ n_rows if all tests have equally many rows, otherwise the mean of the tests' accuracies. Tests of one part (fold) test
+    /// identical rows, or other rows of identical touches. The interval therefore counts the rows of one test per part. Repeated trials of one part add no
+    /// rows, and k folds add up the rows of all k parts.
     ///
     /// # Errors
     /// If there are no tests, or if the count of a test is invalid.

@@ -29,7 +29,7 @@ pub(super) enum Surface {
 
 impl BodyPatch {
     /// # Errors
-    /// If the patch does not meet the requirements of [`WholeBody::new`].
+    /// If the patch is not suitable for a whole body.
     fn new(patch: &Patch) -> Result<Self> {
         let name = patch.name().to_owned();
         let refuse = |what: &str, given: String, allowed: String| {
@@ -123,7 +123,7 @@ impl BodyPatch {
 
 /// All patches of a body.
 ///
-/// Taxels are numbered patch by patch, each patch in the order of its [layout](BodyPatch::layout).
+/// Taxels are numbered patch by patch, each patch in the order of its layout.
 #[derive(Clone, Debug)]
 pub struct WholeBody {
     patches: Vec<BodyPatch>,
@@ -134,7 +134,7 @@ pub struct WholeBody {
 
 impl WholeBody {
     /// Creates a body from patches, each with equal taxels. Patches other than grids, extrusions and domes are fast only if neighbouring taxels have close
-    /// indices, as in [`Layout::with_neighbours_together`].
+    /// indices, which `with_neighbours_together` ensures.
     ///
     /// # Errors
     /// If two patches have equal names, a patch has taxels of more than one kind, or a dome is smaller than the depth of its taxels.
@@ -184,7 +184,7 @@ impl WholeBody {
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
-    /// Returns the memory of the body in bytes, excluding its [`BodyState`](super::BodyState).
+    /// Returns the memory of the body in bytes, excluding its `BodyState`.
     pub fn n_bytes(&self) -> usize {
         let patch = |patch: &BodyPatch| {
             let surface = match &patch.surface {

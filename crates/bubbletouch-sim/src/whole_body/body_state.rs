@@ -137,7 +137,7 @@ impl BodyState {
 
     /// Returns the forces on the deflected taxels, ascending, as pairs of index and force (newtons). The force is 0 for a taxel that relaxes freely.
     ///
-    /// The forces equal the forces of [`DamperState`](crate::contact::DamperState), and kδ without a damper. With a damper, the force is the constant force
+    /// The forces equal the forces of `DamperState`, and kδ without a damper. With a damper, the force is the constant force
     /// that moves the taxel to its deflection within the last step; it tends to kδ + cδ̇.
     pub fn forces(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
         self.busy.iter().flat_map(|&number| {

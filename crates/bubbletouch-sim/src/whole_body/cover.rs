@@ -73,7 +73,7 @@ impl CoveredRobot {
         Self::with_cover(robot, Cover { taxel, pitch, side }, &[])
     }
 
-    /// Covers a robot as [`new`](Self::new) does, and also covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`. An
+    /// Covers a robot as `new` does, and also covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`. An
     /// end that lies on another cylinder, sphere or box when all joints are at zero cannot be touched and is omitted.
     ///
     /// # Errors

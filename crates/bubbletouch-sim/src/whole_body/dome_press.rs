@@ -8,8 +8,8 @@
 //! (R² + Q) / (2R)   if Q > R²: for smaller t the sphere is above the taxel at rest
 //! ```
 //!
-//! With B = R − s − ρ the sphere is in front of the substrate (`contact::law`) where `t + √(t² − Q) ≥ B`. The inequality holds where t is at least B or
-//! (B² + Q) / (2B). On a ring t = A + A' cos(φ − φ_c), so the condition selects an interval.
+//! With B = R − s − ρ the sphere is in front of the substrate (module `law`) where `t + √(t² − Q) ≥ B`. The inequality holds where t is at least B or (B² + Q)
+//! / (2B). On a ring t = A + A' cos(φ − φ_c), so the condition selects an interval.
 
 use super::dome_patch::DomePatch;
 use super::object_press::Pushed;

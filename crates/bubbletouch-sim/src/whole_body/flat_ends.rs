@@ -7,7 +7,7 @@ use crate::world::{LinkGeometry, LinkShape, Robot};
 use glam::DVec3;
 
 /// Returns the flat ends link by link, in the order of the file, the lower end of a cylinder first. An end is omitted if, with all joints at zero, its middle
-/// is in or on another collision shape. Such an end is rounded by a sphere, or joined to another link.
+/// is in or on another collision shape. An omitted end is rounded by a sphere, or joined to another link.
 pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<End>> {
     let world_from_links = robot.forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])?;
     let links = robot.links().iter().zip(&world_from_links).enumerate();

@@ -1,7 +1,7 @@
 //! Whole body: skins with millions of taxels, most of them untouched. The cost of a step depends on the contact area.
 //!
-//! Equations and results agree with [`contact`](crate::contact) to 1e-12 m. With dampers they agree to [`AT_REST`], the deflection below which a relaxing taxel
-//! counts as at rest. The search has three stages:
+//! Equations and results agree with [`contact`](crate::contact) to 1e-12 m. With dampers the tolerance is [`AT_REST`], below which a relaxing taxel counts as
+//! at rest. The search has three stages:
 //!
 //! 1. **Patches** ([`BodyPatch`]): those whose ball is near an object's, and those with relaxing taxels.
 //! 2. **Spheres** ([`SphereClusters`]): clusters of neighbours, of which only those near a bundle of the patch's columns are opened.

@@ -1,4 +1,4 @@
-//! World: taxels, layouts, touches and robots; computes poses of patches and objects.
+//! World: taxels, layouts, touches and robots, from which poses of patches and objects are computed.
 //!
 //! In the **patch frame** the taxels of a flat [`Patch`] rest in the plane z = 0 with their axes along +z, away from the substrate. On other [`Layout`]s each
 //! taxel has its own position and axis. In the **table frame** z points up, and objects rest on z = 0.

@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Neighbours of every taxel of a skin, as a symmetric graph.
 ///
-/// Invariant: the relation is symmetric; the list of each taxel ascends.
+/// Invariant: the relation is symmetric, and the list of each taxel ascends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
     /// Offset of each taxel's neighbours in the list, followed by the length of the list.

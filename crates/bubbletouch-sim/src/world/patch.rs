@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 /// Rigid substrate with taxels in any layout; their properties are equal or individual.
 ///
-/// Invariant: one set of taxel properties for all taxels, or one per taxel; the search trees belong to the layout and the taxels.
+/// Invariant: there is one set of taxel properties for all taxels, or one per taxel. The search trees belong to the layout and the taxels.
 #[derive(Clone, Debug)]
 pub struct Patch {
     name: String,
@@ -28,7 +28,7 @@ pub(crate) struct EvenGrid {
     pub radius: f64,
     /// Stroke s of all taxels, metres.
     pub stroke: f64,
-    /// Height of the substrate above the rest centres, metres ([`Taxel::substrate`]).
+    /// Height of the substrate relative to the rest centres, −s − ρ, metres.
     pub behind: f64,
 }
 

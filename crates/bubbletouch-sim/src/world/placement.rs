@@ -128,7 +128,7 @@ impl TouchAxis {
     }
 }
 
-/// Rules for choosing the touches of an object, applied by [`touches`](super::touches()).
+/// Rules for choosing the touches of an object, applied by `touches`.
 ///
 /// - No uniform spread, no `per_object`: every combination of resting poses and values; the first [`TouchAxis`] varies slowest.
 /// - No uniform spread, `per_object` given: this number of different combinations, drawn without replacement, all equally likely.
@@ -232,7 +232,7 @@ impl Touch {
 }
 
 impl Placement {
-    /// Returns the spread of each axis except [`TouchAxis::Rest`], in the order of the product.
+    /// Returns the spread of each axis except the resting pose, in the order of the product.
     pub fn spreads(&self) -> [(TouchAxis, &Spread); 6] {
         [
             (TouchAxis::OffsetX, &self.offset_x),

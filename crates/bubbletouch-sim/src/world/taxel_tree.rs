@@ -33,13 +33,13 @@ pub(crate) struct PlacedTaxel {
     pub number: u32,
     /// Rest centre p of the taxel, metres.
     pub center: DVec3,
-    /// Unit vectors perpendicular to the axis; X and Y for a taxel along Z, so that a flat patch is computed like a grid.
+    /// Unit vectors perpendicular to the axis; X and Y for a taxel along Z, so that a flat patch is computed exactly as a grid.
     pub across: [DVec3; 2],
     /// Axis n of the taxel, unit vector.
     pub axis: DVec3,
     /// Radius ρ of the taxel, metres.
     pub radius: f64,
-    /// Height of the substrate along the axis, relative to the rest centre, metres ([`Taxel::substrate`]).
+    /// Height of the substrate along the axis, relative to the rest centre, −s − ρ, metres.
     pub behind: f64,
 }
 

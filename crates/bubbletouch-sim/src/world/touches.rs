@@ -8,7 +8,7 @@ use rand::Rng;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
-/// Maximum number of touches of one object: far above any study; it stops a mistyped list before memory runs out.
+/// Maximum number of touches of one object, far above any study. The limit stops a mistyped list before memory runs out.
 pub const MAX_TOUCHES: usize = 10_000_000;
 
 /// Touches of one object, by the rules of a [`Placement`]. Touches are created one at a time, so even millions need no memory.
@@ -79,7 +79,7 @@ impl<'a> TouchSource<'a> {
 /// Returns all touches of one object.
 ///
 /// # Errors
-/// If the placement is invalid ([`TouchSource::new`]).
+/// If the placement is invalid.
 pub fn touches(placement: &Placement, rests: &[RestPose], seed: &Seed) -> Result<Vec<Touch>> {
     let source = TouchSource::new(placement, rests, seed)?;
     Ok((0..source.n_touches()).map(|n| source.touch(n)).collect())

@@ -52,7 +52,7 @@ impl<'a> Body<'a> {
         shift
     }
 
-    /// Returns the residual of force (N) and torque (N·m) relative to the weight, as defined by `Equilibrium::imbalance`.
+    /// Returns the residual of force (N) and torque (N·m) relative to the weight.
     pub fn imbalance_of(&self, (force, torque): (DVec3, DVec3)) -> f64 {
         let weight = self.weight.length();
         let of_force = (force + self.weight).length() / weight;

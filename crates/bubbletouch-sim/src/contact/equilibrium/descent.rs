@@ -29,8 +29,8 @@ const ACCEPTED_RESIDUAL: f64 = 1e-5;
 /// Length of a step, relative to the longest allowed one, up to which all contacts are gathered. A larger value gathers more pairs; a smaller one needs more
 /// steps.
 const NEARBY: f64 = 0.04;
-/// Width of the smoothing of ties (taxels pushed equally far by several spheres), relative to the largest deflection and to the deflection at which one taxel
-/// carries all the weight.
+/// Width of the smoothing of ties (taxels pushed equally far by several spheres). The width is relative to the largest deflection and to the deflection at
+/// which one taxel carries all the weight.
 const SMOOTHING: f64 = 1e-2;
 /// Minimum smoothing of ties, in multiples of the rounding error of the object's size.
 const LAST_BITS: f64 = 64.0;

@@ -21,10 +21,10 @@ pub struct TaxelLoad {
     pub sphere: usize,
     /// Force of the sphere on the taxel along the taxel's axis, newtons, above 0.
     pub force: f64,
-    /// Reaction of the taxel's stop, newtons: the part of `force` that the spring at its stroke does not carry; 0 below the stroke. The value is the multiplier
-    /// of the constraint δ ≤ s.
+    /// Reaction of the taxel's stop, newtons: the part of `force` that the spring at its stroke does not carry. The reaction is the multiplier of the
+    /// constraint δ ≤ s, and 0 below the stroke.
     pub stop: f64,
-    /// Whether the sphere's flank is nearly parallel to the axis ([`GRAZING`](crate::contact::GRAZING)).
+    /// Whether the sphere's flank is nearly parallel to the axis (`GRAZING`).
     pub is_grazing: bool,
     /// Load of the taxel on the object, in the patch frame: force n_c / (n_c·n) at the contact point.
     pub on_object: Wrench,

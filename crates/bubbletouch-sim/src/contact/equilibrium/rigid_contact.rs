@@ -20,7 +20,7 @@ pub(super) struct Touching {
     pub normal: DVec3,
     /// Distance between the centres of two spheres, metres; infinite for a plane.
     pub distance: f64,
-    /// Touched body: its index, and the vector from its centre of mass to the centre of its sphere; `None` for a fixed counterpart.
+    /// Index of the touched body, and the vector from its centre of mass to the centre of its sphere; `None` for a fixed counterpart.
     pub other: Option<(u32, DVec3)>,
 }
 

@@ -44,7 +44,7 @@ pub struct Equilibrium {
     pub n_touched: usize,
     /// Number of taxels whose stops carry the object.
     pub n_saturated: usize,
-    /// Number of taxels pushed along a flank nearly parallel to their axis ([`GRAZING`](crate::contact::GRAZING)).
+    /// Number of taxels pushed along a flank nearly parallel to their axis (`GRAZING`).
     pub n_grazing: usize,
     /// Number of poses that the solver evaluated, in total over all objects.
     pub n_steps: usize,
@@ -75,7 +75,7 @@ impl EquilibriumSolver {
     }
 
     /// Returns the loads of taxels in the last solution, ordered by skin and taxel; loads of escaped objects are omitted. Together with the rigid contacts
-    /// ([`touches`](Self::touches)) the loads sum to the forces of each [`Equilibrium`].
+    /// (`touches`) the loads sum to the forces of each [`Equilibrium`].
     pub fn loads(&self) -> &[TaxelLoad] {
         &self.loads
     }

@@ -23,7 +23,7 @@
 //! u is neglected; it is of the order of μ f / k_t.
 //!
 //! The force on the object is therefore the frictionless one, −∇ Σ ½ k δ², minus Σ f_t at the contact points. For μ = 0 every u is exactly zero, and the total
-//! load is bitwise equal to [`spring_load`](crate::contact::spring_load).
+//! load is bitwise equal to `spring_load`.
 //!
 //! **Laws**: the friction cone holds after any step, and no step size is unstable. The work of f_t on the object is at most the energy released by the shear
 //! springs, at any step size, so friction only dissipates. While f is constant, one step along a straight path equals many steps. If f changes, the error of a
@@ -150,7 +150,7 @@ impl FrictionState {
     /// Creates the state of an untouched patch: no taxel is in contact.
     ///
     /// # Errors
-    /// If the shear springs do not fit the patch (`Shears::check_on`).
+    /// If the shear springs do not fit the patch.
     pub fn at_rest(patch: &Patch, shears: Shears) -> Result<Self> {
         shears.check_on(patch)?;
         Ok(Self {
@@ -180,7 +180,7 @@ impl FrictionState {
         &self.contact_modes
     }
 
-    /// Returns the friction on one taxel along x and y of the taxel's [frame](crate::world::Layout::frame), N. The friction is k_t u, at most μ f.
+    /// Returns the friction on one taxel along x and y of the taxel's frame, N. The friction is k_t u, at most μ f.
     pub fn friction(&self, taxel: usize) -> DVec2 {
         self.shears.at(taxel).stiffness * self.displacement(taxel)
     }
@@ -252,7 +252,7 @@ impl FrictionState {
     }
 
     /// Advances the shear springs by one step, with free objects in equilibrium. `held_at_rest`, ascending by taxel, is the result of the equilibrium that was
-    /// solved with the [tangential springs](Self::tangential_springs) of the previous step.
+    /// solved with the tangential springs of the previous step.
     ///
     /// # Panics
     /// If the taxel or object of a contact does not exist.

@@ -1,7 +1,7 @@
 //! Linear estimate of least mean square error (LMMSE): one or two matrix products per frame.
 //!
 //! Frames are modelled as x = x₀ + Σⱼ αⱼ ψⱼ + r, with uncorrelated αⱼ of the mean square eⱼ in training frames
-//! ([`Energy`](crate::sensing::Energy)), and a remainder r of mean square τ per taxel. Every taxel has noise of standard deviation σ **before** the
+//! (`Energy`), and a remainder r of mean square τ per taxel. Every taxel has noise of standard deviation σ **before** the
 //! projection, so y − Φx₀ = Aα + Φ(r + noise) and, with E = diag(eⱼ),
 //!
 //! α̂ = E Aᵀ (A E Aᵀ + (τ + σ²) Φ Φᵀ)⁻¹ (y − Φx₀).

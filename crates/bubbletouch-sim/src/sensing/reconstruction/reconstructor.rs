@@ -87,12 +87,11 @@ const LEAST_NOISE: f64 = 1e-3;
 impl<'a> Reconstructor<'a> {
     /// Prepares a solver for noise of standard deviation σ (in the unit of the frames, zero or positive) on each taxel.
     ///
-    /// All solvers also count the part of a frame outside the span of the atoms as noise. The noise is √(σ² + τ) per taxel, with τ from training frames
-    /// (`Energy::rest`). Matching pursuit and the ℓ1 problem multiply this noise by the root mean square norm of a row of Φ to obtain the noise of a
-    /// measurement. The linear estimate uses ΦΦᵀ itself.
+    /// All solvers also count the part of a frame outside the span of the atoms as noise. The noise is √(σ² + τ) per taxel, with τ from training frames.
+    /// Matching pursuit and the ℓ1 problem multiply this noise by the root mean square norm of a row of Φ to obtain the noise of a measurement. The linear
+    /// estimate uses ΦΦᵀ itself.
     ///
-    /// # Errors
-    /// If [`Lmmse::new`] fails. The limits in `effort` are checked by [`reconstruct`](Self::reconstruct).
+    /// # Errors If the linear estimate cannot be prepared. The limits in `effort` are checked by `reconstruct`.
     pub fn new(
         solver: Solver,
         sensed: &'a SensedDictionary<'a>,

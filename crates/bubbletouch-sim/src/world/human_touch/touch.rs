@@ -83,7 +83,7 @@ impl HumanTouch {
     /// Every parameter is drawn uniformly from its range, independently of the others.
     ///
     /// # Errors
-    /// If a range is invalid (`TouchRanges::check`), or `surface` is not between 5 and 500 mm.
+    /// If a range is invalid, or `surface` is not between 5 and 500 mm.
     pub fn draw(kind: TouchKind, ranges: &TouchRanges, surface: f64, seed: &Seed) -> Result<Self> {
         ranges
             .check()

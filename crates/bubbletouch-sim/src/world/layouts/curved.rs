@@ -21,7 +21,7 @@ impl Layout {
     ///   shorter than 0.75 pitches has one ring or column, in its middle.
     ///
     /// # Errors
-    /// If an argument is out of its range, or the layout has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
+    /// If an argument is out of its range, or the layout has more than `MAX_TAXELS` taxels.
     pub fn cylinder(radius: f64, length: f64, arc: f64, pitch: f64) -> Result<Self> {
         Ok(Self::from(Extrusion::cylinder(radius, length, arc, pitch)?))
     }
@@ -44,7 +44,7 @@ impl Layout {
     ///   smaller than 0.75 pitches from its pole to its end has one taxel, at the pole.
     ///
     /// # Errors
-    /// If an argument is out of its range, or the layout has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
+    /// If an argument is out of its range, or the layout has more than `MAX_TAXELS` taxels.
     pub fn sphere_cap(radius: f64, half_angle: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("cap radius", radius, "m")?;

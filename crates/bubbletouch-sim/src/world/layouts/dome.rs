@@ -8,8 +8,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Lune (slice) of a sphere around the origin, from its pole at +z, divided into rings of taxels whose axes point away from the centre.
 ///
-/// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: rings ascend in polar angle, none is
-/// empty; `directions` have length one.
+/// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: rings ascend in polar angle, none is empty, and `directions` have
+/// length one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dome {
     radius: f64,

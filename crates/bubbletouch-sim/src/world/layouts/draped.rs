@@ -25,7 +25,7 @@ impl Layout {
     /// Distributes taxels over the outer surface of a whole mesh.
     ///
     /// # Errors
-    /// If [`draped_on`](Self::draped_on), which also accepts a region, fails.
+    /// If `draped_on`, which also accepts a region, fails.
     pub fn draped(mesh: &TriangleMesh, pitch: f64, seed: &Seed) -> Result<Self> {
         Self::draped_on(mesh, pitch, &DrapeRegion::default(), seed)
     }
@@ -33,7 +33,7 @@ impl Layout {
     /// Distributes taxels over a region of a mesh's outer surface, as many as on a grid of this pitch (metres). Taxels are ordered by triangle.
     ///
     /// The outer surface consists of the points from which a ray along the axis does not meet the mesh again. Other points, such as the walls of a cavity,
-    /// carry no taxel; [`n_left_out`](Self::n_left_out) counts the taxels omitted there.
+    /// carry no taxel; `n_left_out` counts the taxels omitted there.
     ///
     /// Each taxel is at least 0.83 pitches from the others, except taxels on the back of a thin wall. Every point of the outer surface is within a pitch of a
     /// taxel. Random points are accepted if they are far enough from all accepted ones (dart throwing); equal seeds give equal taxels. The run time is about
@@ -43,7 +43,7 @@ impl Layout {
     /// sides of a box flat. If a ray along a mean normal meets the mesh again, the axis is the normal of the taxel's own triangle.
     ///
     /// # Errors
-    /// If the pitch is not positive, the surface has no area, or the outside of an open mesh is [not known](TriangleMesh::turned_outwards). Also if the region
+    /// If the pitch is not positive, the surface has no area, or the outside of an open mesh is not known. Also if the region
     /// contains no point of the outer surface, or the pitch is so fine that more than some 100,000 taxels would be needed.
     pub fn draped_on(
         mesh: &TriangleMesh,

@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 
 /// Row of taxels (in the plane of u and v) that is repeated along w.
 ///
-/// Taxel `row · n_columns + column` rests at `places[column]` in the plane and at `rows[row]` along w; its axis is
-/// `axes[column]`, in the plane. Invariant: as many axes as places, not empty; all finite; axes of length one; rows ascend.
+/// Taxel `row · n_columns + column` rests at `places[column]` in the plane and at `rows[row]` along w; its axis is `axes[column]`, in the plane. Invariant:
+/// there are as many axes as places (at least one), all finite. Axes are unit vectors, and rows ascend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extrusion {
     places: Vec<DVec2>,
@@ -39,7 +39,7 @@ impl Extrusion {
     /// Creates an extrusion with the taxels of a flat grid; u, v, w are the patch's x, z, y.
     ///
     /// # Errors
-    /// If the grid is invalid (`Grid::check`).
+    /// If the grid is invalid.
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
         check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
@@ -53,8 +53,7 @@ impl Extrusion {
         })
     }
 
-    /// Creates a grid bent around a cylinder, with the arguments and taxels of [`Layout::cylinder`](crate::world::Layout::cylinder). The directions u, v, w are
-    /// the patch's x, y, z.
+    /// Creates a grid bent around a cylinder, with the arguments and taxels of the layout `cylinder`. The directions u, v, w are the patch's x, y, z.
     ///
     /// # Errors
     /// If an argument is out of its range, or the layout has too many taxels.

@@ -15,7 +15,7 @@ impl Layout {
     /// `pitch` metres. Taxels are numbered row by row (patch y, ascending) and centred on the origin.
     ///
     /// # Errors
-    /// If the pitch is not positive, or the number of taxels is zero or exceeds [`MAX_TAXELS`](crate::world::MAX_TAXELS).
+    /// If the pitch is not positive, or the number of taxels is zero or exceeds `MAX_TAXELS`.
     pub fn hexagonal(nx: usize, ny: usize, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         check_count("hexagonal layout", nx as f64 * ny as f64)?;
@@ -37,7 +37,7 @@ impl Layout {
     /// metres away. A radius below the pitch yields a single taxel at the origin.
     ///
     /// # Errors
-    /// If a length is not positive, or the disc has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
+    /// If a length is not positive, or the disc has more than `MAX_TAXELS` taxels.
     pub fn disc(radius: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("disc radius", radius, "m")?;
@@ -68,7 +68,7 @@ impl Layout {
     /// pitches apart. An annulus narrower than 0.75 pitches is a single ring in the middle.
     ///
     /// # Errors
-    /// If a length is not positive, the radii are not in ascending order, or a ring has more than [`MAX_TAXELS`](crate::world::MAX_TAXELS) taxels.
+    /// If a length is not positive, the radii are not in ascending order, or a ring has more than `MAX_TAXELS` taxels.
     pub fn annulus(inner: f64, outer: f64, pitch: f64) -> Result<Self> {
         positive("taxel pitch", pitch, "m")?;
         positive("annulus inner radius", inner, "m")?;

@@ -16,7 +16,7 @@ const UNIT_ROUNDING: f64 = 1e-9;
 
 /// Rest centres and axes of taxels, in the patch frame.
 ///
-/// Invariant: as many axes as centres; all finite; axes of length one. A layout that follows a rule (a grid, an [`Extrusion`], a [`Dome`])
+/// Invariant: there are as many axes as centres, all finite, and axes are unit vectors. A layout that follows a rule (a grid, an [`Extrusion`], a [`Dome`])
 /// stores the rule, and computes the 48 bytes per taxel only on demand.
 ///
 /// | family | shape | taxels |
@@ -101,10 +101,10 @@ impl Layout {
         Ok(Self::of_places(Places { centers, axes }))
     }
 
-    /// Creates a grid in the plane z = 0, row by row (patch y, ascending), which [`as_grid`](Self::as_grid) returns.
+    /// Creates a grid in the plane z = 0, row by row (patch y, ascending), which `as_grid` returns.
     ///
     /// # Errors
-    /// If the grid is invalid (`Grid::check`).
+    /// If the grid is invalid.
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
         check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;

@@ -89,8 +89,8 @@ impl Curve {
         }
     }
 
-    /// Returns the extremes of the curve in closed form. They occur at waypoints and at zeros of the velocity; extremes of the velocity also at zeros of the
-    /// acceleration.
+    /// Returns the extremes of the curve in closed form. Extremes of the value are at waypoints and at zeros of the velocity, extremes of the velocity at
+    /// waypoints and at zeros of the acceleration.
     pub fn extremes(&self, times: &[f64]) -> Extremes {
         let end = Taken {
             value: self.last,

@@ -13,7 +13,7 @@ use std::io::Read;
 /// Positions of a robot over time, interpolated through waypoints; constant before the first and after the last waypoint.
 ///
 /// Invariant: a joint that mimics no other joint never violates its limits of position and velocity by more than 1e-6 rad or m, or these per second. A
-/// mimicking joint follows its `<mimic>`; if it leaves its own limits, the trajectory has a [note](Self::notes).
+/// mimicking joint follows its `<mimic>`; if it leaves its own limits, the trajectory has a note.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTrajectory {
     times: Vec<f64>,
@@ -23,7 +23,7 @@ pub struct JointTrajectory {
 }
 
 impl JointTrajectory {
-    /// Creates the trajectory through `positions` (row: waypoint, column: position of the robot; rad and m) at `times` (seconds, strictly ascending).
+    /// Creates the trajectory through `positions` (n_way_points × n_positions, rad and m) at `times` (seconds, strictly ascending).
     ///
     /// Limits are checked along the whole curve in closed form, including between waypoints.
     ///
@@ -50,7 +50,7 @@ impl JointTrajectory {
         Self::through(robot, &way_points.checked()?, interpolation)
     }
 
-    /// Reads a trajectory from CSV: a column `time_s` and one column for each moving [coordinate](Robot::coordinates) of the robot, in any order. A coordinate
+    /// Reads a trajectory from CSV: a column `time_s` and one column for each moving coordinate of the robot, in any order. A coordinate
     /// without a column stays at its rest position. A column of angles has the coordinate's name, optionally with `_rad`, for radians, or `_deg` for degrees. A
     /// column of lengths has `_m` for metres or `_mm` for millimetres.
     ///

@@ -18,7 +18,7 @@ const RPY: [&str; 3] = ["roll", "pitch", "yaw"];
 
 /// Pose of a body over time, interpolated through waypoints; constant before the first and after the last waypoint.
 ///
-/// The coordinates of the position are interpolated as in a [`JointTrajectory`](super::JointTrajectory). Rotations take the shorter path between adjacent
+/// The coordinates of the position are interpolated as in a `JointTrajectory`. Rotations take the shorter path between adjacent
 /// waypoints. Linear interpolation uses slerp; the other interpolations use Hermite curves of quaternions \[KKS\]. The angular velocity of these curves is
 /// continuous and zero at the first and last waypoint (for squad only with equidistant times). With monotone interpolation, a turn about one axis never leaves
 /// the range of its two waypoints.
@@ -49,8 +49,9 @@ impl PoseTrajectory {
         Self::through(&way_points.checked()?, interpolation)
     }
 
-    /// Reads a trajectory from CSV. The columns are `time_s`; `x`, `y`, `z` in metres (`_m`) or with `_mm`; and a rotation. The rotation is either `qx`, `qy`,
-    /// `qz`, `qw`, or `roll`, `pitch`, `yaw` in radians (`_rad`) or with `_deg`. Roll, pitch and yaw turn about the fixed axes x, y, z in this order.
+    /// Reads a trajectory from CSV. The columns are `time_s`, the position `x`, `y`, `z` in metres (`_m`) or with `_mm`, and a rotation. The rotation is either
+    /// `qx`, `qy`, `qz`, `qw`, or `roll`, `pitch`, `yaw` in radians (`_rad`) or with `_deg`. Roll, pitch and yaw turn about the fixed axes x, y, z in this
+    /// order.
     ///
     /// # Errors
     /// If the table is invalid. The message begins with `place`, the file's name, and contains the line.

@@ -1,4 +1,4 @@
-//! Waypoints as CSV: a header and one row of numbers per waypoint; column names contain the units.
+//! Waypoints in CSV files: a header and one row of numbers per waypoint. Column names contain the units.
 
 use super::way_points::{Origin, WayPoints};
 use crate::error::{Error, Result};
@@ -24,7 +24,7 @@ pub(super) struct Column {
     scale: f64,
 }
 
-/// Suffixes of column names, and the size of each unit in SI units, as returned by `Dimension::units`.
+/// Suffixes of column names, and the size of each unit in SI units.
 pub(super) type Units = &'static [(&'static str, f64)];
 
 impl Table {

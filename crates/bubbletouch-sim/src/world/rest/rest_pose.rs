@@ -33,8 +33,7 @@ pub fn as_modelled(object: &Model) -> RestPose {
     resting(object, DVec3::NEG_Z, 1.0)
 }
 
-/// Returns the resting poses of an object on a table, most likely first; at least one. The object is a homogeneous solid
-/// ([`Model::center_of_mass`]).
+/// Returns the resting poses of an object on a table, most likely first; at least one. The object is treated as a homogeneous solid.
 ///
 /// A round object that rolls has one pose for all directions through which it rolls. Poses less likely than 2 % are
 /// omitted. The run time is 15 to 30 ms for 3,000 spheres, longest if a long side rolls.

@@ -4,7 +4,7 @@ use super::Dimension;
 use crate::geometry::{Pose, rotation_from_rpy};
 use glam::{DQuat, DVec3};
 
-/// Joint between two links of a [`Robot`](super::Robot).
+/// Joint between two links of a `Robot`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Name of the joint, unique in its robot.

@@ -6,7 +6,7 @@ use crate::geometry::Pose;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Rigid body of a [`Robot`](super::Robot).
+/// Rigid body of a `Robot`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Name of the link, unique in its robot.
@@ -66,7 +66,8 @@ pub enum LinkGeometry {
     },
     /// Triangle mesh in a separate file.
     Mesh {
-        /// Name as written: a path relative to the URDF file, `file://…` or `package://…`. The file is opened only for skin that is draped over the link.
+        /// Name as written, which is a path relative to the URDF file, a `file://` or a `package://` address. The file is opened only for skin that is draped
+        /// over the link.
         file: String,
         /// Metres per unit of the mesh file along each axis; not zero, negative for mirrored axes.
         scale: DVec3,

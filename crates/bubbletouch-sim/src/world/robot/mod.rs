@@ -1,4 +1,4 @@
-//! Robots: links and joints, read from URDF \[URDF\] or as one floating link; computes poses of all links.
+//! Robots: links and joints, read from URDF \[URDF\] or as one floating link, from which the poses of all links are computed.
 //!
 //! A robot is a tree of rigid links. Joint j connects its parent link to its child link:
 //!
@@ -13,7 +13,7 @@
 //! | floating | x, y, z, m; roll, pitch, yaw, rad | shift, then turn: `Rz(yaw) Ry(pitch) Rx(roll)` |
 //!
 //! Links, joints and their origins determine poses and must be valid. A joint whose axis or type cannot be read is fixed. Limits, shapes and `<mimic>` that
-//! cannot be read are omitted. Each of these cases is reported in a note (`Robot::notes`).
+//! cannot be read are omitted. Each of these cases is reported in a note of the robot.
 //!
 //! The **positions** of a robot are the coordinates of its joints in the order of its file, without fixed and mimicking joints.
 

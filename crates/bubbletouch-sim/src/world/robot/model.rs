@@ -174,7 +174,7 @@ impl Robot {
 
     /// Writes `world_from_link` of every link into a slice of one pose per link, without allocation.
     ///
-    /// Limits are not checked here, but in a [`JointTrajectory`](crate::world::JointTrajectory).
+    /// Limits are not checked here, but in a `JointTrajectory`.
     ///
     /// # Errors
     /// If the number of positions or poses differs from the robot's, or a position is not finite.

@@ -1,4 +1,4 @@
-//! URDF reader \[URDF\]: converts the text of a robot file to links and joints; each error contains its line.
+//! URDF reader \[URDF\], which converts the text of a robot file to links and joints. Each error contains its line.
 //!
 //! The reader uses the elements that move links and the shapes that skin can cover. Inertia, colours, transmissions and elements of other tools are
 //! ignored. Faults that do not affect poses of links are omitted with a note.

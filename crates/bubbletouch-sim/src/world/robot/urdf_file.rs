@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use std::path::Path;
 
 impl Robot {
-    /// Reads a robot from the text of a URDF file. Faults that do not affect the poses of links are omitted with a [note](Self::notes).
+    /// Reads a robot from the text of a URDF file. Faults that do not affect the poses of links are omitted with a note.
     ///
     /// # Errors
     /// If a part that determines poses of links is invalid. The message begins with `place`, the file's name, and contains the line.

@@ -1,4 +1,4 @@
-//! Laws of free objects: at rest all forces balance, wherever the world's origin is; otherwise the object is reported as escaped.
+//! Laws of free objects. At rest all forces balance, wherever the world's origin is; otherwise the object is reported as escaped.
 
 use bubbletouch_sim::contact::equilibrium::{
     Equilibrium, EquilibriumSolver, FreeObject, Outcome, PlacedSkin,

@@ -1,4 +1,4 @@
-//! Laws of presses to a force: comparison with slow bisection and with a press to the travel found; errors for unreachable forces.
+//! Laws of presses to a force: comparison with slow bisection and with a press to the travel found, and errors for unreachable forces.
 
 use crate::random_scenes::Scene;
 use bubbletouch_sim::contact::{
@@ -292,7 +292,7 @@ fn no_part_passes_through_a_skin_on_the_way_to_a_force() {
             }
         }
         let skin = patch.clone();
-        // Afterwards the workspace presses objects at their given poses like any other workspace.
+        // Afterwards the workspace can press objects at their given poses, with correct results.
         let behind = [Pose::from_translation(-0.3 * DVec3::Z)];
         assert_eq!(
             press_with_contacts(&skin, &scene.objects, &behind, &mut on_skin).n_touched,

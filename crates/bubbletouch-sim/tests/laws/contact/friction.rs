@@ -322,7 +322,7 @@ fn on_closed_ways_friction_only_takes_energy() {
     let mut n_lossy = 0;
     for case in 0..60 {
         let (mut bench, mut way) = random_bench("energy", case);
-        // Without rotations, the work of an object is that of one force along one motion.
+        // Without rotations, the work of an object is the work of one force along one motion.
         let rotations = way[0].map(|pose| pose.rotation);
         for poses in &mut way {
             poses[0].rotation = rotations[0];

@@ -560,8 +560,8 @@ fn random_scenes_of_several_objects_settle_or_leave() {
     all_settle_or_leave(0..24, 0);
 }
 
-/// Exceptions are scenes in which the solver reports no convergence, and scenes in which a small sphere of a scan slipped between taxels. Such a sphere counts
-/// as behind the substrate until it is out again, but the oracle recognises only spheres farther back.
+/// Exceptions are scenes in which the solver reports no convergence, and scenes in which a small sphere of a scan slipped between taxels. This sphere counts as
+/// behind the substrate until it is out again, but the oracle recognises only spheres farther back.
 #[test]
 #[ignore = "takes seven minutes"]
 fn a_thousand_random_scenes_of_several_objects_settle_or_leave() {

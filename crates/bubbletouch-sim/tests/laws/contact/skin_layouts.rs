@@ -234,7 +234,7 @@ fn inner_faces_carry_no_taxel_and_are_counted_and_the_outer_surface_stays_covere
             "{name}: {inside} {outside}"
         );
     }
-    // A housing is touched like the part without its cavity.
+    // A housing is touched in the same way as the part without its cavity.
     let [(_, housing), ..] = hollow_meshes();
     let [solid, hollow] = [cuboid(DVec3::splat(0.021)), housing].map(|mesh| draped(&mesh));
     assert!(hollow.n_taxels().abs_diff(solid.n_taxels()) < solid.n_taxels() / 20);

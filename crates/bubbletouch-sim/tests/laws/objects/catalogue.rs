@@ -1,4 +1,4 @@
-//! Laws of the built-in objects: dimensions, rest positions and accuracy of their spheres; and errors of invalid catalogue files.
+//! Laws of the built-in objects (dimensions, rest positions and accuracy of their spheres), and errors of invalid catalogue files.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Catalogue, Entry, Shape, Solid, SphereUnion, surface_error};

@@ -355,7 +355,7 @@ fn a_pose_passes_its_way_points_and_a_steady_turn_stays_steady() {
             assert!(found.translation == pose.translation);
             assert!((found.rotation.dot(pose.rotation).abs() - 1.0).abs() < 1e-15);
         }
-        // Far from the ends, a rotation is interpolated like a position.
+        // Far from the ends, the interpolation of a rotation equals the interpolation of a position.
         for time in [1.25, 2.0, 2.6] {
             let angle = 2.0 * trajectory.pose_at(time).rotation.z.asin();
             assert!(

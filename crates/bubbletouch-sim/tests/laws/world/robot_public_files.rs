@@ -1,4 +1,4 @@
-//! Public URDF files that a strict reader rejects. Each file is read, omitted parts have a note, and the poses of links are those of the file.
+//! Public URDF files that a strict reader rejects. Each file is read, omitted parts have a note, and the poses of links equal the poses in the file.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::world::{JointKind, LinkGeometry, Robot};

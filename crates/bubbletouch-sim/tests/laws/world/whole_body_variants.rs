@@ -1,5 +1,5 @@
-//! All computations of a touch agree: with any vector instructions and any number of threads, sparse and dense. They also agree with an exhaustive comparison
-//! of all spheres and taxels.
+//! All computations of a touch agree: with any vector instructions and any number of threads, sparse and dense. The results also agree with an exhaustive
+//! comparison of all spheres and taxels.
 
 use bubbletouch_sim::geometry::Pose;
 use bubbletouch_sim::objects::{Sphere, SphereUnion};
