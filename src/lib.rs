@@ -162,6 +162,7 @@ pub mod learning;
 pub mod recognition;
 pub mod report;
 pub mod scene;
+pub mod schema;
 pub mod shell_line;
 pub mod statistics;
 pub mod studies;

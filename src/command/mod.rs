@@ -17,6 +17,7 @@ mod press_poses;
 mod recording;
 mod report;
 mod run;
+mod schema;
 mod shell;
 mod simulate;
 mod slurm;
@@ -58,6 +59,7 @@ enum Command {
     Objects(objects::Args),
     Simulate(simulate::Args),
     Recording(recording::Args),
+    Schema(schema::Args),
     Completions(shell::CompletionArgs),
     Man(shell::ManArgs),
 }
@@ -93,6 +95,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Recording(args)) => recording::recording(&args),
         Some(Command::Objects(args)) => objects::objects(&args),
+        Some(Command::Schema(args)) => schema::schema(&args),
         Some(Command::Completions(args)) => shell::completions(&args, CommandLine::command()),
         Some(Command::Man(args)) => shell::man(&args, CommandLine::command()),
     }

@@ -18,6 +18,7 @@ use crate::inputs::toml_value::{is_at, number, value_at};
 use crate::table::{Column, Role, Scale};
 use crate::toml_lines::line_of;
 use crate::toml_text::{check_brackets, check_numbers};
+use schemars::JsonSchema;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -35,7 +36,7 @@ pub struct AxisRules {
 }
 
 /// Rule that combines the values of several axes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CombineSpec {
     /// All combinations of the axes' values.

@@ -10,6 +10,7 @@ pub mod object_files;
 pub mod objects_spec;
 pub mod packings;
 pub(crate) mod renamed_keys;
+pub(crate) mod schema_types;
 pub mod sensor_errors;
 pub(crate) mod toml_value;
 pub(crate) mod units;

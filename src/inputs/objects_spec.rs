@@ -1,28 +1,34 @@
 //! Specification of objects: the table `[objects]` of a study or scene file.
 
 use crate::files::{FilePath, SetName};
+use crate::inputs::schema_types::{Names, with_mesh_unit};
 use crate::inputs::units::MM;
 use crate::mesh::{LengthUnit, SizeLimits};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Default maximum distance between a solid's surface and its spheres, mm.
 const SURFACE_ERROR_MM: f64 = 0.25;
 
 /// Keys of `[objects]`: the objects of a study or scene.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = with_mesh_unit)]
 pub struct ObjectsSpec {
     /// Sets of solids: built-in names (`household`, `balls`, `boxes`, `cans`, `hands`) or paths of TOML files relative to the study file.
     #[serde(default)]
+    #[schemars(with = "Vec<String>")]
     pub sets: Vec<SetName>,
     /// Names of the objects to select from the sets and meshes. Default: all.
     pub names: Option<Vec<String>>,
     /// Folder of PLY, OBJ or STL meshes with one object per file, relative to the study file.
+    #[schemars(with = "Option<String>")]
     pub meshes: Option<FilePath>,
     /// Model that is built from each mesh: `mesh` (default), `packed` or `vertex_spheres`.
     pub model: Option<ModelSpec>,
     /// Length unit of the mesh files. Default: metres; the size of each mesh must then be within plausible limits.
     #[serde(alias = "mesh_unit")]
+    #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
     /// Allowed sizes of meshes without a unit. This is not a key; the plan derives the limits from the arrays.
     #[serde(skip)]
@@ -40,7 +46,7 @@ pub struct ObjectsSpec {
 }
 
 /// Model that is built from a mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelSpec {
     /// One sphere per vertex, as in the published protocol \[BT\].

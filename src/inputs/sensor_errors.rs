@@ -3,11 +3,12 @@
 use crate::random::Seed;
 use crate::signal::{MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// Skin on which the test touches are made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TestSensor {
     /// Skin of the training touches; a classifier may learn its individual errors.
@@ -100,6 +101,22 @@ pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
     ("noise_std_mm", NoiseUnit::Mm),
     ("noise_std_n", NoiseUnit::N),
 ];
+
+/// Describes a key of the noise.
+pub(crate) fn noise_words(unit: NoiseUnit) -> String {
+    let unit = match unit {
+        NoiseUnit::FullScale => "as a fraction of the full scale",
+        NoiseUnit::Mm => "mm of deflection",
+        NoiseUnit::N => "newtons of force",
+    };
+    format!("Standard deviation of the noise, {unit}.")
+}
+
+/// Describes a key of a sensor error.
+pub(crate) fn strength_words(error: SensorError, strength: &Strength) -> String {
+    let (step, allowed) = (error.about().step, strength.allowed);
+    format!("Sensor error `{step}`: {}, {allowed}.", strength.words)
+}
 
 #[cfg(test)]
 mod tests {

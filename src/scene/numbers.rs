@@ -1,11 +1,12 @@
 //! A number for all elements, or a list with one number for each.
 
+use schemars::JsonSchema;
 use serde::de::{Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A number for all elements or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Numbers {
     /// One number for all elements.

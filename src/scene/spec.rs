@@ -9,10 +9,11 @@ pub use super::spec_patch::*;
 use crate::error::Result;
 use crate::files::FilePath;
 use crate::toml_text;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Specification of a scene. Paths are relative to the folder of the scene file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
     /// Description of the scene, one sentence.
@@ -46,7 +47,7 @@ pub struct SceneSpec {
 }
 
 /// Rigid plane: `[[planes]]`. Free objects do not enter its half-space, for example a table.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneSpec {
     /// Name, unique in the scene.
@@ -60,13 +61,14 @@ pub struct PlaneSpec {
 }
 
 /// Robot that carries patches or objects: `[[robots]]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotSpec {
     /// Name, unique in the scene.
     pub name: String,
     /// Path of the robot's URDF file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     pub urdf: Option<FilePath>,
     /// Robot of one link without joints, in place of `urdf`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

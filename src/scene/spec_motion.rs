@@ -1,13 +1,16 @@
 //! Specification of poses and motions in a scene file.
 
 use crate::files::FilePath;
+use crate::inputs::schema_types::{Names, with_rpy_deg};
 use crate::world::Interpolation;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Pose: `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = with_rpy_deg)]
 pub struct PoseSpec {
     /// Position of the origin, mm.
     #[serde(default)]
@@ -18,7 +21,7 @@ pub struct PoseSpec {
 }
 
 /// Motion of a base or an object: phases of constant velocity, way-points, or a CSV file of way-points.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionSpec {
     /// Phases of constant velocity in order, starting at `at`.
@@ -29,14 +32,16 @@ pub struct MotionSpec {
     pub way_points: Vec<WayPointSpec>,
     /// CSV file of way-points: see [`PoseTrajectory::read_csv`](crate::world::PoseTrajectory::read_csv).
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
     /// Interpolation between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,
 }
 
 /// Phase of constant velocity: `{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] }`
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhaseSpec {
     /// Duration of the phase, seconds.
@@ -50,8 +55,9 @@ pub struct PhaseSpec {
 }
 
 /// Way-point: `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = with_rpy_deg)]
 pub struct WayPointSpec {
     /// Time of the way-point, seconds.
     pub time_s: f64,
@@ -64,14 +70,16 @@ pub struct WayPointSpec {
 }
 
 /// Way-points of a robot's joints, in the scene file or in a CSV file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointsSpec {
     /// CSV file of way-points: see [`JointTrajectory::read_csv`](crate::world::JointTrajectory::read_csv).
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
     /// Interpolation between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,
     /// Times of the way-points, seconds.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

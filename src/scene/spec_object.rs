@@ -3,13 +3,16 @@
 use super::numbers::Numbers;
 use crate::files::FilePath;
 use crate::inputs::objects_spec::ModelSpec;
+use crate::inputs::schema_types::{Names, with_mesh_unit};
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::{MotionSpec, PoseSpec};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Specification of one object: `[[objects]]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = with_mesh_unit)]
 pub struct ObjectSpec {
     /// Name, unique in the scene.
     pub name: String,
@@ -18,18 +21,22 @@ pub struct ObjectSpec {
     pub object: Option<String>,
     /// TOML file of objects that contains `object`. Default: the built-in objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     pub objects: Option<FilePath>,
     /// CSV file of spheres with the columns x, y, z, r, in place of `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     pub spheres: Option<FilePath>,
     /// PLY, OBJ or STL file, in place of `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     pub mesh: Option<FilePath>,
     /// Contact model of a mesh. Default: spheres around its vertices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,
     /// Length unit of a mesh or of spheres. Default: metres; the size must then be between 0.1 mm and 10 m.
     #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
     /// Maximum distance of the spheres from the surface of a solid or packed mesh, mm. Default: 0.25; for a packed mesh, a tenth of the finest pitch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -55,7 +62,7 @@ pub struct ObjectSpec {
 }
 
 /// Specification of a free object: `free = { mass_kg = 0.2 }`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FreeSpec {
     /// Mass of the object, kg; required.
@@ -71,7 +78,7 @@ pub struct FreeSpec {
 /// The object starts at the pose of `at` and `motion` and moves along the direction until the patch reaches the force. If the force is too large, the object
 /// moves back. Speed and travel are limited. The object does not pass through the patch: pressed taxels stay at their stroke, even if the force is not
 /// reached. If the force is zero, the object returns to the pose of its motion.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressSpec {
     /// Patch whose force is controlled.

@@ -2,14 +2,19 @@
 
 use super::numbers::Numbers;
 use crate::files::FilePath;
+use crate::inputs::schema_types::{Names, with_mesh_unit};
+use crate::inputs::sensor_errors::{NOISES, all_strengths, noise_words, strength_words};
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::PoseSpec;
+use crate::signal::MAX_STRENGTHS;
 use crate::world::ShapeRole;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// Specification of one patch: `[[patches]]`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PatchSpec {
     /// Name, unique in the scene.
@@ -49,6 +54,7 @@ pub struct PatchSpec {
     pub shear_stiffness_n_per_m: Option<Numbers>,
     /// CSV file with one row for each taxel. Its columns have the names of the keys above; only columns that differ between taxels are needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
     pub taxels_csv: Option<FilePath>,
     /// Steps of the signal chain of the patch, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -65,9 +71,55 @@ pub enum SignalStepSpec {
     Strengths(BTreeMap<String, f64>),
 }
 
+/// Follows the list of sensor errors, like the reader.
+impl JsonSchema for SignalStepSpec {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "SignalStepSpec".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut keys = serde_json::Map::new();
+        for (key, words) in scene_steps() {
+            let number = json_schema!({ "type": "number", "minimum": 0, "description": words });
+            keys.insert(key.to_owned(), number.into());
+        }
+        json_schema!({
+            "anyOf": [
+                { "type": "string", "const": "force" },
+                {
+                    "type": "object",
+                    "properties": keys,
+                    "additionalProperties": false,
+                    "minProperties": 1,
+                    "maxProperties": MAX_STRENGTHS,
+                },
+            ]
+        })
+    }
+}
+
+/// Returns the keys of the signal steps of a patch, with their meaning. Steps that need the frames before and after are absent.
+fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
+    let noises = NOISES.iter().map(|(key, unit)| (*key, noise_words(*unit)));
+    let smoothing = "Standard deviation of the Gaussian smoothing over the array, mm.";
+    let errors = all_strengths().filter(|(error, _)| {
+        let about = error.about();
+        !about.remembers && !about.needs_motion
+    });
+    let errors = errors.map(|(error, strength)| (strength.key, strength_words(error, strength)));
+    noises
+        .chain([("smoothing_mm", smoothing.to_owned())])
+        .chain(errors)
+}
+
 /// Layout of the taxels, as `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`: see [`Layout`](crate::world::Layout).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[schemars(transform = with_mesh_unit)]
 pub enum LayoutSpec {
     /// Rectangular grid with square cells.
     Grid {
@@ -127,9 +179,11 @@ pub enum LayoutSpec {
     Draped {
         /// Mesh file; left out if `region.link` names a link.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(with = "Option<String>")]
         mesh: Option<FilePath>,
         /// Length unit of the mesh file. Default: metres; the size must then be between 0.1 mm and 10 m.
         #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
+        #[schemars(with = "Option<Names<LengthUnit>>")]
         unit: Option<LengthUnit>,
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
@@ -141,7 +195,7 @@ pub enum LayoutSpec {
 
 /// Region of a surface: `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`. A place belongs to
 /// the region if it satisfies all given keys.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionSpec {
     /// Smallest coordinates of a box in the mesh frame, together with `box_max_mm`.
@@ -162,6 +216,7 @@ pub struct RegionSpec {
     pub link: Option<String>,
     /// Shapes of `link`: `collision` or `visual`. Default: the collision shapes, or the visual ones if the link has no collision shapes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Names<ShapeRole>>")]
     pub shapes: Option<ShapeRole>,
     /// Name of a group (`g`) or object (`o`) of an OBJ file.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -36,6 +36,7 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::table::Table;
 use crate::toml_numbers::with_line;
 use crate::toml_text;
+use schemars::{Schema, SchemaGenerator};
 use std::path::Path;
 
 /// Type-erased kind of study, as stored in the registry.
@@ -43,6 +44,7 @@ struct Entry {
     about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
     tables: TableFiles,
+    schema: fn(SchemaGenerator) -> Schema,
 }
 
 /// Registry of all kinds of studies.
@@ -62,8 +64,19 @@ const fn entry<K: Study>() -> Entry {
         about: K::ABOUT,
         load: |source| Ok(Box::new(Loaded::<K>::load(source)?)),
         tables: K::TABLES,
+        schema: SchemaGenerator::into_root_schema_for::<K::Spec>,
     }
 }
+
+/// Returns each kind with the JSON Schema of its study files.
+pub(crate) fn schemas(generator: fn() -> SchemaGenerator) -> Vec<(About, serde_json::Value)> {
+    let kinds = KINDS.iter();
+    let schemas = kinds.map(|entry| (entry.about, (entry.schema)(generator()).to_value()));
+    schemas.collect()
+}
+
+/// Table that only recognition studies have.
+pub(crate) const RECOGNITION_TABLE: &str = RECOGNITION.about.table;
 
 /// Returns the kind of a study file; `None` if the file has no table of a kind.
 pub fn about(text: &str) -> Option<About> {

@@ -9,6 +9,7 @@ use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
 use crate::table::{ChartSpec, Columns, File, Table};
 use crate::toml_text;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -184,6 +185,9 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Function that returns the text at the end of a run, wrapped at a number of characters. With `None`, the text contains the first table with a value, and
     /// the answers.
     const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
+
+    /// Specification: the keys of a study file of the kind.
+    type Spec: JsonSchema;
 
     /// Rows that a work item returns.
     type Rows: ItemRows;

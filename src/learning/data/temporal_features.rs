@@ -23,7 +23,9 @@
 
 use crate::error::{Error, Result};
 use ndarray::{ArrayView2, ArrayViewMut1, Axis};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Temporal features computed from the frames of a touch, before scaling and training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -179,6 +181,25 @@ impl TryFrom<String> for TemporalFeatures {
                     _ => return Err(wrong()),
                 }
             }
+        })
+    }
+}
+
+impl JsonSchema for TemporalFeatures {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "TemporalFeatures".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "anyOf": [
+                { "type": "string", "enum": ["deepest", "moments", "course", "summarised"] },
+                { "type": "string", "pattern": "^stacked_\\+?0*[1-9][0-9]*$" },
+            ]
         })
     }
 }

@@ -2,10 +2,12 @@
 
 use crate::inputs::defaults::count;
 use crate::inputs::objects_spec::ObjectsSpec;
+use crate::inputs::schema_types::Names;
 use crate::learning::classifiers::ClassifierKind;
 use crate::sensing::Ensemble;
 use crate::studies::recognition::spec::scene::{SkinSpec, TouchesSpec};
 use crate::study_file::study_file;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 study_file! {
@@ -21,7 +23,7 @@ pub struct ObjectDetailStudySpec {
 } }
 
 /// Keys of `[object_detail]`: models that replace the meshes, and their comparison with the meshes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectDetailSpec {
     /// Tolerances of the packing, mm, at least 1e-6: maximum distances between the spheres and the mesh.
@@ -37,7 +39,7 @@ pub struct ObjectDetailSpec {
 }
 
 /// Keys of `[object_detail.recognition]`: classifiers that are trained on models and tested on meshes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DetailRecognitionSpec {
     /// Number of training touches per object, at least 1, drawn like the study's touches.
@@ -46,10 +48,12 @@ pub struct DetailRecognitionSpec {
     pub test_touches: usize,
     /// Ensemble of the measurement matrix that compresses the frames. Default: `sbhe`.
     #[serde(default = "default_ensemble")]
+    #[schemars(with = "Names<Ensemble>")]
     pub ensemble: Ensemble,
     /// Number m of measurements per frame, at least 1.
     pub measurements: usize,
     /// Kinds of classifiers, with the default parameters of [`Classifier::new`](crate::learning::classifiers::classifier::Classifier::new).
+    #[schemars(with = "Vec<Names<ClassifierKind>>")]
     pub classifiers: Vec<ClassifierKind>,
 }
 
@@ -61,7 +65,7 @@ impl DetailRecognitionSpec {
 }
 
 /// Method that replaces a mesh by a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DetailMethod {
     /// Exact mesh, the reference for all other methods; always measured.

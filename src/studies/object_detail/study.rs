@@ -109,6 +109,7 @@ impl Study for ObjectDetailStudy {
         of_parts: &[&RECOGNITION],
     };
 
+    type Spec = ObjectDetailStudySpec;
     type Rows = DetailRows;
 
     fn load(source: &Source) -> Result<Self> {

@@ -3,11 +3,13 @@
 use crate::engine::axis::Axis;
 use crate::inputs::defaults::count;
 use crate::inputs::objects_spec::ObjectsSpec;
+use crate::inputs::schema_types::Names;
 use crate::sensing::{Basis, Effort, Solver};
 use crate::studies::recognition::spec::scene::{SkinSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::SignalSpec;
 use crate::studies::recognition::spec::study::SensingSpec;
 use crate::study_file::study_file;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 study_file! {
@@ -28,12 +30,14 @@ pub struct ReconstructionStudySpec {
 } }
 
 /// Keys of `[reconstruction]`: solvers and dictionaries that reconstruct frames.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReconstructionSpec {
     /// Axis: solver of the coefficients: `omp` (orthogonal matching pursuit), `l1` (ℓ1 minimisation) or `lmmse` (linear minimum mean square error).
+    #[schemars(with = "Axis<Names<Solver>>")]
     pub solver: Axis<Solver>,
     /// Axis: dictionary of the frames: `dct`, `haar`, `daubechies4` or `pca`.
+    #[schemars(with = "Axis<Names<Basis>>")]
     pub dictionary: Axis<Basis>,
     /// Maximum number of atoms of a dictionary, at least 2; the atoms with the most energy in the training frames are used. Default: all, or 256 for PCA.
     pub atoms: Option<usize>,

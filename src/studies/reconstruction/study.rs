@@ -74,6 +74,7 @@ impl Study for ReconstructionStudy {
     };
     const TABLES: TableFiles = TableFiles::always(&[&CELLS, &ENSEMBLES, &TIMING, &PARETO]);
 
+    type Spec = ReconstructionStudySpec;
     type Rows = ReconstructionRows;
 
     fn load(source: &Source) -> Result<Self> {

@@ -4,10 +4,11 @@ use crate::engine::axis::Axis;
 use crate::files::FilePath;
 use crate::inputs::defaults::number;
 use crate::study_file::toml_file;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Contents of a stability study file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StabilityStudySpec {
     /// Question that the study answers, in one sentence.
@@ -20,20 +21,21 @@ pub struct StabilityStudySpec {
 }
 
 /// Keys of `[stability]`: scenes and simulation methods to compare.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StabilitySpec {
     /// Distance between neighbouring taxels, mm, positive; the radius of a taxel is half of it. Default: 4.
     #[serde(default = "number::<4>")]
     pub pitch_mm: f64,
     /// Table of results that another program wrote (`benches/peers/stability.py`), relative to the study file; ignored if the file does not exist.
+    #[schemars(with = "Option<String>")]
     pub peers: Option<FilePath>,
     /// Tables `[[stability.parts]]`: parts of the study, run one after the other. Each part combines all values of its axes.
     pub parts: Vec<StabilityPartSpec>,
 }
 
 /// Keys of `[[stability.parts]]`: a part of the study, which combines all values of its axes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StabilityPartSpec {
     /// Scene that is simulated.
@@ -62,7 +64,7 @@ pub struct StabilityPartSpec {
 }
 
 /// Scene of a stability study: one or more balls on a square array of taxels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StabilityScene {
     /// A ball is lowered to first contact and released. The dampers stop it without oscillation: `c = 2 √(k (M / n + m))`, where n taxels carry the ball at
@@ -91,7 +93,7 @@ impl StabilityScene {
 }
 
 /// Method that simulates contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
     /// Method of this library: massless taxels, solved in closed form. It uses [`balance`](crate::contact::equilibrium) for rest,

@@ -45,6 +45,7 @@ impl Study for StabilityPlan {
     };
     const TABLES: TableFiles = TableFiles::always(&[&CELLS, &SUMMARY, &TIMING, &JOINTS]);
 
+    type Spec = StabilityStudySpec;
     type Rows = Vec<StabilityRow>;
 
     fn load(source: &Source) -> Result<Self> {

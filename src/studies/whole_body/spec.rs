@@ -2,8 +2,10 @@
 
 use crate::files::FilePath;
 use crate::inputs::defaults::{count, number};
+use crate::inputs::schema_types::{Names, with_rotation_deg};
 use crate::sensing::Ensemble;
 use crate::study_file::study_file;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -14,10 +16,11 @@ pub struct WholeBodyStudySpec {
 } }
 
 /// Keys of `[whole_body]`: a robot covered with skin, its scenes, and the measurement of computing time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WholeBodySpec {
     /// URDF file of the robot that is covered with skin, relative to the study file.
+    #[schemars(with = "String")]
     pub robot: FilePath,
     /// Distance between neighbouring taxels, mm, positive. Default: 1.
     #[serde(default = "number::<1>")]
@@ -59,8 +62,9 @@ pub struct WholeBodySpec {
 }
 
 /// Keys of `[[whole_body.scenes]]`: an object that moves along a path over the skin.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = with_rotation_deg)]
 pub struct BodySceneSpec {
     /// Name of the scene.
     pub name: String,
@@ -97,7 +101,7 @@ pub struct BodySceneSpec {
 }
 
 /// Part of an object: a ball, a capsule or a torus.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum BodyPartSpec {
     /// Ball, given by its diameter and centre.
@@ -131,12 +135,13 @@ pub enum BodyPartSpec {
 }
 
 /// Keys of `[whole_body.sensing]`: compression of the readings of touched taxels into measurements.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySensingSpec {
     /// Number m of measurements per step, at least 1.
     pub measurements: usize,
     /// Ensembles with sparse matrices: `sbhe` and `sparse`.
+    #[schemars(with = "Vec<Names<Ensemble>>")]
     pub ensembles: Vec<Ensemble>,
     /// Numbers of taxels in a Hadamard block, powers of two; each number defines one compression. Default: 32.
     #[serde(default = "default_blocks")]
@@ -144,7 +149,7 @@ pub struct BodySensingSpec {
 }
 
 /// Keys of `[whole_body.recognition]`: touches of built-in objects at one location of the skin.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyRecognitionSpec {
     /// Names of the built-in objects to recognise.
@@ -171,7 +176,7 @@ pub struct BodyRecognitionSpec {
 }
 
 /// Keys of `[whole_body.ladders]`: series of growing skins, touches and objects for the measurement of computing time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LaddersSpec {
     /// Numbers of taxels of the skins in the series of growing skins.

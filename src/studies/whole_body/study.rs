@@ -63,6 +63,7 @@ impl Study for WholeBodyPlan {
     const TABLES: TableFiles =
         TableFiles::always(&[&CASES, &RECOGNITION, &SENSED, &TIMING, &STEPS]);
 
+    type Spec = WholeBodyStudySpec;
     type Rows = WholeBodyRows;
 
     fn load(source: &Source) -> Result<Self> {

@@ -22,11 +22,11 @@ use std::sync::Arc;
 use toml::{Table, Value};
 
 /// Tables whose keys `[test]` may contain: in studies that place objects, and in other studies.
-const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
+pub(crate) const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
 const TABLES_OF_OTHERS: &[&str] = &["signal"];
 
 /// Keys that test touches always share with training touches.
-const SHARED: [&str; 4] = [
+pub(crate) const SHARED: [&str; 4] = [
     "touches.per_object",
     "touches.frames",
     "signal.test_sensor",

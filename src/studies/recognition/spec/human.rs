@@ -1,15 +1,18 @@
 //! Specification of human touches: the table `[human_touch]`, which replaces `[objects]` and `[touches]`.
 
 use crate::inputs::defaults::number;
+use crate::inputs::schema_types::Names;
 use crate::world::TouchKind;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Keys of `[human_touch]`: recognition of kinds of human touch on a forearm. The columns of the array are bent around the arm; its rows run along the arm.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HumanTouchSpec {
     /// Kinds of human touch to distinguish. Default: all six.
     #[serde(default = "all_kinds")]
+    #[schemars(with = "Vec<Names<TouchKind>>")]
     pub kinds: Vec<TouchKind>,
     /// Number of touches of each kind, at least 1.
     pub per_kind: usize,

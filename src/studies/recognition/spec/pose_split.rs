@@ -17,11 +17,12 @@
 use crate::error::{Error, Result};
 use crate::learning::data::split::Side;
 use crate::world::{Touch, TouchAxis};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Rule that decides which poses are held out for testing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PoseSplit {
     /// Randomly drawn touches are held out. On a grid of poses, most test touches then have neighbours among the training touches.
@@ -194,7 +195,7 @@ impl PartialOrd for Value {
 }
 
 /// Property of touches that defines groups; a split does not divide a group.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GroupSpec {
     /// Resting pose, offset, yaw and tilt: the whole pose except the depth.

@@ -5,13 +5,14 @@ use crate::files::{file_path, optional_file_path};
 use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::is_member;
+use schemars::JsonSchema;
 use serde::de::{IntoDeserializer, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// Keys of `[recorded]`: frames of a real skin, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). `[skin]` gives the pitch and the stroke of the taxels.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedSpec {
     /// File of the frames, shape (n, rows, columns), or (n, F, rows, columns) for touches of F frames, or (n, taxels) for a skin without rows and columns. Any
@@ -100,7 +101,7 @@ pub struct RecordedSpec {
 }
 
 /// Readings of untouched taxels, written as `zero = 100.0` or `zero = "zero.npy"`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ZeroSpec {
     /// Reading that is common to all untouched taxels.
@@ -159,7 +160,7 @@ impl<'de> Deserialize<'de> for ZeroSpec {
 }
 
 /// Choice of the touch that precedes each touch. It matters for sensor errors with memory, such as hysteresis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PreviousTouch {
     /// Another touch of the study, drawn at random in each trial, as in studies of pressed objects.

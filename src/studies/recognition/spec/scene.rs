@@ -2,11 +2,13 @@
 
 use crate::engine::axis::{Axis, one_value};
 use crate::inputs::defaults::number;
+use crate::inputs::schema_types::Names;
 use crate::world::{ArrayLayout, RestPoses};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Keys of `[skin]`: the arrays of taxels.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SkinSpec {
     /// Axis: side of the square area per taxel, mm, positive. In a grid it is the distance between neighbours. In a hexagonal lattice (`hexagonal`, `disc`) the
@@ -17,6 +19,7 @@ pub struct SkinSpec {
     /// Axis: number of taxels along a side of the square array; replaces `size_mm`.
     pub taxels: Option<Axis<usize>>,
     /// Layout of the taxels: `grid` (default), `hexagonal`, `disc`, `cylinder` or `cap`. All layouts have the same area.
+    #[schemars(with = "Option<Names<ArrayLayout>>")]
     pub layout: Option<ArrayLayout>,
     /// Radius of curvature of the layouts `cylinder` and `cap`, measured to the rest centres of the taxels, mm.
     pub curvature_radius_mm: Option<f64>,
@@ -40,10 +43,11 @@ pub struct SkinSpec {
 }
 
 /// Keys of `[touches]`: poses and depths in which objects are touched.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TouchesSpec {
     /// Resting poses of the object on the table: `as_modelled` (default) or `stable`.
+    #[schemars(with = "Names<RestPoses>")]
     pub rest: RestPoses,
     /// Number of touches per object. Default: all combinations of the listed values.
     pub per_object: Option<usize>,
@@ -111,7 +115,7 @@ impl Default for TouchesSpec {
 }
 
 /// Quantity that a taxel reads.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SensedSpec {
     /// Deflection, metres.
@@ -124,7 +128,7 @@ pub enum SensedSpec {
 }
 
 /// Distribution of a touch parameter over the touches of an object.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(
     untagged,
     expecting = "expected a number, a list, { grid = [first, last, count] }, { uniform = [low, high] } or { within = half_width }"
@@ -139,7 +143,7 @@ pub enum SpreadSpec {
 }
 
 /// Grid or interval of values.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RangeSpec {
     /// Evenly spaced values, given by the first value, the last value and the number of values.

@@ -3,12 +3,17 @@
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
 use crate::inputs::defaults::is_default;
-use crate::inputs::sensor_errors::{NOISES, TestSensor, all_strengths};
+use crate::inputs::sensor_errors::{
+    NOISES, TestSensor, all_strengths, noise_words, strength_words,
+};
 use crate::signal::{SENSOR_ERRORS, SensorError};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::LazyLock;
 
 /// Keys of `[signal]`: noise, sensor errors and processing of the readings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -134,18 +139,22 @@ fn unknown(what: &str, given: &str, known: impl Iterator<Item = &'static str>) -
 }
 
 /// Name of a key of `[signal]`.
+static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
+    let axes = all_axes().map(|(key, _)| key);
+    ["steps", "test_sensor", "combine"]
+        .into_iter()
+        .chain(axes)
+        .collect()
+});
+
 struct Key(String);
 
 impl<'de> Deserialize<'de> for Key {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let key = String::deserialize(deserializer)?;
-        let all = || {
-            let axes = all_axes().map(|(key, _)| key);
-            ["steps", "test_sensor", "combine"].into_iter().chain(axes)
-        };
-        match all().any(|known| known == key) {
+        match KEYS.contains(&&key[..]) {
             true => Ok(Self(key)),
-            false => Err(D::Error::custom(unknown("field", &key, all()))),
+            false => Err(D::Error::unknown_field(&key, &KEYS)),
         }
     }
 }
@@ -156,6 +165,60 @@ impl<'de> Deserialize<'de> for SignalSpec {
         deserializer.deserialize_map(SpecVisitor)
     }
 }
+
+/// Follows the list of sensor errors, like the reader.
+impl JsonSchema for SignalSpec {
+    fn schema_name() -> Cow<'static, str> {
+        "SignalSpec".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let number = generator.subschema_for::<Axis<f64>>();
+        let integer = generator.subschema_for::<Axis<u64>>();
+        let words: Vec<&str> = StepSpec::all().map(StepSpec::word).collect();
+        let steps = SignalSpec::default().steps;
+        let mut keys = serde_json::Map::new();
+        let mut add = |key: &str, mut schema: Schema, description: &str| {
+            schema.insert("description".to_owned(), description.into());
+            keys.insert(key.to_owned(), schema.into());
+        };
+        let list = json_schema!({
+            "type": "array",
+            "items": { "type": "string", "enum": words },
+            "uniqueItems": true,
+            "default": steps,
+        });
+        let order = "Steps of the signal chain, applied to a frame of deflections in this order; each step at most once.";
+        add("steps", list, order);
+        for (key, unit) in NOISES {
+            add(key, number.clone(), &noise_words(unit));
+        }
+        add("smoothing_mm", number.clone(), SMOOTHING);
+        for (error, strength) in all_strengths() {
+            let schema = match strength.is_whole {
+                true => &integer,
+                false => &number,
+            };
+            add(
+                strength.key,
+                schema.clone(),
+                &strength_words(error, strength),
+            );
+        }
+        let sensor = generator.subschema_for::<Axis<TestSensor>>();
+        add("test_sensor", sensor, TEST_SENSOR);
+        let mut combine = generator.subschema_for::<CombineSpec>();
+        combine.insert("default".to_owned(), "all".into());
+        add("combine", combine, COMBINE);
+        json_schema!({ "type": "object", "properties": keys, "additionalProperties": false })
+    }
+}
+
+const SMOOTHING: &str =
+    "Standard deviation of the Gaussian smoothing over the array, mm. Default: no smoothing.";
+const TEST_SENSOR: &str =
+    "Sensor of the test touches. Default: the sensor of the training touches.";
+const COMBINE: &str = "How the axes of `[signal]` are combined with each other. All combinations with other axes are run.";
 
 struct SpecVisitor;
 

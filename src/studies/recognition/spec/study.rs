@@ -9,6 +9,7 @@ use crate::engine::axis::{Axis, one_value};
 use crate::error::Result;
 use crate::inputs::defaults::{count, is_default, number};
 use crate::inputs::objects_spec::ObjectsSpec;
+use crate::inputs::schema_types::{FeatureNames, Names};
 use crate::inputs::toml_value::value_at;
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::data::temporal_features::TemporalFeatures;
@@ -26,10 +27,11 @@ use crate::table::{Column, Columns};
 use bubbletouch_sim::features::Features;
 use bubbletouch_svm::scaling::Scaling;
 use bubbletouch_svm::{Multiclass, Solver};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Contents of a recognition study file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StudySpec {
     /// Question that the study answers, in one sentence.
@@ -67,6 +69,7 @@ pub struct StudySpec {
     pub recognition: RecognitionSpec,
     /// Table `[test]`: keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` whose values differ for test touches, such as `test.touches.depth_mm`.
     #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
+    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     pub test: toml::Table,
     /// Table `[report]`: contents of the report.
     #[serde(default)]
@@ -100,7 +103,7 @@ const AXES_IN_PLACE: &[&str] = &[
 ];
 
 /// Keys that cannot be axes: all trials use the same touches, and texts and reports belong to the whole study.
-const AXIS_RULES: AxisRules = AxisRules {
+pub(crate) const AXIS_RULES: AxisRules = AxisRules {
     in_place: |key| match key.strip_prefix("signal.") {
         Some(key) => !matches!(key, "steps" | "combine"),
         None => AXES_IN_PLACE.contains(&key),
@@ -116,11 +119,12 @@ const AXIS_RULES: AxisRules = AxisRules {
 };
 
 /// Keys of `[sensing]`: compression of frames into measurements.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensingSpec {
     /// Axis: ensemble from which the measurement matrix is drawn. Default: `gaussian`.
     #[serde(default = "default_ensemble")]
+    #[schemars(with = "Axis<Names<Ensemble>>")]
     pub ensemble: Axis<Ensemble>,
     /// Axis: compression ratio n / m, taxels per measurement, at least 1.
     pub ratio: Option<Axis<f64>>,
@@ -129,13 +133,14 @@ pub struct SensingSpec {
 }
 
 /// Keys of `[recognition]`: features, classifiers, and the split into training and test touches.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RecognitionSpec {
     /// Axis: features of a touch, before scaling. Default: `raw`. Transformations of the measurements: `raw`, `centred`, `unit_norm`, `centred_unit_norm`.
     /// Features of images: `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features
     /// of force, add `"force"` to `signal.steps`.
     #[serde(default = "default_features")]
+    #[schemars(with = "Axis<FeatureNames>")]
     pub features: Axis<Features>,
     /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. The window makes the features invariant to the
     /// press depth. Default: the whole image.
@@ -149,15 +154,19 @@ pub struct RecognitionSpec {
     /// `moments` of each measurement, `course` of the touch, or `summarised` (moments and course). Default: all frames are concatenated.
     pub temporal_features: Option<Axis<TemporalFeatures>>,
     /// Axis: kind of classifier.
+    #[schemars(with = "Axis<Names<ClassifierKind>>")]
     pub classifier: Axis<ClassifierKind>,
     /// Strategy that combines binary SVMs into a multi-class classifier: `one_vs_one` (default) or `one_vs_rest`.
     #[serde(default)]
+    #[schemars(with = "Names<Multiclass>")]
     pub multiclass: Multiclass,
     /// Solver of SVMs: `smo` (default) or `coordinate_descent`.
     #[serde(default)]
+    #[schemars(with = "Names<Solver>")]
     pub solver: Solver,
     /// Scaling of the features, fitted to training rows: `standard` (default), `overall` or `none`.
     #[serde(default)]
+    #[schemars(with = "Names<Scaling>")]
     pub scaling: Scaling,
     /// Axis: penalty C > 0 of the classifiers that have one. Default: 1.
     pub c: Option<Axis<f64>>,
@@ -224,7 +233,7 @@ pub struct RecognitionSpec {
 }
 
 /// Keys of `[report]`: contents of the page and of some tables.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReportSpec {
     /// Names of the objects whose touches are drawn side by side. Default: four, spread over the list.
@@ -240,7 +249,7 @@ pub struct ReportSpec {
 }
 
 /// Configurations whose confusion matrix is written to `confusion.csv`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ConfusionMatrices {
     /// All configurations of the study.
@@ -252,7 +261,7 @@ pub enum ConfusionMatrices {
 }
 
 /// Published accuracy, such as `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PublishedSpec {
     /// Published claim, in words.
     pub claim: String,
@@ -263,6 +272,7 @@ pub struct PublishedSpec {
     /// Further keys, which select the configurations to compare with. Each is the name of a column of [`Configuration`] with its value (`noise` is short for
     /// `noise_std`).
     #[serde(flatten)]
+    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     pub at: toml::Table,
 }
 

@@ -70,6 +70,7 @@ impl Study for RecognitionStudy {
         read: charts::read_tables,
     };
     const SUMMARY: Option<fn(&[Table], usize) -> String> = Some(charts::words);
+    type Spec = StudySpec;
     type Rows = RecognitionRows;
 
     fn load(source: &Source) -> Result<Self> {

@@ -1,0 +1,125 @@
+//! JSON Schemas of values that the lower crates define, which do not depend on `schemars`.
+
+use bubbletouch_sim::features::{Features, ImageFeature};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::DeserializeOwned;
+use serde::de::value::StrDeserializer;
+use serde_json::{Map, Value};
+use std::any::type_name;
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+
+/// Schema of an enum that is read from one of its names.
+pub struct Names<T>(PhantomData<T>);
+
+impl<T: DeserializeOwned> JsonSchema for Names<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        type_name::<T>().replace("::", ".").into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": "string", "enum": names::<T>() })
+    }
+}
+
+/// Returns the names of an enum, as its reader lists them in the error for another name.
+pub fn names<T: DeserializeOwned>() -> &'static [&'static str] {
+    let found = T::deserialize(StrDeserializer::<Expected>::new("?"));
+    found.err().map_or(&[], |Expected(names)| names)
+}
+
+/// Error that keeps the names that a reader expected.
+#[derive(Debug)]
+struct Expected(&'static [&'static str]);
+
+impl fmt::Display for Expected {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "one of {}", self.0.join(", "))
+    }
+}
+
+impl std::error::Error for Expected {}
+
+impl serde::de::Error for Expected {
+    fn custom<T: fmt::Display>(_: T) -> Self {
+        Self(&[])
+    }
+
+    fn unknown_variant(_: &str, expected: &'static [&'static str]) -> Self {
+        Self(expected)
+    }
+}
+
+/// Schema of [`Features`]: a name, or several names of image features joined by `+`.
+pub struct FeatureNames;
+
+impl JsonSchema for FeatureNames {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "FeatureNames".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let of_measurements = [
+            Features::Raw,
+            Features::Centred,
+            Features::UnitNorm,
+            Features::CentredUnitNorm,
+        ];
+        let of_images: Vec<&str> = ImageFeature::ALL.iter().map(|one| one.name()).collect();
+        let one = of_images.join("|");
+        let names = of_measurements.map(String::from).into_iter();
+        let names: Vec<String> = names
+            .chain(of_images.into_iter().map(str::to_owned))
+            .collect();
+        json_schema!({
+            "anyOf": [
+                { "type": "string", "enum": names },
+                { "type": "string", "pattern": format!(r"^\s*({one})\s*(\+\s*({one})\s*)+$") },
+            ]
+        })
+    }
+}
+
+/// Adds `rpy_deg`, the former name of `rotation_deg`.
+pub fn with_rpy_deg(schema: &mut Schema) {
+    also_named("rotation_deg", "rpy_deg", schema.ensure_object());
+}
+
+/// Adds `mesh_unit`, the former name of `unit`.
+pub fn with_mesh_unit(schema: &mut Schema) {
+    also_named("unit", "mesh_unit", schema.ensure_object());
+}
+
+/// Adds `rotation_deg`, another name of `turn_deg`.
+pub fn with_rotation_deg(schema: &mut Schema) {
+    also_named("turn_deg", "rotation_deg", schema.ensure_object());
+}
+
+/// Adds another name of a key to all tables of a schema that have the key.
+fn also_named(name: &str, other: &str, schema: &mut Map<String, Value>) {
+    if let Some(keys) = schema.get_mut("properties").and_then(Value::as_object_mut)
+        && let Some(mut own) = keys.get(name).cloned()
+    {
+        own["deprecated"] = true.into();
+        own["description"] = format!("Another name of `{name}`.").into();
+        keys.insert(other.to_owned(), own);
+    }
+    for value in schema.values_mut() {
+        let inner = match value {
+            Value::Array(values) => values.iter_mut().collect(),
+            one => vec![one],
+        };
+        for table in inner.into_iter().filter_map(Value::as_object_mut) {
+            also_named(name, other, table);
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! JSON Schema of study files of all kinds.
+//!
+//! Kinds share tables such as `[skin]`, so the schema lists the tables of all kinds once. Conditions then state which tables a file of each kind may have and
+//! must have; the kind follows from the table that only this kind has.
+
+use super::tidy::tidy;
+use super::{DIALECT, axes_schema, generator};
+use crate::studies;
+use serde_json::{Map, Value, json};
+
+/// A kind of study and the schema of its files.
+pub(super) struct KindSchema {
+    /// Table that only this kind has.
+    pub table: &'static str,
+    /// Schema of a file of this kind, without conditions.
+    pub schema: Value,
+}
+
+/// Returns the schema of each kind, recognition first.
+pub(super) fn kinds() -> Vec<KindSchema> {
+    let kinds = studies::schemas(generator).into_iter().rev();
+    let kinds = kinds.map(|(about, mut schema)| {
+        tidy(&mut schema);
+        if about.table == studies::RECOGNITION_TABLE {
+            axes_schema::complete(&mut schema);
+        }
+        KindSchema {
+            table: about.table,
+            schema,
+        }
+    });
+    kinds.collect()
+}
+
+/// Returns the JSON Schema of study files.
+pub fn study_schema() -> Value {
+    let kinds = kinds();
+    let mut tables = Map::new();
+    for kind in &kinds {
+        for (name, table) in properties(&kind.schema) {
+            tables.entry(name).or_insert_with(|| table.clone());
+        }
+    }
+    // A key in `[axes]` may be absent from its table.
+    let mut without_axes = Map::new();
+    for (name, table) in &mut tables {
+        let required = table.as_object_mut();
+        if let Some(required) = required.and_then(|table| table.remove("required")) {
+            without_axes.insert(name.clone(), json!({ "required": required }));
+        }
+    }
+    json!({
+        "$schema": DIALECT,
+        "title": "Study of bubbletouch",
+        "type": "object",
+        "properties": tables,
+        "additionalProperties": false,
+        "allOf": [
+            rules_of_kinds(&kinds),
+            { "if": { "required": ["axes"] }, "else": { "properties": without_axes } },
+        ],
+    })
+}
+
+/// Returns the conditions that select the rules of a file's kind. A file without a table of another kind is a recognition study.
+fn rules_of_kinds(kinds: &[KindSchema]) -> Value {
+    let Some((recognition, others)) = kinds.split_first() else {
+        return json!({});
+    };
+    others.iter().fold(recognition.rules(), |otherwise, kind| {
+        json!({ "if": { "required": [kind.table] }, "then": kind.rules(), "else": otherwise })
+    })
+}
+
+impl KindSchema {
+    /// Returns which tables a file of this kind may have and must have.
+    fn rules(&self) -> Value {
+        let names: Vec<&String> = properties(&self.schema).map(|(name, _)| name).collect();
+        json!({ "propertyNames": { "enum": names }, "required": self.schema["required"] })
+    }
+}
+
+/// Returns the keys of a table with their schemas.
+pub(super) fn properties(schema: &Value) -> impl Iterator<Item = (&String, &Value)> {
+    let keys = schema.get("properties").and_then(Value::as_object);
+    keys.into_iter().flatten()
+}
