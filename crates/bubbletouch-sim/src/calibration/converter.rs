@@ -10,7 +10,7 @@ const N_READINGS: usize = 200_000;
 const ROUNDING: f64 = 4e-7;
 /// Minimum step of a converter, in multiples of [`ROUNDING`]. Within rounding, all readings are multiples of smaller steps.
 const LEAST: f64 = 20.0;
-/// Minimum number of different readings that shows that there is no step.
+/// Minimum number of different readings for concluding that the converter has no step.
 const FEWEST: usize = 16;
 
 /// Returns the step of a converter with this number of bits, as a fraction of the full scale; 0 for 0 bits.

@@ -21,11 +21,11 @@ const PRESSED: [f64; 2] = [0.15, 60.0];
 const QUIET: [f64; 2] = [0.01, 3.0];
 /// Largest reading that counts as not clipped, as a fraction of the full scale.
 const CLIPPED: f64 = 0.97;
-/// Minimum number of taxels beside an edge.
+/// Minimum number of taxels beside an edge of contact for an estimate.
 const FEWEST: usize = 200;
-/// Number of fixed-point iterations for κ.
+/// Number of fixed-point iterations for the leaked fraction κ.
 const N_ROUNDS: usize = 8;
-/// Number of iterations of A⁻¹; the remaining fraction of an error is at most (2κ)²⁵.
+/// Number of iterations that apply the inverse A⁻¹; the remaining fraction of an error is at most (2κ)²⁵.
 const N_STEPS: usize = 25;
 /// Largest leaked fraction κ for which the iterative inverse of the crosstalk matrix A converges fast enough.
 const LARGEST: f64 = 0.45;
@@ -73,7 +73,7 @@ pub(super) fn estimate(
     found.unwrap_or_else(|| Estimate::unknown("there are too few frames"))
 }
 
-/// Returns the ratios xᵢ / Σⱼ δⱼ of taxels beside an edge.
+/// Returns the ratios xᵢ / Σⱼ δⱼ of the taxels beside an edge of contact.
 fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) -> Vec<f64> {
     let pressed = PRESSED[0].max(PRESSED[1] * noise);
     let quiet = QUIET[0].max(QUIET[1] * noise);
@@ -99,7 +99,7 @@ fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) ->
     shares
 }
 
-/// Solves A δ = x by the iteration δ ← δ + x − A δ.
+/// Solves A δ = x for the deflections δ by the iteration δ ← δ + x − A δ.
 fn sharpened(skin: &RecordedSkin, frame: &[f64], leak: f64) -> Vec<f64> {
     let (ny, nx) = skin.shape;
     let grid = Grid { nx, ny, pitch: 1.0 };

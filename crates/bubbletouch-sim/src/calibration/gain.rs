@@ -19,7 +19,7 @@ const ABOVE_NOISE: f64 = 10.0;
 const MIN_FRAMES: usize = 3;
 /// Minimum number of taxels with known gains; with 50 the error of their spread is a tenth.
 const MIN_TAXELS: usize = 50;
-/// Number of Gauss–Seidel sweeps. If smaller, errors that vary slowly over the array remain.
+/// Number of Gauss–Seidel sweeps that compute the gains. If smaller, errors that vary slowly over the array remain.
 const N_SWEEPS: usize = 200;
 
 /// Gains of the taxels of a skin.
@@ -113,7 +113,7 @@ fn operator_norm((rows, columns): (usize, usize), width: f64) -> f64 {
     response.iter().map(|r| r * r).sum()
 }
 
-/// Solves ln gᵢ = dᵢ + ¼ Σⱼ ln gⱼ for gains of mean 1.
+/// Solves ln gᵢ = dᵢ + ¼ Σⱼ ln gⱼ for the gains g, scaled to mean 1.
 fn gains(skin: &RecordedSkin, halves: &[Option<[f64; 2]>]) -> Array1<f64> {
     let both = |halves: &[f64; 2]| 0.5 * (halves[0] + halves[1]);
     let middle = mean(halves.iter().flatten().map(both));

@@ -5,8 +5,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Number of groups of the jackknife. If smaller, the jackknife itself is less accurate; if larger, it takes longer.
 const N_GROUPS: usize = 20;
-/// Deviation at which the weight of a value becomes 0, in median absolute deviations. If smaller, precision is lost for normal data; if larger, the estimate is
-/// less robust.
+/// Deviation from the median at which the weight of a value becomes 0, in median absolute deviations. If smaller, precision is lost for normal data; if larger,
+/// the estimate is less robust.
 const REACH: f64 = 9.0;
 /// Value of the uncorrected biweight estimator for normal values of variance 1.
 const OF_NORMAL: f64 = 1.018442;

@@ -3,11 +3,13 @@
 /// Minimum number of frames that share a plateau, and their minimum fraction of all frames.
 const MIN_FRAMES: usize = 3;
 const MIN_SHARE: f64 = 0.01;
-/// Minimum ratio of the counts of a plateau and the next smaller reading. If readings have few levels, many frames share the largest one by chance.
+/// Minimum ratio between the numbers of occurrences of a plateau and of the next smaller reading. If readings have few levels, many frames share the largest
+/// one by chance.
 const MIN_EXCESS: usize = 3;
 
-/// Returns the largest reading if it is a plateau. A plateau occurs on at least two taxels, and in at least 3 frames and 1 % of all frames. A plateau is also
-/// at least three times as frequent as the next smaller reading. The closure yields the readings of each frame in the order of taxels; NaN is omitted.
+/// Returns the largest reading if it is a plateau, that is, shared by many frames. A plateau occurs on at least two taxels, and in at least 3 frames and 1 % of
+/// all frames. A plateau is also at least three times as frequent as the next smaller reading. The closure yields the readings of each frame in the order of
+/// taxels; NaN is omitted.
 pub fn plateau<F: Iterator<Item = f64>, I: Iterator<Item = F>>(
     frames: impl Fn() -> I,
 ) -> Option<f64> {

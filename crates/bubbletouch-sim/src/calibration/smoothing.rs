@@ -11,9 +11,9 @@ use crate::signal::Smoothing;
 use crate::world::Grid;
 use std::f64::consts::FRAC_PI_2;
 
-/// Smallest width, in pitches. Smoothing with a smaller width has no effect, because it reaches less than half a taxel.
+/// Smallest width of the smoothing, in taxel pitches. Smoothing with a smaller width has no effect, because it reaches less than half a taxel.
 const NARROWEST: f64 = 0.125;
-/// Number of bisection steps, to a billionth of the array.
+/// Number of bisection steps, which determine the width to a billionth of the array's size.
 const N_STEPS: usize = 40;
 
 /// Statistics of independent noise of variance 1 after smoothing, averaged over the grid.
@@ -42,11 +42,11 @@ impl Smoothed {
 
 /// Statistics of noise of variance 1, smoothed along a line of taxels.
 struct Line {
-    /// Mean variance of the taxels.
+    /// Mean noise variance of the taxels of the line.
     own: f64,
-    /// Mean variance over the taxels of neighbouring pairs.
+    /// Mean noise variance of the taxels that form neighbouring pairs.
     of_pairs: f64,
-    /// Mean covariance of neighbours.
+    /// Mean noise covariance of neighbouring taxels.
     neighbours: f64,
 }
 

@@ -14,9 +14,10 @@ use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 const N_RUN: usize = 50;
 /// Minimum number of untouched frames for an estimate.
 const FEWEST: usize = 20;
-/// Range of the fraction of frames above the lowest reading in which a clipped zero is computed. A wider range uses too few frames at its ends.
+/// Range of the fraction of frames above the lowest reading; inside this range the zero of a clipped taxel is computed. A wider range uses too few frames at
+/// its ends.
 const CLIPPED: [f64; 2] = [0.3, 0.98];
-/// Fraction of runs that must be clear of the lowest reading so that the other runs are omitted.
+/// Minimum fraction of runs without readings at the lowest value for which the other runs are omitted.
 const SUFFICIENT_CLEAR: f64 = 0.1;
 
 /// Zero of a taxel in a run of untouched frames.

@@ -21,7 +21,7 @@ pub fn relaxation_factor(taxel: &Taxel, dt: f64) -> f64 {
     (-taxel.stiffness * dt / taxel.damping).exp()
 }
 
-/// Deflections and forces of one patch between steps.
+/// Deflections and forces of one patch, carried from step to step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DamperState {
     /// Deflection of each taxel, metres, shape (n_taxels,).

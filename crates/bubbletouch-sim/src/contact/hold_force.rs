@@ -9,7 +9,7 @@ use crate::objects::Model;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// Travel and force after an object was moved to a force.
+/// Result of moving an object until a force is reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeldForce {
     /// Travel of the object along the direction, metres.

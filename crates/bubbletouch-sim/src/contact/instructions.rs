@@ -43,7 +43,7 @@ impl Instructions {
         Vec::new()
     }
 
-    /// Resolves `Best` to the best supported instructions, and also an unsupported choice.
+    /// Resolves `Best`, and any unsupported choice, to the best supported instructions.
     pub fn resolved(self) -> Self {
         let here = Self::here();
         match here.contains(&self) {

@@ -18,7 +18,7 @@ pub struct TaxelContact {
     pub object: usize,
     /// Index of the sphere in its union, or of the triangle in its mesh.
     pub part: usize,
-    /// Deflection δ, metres, above 0 to the stroke.
+    /// Deflection δ of the taxel, metres, above 0 and at most the stroke.
     pub deflection: f64,
     /// Deflection that the object needs, not limited to the stroke, metres; larger than `deflection` if the taxel is saturated.
     pub needed: f64,

@@ -15,7 +15,7 @@ pub struct Workspace {
     is_on_grid: bool,
     /// Deflections, metres, shape (n_taxels,).
     pub(super) deflections: Vec<f64>,
-    /// Object and part that determine each deflection, shape (n_taxels,); unspecified for untouched taxels.
+    /// Object and part (sphere or triangle) that determine each deflection, shape (n_taxels,); unspecified for untouched taxels.
     pub(super) deciding: Vec<[u32; 2]>,
     /// Indices of the touched taxels, ascending after a press.
     pub(super) touched: Vec<u32>,
@@ -25,7 +25,7 @@ pub struct Workspace {
     pub(super) lines: GridLines,
     /// Contacts of the touched taxels, in the order of `touched`.
     pub(super) contacts: Vec<TaxelContact>,
-    /// Parts of objects that push their taxels even from behind the substrate.
+    /// Parts of objects (spheres or triangles) that push their taxels even from behind the substrate.
     pub(super) held: Vec<HeldTaxel>,
     /// Poses of the objects along the path of a press.
     pub(super) poses: Vec<Pose>,
@@ -85,7 +85,7 @@ impl Workspace {
             }));
     }
 
-    /// Holds the parts that determine the deflections of the last press.
+    /// Marks the parts that determine the deflections of the last press as held, so that they push even from behind the substrate.
     pub(super) fn hold_touched(&mut self) {
         let deciding = &self.deciding;
         self.held.clear();
@@ -96,7 +96,7 @@ impl Workspace {
             }));
     }
 
-    /// Returns whether any part of an object is held.
+    /// Returns whether any part of an object is marked as held.
     pub fn holds_any(&self) -> bool {
         !self.held.is_empty()
     }

@@ -21,7 +21,7 @@ pub struct State {
     pub riders: Vec<Rider>,
 }
 
-/// Stacked ball; two adjacent balls touch if they have equal travels.
+/// Ball stacked on the object; two adjacent balls touch if they have equal travels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rider {
     /// Travel of the ball, metres.

@@ -22,7 +22,7 @@ use super::moments::{N_MOMENTS, Weight, moments};
 use multiversion::multiversion;
 use std::f64::consts::PI;
 
-/// Number of levels of each kind, and of rings. In a 64 × 64 image pressed to half its stroke, steps of full scale / 24 are distinguishable.
+/// Number of depth levels of each kind, and number of rings. In a 64 × 64 image pressed to half its stroke, steps of full scale / 24 are distinguishable.
 const N_LEVELS: usize = 24;
 const N_RINGS: usize = 24;
 const N_VALUES: usize = 3 + 3 * N_LEVELS + 3 * N_MOMENTS + N_RINGS;

@@ -50,7 +50,7 @@ pub fn moments<const N: usize>(image: &Image, weights: [Weight; N]) -> [[f64; N_
 struct Sums {
     total: [f64; LANES],
     c11: [f64; LANES],
-    /// Real and imaginary parts of the sum for the moment C₂₀.
+    /// Real and imaginary parts of the sum from which the moment C₂₀ is computed.
     c20: [[f64; LANES]; 2],
     c21: [[f64; LANES]; 2],
     c30: [[f64; LANES]; 2],

@@ -6,7 +6,7 @@ use realfft::{RealFftPlanner, RealToComplex};
 use std::fmt;
 use std::sync::Arc;
 
-/// Low-order harmonics of values at equal angles around several rings:
+/// Transform that computes the low-order harmonics hₖ of values f at equal angles around several rings:
 ///
 /// hₖ = |Σⱼ f(θⱼ) exp(−2πi j k / n)| / n, k = 0 … `n_harmonics` − 1.
 ///

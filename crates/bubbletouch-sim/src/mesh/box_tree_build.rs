@@ -124,7 +124,7 @@ struct Cut {
     axis: usize,
     low: f64,
     bins_a_metre: f64,
-    /// First bin of the second part.
+    /// Index of the first bin beyond the plane.
     first_right: usize,
 }
 

@@ -188,7 +188,7 @@ impl EdgeRow {
 /// Pair of opposite faces of a box.
 struct Face {
     axis: usize,
-    /// Half of the box along the axis, the maximum radius of a ball.
+    /// Half the thickness of the box between the two faces, metres; the maximum radius of a ball.
     depth: f64,
     /// Half side lengths of the face, metres.
     half: [f64; 2],

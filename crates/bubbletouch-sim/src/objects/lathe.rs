@@ -74,7 +74,7 @@ impl Lathe {
         }
     }
 
-    /// Returns the best next ring: it covers an end of the first uncovered interval, and the largest length of all edges per sphere.
+    /// Returns the ring that covers an end of the first uncovered interval and, among these rings, the largest edge length per sphere.
     fn next_ring(&self, uncovered: &Uncovered, fit: Fit) -> Option<Ring> {
         let (edge, target, step) = uncovered.first_end(&self.outline)?;
         let available = if step > 0.0 {

@@ -188,7 +188,7 @@ struct Sampler<'a> {
 /// Area of the surface per ball, computed as a function of position.
 struct Sizes<'a> {
     target: &'a Target<'a>,
-    /// Last result: the normal, and the largest ball that covers the position, which is its foot.
+    /// Last computed ball: the surface normal, and the largest ball that covers the position, which is its foot.
     known: Option<(DVec3, Ball)>,
 }
 

@@ -103,7 +103,8 @@ pub(super) struct Cover<'a> {
     counts: Vec<u32>,
     /// Exclusive or of the indices of the chosen sets that contain each row; if there is one such set, its index.
     holders: Vec<u32>,
-    /// Score of each set. For a set that is not chosen: the weight that it would cover. For a chosen set: minus the weight that only this set covers.
+    /// Score of each set for the next exchange. For a set that is not chosen: the weight that it would cover. For a chosen set: minus the weight that only this
+    /// set covers.
     scores: Vec<i32>,
     /// Step at which each set was last added or removed.
     moved_at: Vec<u32>,

@@ -4,13 +4,13 @@ use crate::objects::Sphere;
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Number of rays per pixel, along each side. The picture of the rays is scaled down by this factor.
+/// Number of rays per pixel in each direction. The supersampled picture is scaled down by this factor.
 const SUPERSAMPLING: usize = 2;
 
-/// First hit of a ray.
+/// First hit of a ray on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Coordinate towards the viewer, metres.
+    /// Coordinate of the hit towards the viewer, metres.
     pub height: f64,
     /// Unit normal at the hit, in the picture frame: right, up, towards the viewer.
     pub normal: DVec3,
@@ -23,7 +23,7 @@ pub fn three_quarter_view() -> DMat3 {
     view_from(30f64.to_radians(), 38f64.to_radians())
 }
 
-/// Returns the axes right, up and towards the viewer. The viewer is in front of the object (−y), turned by both angles, radians.
+/// Returns the axes right, up and towards the viewer. The viewer is in front of the object (−y), turned by the angles `azimuth` and `elevation`, radians.
 pub fn view_from(azimuth: f64, elevation: f64) -> DMat3 {
     let right = DVec3::new(azimuth.cos(), azimuth.sin(), 0.0);
     let back = DVec3::new(azimuth.sin(), -azimuth.cos(), 0.0);
@@ -39,7 +39,7 @@ pub type SurfaceHit<'a> = dyn Fn(DVec3, DVec3) -> Option<(DVec3, DVec3)> + Sync 
 pub struct Canvas {
     /// Number of rays in a row.
     pub width: usize,
-    /// Number of rays per column of the canvas.
+    /// Number of rays in a column.
     pub height: usize,
     /// Number of rays per metre of the view plane.
     pub scale: f64,
@@ -104,9 +104,9 @@ impl Canvas {
         hits
     }
 
-    /// Returns the hits of all rays on a surface.
+    /// Returns the hits of all rays on a surface, given by its function for the first hit.
     ///
-    /// Rays start outside a ball with this centre (`middle`) and `radius`, which must contain the object.
+    /// Each ray starts outside a ball with this centre (`middle`) and `radius`, which must contain the object.
     pub fn cast(&self, first_hit: &SurfaceHit<'_>, middle: DVec3, radius: f64) -> Vec<Option<Hit>> {
         let towards_eye = self.view.z_axis;
         let start = middle.dot(towards_eye) + radius;
@@ -122,7 +122,7 @@ impl Canvas {
         rays.map(ray).collect()
     }
 
-    /// Returns the point of a ray at the coordinate `height` towards the viewer, in the object frame.
+    /// Returns the point of a ray whose coordinate towards the viewer is `height`, in the object frame.
     pub fn point(&self, index: usize, height: f64) -> DVec3 {
         let ray = DVec2::new(
             (index % self.width) as f64 + 0.5 - 0.5 * self.width as f64,

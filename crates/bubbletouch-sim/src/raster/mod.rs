@@ -1,6 +1,7 @@
-//! Pictures of surfaces: orthographic, with soft light and outlines.
+//! Pictures of surfaces in orthographic projection, with soft light and outlines.
 //!
-//! Spheres, or another surface with a function for the first hit of a ray → the hits of all rays of a [`Canvas`] → the colours of its pixels.
+//! The input is spheres, or a surface with a function for the first hit of a ray. A [`Canvas`] computes the hits of all rays, and shading computes the colours
+//! of its pixels.
 
 mod canvas;
 pub mod pixels;

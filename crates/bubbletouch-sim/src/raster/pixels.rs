@@ -3,10 +3,10 @@
 use super::Rgb;
 use glam::DVec2;
 
-/// Shape of the cells of a map.
+/// Shape of the cells of a map, such as a pressure map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CellShape {
-    /// Square with sides along the picture's.
+    /// Square with sides parallel to the picture's sides.
     Square,
     /// Disc.
     Disc,
@@ -31,7 +31,7 @@ pub fn halved(rgb: &[u8], width: usize) -> Vec<u8> {
     half
 }
 
-/// Returns the first three of every `n_samples` values: pixels without their opacity.
+/// Returns the first three of every `n_samples` values, which are the colours of pixels without their opacity.
 ///
 /// # Panics
 /// If `n_samples` is less than 3.
@@ -43,7 +43,7 @@ pub fn without_opacity(samples: &[u8], n_samples: usize) -> Vec<u8> {
     rgb
 }
 
-/// Replaces each value of a picture by the value of another picture of equal size if that value is darker.
+/// Replaces each value of a picture by the value of another picture of equal size if the other value is darker.
 pub fn darken(rgb: &mut [u8], other: &[u8]) {
     for (value, &other) in rgb.iter_mut().zip(other) {
         *value = (*value).min(other);

@@ -5,16 +5,16 @@ use super::pixels::halved;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Colour: red, green and blue, 0 to 255.
+/// Colour, given by red, green and blue, 0 to 255.
 pub type Rgb = [u8; 3];
 
 /// Brightness of rays that hit nothing, 0 to 255.
 pub const BACKGROUND: u8 = 250;
 
-/// Lighting of a surface.
+/// Lighting of a surface in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lighting {
-    /// Smoothed normals, so that the shape is visible and not the single spheres.
+    /// Smoothed normals, which show the shape instead of the single spheres.
     Smoothed,
     /// True normals, which show every sphere and every face.
     Plain,
@@ -23,8 +23,7 @@ pub enum Lighting {
 }
 
 impl Canvas {
-    /// Returns the pixels of the part of the picture, rows from the top, 3 bytes each. `paint` takes the number of a ray and its hit, and returns the colour of
-    /// the surface.
+    /// Returns the pixels of the canvas, rows from the top, 3 bytes each. `paint` takes the index of a ray and its hit, and returns the colour of the surface.
     pub fn paint(
         &self,
         hits: &[Option<Hit>],
@@ -55,7 +54,7 @@ impl Canvas {
         halved(rays.as_flattened(), self.width)
     }
 
-    /// Returns whether a neighbouring ray hits a point far behind this one, which is the case at an inner or outer outline of the object.
+    /// Returns whether the ray is at an inner or outer outline of the object, that is, whether a neighbouring ray hits a point far behind.
     fn is_outline(&self, hits: &[Option<Hit>], index: usize, hit: &Hit) -> bool {
         // A slope of 80° between rays does not count as an outline.
         let step = 8.0 / self.scale;

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// Default number of components of a PCA dictionary.
 const PCA_ATOMS: usize = 256;
 
-/// Basis of the atoms of a dictionary.
+/// Basis from which the atoms of a dictionary are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Basis {
@@ -57,7 +57,7 @@ pub struct Energy {
     pub rest: f64,
 }
 
-/// Method that computes coefficients.
+/// Method that computes the coefficients of frames in a dictionary.
 #[derive(Clone, Debug)]
 enum Form {
     /// Cosine transforms along y and x, and the indices of the chosen coefficients.
@@ -227,7 +227,7 @@ impl Dictionary {
         frames
     }
 
-    /// Returns Σⱼ αⱼ ψⱼ, without x₀.
+    /// Returns the linear combinations Σⱼ αⱼ ψⱼ of atoms, without the origin x₀.
     pub(super) fn combine(&self, coefficients: ArrayView2<f64>) -> Array2<f64> {
         assert_eq!(coefficients.ncols(), self.n_atoms(), "atoms in a row");
         if let Form::Stored(atoms) = &self.form {

@@ -11,7 +11,7 @@ use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, Axis, s};
 use ndarray_rand::RandomExt;
 use rand_distr::StandardNormal;
 
-/// Number of extra directions. If smaller, the last components are inaccurate; if larger, only the time increases.
+/// Number of directions computed in addition to the requested components. If smaller, the last components are inaccurate; if larger, only the time increases.
 const OVERSAMPLING: usize = 16;
 /// Number of products with the covariance matrix; each product squares the ratio of kept to discarded variances.
 const ITERATIONS: usize = 3;

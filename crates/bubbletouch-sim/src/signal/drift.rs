@@ -20,16 +20,16 @@ use rand::Rng;
 use rand_distr::StandardNormal;
 use std::f64::consts::{PI, SQRT_2};
 
-/// Number of terms of the expansion. If the number is smaller, the zeros of all taxels vary in a space of few dimensions, which a classifier can learn to
-/// ignore. With 8 terms, drift of any strength hardly affects a linear classifier; a real random walk does not allow this. If the number is larger, time and
-/// memory increase.
+/// Number of terms of the Karhunen–Loève expansion. If the number is smaller, the zeros of all taxels vary in a space of few dimensions, which a classifier can
+/// learn to ignore. With 8 terms, drift of any strength hardly affects a linear classifier; a real random walk does not allow this. If the number is larger,
+/// time and memory increase.
 const N_MODES: usize = 64;
 
 /// Drifting zeros of a skin, which can be computed for any time of its session.
 #[derive(Clone, Debug)]
 struct Zeros {
     n_taxels: usize,
-    /// Coefficients ξ, mode after mode, one per taxel.
+    /// Coefficients ξ of the expansion, mode after mode, one per taxel.
     coefficients: Vec<f64>,
     /// Amplitude of each mode, in the unit of the frame.
     amplitudes: Vec<f64>,

@@ -13,7 +13,7 @@
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::{Error, Result};
 
-/// Number of play operators. If the value is smaller, the loop has visible corners; if the value is larger, the cost increases.
+/// Number of play operators in the hysteresis model. If the value is smaller, the loop has visible corners; if the value is larger, the cost increases.
 const N_PLAYS: usize = 8;
 /// Largest loop width for which all weights are positive. Above it, the reading would fall while the load increases.
 const MAX_WIDTH: f64 = 0.25;

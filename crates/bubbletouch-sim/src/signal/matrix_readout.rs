@@ -25,7 +25,7 @@ pub struct MatrixReadout {
     ny: usize,
     /// Line resistance ε, relative to the resistance of a fully pressed taxel.
     resistance: f64,
-    /// Full scale X, in the unit of the frame.
+    /// Full scale X of the frames, in their unit.
     full_scale: f64,
 }
 

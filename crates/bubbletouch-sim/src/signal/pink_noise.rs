@@ -16,8 +16,8 @@ use crate::text::in_range::not_negative;
 use rand::Rng;
 use rand_distr::StandardNormal;
 
-/// Number of sources K. The slowest source is constant for half a million readings, longer than a touch of most arrays. If the value is smaller, slow noise
-/// is missing.
+/// Number K of random sources whose sum is the pink noise. The slowest source is constant for half a million readings, longer than a touch of most arrays. If
+/// the value is smaller, slow noise is missing.
 const N_SOURCES: usize = 20;
 
 pub(super) const ABOUT: ErrorAbout = ErrorAbout {

@@ -7,7 +7,7 @@ use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::{Error, Result};
 
-/// Maximum number of bits. A finer step is smaller than any effect of a touch.
+/// Maximum number of bits of a converter. A finer step is smaller than any effect of a touch.
 const MAX_BITS: u32 = 24;
 
 /// Analogue-to-digital converter, prepared for frames of one range.

@@ -73,7 +73,7 @@ pub struct NumberTable {
 }
 
 impl NumberTable {
-    /// Reads a whole table. Errors begin with `place`, the name of the file, and state line and column; `allowed` describes a valid file.
+    /// Reads a whole table of numbers. Errors begin with `place`, the name of the file, and state line and column; `allowed` describes a valid file.
     ///
     /// # Errors
     /// If the file is not a table of finite numbers.

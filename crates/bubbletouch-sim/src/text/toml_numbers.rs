@@ -52,7 +52,7 @@ pub fn check_bounds(place: &str, text: &str) -> Result<()> {
     checked.table("", Bound(MAX_PLAIN, ""), table.get_ref())
 }
 
-/// A TOML text and its name in errors.
+/// TOML text, with its name in errors.
 struct Text<'a> {
     place: &'a str,
     text: &'a str,

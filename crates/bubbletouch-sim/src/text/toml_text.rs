@@ -8,8 +8,8 @@ use serde::de::DeserializeOwned;
 use toml_parser::Source;
 use toml_parser::lexer::TokenKind;
 
-/// Maximum nesting of brackets. The TOML reader has its own limit (80), but ignores it in invalid text and recurses for each bracket. Thousands of brackets
-/// would overflow a thread's stack.
+/// Maximum nesting of brackets in a TOML text. The TOML reader has its own limit (80), but ignores it in invalid text and recurses for each bracket. Thousands
+/// of brackets would overflow a thread's stack.
 const MAX_OPEN: usize = 200;
 
 /// Parses a text; the error contains `place` (the file), line and column.

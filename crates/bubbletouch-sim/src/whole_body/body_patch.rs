@@ -121,7 +121,7 @@ impl BodyPatch {
     }
 }
 
-/// All patches of a body.
+/// Whole body: all patches of skin of a robot.
 ///
 /// Taxels are numbered patch by patch, each patch in the order of its layout.
 #[derive(Clone, Debug)]

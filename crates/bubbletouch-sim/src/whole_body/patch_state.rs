@@ -75,7 +75,7 @@ impl PatchState {
         &self.deflections[..self.n_taxels]
     }
 
-    /// Begins a step: relaxes the deflected taxels for `dt` seconds.
+    /// Begins a step by relaxing the deflected taxels for `dt` seconds.
     pub fn begin_step(&mut self, patch: &BodyPatch, dt: f64) {
         (self.n_evaluated, self.n_rejected) = (0, 0);
         if patch.taxel().damping > 0.0 {

@@ -24,9 +24,9 @@ pub struct Patch {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EvenGrid {
     pub grid: Grid,
-    /// Radius ρ of all taxels, metres.
+    /// Radius ρ of each taxel, metres.
     pub radius: f64,
-    /// Stroke s of all taxels, metres.
+    /// Stroke s of each taxel, metres.
     pub stroke: f64,
     /// Height of the substrate relative to the rest centres, −s − ρ, metres.
     pub behind: f64,

@@ -62,7 +62,7 @@ pub(crate) struct Leaf {
 /// Taxel index that marks an unused entry of a leaf.
 const NONE: u32 = u32::MAX;
 
-/// Node of the tree: a box around the segments of some taxels.
+/// Node of the tree: a bounding box around some taxels, from their rest centres back to the substrate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub bounds: Aabb,
@@ -107,7 +107,7 @@ impl TaxelTree {
         )
     }
 
-    /// Returns the box around the segments of all taxels, metres; `None` if there are no taxels.
+    /// Returns the bounding box of all taxels, from their rest centres back to the substrate, metres; `None` if there are no taxels.
     pub fn bounds(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
     }
@@ -250,7 +250,7 @@ impl Node {
         least.max(largest).element_sum()
     }
 
-    /// Node before its contents are known.
+    /// Placeholder of a node whose contents are not yet known.
     const EMPTY: Self = Self {
         bounds: Aabb {
             min: DVec3::ZERO,
@@ -300,7 +300,7 @@ impl PlacedTaxel {
         }
     }
 
-    /// Returns the box around the segment from the rest centre back to the substrate.
+    /// Returns the bounding box of the taxel from its rest centre back to the substrate.
     fn stretch(&self) -> Aabb {
         let end = self.center + self.behind * self.axis;
         Aabb {

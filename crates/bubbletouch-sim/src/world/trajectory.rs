@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 
-/// Period of motion with constant velocity.
+/// Phase of a motion, with constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
     /// Duration of the period, seconds, zero or positive.

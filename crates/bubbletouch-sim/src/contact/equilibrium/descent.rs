@@ -34,7 +34,8 @@ const NEARBY: f64 = 0.04;
 const SMOOTHING: f64 = 1e-2;
 /// Minimum smoothing of ties, in multiples of the rounding error of the object's size.
 const LAST_BITS: f64 = 64.0;
-/// Maximum number of smoothing rounds. Each round makes the smoothed kinks of the energy steeper by a factor of 5; rounding hides further rounds.
+/// Maximum number of times that the smoothing is reduced. Each round makes the smoothed kinks of the energy steeper by a factor of 5; rounding hides further
+/// rounds.
 const MAX_TIGHTENINGS: usize = 12;
 /// Distance below which two positions count as equal, relative to size and travel of the object.
 const SAME_PLACE: f64 = 1e-15;
@@ -350,7 +351,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         self.look(&behind);
     }
 
-    /// Returns the length of a step, metres, up to which all contacts that the step can make are gathered.
+    /// Returns the length of a step, metres, for which all possible contacts are gathered.
     fn nearby(&self) -> f64 {
         NEARBY * self.farthest
     }

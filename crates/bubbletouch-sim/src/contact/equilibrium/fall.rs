@@ -57,7 +57,8 @@ impl Loose {
         all
     }
 
-    /// Returns the unit vector of the motion under gravity: `down`, constrained by the planes touched. Returns `None` if the planes hold the group.
+    /// Returns the direction of the group's motion under gravity (unit vector), which is `down` constrained by the planes touched. Returns `None` if the planes
+    /// hold the group.
     pub fn direction(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
         let normals = self.planes.iter().map(|&plane| ground.planes[plane].normal);
         let normals: Vec<DVec3> = normals.collect();

@@ -34,7 +34,7 @@ pub(super) struct Pair {
     pub arm: DVec3,
 }
 
-/// How a pair's deflection depends on motions.
+/// Dependence of a pair's deflection on the motions of bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     Taxel(Reach),

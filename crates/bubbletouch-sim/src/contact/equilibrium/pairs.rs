@@ -27,7 +27,7 @@ pub(super) struct Group {
     pub weight: f64,
 }
 
-/// Margins within which pairs are gathered beyond those in contact.
+/// Margins that determine which pairs are gathered in addition to pairs in contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margins {
     /// Distance that spheres may move without meeting a taxel that is not gathered, metres.

@@ -70,7 +70,7 @@ impl TaxelLoad {
 }
 
 impl Touch {
-    /// The list `of_body` maps the index of a body to the index of its object.
+    /// Creates the report of a rigid contact; the function `of_body` maps the index of a body to the index of its object.
     pub(super) fn new(
         pair: &Pair,
         touched: Touched,

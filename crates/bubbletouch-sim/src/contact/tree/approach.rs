@@ -83,7 +83,7 @@ impl<'a> Approach<'a> {
         (farthest > 0.0).then_some(end - farthest)
     }
 
-    /// Returns the largest deflection of the travelling taxels by an object, metres, or `others` if that is larger.
+    /// Returns the larger of `others` and the largest deflection of the travelling taxels (axes along the direction) by an object, metres.
     fn farthest(&self, object: &Model, pose: &Pose, others: f64) -> f64 {
         let mut farthest = others;
         match object {
@@ -127,7 +127,7 @@ impl<'a> Approach<'a> {
         farthest_of_each(Instructions::Best, self, placed, numbers, others)
     }
 
-    /// Returns an upper bound of the deflection, metres, of the travelling taxels by a ball in the patch frame.
+    /// Returns an upper bound of the deflection, metres, by a ball in the patch frame, for taxels whose axes are the direction of travel.
     #[inline(always)]
     fn most(&self, ball: &Sphere) -> f64 {
         self.travelling().front + ball.radius - ball.center.dot(self.direction)

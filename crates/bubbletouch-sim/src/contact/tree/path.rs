@@ -17,7 +17,7 @@ const FRICTION_STEP: f64 = 0.25;
 /// Maximum number of steps of a path; if strokes are far shorter than the path, steps become longer.
 const MAX_STEPS: f64 = 4096.0;
 
-/// Patch, and the poses of the objects before it moves along a direction (unit vector, in the patch frame).
+/// Path of a patch along a direction (unit vector, in the patch frame), with the poses of the objects before the motion.
 pub(crate) struct ApproachPath<'a> {
     pub patch: &'a Patch,
     pub objects: &'a [Model],
@@ -81,7 +81,7 @@ impl ApproachPath<'_> {
         self.at(moved, press_with_contacts)
     }
 
-    /// Presses a flat patch along its axis from the front, with the travelling taxels.
+    /// Presses a flat patch along its axis from the front, using taxels whose axes are the direction of travel.
     pub fn press_through(&mut self, taxels: &TaxelTree, travel: f64) -> Contact {
         let contact = self.at(
             travel * self.direction,

@@ -62,7 +62,7 @@ pub(crate) fn push_tree(
     }
 }
 
-/// Pushes taxels by held parts behind the substrate; parts in front of the substrate push their taxels in any case.
+/// Pushes taxels by parts of objects that are held behind the substrate; parts in front of the substrate push their taxels in any case.
 fn push_held(
     patch: &Patch,
     objects: &[Model],

@@ -16,7 +16,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     })
 };
 
-/// Returns one frequency of each pair ± (u, v), lowest first: its cosine, and its sine unless this is 0 on every taxel.
+/// Returns the frequencies (u, v), one of each pair ± (u, v), lowest first. Each has a cosine, and a sine unless this is 0 on every taxel.
 fn waves((ny, nx): (usize, usize)) -> Vec<(usize, usize, bool)> {
     let mut waves = Vec::with_capacity(ny * nx);
     for v in 0..ny {

@@ -12,7 +12,8 @@ use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Axis, Zip};
 
 /// Number of steps between two checks of the duality gap; a check costs about a quarter of a step.
 const CHECK_EVERY: usize = 5;
-/// Number of power iterations for L. With this number the error of the estimate is far smaller than the safety margin (Kuczyński and Woźniakowski 1992).
+/// Number of power iterations that estimate the largest eigenvalue L. With this number the error of the estimate is far smaller than the safety margin
+/// (Kuczyński and Woźniakowski 1992).
 const POWER_STEPS: usize = 60;
 const MARGIN: f64 = 1.02;
 
@@ -203,7 +204,7 @@ impl<'a> Open<'a> {
     }
 }
 
-/// Performs one proximal step from `ahead`, and computes the next extrapolated point.
+/// Performs one proximal gradient step from the extrapolated point `ahead`, and computes the next extrapolated point.
 fn step_row(
     alpha: ArrayViewMut1<f64>,
     mut ahead: ArrayViewMut1<f64>,

@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 /// 30 µs for 100 spheres).
 const SURFACE_ERROR: f64 = 0.5e-3;
 
-/// Largest inclination of a hand, radians. If larger, a flat hand (which is rigid) touches only with the ball of the thumb or a finger.
+/// Largest inclination of a hand against the skin, radians. If larger, a flat hand (which is rigid) touches only with the ball of the thumb or a finger.
 const LEVEL: f64 = 0.03;
 
 /// Bending of the fingers of a fist, as a fraction of [`Hand::curled`].

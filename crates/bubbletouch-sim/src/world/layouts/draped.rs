@@ -160,8 +160,8 @@ fn subdivide(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<SurfaceTriang
     Some(pieces)
 }
 
-/// Returns the mean unit normal of the surface around each taxel, in the order of the taxels' pieces. Pieces that face away from the taxel's own piece are
-/// ignored.
+/// Returns the mean unit normal of the surface around each taxel, in the order of the taxels' surface pieces. Pieces that face away from the taxel's own piece
+/// are ignored.
 fn mean_normals(pieces: &[SurfaceTriangle], taxels: &Taken, within: f64) -> BTreeMap<usize, DVec3> {
     let mut sums: BTreeMap<usize, DVec3> = BTreeMap::new();
     for piece in pieces {

@@ -28,7 +28,7 @@ pub(super) struct Column {
 pub(super) type Units = &'static [(&'static str, f64)];
 
 impl Table {
-    /// Reads the whole table. Errors begin with `place`, the file's name, and contain the line.
+    /// Reads the whole table of waypoints. Errors begin with `place`, the file's name, and contain the line.
     pub fn read(place: &str, source: impl Read) -> Result<Self> {
         let allowed = format!("a header with {TIME}, then way-points");
         let numbers = NumberTable::read(place, source, &allowed)?;
@@ -72,7 +72,7 @@ impl Table {
         self.claimed.len()
     }
 
-    /// Creates an error about the header.
+    /// Creates an error about the header of the table.
     pub fn refuse_header(&self, given: impl ToString, allowed: impl ToString) -> Error {
         self.numbers.refuse_header(given, allowed)
     }

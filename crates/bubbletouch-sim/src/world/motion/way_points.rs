@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use ndarray::Array2;
 
-/// Rows of numbers at given times. Invariant after `checked`: at least one row, all numbers finite, times ascending.
+/// Waypoints: rows of numbers at given times. Invariant after `checked`: at least one row, all numbers finite, times ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct WayPoints {
     /// Times of the waypoints, seconds.

@@ -38,7 +38,7 @@ pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
     merging.basins(support, &label)
 }
 
-/// Lowest path from one basin to another, given by the basins' labels, with the height of its highest point.
+/// Lowest path (pass) between two basins, given by the basins' labels, with the height of its highest point.
 struct Pass {
     labels: (usize, usize),
     height: f64,
@@ -80,7 +80,7 @@ fn mesh_passes(support: &Support, label: &[usize]) -> Vec<Pass> {
     lowest_of_each(between.map(pass).collect())
 }
 
-/// Keeps the lowest of several passes between two labels.
+/// Keeps the lowest pass between each pair of labels.
 fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
     passes.sort_by(|a, b| {
         let by_height = a.height.total_cmp(&b.height);
@@ -92,9 +92,9 @@ fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
 
 /// Set of basins while they are merged (union-find).
 struct Merging {
-    /// Another label of the basin of each label; a root refers to itself.
+    /// Parent of each label in the union-find structure: another label of its basin; a root refers to itself.
     parent: Vec<usize>,
-    /// Lowest direction and its height, for each root.
+    /// Lowest direction of the basin of each root, and its height.
     minimum: Vec<(DVec3, f64)>,
 }
 
@@ -116,7 +116,8 @@ impl Merging {
         label
     }
 
-    /// Merges basins, lowest pass first. Two basins are merged if the pass between them is less than `barrier` above the higher of their minima.
+    /// Merges basins across low passes, lowest pass first. Two basins are merged if the pass between them is less than `barrier` above the higher of their
+    /// minima.
     fn merge(&mut self, passes: &[Pass], barrier: f64) {
         let mut by_height: Vec<&Pass> = passes.iter().collect();
         by_height.sort_by(|a, b| a.height.total_cmp(&b.height));

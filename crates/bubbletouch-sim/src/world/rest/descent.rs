@@ -67,7 +67,7 @@ impl LinearBound {
     }
 }
 
-/// Returns the tangent step that minimises the linearised height inside the walls, and this height. Spheres below `lowest` are ignored.
+/// Returns the tangent step that minimises the linearised height inside the bounding walls, and this height. Spheres below `lowest` are ignored.
 fn linear_step(
     spheres: &[Sphere],
     down: DVec3,

@@ -11,7 +11,7 @@ const EMPTY: u8 = 0;
 const SOLID: u8 = 1;
 const OUTSIDE: u8 = 2;
 
-/// Returns the centre of mass, metres, in the union's frame.
+/// Returns the centre of mass of a union of spheres, in the union's frame, metres.
 ///
 /// The union is divided into cubes. Cavities enclosed by spheres count as solid: a shell of spheres around a mesh
 /// has the mass of the mesh's interior, but a mug stays hollow.
@@ -82,7 +82,7 @@ impl Cells {
         }
     }
 
-    /// Marks every empty cell connected through faces to the corner of the outer layer.
+    /// Marks every empty cell that is connected through faces to the corner of the outer layer as outside.
     fn flood_outside(&mut self) {
         let mut stack = vec![[0usize; 3]];
         self.state[0] = OUTSIDE;

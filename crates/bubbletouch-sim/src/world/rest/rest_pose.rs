@@ -11,10 +11,10 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::{DQuat, DVec3};
 
-/// Smallest barrier between two poses, relative to the farthest point's distance. If smaller, bumps of spheres on a round side become poses; if larger, stable
-/// poses are merged (1 % keeps all poses that withstand ± 8°).
+/// Smallest height of the barrier between two resting poses, relative to the farthest point's distance. If smaller, bumps of spheres on a round side become
+/// poses; if larger, stable poses are merged (1 % keeps all poses that withstand ± 8°).
 const BARRIER: f64 = 0.01;
-/// Smallest probability of a pose. If smaller, poses are included that rarely occur.
+/// Smallest probability of a resting pose that is returned. If smaller, poses are included that rarely occur.
 const LEAST_PROBABILITY: f64 = 0.02;
 
 /// Pose in which an object rests on the table, with its probability.

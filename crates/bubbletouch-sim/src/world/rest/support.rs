@@ -115,7 +115,7 @@ impl Support {
         cell
     }
 
-    /// Returns the height of the highest candidate of a cell in a direction.
+    /// Returns the height of the highest candidate sphere of a cell in a direction, metres.
     fn highest(&self, cell: usize, direction: DVec3) -> f64 {
         let height = |&index: &u32| {
             let sphere = &self.spheres[index as usize];
