@@ -1,11 +1,11 @@
-//! What the program is built from, for the manifests of studies: a hash of its sources, its commit, and the compiler.
+//! Build script: determines a hash of the sources, their commit, and the compiler, for the manifests of studies.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn main() {
-    // Not the commit itself: that would build everything again after each.
+    // The commit itself is not listed, because the program would then be rebuilt after each commit.
     for path in [
         "src",
         "crates",
@@ -43,7 +43,7 @@ fn add_files(path: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// FNV-1a of 128 bits over names and contents: it tells versions apart, it is not there to resist anyone.
+/// Returns the 128-bit FNV-1a hash of all file names and contents. It distinguishes versions but is not secure against attacks.
 fn hash(files: &[PathBuf]) -> u128 {
     let mut hash: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
     let mut add = |bytes: &[u8]| {
@@ -61,7 +61,7 @@ fn hash(files: &[PathBuf]) -> u128 {
     hash
 }
 
-/// The last commit, `-changed` when the sources are not those of it; `unknown` outside a repository.
+/// Returns the last commit, with `-changed` if the sources differ from it; `unknown` outside a repository.
 fn commit() -> String {
     let Some(commit) = answer("git", &["rev-parse", "--short=12", "HEAD"]) else {
         return "unknown".to_owned();

@@ -1,8 +1,8 @@
-//! The kinds of study under the short path `bubbletouch::kinds`; their code is in [`studies`](crate::studies).
+//! Kinds of studies under the short path `bubbletouch::kinds`; the code is in [`studies`](crate::studies).
 
 pub use crate::studies::*;
 
-/// Studies that recognise objects.
+/// Recognition studies.
 pub mod recognition {
     pub use crate::studies::recognition::study::{
         RecognitionRows, RecognitionStudy, recognition_scale, touch_content,

@@ -5,8 +5,7 @@
 //! - A **taxel** is one sensing element: a sphere on a spring and damper, sliding along one axis.
 //! - A **patch** is a rigid substrate with a grid of taxels; a **frame** contains the values of all its taxels at one instant.
 //! - An **object** is a union of rigid spheres, or a triangle mesh.
-//! - A **touch** is one contact experiment: a patch comes down on an object that lies on a table, to first contact and then
-//!   further by a **depth**.
+//! - A **touch** is one contact experiment: a patch is lowered onto an object that lies on a table, to first contact and then further by a **depth**.
 //! - A **measurement** is a compressed frame, `y = Φx`; the **compression ratio** is taxels per measurement, n / m.
 //! - A **study** is a TOML file with a question and the axes to sweep; its results are tables and charts.
 //!
@@ -31,7 +30,7 @@
 //! let taxel = Taxel { radius: 2e-3, stiffness: 100.0, damping: 0.0, stroke: 5e-3 };
 //! let patch = Patch::grid(grid, taxel)?;
 //!
-//! // Touches: the mug stands as it does, 3 mm deep, at one of five offsets.
+//! // Touches: the mug stands upright, 3 mm deep, at one of five offsets.
 //! let zero = || Spread::Values(vec![0.0]);
 //! let placement = Placement {
 //!     rest: RestPoses::AsModelled,
@@ -48,7 +47,7 @@
 //! let all = touches(&placement, &rests, &seed)?;
 //! assert_eq!(all.len(), 5);
 //!
-//! // Press once: no time loop, since nothing in this scene needs one.
+//! // Press once: no time loop, because nothing in this scene needs one.
 //! let touch = &all[2];
 //! let pose = touch.patch_from_object(&rests[touch.rest]);
 //! let mut workspace = Workspace::new();
@@ -59,7 +58,7 @@
 //! let deepest = frame.iter().fold(0.0_f64, |a, &b| a.max(b));
 //! assert!((deepest - 3e-3).abs() < 1e-12);
 //!
-//! // What the electronics make of it: noise of 5 % of full scale, then smoothing.
+//! // Sensor signal: noise of 5 % of full scale, then smoothing.
 //! let noise = Noise { std: 0.05, unit: NoiseUnit::FullScale };
 //! let steps = [SignalStep::Noise(noise), SignalStep::Smoothing { width: 4e-3 }];
 //! let chain = Chain::new(&steps, &patch)?;
@@ -70,14 +69,13 @@
 //! let frame = Array2::from_shape_vec((1, 1024), frame).expect("one number a taxel");
 //! assert_eq!(projection.measure(frame.view()).dim(), (1, 64));
 //!
-//! // And for the eye: a ring, the mug's rim.
+//! // Picture as text: a ring, the mug's rim.
 //! let frame = frame.into_shape_with_order((32, 32)).expect("one number a taxel");
 //! println!("{}", pressure_text(&frame, 4.0, Quantity::Deflection, Ink::Plain, 80)?);
 //! # Ok::<(), bubbletouch::Error>(())
 //! ```
 //!
-//! A [`study`] simulates all touches of all objects in this way, splits them into training and test rows, and trains the
-//! classifiers of [`recognition`].
+//! A [`study`] simulates all touches of all objects in this way, splits them into training and test rows, and trains the classifiers of [`recognition`].
 //!
 //! # The pipeline
 //!

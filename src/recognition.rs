@@ -1,4 +1,4 @@
-//! Recognition: labelled measurements → classifier, scores.
+//! Recognition: classifiers are trained on labelled measurements and scored on others.
 //!
 //! | stage | input | output |
 //! |---|---|---|
@@ -6,8 +6,8 @@
 //! | [`features`] | frames, or measurements of them | features that are invariant to constant pressure, stiffness, position or rotation |
 //! | [`classifiers`] | training rows | a [trained classifier](classifiers::trained_classifier) of any [kind](ClassifierKind) |
 //! | [`svm`] | training rows | soft-margin [SVMs](svm), and the [choice](svm::cross_validation::choice) of their C and γ |
-//! | [`evaluation`] | labels | a [confusion matrix](evaluation::metrics), [fused](evaluation::fusion) touches, [where to touch next](evaluation::next_touch) |
-//! | [`statistics`] | scores of trials | [intervals](statistics::interval), [comparisons](statistics::comparison), [the variance of each source of chance](statistics::variance) |
+//! | [`evaluation`] | labels | a [confusion matrix](evaluation::metrics), [decisions on several touches](evaluation::fusion), [the next touch](evaluation::next_touch) |
+//! | [`statistics`] | scores of trials | [intervals](statistics::interval), [comparisons](statistics::comparison), [variance components](statistics::variance) |
 //!
 //! A [`Classifier`](classifiers::classifier::Classifier) fits its scaling, its parameters and its model on training rows only; test rows are only predicted.
 //! All results are deterministic, because random numbers come from a named [`Seed`](crate::random::Seed).
@@ -25,7 +25,7 @@
 //! let features = Array2::from_shape_fn((40, 2), |(i, j)| (i % 2) as f64 + 0.3 * ((i + j) as f64).sin());
 //! let data = dataset(features, Array1::from_iter((0..40).map(|i| i % 2)))?;
 //! let split = stratified_hold_out(data.targets.view(), 0.25, &Seed::new(2018))?;
-//! // Any classifier that implements linfa's traits can stand here.
+//! // Any classifier that implements linfa's traits can be used here.
 //! let predicted = predict_split(&Classifier::new(ClassifierKind::LinearSvm), &data, &split)?;
 //! let foreign = predict_split(&linfa_bayes::GaussianNb::params(), &data, &split)?;
 //! assert_eq!(foreign, predicted);

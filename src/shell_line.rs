@@ -1,4 +1,4 @@
-//! Command lines as a person pastes them into a shell.
+//! Command lines that can be pasted into a shell.
 
 /// Joins words to a line that a POSIX shell splits into the same words.
 pub fn shell_line(words: &[impl AsRef<str>]) -> String {
@@ -6,7 +6,7 @@ pub fn shell_line(words: &[impl AsRef<str>]) -> String {
     quoted.join(" ")
 }
 
-/// Quotes a word unless all of its characters are plain to every shell.
+/// Quotes a word unless all of its characters are literal in every shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

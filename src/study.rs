@@ -47,7 +47,7 @@ pub use crate::studies::recognition::spec::study::*;
 pub use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
 pub use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 
-/// The rows of the result tables.
+/// Rows of the result tables.
 pub mod table {
     pub use crate::statistics::p_status::PStatus;
     pub use crate::studies::recognition::rows::configuration::Configuration;

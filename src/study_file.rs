@@ -1,13 +1,13 @@
-//! Types that are read from study files.
+//! Macros for types that are read from study files.
 
-/// What a file says, as a type that is read from its text.
+/// Implements `parse` for a type that is read from the text of a TOML file.
 macro_rules! toml_file {
     ($file:ident) => {
         impl $file {
-            /// Reads a file.
+            /// Parses the text of a file.
             ///
             /// # Errors
-            /// A key that is unknown, missing or of another type; it names the file, the line and the key.
+            /// If a key is unknown, missing or of another type; the error names the file, the line and the key.
             pub fn parse(place: &str, text: &str) -> $crate::Result<Self> {
                 $crate::toml_text::read(place, text)
             }
@@ -16,19 +16,19 @@ macro_rules! toml_file {
 }
 pub(crate) use toml_file;
 
-/// The file of a study: the keys that all of them begin with, and its own.
+/// Defines the type of a study file: the keys that all study files have in common, and its own keys.
 macro_rules! study_file {
     (pub struct $study:ident { $($(#[$of_field:meta])* pub $field:ident: $type:ty,)* }) => {
-        /// The file.
+        /// Contents of a study file.
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         #[serde(deny_unknown_fields)]
         pub struct $study {
-            /// What the study asks, in a sentence.
+            /// Question that the study answers, in one sentence.
             pub question: String,
-            /// What the author expected before it ran.
+            /// Answer that the author expected before the first run. Default: empty.
             #[serde(default)]
             pub expected: String,
-            /// Root of all randomness.
+            /// Seed of all random numbers. Default: 2018.
             #[serde(default = "crate::studies::recognition::spec::study::default_seed")]
             pub seed: u64,
             $($(#[$of_field])* pub $field: $type,)*

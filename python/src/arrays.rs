@@ -11,13 +11,13 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyAny;
 
-/// Calls `numpy.asarray`.
+/// Calls `numpy.asarray` on the input.
 fn asarray<'py>(py: Python<'py>, array: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     ASARRAY.import(py, "numpy", "asarray")?.call1((array,))
 }
 
-/// Returns real numbers of any shape as float64, in C order.
+/// Converts an array of real numbers of any shape to float64, in C order.
 ///
 /// # Errors
 /// If the input is not an array of real numbers; the message begins with `place`.
@@ -64,7 +64,7 @@ pub fn view<T>(
     look(array.as_array())
 }
 
-/// Returns the shape as Python writes it: `shape (3, 7)`.
+/// Returns a shape in Python's notation, such as `shape (3, 7)`.
 pub fn shape_of(shape: &[usize]) -> String {
     let sides: Vec<String> = shape.iter().map(ToString::to_string).collect();
     match &sides[..] {
@@ -76,7 +76,7 @@ pub fn shape_of(shape: &[usize]) -> String {
 /// Reads n points or directions from an n × 3 array.
 ///
 /// # Errors
-/// If the shape is wrong. Numbers that are not finite are checked by the library, whose error names them.
+/// If the shape is wrong. The library checks that the numbers are finite; its error names them.
 pub fn points(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<DVec3>> {
     let is_shape = |shape: &[usize]| matches!(shape, [_, 3]);
     view(place, given, "(n, 3)", is_shape, |array| {
@@ -85,7 +85,7 @@ pub fn points(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<DVec3>> {
     })
 }
 
-/// Reads n numbers: an array of n, or one number for all.
+/// Reads n numbers: an array of n numbers, or one number for all.
 ///
 /// # Errors
 /// If the shape is wrong.
@@ -109,7 +109,8 @@ pub fn whole_number<T: TryFrom<i128>>(place: &str, given: i128) -> PyResult<T> {
     T::try_from(given).map_err(|_| bad_input(place, given, allowed))
 }
 
-/// Returns whether an array has the shape of one frame, or of frames along the first axis. A frame of a grid (`sides`: rows, columns) has this shape, or all
+/// Returns whether an array has the shape of one frame, or of several frames along the first axis. A frame has one axis of all taxels or, for a grid, two axes
+/// `sides` (rows, columns).
 /// taxels in one row.
 pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>) -> bool {
     let is_frame = |frame: &[usize]| {
@@ -123,10 +124,11 @@ pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>)
     is_frame(shape) || shape.len() > 1 && is_frame(&shape[1..])
 }
 
-/// Reads frames of n taxels as n_frames × n. The shape is (n_frames, …), where the product of the other sides is n, or the shape of one frame.
+/// Reads frames of n taxels as an array n_frames × n. The input has the shape (n_frames, …), where the product of the other sides is n, or the shape of one
+/// frame.
 ///
 /// # Errors
-/// If the number of taxels is wrong, frames of a grid (`sides`: rows, columns) have other sides, or a number is not finite.
+/// If the number of taxels is wrong, the frames of a grid have other sides than `sides` (rows, columns), or a number is not finite.
 pub fn frames(
     place: &str,
     given: &Bound<PyAny>,

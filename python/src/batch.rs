@@ -1,4 +1,4 @@
-//! Parallel processing of a batch; each thread has its own scratch memory.
+//! Parallel processing of batches; each thread has its own scratch memory.
 
 use crate::errors::bad_input;
 use crate::threads::{Interrupt, pool};
@@ -6,9 +6,9 @@ use pyo3::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Maximum number of items that a thread takes at once. If larger, threads finish at different times; if smaller, they wait for each other more often.
+/// Maximum number of items that a thread takes at one time. If larger, threads finish at different times; if smaller, threads wait for each other more often.
 const MAX_AT_ONCE: usize = 16;
-/// Minimum number of items per thread; fewer items are not worth the time of waking a thread, 5 to 50 µs.
+/// Minimum number of items per thread; for fewer items, waking a thread (5 to 50 µs) takes too long.
 const LEAST_PER_THREAD: usize = 4;
 
 /// Returns the requested number of threads; `None` for all threads of the pool.
@@ -33,7 +33,7 @@ pub fn n_threads(asked: Option<i64>) -> PyResult<Option<usize>> {
 pub struct Spare<S>(Mutex<Vec<S>>);
 
 impl<S> Spare<S> {
-    /// Creates an empty store.
+    /// Creates an empty store of scratch memory.
     pub const fn new() -> Self {
         Self(Mutex::new(Vec::new()))
     }

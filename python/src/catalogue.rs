@@ -10,7 +10,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Catalogue of named objects, grouped in named sets.
+/// Catalogue of named objects, grouped into named sets.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Catalogue {
     entries: objects::Catalogue,
@@ -18,7 +18,7 @@ pub struct Catalogue {
 
 #[pymethods]
 impl Catalogue {
-    /// Returns the catalogue that comes with bubbletouch: balls, boxes, cans, household objects and hands.
+    /// Returns the built-in catalogue of bubbletouch: balls, boxes, cans, household objects and hands.
     #[staticmethod]
     fn builtin() -> PyResult<Self> {
         guarded(|| {
@@ -27,7 +27,7 @@ impl Catalogue {
         })
     }
 
-    /// Reads a TOML file of objects. Raises OSError, or ValueError with the line of the file.
+    /// Reads objects from a TOML file. Raises OSError, or ValueError with the line of the file.
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<Self> {
         guarded(|| {
@@ -49,13 +49,13 @@ impl Catalogue {
         self.entries.sets()
     }
 
-    /// Returns the object with this name. Raises ValueError with similar names.
+    /// Returns the object with this name. If there is none, raises ValueError with similar names.
     fn object(&self, name: &str) -> PyResult<Solid> {
         let entry = self.entries.object(name).map_err(exception)?;
         Ok(Solid(entry.clone()))
     }
 
-    /// Returns the objects of a set. Raises ValueError with the names of the sets.
+    /// Returns all objects of a set. If there is no such set, raises ValueError with the names of the sets.
     fn set(&self, name: &str) -> PyResult<Vec<Solid>> {
         let entries = self.entries.set(name).map_err(exception)?;
         Ok(entries.into_iter().cloned().map(Solid).collect())
@@ -71,7 +71,7 @@ impl Catalogue {
     }
 }
 
-/// An object of a catalogue: a union of parametric shapes with real dimensions. It rests on z = 0; its bounding box is centred at x = y = 0.
+/// Object of a catalogue: a union of parametric shapes with real dimensions. The object rests on z = 0; its bounding box is centred at x = y = 0.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Solid(Entry);
 
@@ -82,25 +82,25 @@ impl Solid {
         &self.0.name
     }
 
-    /// Name of the set: balls, boxes, cans, household, hands, or the name of a file.
+    /// Name of the object's set: balls, boxes, cans, household, hands, or the name of a file.
     #[getter]
     fn set(&self) -> &str {
         &self.0.set
     }
 
-    /// Source of the dimensions.
+    /// Source of the object's dimensions.
     #[getter]
     fn source(&self) -> &str {
         &self.0.source
     }
 
-    /// Bounding box (2, 3): its least and its greatest corner, metres.
+    /// Bounding box (2, 3): the smallest and largest coordinates, metres.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         corners(py, &self.0.solid.bounds())
     }
 
-    /// Returns spheres whose surface is within the tolerance (metres, positive) of the solid's surface. Raises ValueError.
+    /// Returns spheres whose surface is within the tolerance (metres, positive) of the solid's surface. Raises ValueError for an invalid tolerance.
     fn pack(&self, py: Python, tolerance: f64) -> PyResult<SphereUnion> {
         guarded(|| {
             let solid = self.0.solid.clone();

@@ -1,4 +1,4 @@
-//! `Contacts`: for each touched taxel, the touching part, the contact point, and the force.
+//! Class `Contacts`: touching part, contact point and force for each touched taxel.
 
 use crate::arrays::{to_column, to_rows};
 use bubbletouch::contact::{Contact, TaxelContact, Workspace};
@@ -12,24 +12,23 @@ use pyo3::prelude::*;
 pub struct Contacts {
     /// Number of the pose (m,), from 0.
     pose: Py<PyArray1<i64>>,
-    /// Number of the taxel (m,), in the order of the patch.
+    /// Number of the taxel in the patch (m,), from 0.
     taxel: Py<PyArray1<i64>>,
-    /// Number of the sphere or triangle (m,) that determines the deflection.
+    /// Number of the sphere or triangle (m,) that determines the taxel's deflection.
     part: Py<PyArray1<i64>>,
-    /// Deflection (m,), metres; equals the frame up to rounding.
+    /// Deflection of the taxel (m,), metres; equals the frame up to rounding.
     deflection: Py<PyArray1<f64>>,
-    /// Contact normal (m, 3): unit vector from the object's surface to the taxel, in the frame of the patch.
+    /// Contact normal (m, 3): unit vector from the object's surface to the taxel, in the patch frame.
     normal: Py<PyArray2<f64>>,
-    /// Contact point (m, 3), metres, in the frame of the patch.
+    /// Contact point (m, 3), metres, in the patch frame.
     point: Py<PyArray2<f64>>,
-    /// Frictionless force of the taxel's spring on the object (m, 3), newtons, in the frame of the patch.
+    /// Frictionless force of the taxel's spring on the object (m, 3), newtons, in the patch frame.
     force: Py<PyArray2<f64>>,
-    /// Gradient ∂δ/∂x (m, 3) for a motion x of the part in the frame of the patch, before the taxel's stop. Its length is ∂δ/∂R for a sphere's
-    /// radius R.
+    /// Gradient ∂δ/∂x (m, 3) for a motion x of the part in the patch frame, without the taxel's stop. Its length is ∂δ/∂R for a sphere's radius R.
     gradient: Py<PyArray2<f64>>,
-    /// Travel of the patch along its z (n,), metres; NaN if no taxel met the object.
+    /// Travel of the patch along its z axis (n,), metres; NaN if no taxel met the object.
     travel: Py<PyArray1<f64>>,
-    /// Number of taxels with a deflection (n,).
+    /// Number of deflected taxels (n,).
     n_touched: Py<PyArray1<i64>>,
     /// Number of saturated taxels (n,): at their stroke, and pushed further by the object.
     n_saturated: Py<PyArray1<i64>>,
@@ -66,7 +65,7 @@ impl OfPose {
 }
 
 impl Contacts {
-    /// Combines the contacts of poses, each given with its number, in any order.
+    /// Combines the contacts of several poses, which are given with their numbers in any order.
     ///
     /// # Errors
     /// Returns only errors of Python.

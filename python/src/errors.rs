@@ -5,7 +5,7 @@
 //! | [`Error::Input`] | `ValueError` with the library's message |
 //! | [`Error::Io`] | `OSError`, or its subclass for the system's number, with the file's name |
 //! | [`Error::WorkItems`] | `RuntimeError` with the library's message |
-//! | a panic | `InternalError`, which asks for a report |
+//! | a panic | `InternalError`, which requests a report |
 
 use bubbletouch::Error;
 use pyo3::create_exception;
@@ -45,7 +45,7 @@ fn message(payload: &dyn Any) -> &str {
     text.unwrap_or("no message")
 }
 
-/// Returns the result of `call`; a panic is converted to an [`InternalError`].
+/// Calls a function and returns its result; a panic is converted to an [`InternalError`].
 ///
 /// # Errors
 /// Returns the errors of `call`, or an [`InternalError`] after a panic.
@@ -60,7 +60,7 @@ pub fn guarded<T>(call: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
     })
 }
 
-/// Returns the exception for an error of the library.
+/// Converts an error of the library to a Python exception.
 pub fn exception(error: Error) -> PyErr {
     let said = error.to_string();
     match error {
@@ -70,7 +70,7 @@ pub fn exception(error: Error) -> PyErr {
     }
 }
 
-/// Returns an `OSError`; Python chooses the subclass, such as `FileNotFoundError`, from the error number.
+/// Creates an `OSError`; Python chooses the subclass, such as `FileNotFoundError`, from the error number.
 pub fn os_error(path: &Path, source: &std::io::Error, said: String) -> PyErr {
     match source.raw_os_error() {
         Some(number) => PyOSError::new_err((number, said, path.display().to_string())),
@@ -78,7 +78,7 @@ pub fn os_error(path: &Path, source: &std::io::Error, said: String) -> PyErr {
     }
 }
 
-/// Returns a `ValueError` with the message `<where>: <what was given>; <what is allowed>`.
+/// Creates a `ValueError` with the message `<where>: <what was given>; <what is allowed>`.
 pub fn bad_input(place: impl ToString, given: impl ToString, allowed: impl ToString) -> PyErr {
     exception(Error::input(place, given, allowed))
 }
@@ -116,7 +116,7 @@ pub fn check_folder(path: &Path) -> PyResult<()> {
     })
 }
 
-/// Panics, for tests of the conversion to an exception.
+/// Panics; used in tests of the conversion to an exception.
 #[pyfunction]
 pub fn _panic() -> PyResult<()> {
     guarded(|| panic!("asked for"))

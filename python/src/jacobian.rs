@@ -18,12 +18,12 @@ use pyo3::prelude::*;
 /// Number of pose parameters: translation along x, y, z and rotation about x, y, z.
 pub const N: usize = 6;
 
-/// Returns whether all axes of a patch are z.
+/// Returns whether the axes of all taxels of a patch are +z.
 fn is_flat(patch: &Patch) -> bool {
     patch.layout().as_grid().is_some() || patch.layout().axes().iter().all(|axis| *axis == DVec3::Z)
 }
 
-/// Checks that the derivative for a goal is implemented.
+/// Checks that the derivative for a kind of goal is implemented.
 ///
 /// # Errors
 /// If the goal is a depth and the patch is not flat.

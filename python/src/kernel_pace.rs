@@ -1,4 +1,4 @@
-//! Speed of the press kernel alone.
+//! Measurement of the speed of the press kernel alone.
 
 use crate::errors::exception;
 use crate::goal::Goal;
@@ -9,7 +9,7 @@ use bubbletouch::contact::Workspace;
 use pyo3::prelude::*;
 use std::time::Instant;
 
-/// Measures the taxel readings per second of the kernel on one thread, without output arrays: the reference for presses into arrays.
+/// Measures the taxel readings per second of the kernel on one thread, without output arrays. The result is the reference for presses into arrays.
 #[pyfunction]
 pub fn _kernel_pace(
     py: Python,

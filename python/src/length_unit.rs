@@ -4,7 +4,7 @@ use crate::errors::bad_input;
 use bubbletouch::mesh::LengthUnit;
 use pyo3::prelude::*;
 
-/// Returns the unit with the given name, as used in files.
+/// Returns the length unit with the given name, as used in study files.
 ///
 /// # Errors
 /// If there is no unit of this name.

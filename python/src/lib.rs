@@ -1,4 +1,4 @@
-//! `bubbletouch._core`: the library for Python.
+//! Module `bubbletouch._core`: the library's interface to Python.
 //!
 //! The Python package (`python/bubbletouch`) exports the items of this module, and documents them in `_core.pyi`. This module contains no algorithms.
 //! Arguments are checked and converted from arrays, the library is called without the interpreter's lock, and results are converted to arrays.

@@ -1,4 +1,4 @@
-//! `Mesh`: triangle meshes.
+//! Class `Mesh`: triangle meshes.
 
 use crate::arrays::{corners, numbers, points, shape_of, to_rows};
 use crate::errors::{bad_input, check_readable, exception, guarded};
@@ -17,10 +17,10 @@ use pyo3::prelude::*;
 use std::ffi::CString;
 use std::path::PathBuf;
 
-/// Advice in the error for a mesh that cannot be packed.
+/// Advice in the error message for a mesh that cannot be packed.
 const ADVICE: &str = "Mesh.read(…, close_holes=WIDTH) closes holes up to that width, pack(…, sheet=True) packs the surface without thickness";
 
-/// A triangle mesh with exact contact: taxels touch its faces, edges and corners, from both sides.
+/// Triangle mesh with exact contact: taxels touch its faces, edges and corners, from both sides.
 ///
 /// `Mesh(vertices, triangles)`: vertices (n, 3), metres; triangles (m, 3), numbers of vertices from 0, counter-clockwise seen from outside.
 /// Raises ValueError for numbers that are not finite and for vertices that do not exist.
@@ -79,7 +79,7 @@ impl Mesh {
         })
     }
 
-    /// Reads a PLY, OBJ or STL file.
+    /// Reads a mesh from a PLY, OBJ or STL file.
     ///
     /// unit: unit of the file's numbers. None: metres, for objects of 0.1 mm to 10 m.
     /// close_holes: largest width of holes that are closed by a cone, metres.
@@ -148,7 +148,7 @@ impl Mesh {
         })
     }
 
-    /// Returns one sphere per vertex, with twice the mean distance to the nearest other vertex as radius: the objects of the original BubbleTouch.
+    /// Returns one sphere per vertex, as in the original BubbleTouch. Its radius is twice the mean distance to the nearest other vertex.
     fn vertex_spheres(&self) -> PyResult<SphereUnion> {
         guarded(|| {
             let vertices = self.triangle_mesh().vertices();
@@ -157,13 +157,13 @@ impl Mesh {
         })
     }
 
-    /// Vertices (n, 3), metres; a copy.
+    /// Vertices of the mesh (n, 3), metres; a copy.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         to_rows(py, self.triangle_mesh().vertices().iter().copied())
     }
 
-    /// Triangles (m, 3), as numbers of vertices; a copy.
+    /// Triangles of the mesh (m, 3) as vertex numbers; a copy.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
         let triangles = self.triangle_mesh().triangles();
@@ -172,32 +172,32 @@ impl Mesh {
         rows.expect("three corners a triangle").into_pyarray(py)
     }
 
-    /// Bounding box (2, 3): its least and its greatest corner, metres.
+    /// Bounding box (2, 3): the smallest and largest coordinates, metres.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         corners(py, &self.triangles.bounds())
     }
 
-    /// Surface area, m².
+    /// Surface area of the mesh, m².
     #[getter]
     fn area(&self) -> f64 {
         self.triangle_mesh().area()
     }
 
-    /// Volume, m³; negative if the triangles of the given arrays face inwards.
+    /// Volume of the mesh, m³; negative if the triangles of the given arrays face inwards.
     #[getter]
     fn volume(&self) -> f64 {
         self.triangle_mesh().volume_and_centroid().0
     }
 
-    /// Centroid of the volume (3,), metres.
+    /// Centroid of the mesh's volume (3,), metres.
     #[getter]
     fn centroid<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let DVec3 { x, y, z } = self.triangle_mesh().volume_and_centroid().1;
         vec![x, y, z].into_pyarray(py)
     }
 
-    /// How many triangles.
+    /// Number of triangles.
     fn __len__(&self) -> usize {
         self.triangle_mesh().n_triangles()
     }

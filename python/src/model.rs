@@ -6,10 +6,10 @@ use bubbletouch::objects::Model;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// Returns the model of an object.
+/// Returns the contact model of a Python object.
 ///
 /// # Errors
-/// If the object is neither; the message begins with `place`.
+/// If the object is neither a `Mesh` nor a `SphereUnion`; the message begins with `place`.
 pub fn model_of<'a>(place: &str, object: &'a Bound<PyAny>) -> PyResult<&'a Model> {
     if let Ok(spheres) = object.cast::<SphereUnion>() {
         return Ok(spheres.get().model());

@@ -1,4 +1,4 @@
-//! `Patch`: taxels on a rigid substrate.
+//! Class `Patch`: taxels on a rigid substrate.
 
 use crate::arrays::{each, points, to_column, to_rows, whole_number};
 use crate::batch::Spare;
@@ -13,25 +13,25 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// Default stiffness of a taxel, N/m: equal to the command's default, and written out in signatures for `help()`.
+/// Default stiffness of a taxel, N/m. It equals the command's default, and signatures state it for `help()`.
 const STIFFNESS: f64 = 100.0;
 
-/// Taxels on a rigid substrate; created by one of the static methods.
+/// Patch: taxels on a rigid substrate; created by one of the static methods.
 ///
-/// A taxel is a sphere of `taxel_radius` (metres, positive; half the pitch if None) on a spring of `stiffness` (N/m, positive). Its `damping`
-/// (N·s/m, zero or more) is used by signal chains and scenes. Its deflection is at most its `stroke` (metres, positive). The methods raise
-/// ValueError for values out of range, and for more than 4,194,304 taxels.
+/// A taxel is a sphere of `taxel_radius` (metres, positive; half the pitch if None) on a spring of `stiffness` (N/m, positive). Its `damping` (N·s/m, zero or
+/// more) is used by signal chains and scenes. Its deflection is at most its `stroke` (metres, positive). The methods raise ValueError for values out of range,
+/// and for more than 4,194,304 taxels.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Patch {
     patch: world::Patch,
     /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
     shape: Vec<usize>,
-    /// Workspaces reused by presses.
+    /// Workspaces that successive presses reuse.
     spare: Spare<Workspace>,
 }
 
 impl Patch {
-    /// Wraps a patch of the library.
+    /// Wraps a patch of the Rust library.
     pub fn from_patch(patch: world::Patch) -> Self {
         let grid = patch.layout().as_grid();
         Self {
@@ -46,7 +46,7 @@ impl Patch {
         Ok(Self::from_patch(patch.map_err(exception)?))
     }
 
-    /// Returns the patch of the library.
+    /// Returns the wrapped patch of the Rust library.
     pub fn inner(&self) -> &world::Patch {
         &self.patch
     }
@@ -69,7 +69,7 @@ fn side(place: &str, given: i64) -> PyResult<usize> {
     usize::try_from(given).map_err(|_| bad_input(place, given, "at least 1"))
 }
 
-/// Returns the common taxel of a patch; the default radius is half the pitch.
+/// Returns the common taxel parameters of a patch; the default radius is half the pitch.
 fn taxel(pitch: f64, stroke: f64, (radius, stiffness, damping): (Option<f64>, f64, f64)) -> Taxel {
     Taxel {
         radius: radius.unwrap_or(0.5 * pitch),
@@ -81,8 +81,8 @@ fn taxel(pitch: f64, stroke: f64, (radius, stiffness, damping): (Option<f64>, f6
 
 #[pymethods]
 impl Patch {
-    /// Returns a grid of ny rows (along y, ascending) of nx taxels in the plane z = 0, `pitch` metres apart, centred on the origin. Frames are (ny,
-    /// nx).
+    /// Returns a grid of ny rows (along y, ascending) of nx taxels in the plane z = 0. The taxels are `pitch` metres apart; the grid is centred on the origin.
+    /// Frames have the shape (ny, nx).
     #[staticmethod]
     #[pyo3(signature = (ny, nx, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn grid(
@@ -105,7 +105,7 @@ impl Patch {
         })
     }
 
-    /// Returns ny staggered rows of nx taxels. Each inner taxel has six neighbours `pitch` metres away. The order is row by row.
+    /// Returns a hexagonal lattice of ny staggered rows of nx taxels. Each inner taxel has six neighbours `pitch` metres away. The order is row by row.
     #[staticmethod]
     #[pyo3(signature = (ny, nx, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn hexagonal(
@@ -125,7 +125,7 @@ impl Patch {
         })
     }
 
-    /// Returns the taxels of a hexagonal lattice within `radius` metres of the origin, row by row.
+    /// Returns a patch of all taxels of a hexagonal lattice within `radius` metres of the origin, row by row.
     #[staticmethod]
     #[pyo3(signature = (radius, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn disc(
@@ -143,10 +143,10 @@ impl Patch {
         })
     }
 
-    /// Returns rings of taxels around z, facing away from z: a forearm or a finger.
+    /// Returns rings of taxels around the z axis that face away from it, as on a forearm or a finger.
     ///
-    /// radius: of the rest centres; length: between the first and the last ring, zero or more; arc: above 0 to 2π, centred at +x; pitch: along
-    /// the surface, approximated by a whole number of taxels. Presses go along z: use move() to turn the middle of the patch to z.
+    /// radius: of the rest centres; length: between the first and the last ring, zero or more; arc: above 0 to 2π, centred at +x; pitch: along the surface,
+    /// approximated by a whole number of taxels. Presses move along z: use move() to turn the middle of the patch to z.
     #[staticmethod]
     #[pyo3(signature = (radius, length, arc, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -167,7 +167,7 @@ impl Patch {
         })
     }
 
-    /// Returns rings of taxels on a sphere about the origin, from its pole at +z to `half_angle` (above 0 to π): a fingertip or an elbow.
+    /// Returns rings of taxels on a sphere about the origin, from its pole at +z to `half_angle` (above 0 to π), as on a fingertip or an elbow.
     #[staticmethod]
     #[pyo3(signature = (radius, half_angle, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn sphere_cap(
@@ -186,12 +186,12 @@ impl Patch {
         })
     }
 
-    /// Returns taxels distributed over the outer surface of a mesh.
+    /// Returns a patch of taxels that are distributed over the outer surface of a mesh.
     ///
-    /// Their number equals that of a grid with this pitch; they are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A taxel whose
-    /// axis would meet the mesh again is left out: see n_left_out. The region is the intersection of the given conditions: bounds (2, 3), its
-    /// least and greatest corner; plane (2, 3), a point and the direction to the covered side; triangles, their numbers. Closed parts of the mesh
-    /// that face inwards are turned outwards, with a UserWarning.
+    /// The number of taxels equals that of a grid with this pitch; they are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A taxel whose axis
+    /// would meet the mesh again is omitted; see n_left_out. The region is the intersection of the given conditions: bounds (2, 3), its smallest and largest
+    /// coordinates; plane (2, 3), a point and the direction to the covered side; triangles, their numbers. Closed parts of the mesh that face inwards are
+    /// turned outwards, with a UserWarning.
     #[staticmethod]
     #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, bounds=None, plane=None, triangles=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -239,8 +239,8 @@ impl Patch {
         })
     }
 
-    /// Returns a patch of given taxels: centers (n, 3) and unit axes (n, 3) that point away from the substrate. Axes may differ from unit length by
-    /// 1 %, and are normalised. The other arguments are (n,) or one number for all.
+    /// Returns a patch of given taxels: centers (n, 3) and unit axes (n, 3) that point away from the substrate. Axes may differ from unit length by 1 %; they
+    /// are normalised. The other arguments are arrays (n,) or one number for all taxels.
     #[staticmethod]
     #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None))]
     fn from_arrays(
@@ -279,7 +279,7 @@ impl Patch {
         })
     }
 
-    /// Returns a copy moved in the frame of the patch; the copy is not a grid. pose: (7,) or (4, 4).
+    /// Returns a copy of the patch that is moved in the patch frame; the copy is not a grid. pose: (7,) or (4, 4).
     fn moved(&self, pose: &Bound<PyAny>) -> PyResult<Self> {
         guarded(|| {
             let poses = Poses::from_argument("pose", pose)?;
@@ -303,25 +303,25 @@ impl Patch {
         self.patch.n_taxels()
     }
 
-    /// Number of taxels left out of a draped patch because their axes would meet the mesh again; 0 for other patches.
+    /// Number of taxels omitted from a draped patch because their axes would meet the mesh again; 0 for other patches.
     #[getter]
     fn n_left_out(&self) -> usize {
         self.patch.layout().n_left_out()
     }
 
-    /// Rest centres (n_taxels, 3), metres; a copy.
+    /// Rest centres of the taxels (n_taxels, 3), metres; a copy.
     #[getter]
     fn centers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         to_rows(py, self.patch.layout().centers().iter().copied())
     }
 
-    /// Unit axes (n_taxels, 3), away from the substrate; a copy.
+    /// Unit axes of the taxels (n_taxels, 3), pointing away from the substrate; a copy.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         to_rows(py, self.patch.layout().axes().iter().copied())
     }
 
-    /// Distance between the taxels of a grid, metres; None for other patches.
+    /// Distance between neighbouring taxels of a grid, metres; None for other patches.
     #[getter]
     fn pitch(&self) -> Option<f64> {
         self.patch.layout().as_grid().map(|grid| grid.pitch)
@@ -333,19 +333,19 @@ impl Patch {
         self.property(py, |taxel| taxel.radius)
     }
 
-    /// Largest deflection, metres: one number, or one per taxel. A taxel whose deflection equals its stroke is saturated.
+    /// Stroke (largest deflection) of the taxels, metres: one number, or one per taxel. A taxel whose deflection equals its stroke is saturated.
     #[getter]
     fn stroke<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.property(py, |taxel| taxel.stroke)
     }
 
-    /// Stiffness, N/m: one number, or one per taxel.
+    /// Stiffness of the taxels, N/m: one number, or one per taxel.
     #[getter]
     fn stiffness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.property(py, |taxel| taxel.stiffness)
     }
 
-    /// Damping, N·s/m: one number, or one per taxel.
+    /// Damping of the taxels, N·s/m: one number, or one per taxel.
     #[getter]
     fn damping<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.property(py, |taxel| taxel.damping)

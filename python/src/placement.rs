@@ -1,4 +1,4 @@
-//! Contact positions of a patch that approaches an object on a table from above.
+//! Placement of touches: poses of a patch that approaches an object on a table from above.
 
 use crate::arrays::view;
 use crate::errors::{bad_input, guarded};
@@ -8,7 +8,7 @@ use ndarray::{Array1, Array2};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Groups of `width` numbers: one group for all, or one per item.
+/// Argument of groups of `width` numbers: one group for all touches, or one per touch.
 struct Groups {
     values: Vec<f64>,
     width: usize,
@@ -54,11 +54,11 @@ impl Groups {
     }
 }
 
-/// Returns poses, for Patch.press, of an object that lies on a table under a patch that faces down.
+/// Returns object poses for Patch.press: the object lies on a table under a patch that faces down.
 ///
-/// The object stands with its own z up or, with `rest`, in the stable pose of that number (0: the most probable). Its bounding box is centred
-/// at x = y = 0 and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y; metres) at the height of the
-/// object's top. It is tilted by `tilt` about the patch's x, then about its y.
+/// The object stands with its own z axis up or, with `rest`, in the stable pose of that number (0: the most probable). Its bounding box is centred at x = y = 0
+/// and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y; metres) at the height of the object's top. It is tilted by `tilt`
+/// about the patch's x axis, then about its y axis.
 ///
 /// offset, tilt: (2,) or (n, 2); yaw: a number or (n,). Returns (7,) if all arguments are single values, otherwise (n, 7). Raises ValueError.
 #[pyfunction]

@@ -1,4 +1,4 @@
-//! Poses `patch_from_object`, each as seven numbers or a 4 × 4 matrix.
+//! Poses `patch_from_object`, each given as seven numbers or a 4 × 4 matrix.
 
 use crate::arrays::{numbers, shape_of};
 use crate::errors::bad_input;
@@ -8,11 +8,11 @@ use ndarray::ArrayView1;
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Tolerance of each entry of R Rᵀ, and of a quaternion's length, for numbers with few digits or float32 rounding.
+/// Tolerance of each entry of R Rᵀ, and of a quaternion's length; it accepts numbers with few digits and float32 rounding.
 const ROUNDING: f64 = 1e-3;
 const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
 
-/// Poses, and whether the input was a single pose or a batch.
+/// Poses, with a flag that states whether the input was a single pose.
 pub struct Poses {
     /// Poses `patch_from_object`.
     pub poses: Vec<Pose>,

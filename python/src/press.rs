@@ -1,4 +1,4 @@
-//! Batches of presses that write into a NumPy array.
+//! Batches of presses, which write deflections into a NumPy array.
 
 use crate::arrays::shape_of;
 use crate::batch::{Spare, for_each, n_threads};
@@ -37,7 +37,7 @@ impl Real for f32 {
     }
 }
 
-/// Requested results beside the frames.
+/// Results that a call requests in addition to the frames.
 #[derive(Clone, Copy)]
 pub struct Wanted {
     /// Whether contacts are requested.
@@ -46,18 +46,18 @@ pub struct Wanted {
     pub jacobian: bool,
 }
 
-/// A patch, the shape of its frames, and workspaces for threads.
+/// Patch with the shape of its frames, and workspaces for threads.
 #[derive(Clone, Copy)]
 pub struct PatchToPress<'a> {
-    /// The patch.
+    /// Patch of the Rust library.
     pub patch: &'a world::Patch,
     /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
     pub sides: &'a [usize],
-    /// Workspaces reused by presses.
+    /// Workspaces that successive presses reuse.
     pub spare: &'a Spare<Workspace>,
 }
 
-/// Returns the frames of deflections, or a tuple of the frames and the other requested results, contacts first.
+/// Presses a patch at all poses. Returns the frames of deflections, or a tuple of the frames and the other requested results, contacts first.
 ///
 /// # Errors
 /// If an argument is invalid, a force cannot be reached (the error names the pose), or Ctrl-C was pressed.
@@ -101,7 +101,7 @@ pub fn press<'py>(
     }
 }
 
-/// Returns whether a NumPy type is float32; the only other allowed type is float64.
+/// Returns whether a NumPy type is float32; returns an error unless it is float32 or float64.
 fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
     let allowed = "float32 or float64";
     let descr = numpy::PyArrayDescr::new(py, dtype.clone())
@@ -116,7 +116,7 @@ fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
     }
 }
 
-/// Calls `numpy.zeros`; memory of untouched taxels is never written, and large arrays use large memory pages.
+/// Returns the function `numpy.zeros`. Memory of untouched taxels is never written, and large arrays use large memory pages.
 fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
     static ZEROS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     ZEROS.import(py, "numpy", "zeros")
@@ -190,7 +190,7 @@ impl<'py> Batch<'_, 'py> {
         })
     }
 
-    /// Writes a frame for each pose, over zeros or previous values, and its derivatives.
+    /// Writes a frame and its derivatives for each pose, over zeros or previous values.
     fn run<T: Real>(
         &self,
         py: Python,

@@ -1,4 +1,4 @@
-//! `Projection`: compressed measurements of frames.
+//! Class `Projection`: compression of frames to measurements.
 
 use crate::arrays::{frames, whole_number};
 use crate::errors::{bad_input, exception, guarded};
@@ -8,31 +8,31 @@ use bubbletouch::sensing::{self, Ensemble};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 
-/// A random projection y = Φx from frames of ny × nx taxels to m measurements, drawn once.
+/// Random projection y = Φx of frames with ny × nx taxels to m measurements, drawn once.
 ///
 /// Example: Projection("sbhe", patch.shape, 64, seed=7). ensemble: gaussian, bernoulli, circulant, sparse, sbhe, block_average, subsample,
 /// fourier, or identity (all taxels, for any m). n_measurements: 1 to the number of taxels. Raises ValueError.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Projection {
     projection: sensing::Projection,
-    /// Constructor arguments, for pickling.
+    /// Constructor arguments, needed for pickling.
     asked: (String, (usize, usize), usize, u64),
 }
 
 impl Projection {
-    /// Returns the projection of the library.
+    /// Returns the wrapped projection of the Rust library.
     pub fn inner(&self) -> &sensing::Projection {
         &self.projection
     }
 
-    /// Returns the rows and columns of a frame.
+    /// Returns the numbers of rows and columns of a frame.
     pub fn shape(&self) -> (usize, usize) {
         self.asked.1
     }
 }
 
 fn ensemble_of(name: &str) -> PyResult<Ensemble> {
-    // Ensembles learned from touches exist only in studies.
+    // Learned ensembles are fitted to touches and exist only in studies.
     let drawn = || {
         let all = Ensemble::ALL.iter().zip(Ensemble::NAMES);
         all.filter(|(ensemble, _)| !ensemble.is_learned())
@@ -78,25 +78,25 @@ impl Projection {
         })
     }
 
-    /// Matrix Φ, (m, n_taxels); computed on access.
+    /// Measurement matrix Φ (m, n_taxels); computed on access.
     #[getter]
     fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         guarded(|| Ok(py.detach(|| self.projection.matrix()).into_pyarray(py)))
     }
 
-    /// Name of the ensemble.
+    /// Name of the matrix ensemble.
     #[getter]
     fn ensemble(&self) -> &str {
         &self.asked.0
     }
 
-    /// Number of taxels of a frame.
+    /// Number of taxels per frame.
     #[getter]
     fn n_taxels(&self) -> usize {
         self.projection.n_taxels()
     }
 
-    /// Number of measurements m.
+    /// Number m of measurements per frame.
     #[getter]
     fn n_measurements(&self) -> usize {
         self.projection.n_measurements()

@@ -1,4 +1,4 @@
-//! `Reconstructor`: reconstruction of frames from measurements.
+//! Class `Reconstructor`: reconstruction of frames from measurements.
 
 use crate::arrays::{frames, to_column, view, whole_number};
 use crate::errors::{bad_input, exception, guarded};
@@ -15,7 +15,7 @@ use self_cell::self_cell;
 type Prepared<'a> = sensing::Reconstructor<'a>;
 
 self_cell!(
-    /// A projected dictionary, stored with its projection and dictionary.
+    /// Projected dictionary, stored together with its projection and dictionary.
     struct Sensed {
         owner: (sensing::Projection, Dictionary),
         #[covariant]
@@ -24,7 +24,7 @@ self_cell!(
 );
 
 self_cell!(
-    /// A solver, stored with the data that it borrows.
+    /// Solver, stored together with the data that it borrows.
     struct Solving {
         owner: Box<Sensed>,
         #[not_covariant]
@@ -32,13 +32,12 @@ self_cell!(
     }
 );
 
-/// Reconstructs frames from the measurements of one projection, with a basis fitted to training frames.
+/// Reconstructor of frames from the measurements of one projection, with a basis fitted to training frames.
 ///
-/// Example: Reconstructor(projection, training, basis="pca", solver="lmmse", noise=1e-4). training: (n, ny, nx), metres.
-/// basis: dct, haar, daubechies4 (both for sides that are powers of two) or pca, which keeps the n_atoms components of largest variance. None
-/// keeps all atoms, and 256 of pca.
-/// solver: omp (matching pursuit), l1 (basis pursuit by FISTA) or lmmse (the linear estimate). noise: standard deviation on each taxel, in the
-/// unit of the frames. Raises ValueError.
+/// Example: Reconstructor(projection, training, basis="pca", solver="lmmse", noise=1e-4). training: (n, ny, nx), metres. basis: dct, haar, daubechies4 (both
+/// for sides that are powers of two) or pca. n_atoms: number of atoms, for pca the components of largest variance; None: all atoms, or 256 of pca.
+/// solver: omp (orthogonal matching pursuit), l1 (basis pursuit by FISTA) or lmmse (linear minimum mean square error estimate). noise: standard deviation on
+/// each taxel, in the unit of the frames. Raises ValueError.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Reconstructor {
     solving: Solving,
@@ -117,9 +116,8 @@ impl Reconstructor {
         })
     }
 
-    /// Reconstructs measurements (n, m). Returns the frames (n, ny, nx), the number of atoms used n_atoms (n,), and is_capped (n,): whether the
-    /// solver
-    /// stopped at a limit.
+    /// Reconstructs frames from measurements (n, m). Returns the frames (n, ny, nx), the numbers of atoms used, n_atoms (n,), and is_capped (n,): whether the
+    /// solver stopped at a limit.
     fn __call__<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-//! `Step` and `Chain`: conversion of deflections to sensor signals, with sensor errors.
+//! Classes `Step` and `Chain`: conversion of deflections to sensor signals, with sensor errors.
 
 use crate::arrays::{frames, is_of_frames, view, whole_number};
 use crate::batch::{Spare, for_each, n_threads};
@@ -13,16 +13,16 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// A step from deflections to sensor signals; created by one of the static methods. Chain checks whether a step is valid.
+/// Step of a signal chain, created by one of the static methods. Chain checks whether a step is valid.
 #[pyclass(frozen, module = "bubbletouch")]
 #[derive(Clone)]
 pub struct Step {
     kind: Kind,
-    /// Constructor call, for the representation.
+    /// Text of the constructor call, used by `repr()`.
     call: String,
 }
 
-/// Kind of a step, before its sensor is known.
+/// Kind of a step, before it is prepared for a patch.
 #[derive(Clone)]
 enum Kind {
     Plain(SignalStep),
@@ -38,7 +38,7 @@ impl Step {
     }
 }
 
-/// Returns the names of all sensor errors.
+/// Returns the names of all sensor errors as text.
 fn words() -> String {
     let words: Vec<&str> = SENSOR_ERRORS
         .iter()
@@ -58,8 +58,8 @@ impl Step {
         }
     }
 
-    /// Returns a step that adds Gaussian noise to every taxel. unit: fraction of full scale (of a taxel at its stroke), millimetres, or newtons;
-    /// std: zero or more.
+    /// Returns a step that adds Gaussian noise to every taxel. unit: fraction of full scale (of a taxel at its stroke), millimetres, or newtons. std: zero or
+    /// more.
     #[staticmethod]
     #[pyo3(signature = (std, unit="full_scale"))]
     fn noise(std: f64, unit: &str) -> PyResult<Self> {
@@ -78,7 +78,7 @@ impl Step {
         })
     }
 
-    /// Returns a step that smooths frames with a Gaussian of standard deviation `width`, metres, zero or more.
+    /// Returns a step that smooths frames with a Gaussian of standard deviation `width` (metres, zero or more).
     #[staticmethod]
     fn smoothing(width: f64) -> Self {
         Self {
@@ -87,7 +87,7 @@ impl Step {
         }
     }
 
-    /// Returns a step with a sensor error, such as Step.error("gain", gain_std=0.07). Raises ValueError with the allowed names or strengths.
+    /// Returns a step with a sensor error, such as Step.error("gain", gain_std=0.07). An invalid name or strength raises ValueError with the allowed ones.
     ///
     /// errors() lists all errors. Errors of an individual sensor (gain, drift, faults) are drawn from the chain's skin_seed.
     #[staticmethod]
@@ -116,7 +116,7 @@ impl Step {
         })
     }
 
-    /// Returns the strengths of each sensor error, and the allowed values of each strength.
+    /// Returns the strengths of each sensor error, with the allowed values of each strength.
     #[staticmethod]
     fn errors(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let all = PyDict::new(py);
@@ -135,7 +135,7 @@ impl Step {
     }
 }
 
-/// A sequence of steps from deflections to sensor signals, prepared for a patch.
+/// Signal chain: a sequence of steps from deflections to sensor signals, prepared for a patch.
 ///
 /// Chain([Step.error("gain", gain_std=0.05), Step.noise(0.02), Step.smoothing(4e-3)], patch, skin_seed=7)
 ///
@@ -144,7 +144,7 @@ impl Step {
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Chain {
     chain: signal::Chain,
-    /// Rows and columns of a grid; `None` for other patches.
+    /// Numbers of rows and columns of a grid; `None` for other patches.
     sides: Option<[usize; 2]>,
     steps: Vec<Step>,
     spare: Spare<SignalWorkspace>,
@@ -181,7 +181,7 @@ impl Chain {
         })
     }
 
-    /// Returns the sensor signals of frames; each frame is a separate touch at rest.
+    /// Returns the sensor signals of frames; each frame is treated as a separate touch at rest.
     ///
     /// frames: deflections (n, …) of n_taxels each, (n, ny, nx) of a grid, metres, or one frame; they are not changed. seed: of random values that
     /// change from touch to touch. Frame i uses the random numbers of touch `first` + i, independently of other frames. rates: δ̇, m/s, in the
@@ -278,13 +278,13 @@ impl Chain {
         })
     }
 
-    /// Quantity of the returned signals: deflection (metres) or force (newtons).
+    /// Physical quantity of the returned signals: deflection (metres) or force (newtons).
     #[getter]
     fn quantity(&self) -> &'static str {
         self.chain.quantity().name()
     }
 
-    /// Steps, in order.
+    /// Steps of the chain, in order.
     #[getter]
     fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let steps: PyResult<Vec<_>> = self
@@ -302,7 +302,7 @@ impl Chain {
 }
 
 impl Chain {
-    /// Reads one rate per value of the frames.
+    /// Reads one deflection rate per value of the frames.
     fn rates(&self, given: Option<&Bound<PyAny>>, n_frames: usize) -> PyResult<Option<Vec<f64>>> {
         let n_taxels = self.chain.n_taxels();
         let n = n_frames * n_taxels;
@@ -326,7 +326,7 @@ impl Chain {
     }
 }
 
-/// Returns the frames in the shape of the input.
+/// Returns the frames in the shape of the input array.
 fn as_given<'py>(
     frames: Bound<'py, PyAny>,
     shape: Option<Bound<'py, PyAny>>,

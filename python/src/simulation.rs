@@ -1,4 +1,4 @@
-//! `Simulation`: execution of a scene, frame by frame or in manual steps.
+//! Class `Simulation`: execution of a scene, frame by frame or in manual steps.
 
 use crate::arrays::{to_column, to_rows, view, whole_number};
 use crate::errors::{bad_input, exception, guarded};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 type Going<'p> = scene::Simulation<'p>;
 
 self_cell!(
-    /// A running simulation, and the plan of its scene.
+    /// Running simulation, with the plan of its scene.
     struct OnItsWay {
         owner: Arc<ScenePlan>,
         #[not_covariant]
@@ -34,7 +34,7 @@ fn begin(plan: &Arc<ScenePlan>) -> OnItsWay {
     })
 }
 
-/// A scene, created from its text; use bubbletouch.simulate for a file or a dict.
+/// Simulation of a scene, created from the scene's text; use bubbletouch.simulate for a file or a dict.
 ///
 /// The simulation is an iterator over the frames of the scene. Alternatively, a program moves objects and robots step by step with set_…(),
 /// step(dt) and observe(). Frames are dicts:
@@ -84,8 +84,8 @@ impl Simulation {
         })
     }
 
-    /// Resets the simulation to the state before the first frame, and removes everything set by hand. The sensor is unchanged. The noise of its
-    /// readings is drawn from `seed` (None: the scene's seed). Raises ValueError.
+    /// Resets the simulation to the state before the first frame, and removes all manual settings. The sensor is unchanged. The noise of its readings is drawn
+    /// from `seed` (None: the scene's seed). Raises ValueError.
     #[pyo3(signature = (seed=None))]
     fn reset(&mut self, seed: Option<i128>) -> PyResult<()> {
         let seed = match seed {
@@ -98,13 +98,13 @@ impl Simulation {
         })
     }
 
-    /// Advances the simulation by `dt` seconds. Poses set by hand are reached; everything else follows the scene. Raises ValueError.
+    /// Advances the simulation by `dt` seconds. Manually set poses are reached; all other motions follow the scene. Raises ValueError.
     fn step(&mut self, py: Python, dt: f64) -> PyResult<()> {
         let going = &mut self.going;
         guarded(|| py.detach(|| on(going, |simulation| simulation.step(dt))))
     }
 
-    /// Returns the current state as a frame; before any step, the first frame of the scene. Raises ValueError.
+    /// Returns the current state as a frame. Before any step, it is the first frame of the scene. Raises ValueError.
     fn observe<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let going = &mut self.going;
         guarded(|| {
@@ -135,7 +135,7 @@ impl Simulation {
         })
     }
 
-    /// Returns the patch with this name, in its own frame. Raises ValueError.
+    /// Returns the patch with this name, in the patch's own frame. Raises ValueError.
     fn patch(&self, name: &str) -> PyResult<Patch> {
         let patches = self.plan.patches.iter();
         let mut patches = patches.filter(|patch| patch.skin.name() == name);
@@ -145,14 +145,14 @@ impl Simulation {
         found.ok_or_else(|| bad_input("patch", format!("`{name}`"), self.patches().join(", ")))
     }
 
-    /// Time since the start, seconds.
+    /// Time since the start of the scene, seconds.
     #[getter]
     fn time(&mut self) -> f64 {
         self.going
             .with_dependent_mut(|_, simulation| simulation.time())
     }
 
-    /// For each robot, by name, the names of its movable joints.
+    /// Names of the movable joints of each robot, by the robot's name.
     #[getter]
     fn robots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let robots = PyDict::new(py);
@@ -186,20 +186,20 @@ impl Simulation {
         self.plan.n_frames
     }
 
-    /// Frames per second of the scene's time.
+    /// Number of frames per second of the scene's time.
     #[getter]
     fn output_rate(&self) -> f64 {
         self.plan.output_rate
     }
 
-    /// Names of the patches.
+    /// Names of all patches of the scene.
     #[getter]
     fn patches(&self) -> Vec<String> {
         let patches = self.plan.patches.iter();
         patches.map(|patch| patch.skin.name().to_owned()).collect()
     }
 
-    /// Names of the objects.
+    /// Names of all objects of the scene.
     #[getter]
     fn objects(&self) -> Vec<String> {
         let objects = self.plan.objects.iter();
@@ -231,7 +231,7 @@ impl Simulation {
     }
 }
 
-/// Calls the simulation and converts its errors.
+/// Calls the simulation and converts its errors to Python exceptions.
 fn on<T>(
     going: &mut OnItsWay,
     call: impl FnOnce(&mut Going) -> bubbletouch::Result<T>,
@@ -239,7 +239,7 @@ fn on<T>(
     going.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
 }
 
-/// Reads one pose `world_from_…`.
+/// Reads a single pose `world_from_…`.
 fn one_pose(given: &Bound<PyAny>) -> PyResult<Pose> {
     let poses = Poses::from_argument("pose", given)?;
     match (poses.is_one, &poses.poses[..]) {

@@ -1,4 +1,4 @@
-//! `SphereUnion`: rigid spheres.
+//! Class `SphereUnion`: rigid spheres.
 
 use crate::arrays::{corners, each, points, to_column, to_rows};
 use crate::errors::{check_folder, check_readable, exception, guarded};
@@ -11,7 +11,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// A union of rigid spheres.
+/// Union of rigid spheres.
 ///
 /// `SphereUnion(centers, radii)`: centers (n, 3), metres; radii (n,) or one number, metres, positive. Raises ValueError with the number of the
 /// first invalid sphere, from 1.
@@ -21,7 +21,7 @@ pub struct SphereUnion {
 }
 
 impl SphereUnion {
-    /// Wraps a union of the library.
+    /// Wraps a sphere union of the Rust library.
     pub fn from_spheres(spheres: objects::SphereUnion) -> Self {
         Self {
             model: spheres.into(),
@@ -56,7 +56,7 @@ impl SphereUnion {
         })
     }
 
-    /// Reads a CSV file with columns x, y, z, r in metres, or in another unit.
+    /// Reads spheres from a CSV file with columns x, y, z, r in metres, or in another unit.
     ///
     /// Raises OSError if the file cannot be read, and ValueError if it contains no such spheres.
     #[staticmethod]
@@ -70,7 +70,7 @@ impl SphereUnion {
         })
     }
 
-    /// Writes a CSV file from which read() returns bitwise equal spheres. Raises OSError; an existing file is then kept.
+    /// Writes the spheres to a CSV file, from which read() returns bitwise equal spheres. Raises OSError; an existing file is then kept.
     fn write(&self, path: PathBuf) -> PyResult<()> {
         guarded(|| {
             check_folder(&path)?;
@@ -79,25 +79,25 @@ impl SphereUnion {
         })
     }
 
-    /// Centres (n, 3), metres; a copy.
+    /// Centres of the spheres (n, 3), metres; a copy.
     #[getter]
     fn centers<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         to_rows(py, self.spheres().iter().map(|sphere| sphere.center))
     }
 
-    /// Radii (n,), metres; a copy.
+    /// Radii of the spheres (n,), metres; a copy.
     #[getter]
     fn radii<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         to_column(py, self.spheres().iter().map(|sphere| sphere.radius))
     }
 
-    /// Bounding box (2, 3): its least and its greatest corner, metres.
+    /// Bounding box (2, 3): the smallest and largest coordinates, metres.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         corners(py, &self.union().bounds())
     }
 
-    /// How many spheres.
+    /// Number of spheres.
     fn __len__(&self) -> usize {
         self.spheres().len()
     }

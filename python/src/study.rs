@@ -1,4 +1,4 @@
-//! Studies: execution as in `bubbletouch run`, with the tables in memory.
+//! Execution of studies as in `bubbletouch run`, with the tables in memory.
 
 use crate::arrays::whole_number;
 use crate::errors::{bad_input, exception, guarded};
@@ -22,15 +22,15 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant, SystemTime};
 
-/// Minimum time between two calls of a callback. If shorter, workers wait for the interpreter more often.
+/// Minimum time between two calls of a callback. If shorter, worker threads wait for the Python interpreter more often.
 const BETWEEN_CALLS: Duration = Duration::from_millis(50);
 
-/// Progress reporter that calls a Python callback, and stops the study if the callback raises.
+/// Progress listener that calls a Python callback, and stops the study if the callback raises an exception.
 struct CallbackProgress {
     stop: Stop,
     callback: Option<Py<PyAny>>,
     stage: Mutex<Stage>,
-    /// Exception raised by the callback.
+    /// Exception that the callback raised.
     raised: Arc<Mutex<Option<PyErr>>>,
 }
 
@@ -93,7 +93,7 @@ impl Progress for CallbackProgress {
 /// File name, title, note and columns of a table.
 type Said<'py> = (String, String, String, Bound<'py, PyDict>);
 
-/// A study's text, and the folder of its results.
+/// Text of a study, and its result folder.
 struct StudySource {
     source: Source,
     name: String,
@@ -139,7 +139,7 @@ fn run(asked: &StudySource, told: &CallbackProgress) -> Result<Vec<Table>> {
     Ok(outcome.tables)
 }
 
-/// Runs a study (TOML) into a folder; returns the file name, title, note and columns of each table.
+/// Runs a study (TOML text) and writes its results into a folder. Returns the file name, title, note and columns of each table.
 #[pyfunction]
 #[pyo3(signature = (text, place, name, folder, out, seed=None, callback=None))]
 #[expect(clippy::too_many_arguments, reason = "called by bubbletouch.run alone")]
@@ -222,8 +222,7 @@ pub fn toml_of(json: &str) -> PyResult<String> {
     })
 }
 
-/// Returns advice from the results in a folder, as JSON: the cheapest configuration of a minimum quality, or the best within a cost. Raises
-/// ValueError.
+/// Returns advice from the results in a folder, as JSON: the cheapest configuration with a minimum quality, or the best one within a cost. Raises ValueError.
 #[pyfunction]
 #[pyo3(signature = (results, reach, budget, value, cost, table, given, worst, limits))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]

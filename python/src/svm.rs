@@ -19,7 +19,7 @@ use pyo3::types::{PyDict, PyTuple};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Reads rows of numbers.
+/// Reads feature rows as an array of numbers.
 fn rows_of(given: &Bound<PyAny>) -> PyResult<Array2<f64>> {
     let is_shape = |shape: &[usize]| matches!(shape, [_, _]);
     view(
@@ -34,14 +34,14 @@ fn rows_of(given: &Bound<PyAny>) -> PyResult<Array2<f64>> {
     )
 }
 
-/// Number of rows that the library predicts at once.
+/// Number of rows that the library predicts together.
 const BLOCK_ROWS: usize = 256;
 
 /// Predicts parts of the rows on the threads of the pool. Each part is a multiple of the library's block size, so the results are bitwise equal to a single
 /// call.
 ///
 /// # Errors
-/// Returns the error of a prediction of all rows at once, which names the correct row.
+/// Returns the error of predicting all rows together, which names the correct row.
 fn in_parts<T: Send>(
     features: &Array2<f64>,
     predict: impl Fn(ArrayView2<f64>) -> bubbletouch::Result<T> + Sync,
@@ -56,7 +56,7 @@ fn in_parts<T: Send>(
     predicted.or_else(|_| Ok(vec![predict(features.view())?]))
 }
 
-/// Reads integers from 0.
+/// Reads an array of integers that are at least 0.
 fn whole(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
     let is_shape = |shape: &[usize]| shape.len() == 1;
     view(place, given, "(n,)", is_shape, |array| {
@@ -97,12 +97,12 @@ fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> 
     dataset(rows_of(features)?, labels).map_err(|error| exception(error.into()))
 }
 
-/// Kernel and C of a call, with their Python names.
+/// Kernel and C of a Python call, with their Python names.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 struct SvmArguments {
     kernel: String,
-    /// Value of γ; `None` for 'scale'.
+    /// Kernel parameter γ; `None` for 'scale'.
     gamma: Option<f64>,
     coef0: f64,
     degree: u32,
@@ -148,18 +148,18 @@ impl SvmArguments {
     }
 }
 
-/// A trained kernel SVM for labels 0, 1, …, used by bubbletouch.learning.SVC. It is pickled as its training rows, and trained again.
+/// Trained kernel SVM for labels 0, 1, …, used by bubbletouch.learning.SVC. Pickling stores its training rows; unpickling trains it again.
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct KernelSvm {
     model: SvmModel,
-    /// Training arguments: the model is pickled as these, and trained again.
+    /// Training arguments: pickling stores them, unpickling trains again.
     asked: Py<PyDict>,
     data: Arc<Dataset>,
 }
 
 #[pymethods]
 impl KernelSvm {
-    /// Trains on features (n, m) and labels (n,). Raises ValueError.
+    /// Trains an SVM on features (n, m) and labels (n,). Raises ValueError.
     #[staticmethod]
     fn train(
         features: &Bound<PyAny>,
@@ -174,7 +174,7 @@ impl KernelSvm {
         })
     }
 
-    /// Returns the labels (n,) of features (n, m); of equally many votes, the lowest label wins.
+    /// Returns the predicted labels (n,) of features (n, m); if votes are equal, the lowest label.
     fn labels<'py>(
         &self,
         py: Python<'py>,
@@ -202,7 +202,7 @@ impl KernelSvm {
         })
     }
 
-    /// For each binary problem, its classes, training rows, signed multipliers, ρ, objective, iterations, and whether it was capped.
+    /// Binary problems of the SVM: for each, its classes, training rows, signed multipliers, ρ, objective, number of iterations, and whether it was capped.
     #[getter]
     fn problems<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let problem = |problem: &bubbletouch::recognition::svm::BinaryProblem| {
@@ -243,7 +243,7 @@ impl KernelSvm {
     }
 }
 
-/// A trained linear SVM without a kernel matrix for labels 0, 1, …, used by bubbletouch.learning.LinearSVC. It is pickled like KernelSvm.
+/// Trained linear SVM without a kernel matrix for labels 0, 1, …, used by bubbletouch.learning.LinearSVC. It is pickled like KernelSvm.
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct LinearModel {
     svm: LinearSvm,
@@ -253,7 +253,7 @@ pub struct LinearModel {
 
 #[pymethods]
 impl LinearModel {
-    /// Trains on features (n, m) and labels (n,). Raises ValueError.
+    /// Trains a linear SVM on features (n, m) and labels (n,). Raises ValueError.
     #[staticmethod]
     fn train(
         features: &Bound<PyAny>,
@@ -280,7 +280,7 @@ impl LinearModel {
         })
     }
 
-    /// Returns the labels (n,) of features (n, m).
+    /// Returns the predicted labels (n,) of features (n, m).
     fn labels<'py>(
         &self,
         py: Python<'py>,
@@ -292,7 +292,7 @@ impl LinearModel {
         })
     }
 
-    /// Returns the scores (n, n_classes); the largest score determines the label.
+    /// Returns the scores (n, n_classes); the class with the largest score is predicted.
     fn scores<'py>(
         &self,
         py: Python<'py>,
@@ -304,26 +304,26 @@ impl LinearModel {
         })
     }
 
-    /// Weights (n_classes, m).
+    /// Weights of the linear model (n_classes, m).
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         self.svm.model().weights.clone().into_pyarray(py)
     }
 
-    /// Biases (n_classes,).
+    /// Biases of the linear model (n_classes,).
     #[getter]
     fn bias<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.svm.model().bias.clone().into_pyarray(py)
     }
 
-    /// Largest number of passes over the rows of all problems.
+    /// Largest number of passes over the rows in any binary problem.
     #[getter]
     fn n_passes(&self) -> usize {
         let passes = self.svm.convergence().iter().map(|end| end.n_passes);
         passes.max().unwrap_or(0)
     }
 
-    /// Number of problems that stopped at max_passes.
+    /// Number of binary problems that stopped at max_passes.
     #[getter]
     fn n_capped(&self) -> usize {
         self.svm.n_capped()
@@ -341,8 +341,8 @@ impl LinearModel {
     }
 }
 
-/// Evaluates all γ and C over folds, on one matrix of products. γ values are multiples of 'scale'; without any, γ is unchanged. Returns the best
-/// C, the best γ, and tuples of C, γ and accuracy.
+/// Evaluates all values of γ and C by cross-validation, on one matrix of products. γ values are multiples of 'scale'; without any, γ is unchanged. Returns the
+/// best C, the best γ, and tuples of C, γ and accuracy.
 #[pyfunction]
 pub fn choose_svm<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Thread pool of long calls, and handling of Ctrl-C.
+//! Thread pool for long calls, and handling of Ctrl-C.
 //!
 //! All parallel work runs in one pool. A forked process (`multiprocessing` on Linux) inherits no threads, so it creates its own pool at its first long call.
 
@@ -12,12 +12,12 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Time between two checks for Ctrl-C. If larger, calls end later; if smaller, checks take more time, 1 µs each.
+/// Time between two checks for Ctrl-C. If longer, calls end later; if shorter, checks (1 µs each) take more time.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
 
-/// Returns the pool of this process, with one thread per core.
+/// Returns the thread pool of this process, with one thread per core.
 ///
 /// # Errors
 /// If the system cannot create threads.
@@ -46,14 +46,14 @@ pub struct Interrupt {
 }
 
 impl Interrupt {
-    /// Creates a check; the period starts now.
+    /// Creates a check whose period starts now.
     pub fn new() -> Self {
         Self {
             looked: Instant::now(),
         }
     }
 
-    /// Handles Python's signals, if the period has elapsed.
+    /// Handles Python's signals if the period has elapsed.
     ///
     /// # Errors
     /// Returns the exception of the signal handler; Python's own handler raises `KeyboardInterrupt`.
@@ -67,15 +67,15 @@ impl Interrupt {
     }
 }
 
-/// Flag that ends a long call early; the call checks it periodically.
+/// Flag that stops a long call early; the call checks it periodically.
 #[derive(Clone, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
-/// Payload of the panic that unwinds a stopped call.
+/// Payload of the panic by which a stopped call unwinds.
 struct Stopped;
 
 impl Stop {
-    /// Ends the call if the flag is set, by unwinding to [`aside`].
+    /// Ends the call by unwinding to [`aside`] if the flag is set.
     pub fn end_if_told(&self) {
         if self.is_told() {
             resume_unwind(Box::new(Stopped));
@@ -95,7 +95,7 @@ impl Stop {
 
 /// Runs a long call in the pool, without the interpreter's lock, while this thread checks for Ctrl-C.
 ///
-/// After Ctrl-C, the function returns at once. The call ends at its next check of [`Stop`]; without checks, it runs to its end, and its result is dropped.
+/// After Ctrl-C, the function returns at once. The call ends at its next check of [`Stop`]. Without checks, it runs to its end, and its result is dropped.
 ///
 /// # Errors
 /// Returns the errors of the call, `KeyboardInterrupt` after Ctrl-C, or an error after a panic of the call.

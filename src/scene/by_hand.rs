@@ -1,9 +1,9 @@
 //! Manual control of a scene: a program sets poses and joint positions instead of the scene file.
 //!
-//! A new pose takes effect in the next step and stays. Everything else follows the scene file.
+//! A manually set pose takes effect in the next step and remains. All other motions follow the scene file.
 //!
-//! A manual step equals a step of the [time loop](Simulation::next_frame) bit by bit if length, time and poses are equal. For this, the manual step must be
-//! observed where the loop makes a frame.
+//! A manual step equals a step of the [time loop](Simulation::next_frame) bit by bit if its length, time and poses are equal. The manual step must then be
+//! observed where the time loop makes a frame.
 
 use super::plan_object::Movement;
 use super::simulation::Simulation;
@@ -15,7 +15,7 @@ use crate::world::{Interpolation, JointTrajectory};
 use ndarray::Array2;
 
 impl Simulation<'_> {
-    /// Makes a step of `dt` seconds. [`observe`](Self::observe) returns the new state.
+    /// Advances the simulation by one step of `dt` seconds; [`observe`](Self::observe) returns the new state.
     ///
     /// ```
     /// use bubbletouch::geometry::Pose;
@@ -52,21 +52,21 @@ impl Simulation<'_> {
         self.advance(self.time + dt, dt)
     }
 
-    /// Returns to the state before the first frame and removes all manual settings. The skin keeps its drawn properties (places of draped taxels,
-    /// sensor gains). `seed` sets the noise of the readings; the plan's seed restores the original noise.
+    /// Resets the simulation to the state before the first frame, and removes all manual settings. The skin keeps its drawn properties (positions of draped
+    /// taxels, sensor gains). `seed` determines the noise of the readings; the plan's seed restores the original noise.
     pub fn reset(&mut self, seed: u64) {
         *self = Self::with_seed(self.plan, self.stepping, seed);
     }
 
-    /// Returns the time since the start, seconds.
+    /// Returns the time since the start of the scene, seconds.
     pub fn time(&self) -> f64 {
         self.time
     }
 
-    /// Sets a robot's joint positions from the next step on: one number for each [coordinate](crate::world::Robot::coordinates), rad or m.
+    /// Sets a robot's joint positions from the next step on: one number per [coordinate](crate::world::Robot::coordinates), rad or m.
     ///
     /// # Errors
-    /// If the scene has no robot of this name, or the number of positions is wrong. Also if a position is not finite or exceeds the limits of its joint.
+    /// If the scene has no robot of this name, the number of positions is wrong, or a position is not finite or exceeds the limits of its joint.
     pub fn set_joint_positions(&mut self, robot: &str, positions: &[f64]) -> Result<()> {
         let number = self.robot(robot)?;
         let row = Array2::from_shape_vec((1, positions.len()), positions.to_vec());
@@ -90,8 +90,8 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// Sets the pose of an object, `world_from_object`, from the next step on. A pressed object starts its travel at this pose. A free object comes
-    /// to rest from this pose, even if it had escaped.
+    /// Sets the pose of an object, `world_from_object`, from the next step on. A pressed object starts its travel at this pose. A free object moves from this
+    /// pose to its equilibrium, even if it had escaped.
     ///
     /// # Errors
     /// If the scene has no object of this name, a robot carries the object, or the pose is not finite.

@@ -1,4 +1,4 @@
-//! State of a scene at one instant, and the receivers of such frames.
+//! State of a scene at one time, and the receivers of such frames.
 
 use crate::contact::Wrench;
 use crate::contact::equilibrium::{Equilibrium, Touch};
@@ -6,16 +6,16 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use glam::DVec3;
 
-/// State of a scene at one instant.
+/// State of a scene at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
-    /// Time since the start, seconds.
+    /// Time since the start of the scene, seconds.
     pub time: f64,
-    /// One reading for each patch, in the order of the plan.
+    /// Reading of each patch, in the order of the plan.
     pub patches: Vec<PatchReading>,
-    /// One reading for each object, in the order of the plan.
+    /// Reading of each object, in the order of the plan.
     pub objects: Vec<ObjectReading>,
-    /// Contacts of planes and objects with free objects. The numbers of planes and objects are those of the plan.
+    /// Contacts between free objects and planes or other objects. Planes and objects have their numbers in the plan.
     pub touches: Vec<Touch>,
 }
 
@@ -24,36 +24,36 @@ pub struct Frame {
 pub struct PatchReading {
     /// Pose of the patch, `world_from_patch`.
     pub pose: Pose,
-    /// Deflections, metres, shape (n_taxels,).
+    /// Deflections of the taxels, metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// Forces along the axes, newtons, shape (n_taxels,), never negative; zero on a taxel that only relaxes. A taxel at its stroke that carries a
-    /// free object includes the reaction of its stop. The reaction of a stop to an imposed object is indeterminate and not counted.
+    /// Forces along the taxel axes, newtons, shape (n_taxels,), at least 0; zero on a taxel that only relaxes. If a taxel at its stroke carries a free object,
+    /// the reaction of its stop is included. The reaction of a stop to an imposed object is indeterminate and not included.
     pub force: Vec<f64>,
     /// Forces of the objects on the taxels, newtons, patch frame, shape (n_taxels,). Each is the sum of the axial force, transverse forces of inclined
     /// contacts, and friction. The sum over all taxels is the force of `wrench`.
     pub force3: Vec<DVec3>,
     /// Output of the signal chain, metres or newtons, shape (n_taxels,). `None` if the patch has no signal chain.
     pub signal: Option<Vec<f64>>,
-    /// Number of taxels with a force.
+    /// Number of taxels with a positive force.
     pub n_touched: usize,
     /// Number of taxels at their stroke that an object would push further, or whose stop carries a free object.
     pub n_saturated: usize,
-    /// Number of taxels with a grazing contact: see [`GRAZING`](crate::contact::GRAZING).
+    /// Number of taxels with a grazing contact; see [`GRAZING`](crate::contact::GRAZING).
     pub n_grazing: usize,
-    /// Sum of the reactions of all stops to free objects, newtons; included in the forces above.
+    /// Sum of the reactions of all stops to free objects, newtons; included in `force` and `force3`.
     pub stop_force: f64,
-    /// Wrench of the objects on the patch, in the patch frame, from the forces above and friction.
+    /// Wrench of the objects on the patch, in the patch frame, including friction.
     pub wrench: Wrench,
-    /// Friction of the patch. `None` if the patch has no friction.
+    /// Friction state of the patch; `None` if the patch has no friction.
     pub friction: Option<FrictionReading>,
-    /// Mean rest centre of the taxels, weighted by their forces; metres, patch frame. `None` if no taxel has a force.
+    /// Centre of pressure: mean rest centre of the taxels, weighted by their forces; metres, patch frame. `None` if no taxel has a force.
     pub center_of_pressure: Option<DVec3>,
 }
 
 /// Friction state of a patch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionReading {
-    /// Friction part of the wrench's force, newtons, patch frame.
+    /// Friction force on the patch, newtons, patch frame; a part of the wrench's force.
     pub shear: DVec3,
     /// Number of taxels with sticking contacts.
     pub n_sticking: usize,
@@ -61,14 +61,14 @@ pub struct FrictionReading {
     pub n_slipping: usize,
 }
 
-/// Pose of an object and how it is determined.
+/// Pose of an object, and how the pose is determined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectReading {
-    /// Pose `world_from_object`. For an escaped object, its last pose.
+    /// Pose of the object, `world_from_object`; for an escaped object, its last pose.
     pub pose: Pose,
     /// How the pose is determined: imposed, pressed, free or escaped.
     pub held: PoseControl,
-    /// For a free object that has not escaped: its equilibrium and the residual of the forces.
+    /// Equilibrium of a free object with the residual of the forces; `None` for other objects and after an escape.
     pub balance: Option<Equilibrium>,
 }
 
@@ -78,29 +78,29 @@ pub enum PoseControl {
     /// The pose follows an imposed motion.
     #[default]
     Imposed,
-    /// The pose follows an imposed motion, plus a travel that controls the force on a patch.
+    /// The pose follows an imposed motion, with an additional travel that controls the force on a patch.
     Pressed {
-        /// Distance from the pose of the imposed motion, metres.
+        /// Distance of the object from the pose of its imposed motion, metres.
         travel: f64,
         /// Spring force Σ k δ of the patch, newtons.
         force: f64,
-        /// Target value of the force, newtons.
+        /// Target of the spring force, newtons.
         wanted: f64,
     },
     /// The object is free and in equilibrium.
     AtRest,
-    /// No equilibrium: the solver reached its iteration limit before all free objects were at rest.
+    /// The object is free but not in equilibrium, because the solver reached its iteration limit.
     NotConverged,
-    /// Escape: a free object left the skin and has no contact.
+    /// The object was free, left the skin and has no contact.
     Escaped {
         /// Time of the escape, seconds.
         time: f64,
-        /// Direction of the escape: unit vector in the world frame.
+        /// Direction of the escape, a unit vector in the world frame.
         direction: DVec3,
     },
 }
 
-/// Tolerance of a reached force, N, relative above 1 N. A smaller tolerance counts rounding errors of stiff skins as missed forces.
+/// Tolerance for reaching a target force, N, relative above 1 N. If smaller, rounding errors of stiff skins count as missed forces.
 const REACHED: f64 = 1e-9;
 
 impl PoseControl {
@@ -115,7 +115,7 @@ impl PoseControl {
     }
 }
 
-/// Receiver of frames, which are passed on as soon as they are computed.
+/// Receiver of frames; each frame is passed on as soon as it is computed.
 pub trait FrameSink {
     /// Receives a frame.
     ///
@@ -124,7 +124,7 @@ pub trait FrameSink {
     fn frame(&mut self, frame: &Frame) -> Result<()>;
 }
 
-/// Stores all frames, for scenes that fit into memory.
+/// Receiver that stores all frames, for scenes that fit into memory.
 impl FrameSink for Vec<Frame> {
     fn frame(&mut self, frame: &Frame) -> Result<()> {
         self.push(frame.clone());

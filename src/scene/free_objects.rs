@@ -14,28 +14,28 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::SphereUnion;
 
-/// All free objects of a scene.
+/// All free objects of a scene, with their common equilibrium.
 #[derive(Clone, Debug)]
 pub(super) struct FreeObjects {
     all: Vec<Free>,
     /// Scene numbers of the free objects in the last equilibrium.
     there: Vec<usize>,
-    /// Scene numbers of the objects that are not free.
+    /// Scene numbers of the objects that are not free (imposed or pressed).
     obstacles: Vec<usize>,
     balancer: EquilibriumSolver,
-    /// Deflections of each patch from objects that are not free, metres. Empty if none of them touches the patch.
+    /// Deflections of each patch caused by objects that are not free, metres; empty if none of them touches the patch.
     pushed: Vec<Vec<f64>>,
     workspace: Workspace,
 }
 
-/// One free object with its mass properties and state.
+/// Free object with its mass properties and state.
 #[derive(Clone, Debug)]
 struct Free {
     object: usize,
     mass: f64,
     center_of_mass: glam::DVec3,
     reading: ObjectReading,
-    /// Whether the object was placed and has not been at rest since.
+    /// Whether the object was placed and has not been in equilibrium since.
     is_put: bool,
 }
 
@@ -71,7 +71,7 @@ impl FreeObjects {
         }
     }
 
-    /// Places an object, by its scene number. In the next step, the object comes to rest from this pose.
+    /// Places the object with this scene number. In the next step, the object moves from this pose to its equilibrium.
     pub fn put(&mut self, object: usize, pose: Pose) {
         for free in self.all.iter_mut().filter(|free| free.object == object) {
             free.reading = at_start(pose);
@@ -79,7 +79,8 @@ impl FreeObjects {
         }
     }
 
-    /// Computes the equilibrium of all objects that have not escaped. Returns whether all are at rest. `dt`: time since the last call, infinite at the start.
+    /// Computes the equilibrium of all objects that have not escaped; returns whether it converged. `dt` is the time since the last call, infinite at the
+    /// start.
     pub fn solve_equilibrium(
         &mut self,
         plan: &ScenePlan,
@@ -144,7 +145,7 @@ impl FreeObjects {
             .all(|free| free.reading.held != PoseControl::NotConverged))
     }
 
-    /// Returns the loads of free objects on a patch, in taxel order.
+    /// Iterates over the loads of free objects on the taxels of a patch, in taxel order.
     pub fn on_patch(&self, patch: usize) -> impl Iterator<Item = &TaxelLoad> {
         let loads = self.balancer.loads().iter();
         loads.filter(move |load| load.skin == patch)
@@ -162,7 +163,7 @@ impl FreeObjects {
         own.collect()
     }
 
-    /// Returns the contacts of free objects with rigid bodies, with scene numbers of objects and planes.
+    /// Iterates over the contacts of free objects with rigid bodies, with scene numbers of objects and planes.
     pub fn touches(&self) -> impl Iterator<Item = Touch> {
         self.balancer.touches().iter().map(|touch| Touch {
             object: self.there[touch.object],
@@ -177,7 +178,7 @@ impl FreeObjects {
         })
     }
 
-    /// Attaches the tangential springs of patches with friction to the objects that were just placed.
+    /// Attaches the tangential springs of patches with friction to objects that were just placed.
     fn hold_by_tips(&mut self, plan: &ScenePlan, skins: &mut [SkinState], objects: &PlacedObjects) {
         let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
         for free in self.all.iter_mut().filter(|free| free.is_put) {
@@ -195,7 +196,7 @@ impl FreeObjects {
         }
     }
 
-    /// Computes the deflections of each patch from objects that are not free.
+    /// Computes the deflections of each patch caused by objects that are not free.
     fn push_by_others(&mut self, plan: &ScenePlan, skins: &[SkinState], objects: &PlacedObjects) {
         let patches = plan.patches.iter().zip(skins).zip(&mut self.pushed);
         for ((patch, skin), pushed) in patches {
@@ -208,7 +209,7 @@ impl FreeObjects {
         }
     }
 
-    /// Writes the readings of the free objects.
+    /// Writes the readings of all free objects.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for free in &self.all {
             readings[free.object] = free.reading;

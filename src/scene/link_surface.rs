@@ -1,6 +1,6 @@
-//! Surface of a robot's link, which skin can be draped over. The shapes of the link form one triangle mesh in the link's frame, metres.
+//! Surface of a robot's link, over which skin can be draped. The shapes of the link form one triangle mesh in the link's frame, metres.
 //!
-//! Boxes are exact. Round shapes are cut into facets with their corners on the shape; taxels then lie at most [`SAGITTA`] pitches inside.
+//! Boxes are exact. Round shapes are divided into facets with their corners on the shape; taxels are then at most [`SAGITTA`] pitches inside the shape.
 
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
@@ -12,21 +12,21 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
-/// Maximum distance from a facet's middle to the round shape, relative to the pitch. A larger value places taxels deeper; a smaller one needs more triangles.
+/// Maximum distance from a facet's middle to the round shape, relative to the pitch. If larger, taxels are deeper; if smaller, more triangles are needed.
 const SAGITTA: f64 = 0.02;
-/// Minimum and maximum number of facets around a round shape. More facets than the maximum need memory and move no taxel by a noticeable distance.
+/// Minimum and maximum number of facets around a round shape. More facets would need memory without moving taxels noticeably.
 const N_FACETS: [f64; 2] = [16.0, 720.0];
 
 /// Selection of a link and its shapes.
 pub(super) struct LinkSurface<'a> {
     /// Name of the link.
     pub link: &'a str,
-    /// Role of the shapes. `None`: the collision shapes if the link has any, else the visual shapes.
+    /// Role of the shapes; with `None`, the collision shapes if the link has any, otherwise the visual shapes.
     pub role: Option<ShapeRole>,
 }
 
 impl Reader<'_> {
-    /// Returns the surface of the shapes of a link. Round shapes are cut into facets that are fine enough for taxels at this pitch, metres.
+    /// Returns the surface of a link's shapes. Round shapes are divided into facets that are fine enough for taxels at this pitch (metres).
     ///
     /// # Errors
     /// If the robot has no such link, the link has no such shapes, or the mesh of a shape cannot be read.
@@ -75,7 +75,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the shapes of a role that have a volume. Without a role: the collision shapes, or the visual shapes if there are none.
+/// Returns all shapes of a role that have a volume. Without a role, returns the collision shapes, or the visual shapes if there are none.
 fn solids(link: &Link, role: Option<ShapeRole>) -> Vec<&LinkShape> {
     let of = |role: ShapeRole| -> Vec<&LinkShape> {
         let shapes = link.shapes.iter();
@@ -99,7 +99,7 @@ fn kind(role: Option<ShapeRole>) -> &'static str {
     }
 }
 
-/// Reads the mesh that a URDF file in `folder` names, and multiplies its coordinates by the scale.
+/// Reads a mesh file named in a URDF file in `folder`, and multiplies its coordinates by the scale.
 fn read_link_mesh(file: &str, scale: DVec3, folder: Option<&Path>) -> Result<TriangleMesh> {
     let Some(path) = find_mesh(file, folder.unwrap_or(Path::new(""))) else {
         let allowed =
@@ -119,8 +119,8 @@ fn read_link_mesh(file: &str, scale: DVec3, folder: Option<&Path>) -> Result<Tri
     TriangleMesh::new(&place, vertices.collect(), triangles.collect())
 }
 
-/// Returns the path of a mesh that a URDF file in `folder` names: relative to the folder, `file://…`, or `package://NAME/…`. A package path is searched for in
-/// each parent folder as NAME/… and without NAME, because a copy of a package may have another name.
+/// Returns the path of a mesh file named in a URDF file in `folder`: a path relative to the folder, `file://…`, or `package://NAME/…`. A package path is
+/// searched in each parent folder as NAME/… and without NAME, because a copy of a package may have another name.
 fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
     let in_package = ["package://", "model://"]
         .iter()
@@ -157,7 +157,7 @@ fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
 
 type Facets = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// Returns the facets of a ball or capsule: each hemisphere is shifted by `half` along z.
+/// Returns the facets of a ball or capsule; each hemisphere is shifted by `half` along z.
 fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
     let n = n_facets(radius, pitch);
     let n_rings = n.div_ceil(4).max(2);
@@ -174,13 +174,13 @@ fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
     revolved(&profile, n)
 }
 
-/// Returns the number of facets around a circle so that their middles are within [`SAGITTA`] pitches of it: r (1 − cos(π/n)) ≤ sagitta.
+/// Returns the number of facets around a circle for which their middles are within [`SAGITTA`] pitches of the circle: r (1 − cos(π/n)) ≤ sagitta.
 fn n_facets(radius: f64, pitch: f64) -> usize {
     let cos = (1.0 - SAGITTA * pitch / radius).max(0.0);
     (PI / cos.acos()).ceil().clamp(N_FACETS[0], N_FACETS[1]) as usize
 }
 
-/// Returns the surface of revolution about z with n facets. The profile (r, z) runs from its lower to its upper end on the axis.
+/// Returns the surface of revolution about z with n facets. The profile (r, z) starts at its lower end on the axis and ends at its upper end.
 fn revolved(profile: &[(f64, f64)], n: usize) -> Facets {
     let (lower, upper) = (profile[0].1, profile[profile.len() - 1].1);
     let rings = &profile[1..profile.len() - 1];

@@ -1,26 +1,26 @@
-//! Scene: a TOML file → robots, skin and objects that move → frames over time.
+//! Scenes: a TOML file describes robots, skin and moving objects; a simulation computes frames over time.
 //!
-//! [`SceneSpec`] (as written) → [`ScenePlan`] (checked, SI, files read) → [`Simulation`] (steps) → [`Frame`]s. Each frame is passed to the
-//! [`FrameSink`]s as soon as it is computed. Only the current state is stored.
+//! A [`SceneSpec`] (keys as written) is checked and converted to a [`ScenePlan`] (SI units, files read). A [`Simulation`] steps the plan and passes each
+//! [`Frame`] to the [`FrameSink`]s as soon as it is computed. Only the current state is stored.
 //!
-//! Order of computations in each step:
+//! Each step performs these computations in order:
 //!
 //! 1. Robots and imposed objects move to the poses of their trajectories. Patches move with their links.
-//! 2. Pressed objects ([`PressSpec`]) move along their lines until the spring force Σ k δ of their patches reaches the target. The speed limits the travel in
-//!    a step ([`MovedObject`](crate::contact::MovedObject)). Without dampers, the recorded force equals the target. With dampers it is larger while
-//!    deflections grow, smaller while they shrink, and equal at rest. A target that is not reached is no error: the object stops at its maximum travel, and
-//!    each frame contains the actual force.
+//! 2. Pressed objects ([`PressSpec`]) move along their lines until the spring force Σ k δ of their patches reaches the target. The speed limits the travel in a
+//!    step ([`MovedObject`](crate::contact::MovedObject)). Without dampers, the recorded force equals the target. With dampers it is larger while deflections
+//!    grow, smaller while they shrink, and equal at rest. If a target cannot be reached, the object stops at its maximum travel without an error; each frame
+//!    contains the actual force.
 //! 3. Free objects move to a common equilibrium on skin, planes ([`PlaneSpec`]), imposed objects and one another ([`balance`](crate::contact::equilibrium)).
-//!    Each starts at its last pose. Skin carries them by its springs, by the dampers' forces within the step, and by the reactions of rigid stops at the end
-//!    of the stroke. The equilibrium gives these reactions; they are part of the forces of the patch.
+//! Each starts at its last pose. Skin carries them by its springs, by the dampers' forces within the step, and by the reactions of rigid stops at the end of
+//! the stroke; the equilibrium determines these reactions.
 //! 4. Each patch computes its contacts, unless no object is within its reach. Taxels without contact relax ([`DamperState`](crate::contact::DamperState)). On
 //!    a patch with friction, the tips of the tangential springs move with the contacting objects ([`FrictionState`](crate::contact::FrictionState)), whether
 //!    the patch or the object moves.
 //!
-//! A scene starts in the steady state of its poses at t = 0. A scene without dampers, friction, free objects and pressed objects has no
-//! memory. Therefore, it is only evaluated at its frames, with equal results.
+//! A scene starts in the steady state of its poses at t = 0. A scene without dampers, friction, free objects and pressed objects has no memory; it is therefore
+//! evaluated only at its frames, with equal results.
 //!
-//! Limits of the model:
+//! The model has these limits:
 //!
 //! - Planes and objects hold free objects without friction.
 //! - Skin has friction with a free object only at contacts that exist at the start of a step or when the object is placed.

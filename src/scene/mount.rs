@@ -1,4 +1,4 @@
-//! Mounts of patches and carried objects: on the world, a robot's link, or an object.
+//! Mounts of patches and carried objects, which are fixed to the world, to a robot's link, or to an object.
 
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
@@ -8,12 +8,12 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::scene::spec_motion::PoseSpec;
 
-/// Body that carries a patch or an object.
+/// Body to which a patch or an object is fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mount {
-    /// The world; the pose `world_from_mounted` is constant.
+    /// Fixed to the world; the pose `world_from_mounted` is constant.
     World(Pose),
-    /// A link of a robot.
+    /// Fixed to a link of a robot.
     Link {
         /// Index of the robot in the scene.
         robot: usize,
@@ -22,7 +22,7 @@ pub enum Mount {
         /// Pose of the mounted body on the link, `link_from_mounted`.
         link_from_mounted: Pose,
     },
-    /// An object of the scene.
+    /// Fixed to an object of the scene.
     Object {
         /// Index of the object in the scene.
         object: usize,
@@ -32,7 +32,7 @@ pub enum Mount {
 }
 
 impl Mount {
-    /// Returns the pose of the mounted body, `world_from_mounted`.
+    /// Returns the pose of the mounted body in the world, `world_from_mounted`.
     pub(super) fn place(&self, robots: &[RobotState], world_from_objects: &[Pose]) -> Pose {
         match self {
             Self::World(pose) => *pose,
@@ -81,7 +81,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the mount for the optional names of a robot and its link.
+    /// Returns the mount for an optional robot name and an optional link name.
     pub fn mount(
         &self,
         key: &str,

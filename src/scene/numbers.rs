@@ -1,11 +1,11 @@
-//! A number for all elements, or a list with one number for each.
+//! Value of a key: one number for all elements, or a list with one number per element.
 
 use schemars::JsonSchema;
 use serde::de::{Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A number for all elements or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
+/// One number for all elements, or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Numbers {
@@ -15,7 +15,7 @@ pub enum Numbers {
     Each(Vec<f64>),
 }
 
-// A manual implementation: the error of serde's untagged enum only states that no variant matched.
+// Implemented manually, because the error of serde's untagged enum only states that no variant matched.
 impl<'de> Deserialize<'de> for Numbers {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(NumbersVisitor)

@@ -9,10 +9,10 @@ use crate::geometry::Pose;
 use crate::inputs::check::Check;
 use crate::objects::{Model, Sphere};
 
-/// Maximum overlap, as a fraction of the smaller object's radius. A larger value accepts deeper overlaps; a smaller one rejects objects of coarse spheres.
+/// Maximum overlap, as a fraction of the smaller object's radius. If larger, deeper overlaps are accepted; if smaller, objects of coarse spheres are rejected.
 const MAX_SHARE: f64 = 0.5;
 
-/// An object at its initial pose.
+/// Object at its initial pose.
 struct Start<'a> {
     object: &'a PlannedObject,
     spheres: &'a [Sphere],
@@ -21,7 +21,7 @@ struct Start<'a> {
 
 /// Checks that no free object starts inside another object.
 ///
-/// The tolerated overlap is the sum of both objects' surface errors.
+/// The tolerance is the sum of both objects' surface errors.
 ///
 /// # Errors
 /// If a free object overlaps another object by more than the tolerance. The error names both objects and the overlap of their deepest spheres.
@@ -83,7 +83,7 @@ pub(super) fn check_starts(
 }
 
 impl Start<'_> {
-    /// Returns the bounding ball in the world frame: centre and radius, metres.
+    /// Returns the bounding ball of the object in the world frame: centre and radius, metres.
     fn ball(&self) -> Sphere {
         let (center, radius) = self.object.ball;
         Sphere {
@@ -92,7 +92,7 @@ impl Start<'_> {
         }
     }
 
-    /// Returns the spheres in the world frame that intersect a ball, sorted by their smallest x coordinate.
+    /// Returns the spheres of the object in the world frame that intersect a ball, sorted by their smallest x coordinate.
     fn spheres_near(&self, ball: &Sphere) -> Vec<Sphere> {
         let placed = self.spheres.iter().map(|sphere| Sphere {
             center: self.pose.transform_point(sphere.center),
@@ -105,7 +105,7 @@ impl Start<'_> {
         near
     }
 
-    /// Returns the largest overlap of two spheres, one of each object, metres; 0 if there is no overlap.
+    /// Returns the largest overlap of two spheres, one of each object, metres; 0 if the objects do not overlap.
     fn overlap(&self, other: &Self) -> f64 {
         let (own, others) = (
             self.spheres_near(&other.ball()),

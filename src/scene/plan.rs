@@ -1,4 +1,4 @@
-//! Executable scene: all keys of the [`SceneSpec`] are checked, all units are SI, and all files are read.
+//! Executable scene: the keys of a [`SceneSpec`], checked and converted to SI units, with all files read.
 
 use super::overlap::check_starts;
 use super::plan_object::{Movement, PlannedObject};
@@ -19,7 +19,7 @@ use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// Maximum number of steps of a scene. A larger number indicates a step in the wrong unit.
+/// Maximum number of steps of a scene; a larger number indicates a time step in the wrong unit.
 const MAX_STEPS: f64 = 1e9;
 
 /// Executable scene: robots, skin, objects and the times of the frames.
@@ -27,15 +27,15 @@ const MAX_STEPS: f64 = 1e9;
 pub struct ScenePlan {
     /// File name of the scene, for error messages.
     pub place: String,
-    /// Specification with its duration and absolute paths.
+    /// Specification of the scene, with its duration and absolute paths.
     pub spec: SceneSpec,
-    /// Number of frames per second of scene time.
+    /// Number of frames per second of scene time, Hz.
     pub output_rate: f64,
     /// Number of frames, at least one. Frame k is at k / output_rate seconds.
     pub n_frames: usize,
-    /// Number of frames before a [cut](Self::cut). The drift of sensors depends on this duration.
+    /// Number of frames before the scene was [cut](Self::cut); the drift of sensors depends on this duration.
     pub n_frames_uncut: usize,
-    /// Number of equal steps between two frames, if steps are needed.
+    /// Number of equal time steps between two frames, if steps are needed.
     pub n_substeps: usize,
     /// Gravitational acceleration, m/s², world frame.
     pub gravity: DVec3,
@@ -52,10 +52,10 @@ pub struct ScenePlan {
 }
 
 impl ScenePlan {
-    /// Reads a scene from its file.
+    /// Reads and checks a scene file.
     ///
     /// # Errors
-    /// If the file cannot be read, or as for [`new`](Self::new).
+    /// If the file cannot be read; otherwise returns the errors of [`new`](Self::new).
     pub fn read(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
         let text = crate::files::read_to_string(path).map_err(|e| {
@@ -66,7 +66,7 @@ impl ScenePlan {
         plan.map_err(|error| with_line(&place, &text, error))
     }
 
-    /// Checks a scene. Paths in it are relative to `folder`.
+    /// Checks a scene and reads its files; paths are relative to `folder`.
     ///
     /// # Errors
     /// If a key is invalid or a file cannot be read. The error begins with `place` (the file name) and the key.
@@ -74,10 +74,10 @@ impl ScenePlan {
         Self::with_models(place, folder, spec, &BTreeMap::new())
     }
 
-    /// Checks a scene with objects in memory, by their names in the scene. For these objects, the scene must not have `object`, `spheres` or `mesh`.
+    /// Checks a scene with some objects given in memory, by their names in the scene. For these objects, the scene must not have `object`, `spheres` or `mesh`.
     ///
     /// # Errors
-    /// As for [`new`](Self::new). Also if the scene has no object with the name of a model.
+    /// Returns the errors of [`new`](Self::new), or an error if the scene has no object with the name of a model.
     pub fn with_models(
         place: &str,
         folder: &Path,
@@ -146,7 +146,7 @@ impl ScenePlan {
         })
     }
 
-    /// Ends the scene at the time `until`, seconds, if it is longer. The remaining frames equal the first frames of the whole scene.
+    /// Ends the scene at the time `until` (seconds) if it is longer. The remaining frames equal the first frames of the whole scene.
     ///
     /// # Errors
     /// If the time is negative or not finite.
@@ -159,12 +159,12 @@ impl ScenePlan {
         Ok(())
     }
 
-    /// Returns the time of a frame, seconds.
+    /// Returns the time of the frame with this number, seconds.
     pub fn time(&self, frame: usize) -> f64 {
         frame as f64 / self.output_rate
     }
 
-    /// Returns notes on used and ignored parts of the robots' files, each with its key.
+    /// Iterates over notes on used and ignored parts of the robots' files, each with its key.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let of_robot = |robot: &PlannedRobot| {
             let trajectory = robot.joints.iter().flat_map(|joints| joints.notes());
@@ -175,7 +175,7 @@ impl ScenePlan {
         self.robots.iter().flat_map(of_robot)
     }
 
-    /// Returns whether frames depend on the steps between them: this holds for dampers, friction, free objects and pressed objects.
+    /// Returns whether frames depend on the steps between them, which is the case with dampers, friction, free objects or pressed objects.
     pub fn needs_steps(&self) -> bool {
         let remembers = |object: &PlannedObject| {
             matches!(object.movement, Movement::Free { .. }) || object.press.is_some()
@@ -184,7 +184,7 @@ impl ScenePlan {
     }
 }
 
-/// Number of frames of a scene, and of steps between them.
+/// Number of frames of a scene, and number of steps between two frames.
 struct Clock {
     n_frames: usize,
     n_substeps: usize,
@@ -219,7 +219,7 @@ impl Clock {
         })
     }
 
-    /// Returns the number of frames of a duration in seconds.
+    /// Returns the number of frames in a duration (seconds).
     fn frames(duration: f64, rate: f64) -> usize {
         (duration * rate + 1e-9).floor() as usize + 1
     }
@@ -247,7 +247,7 @@ fn check_names(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
-/// Checks that planes occur only with free objects, and that objects beside free ones are made of spheres.
+/// Checks that planes occur only with free objects, and that all objects are made of spheres if one is free.
 fn check_rigid(
     check: &Check,
     spec: &SceneSpec,
@@ -295,7 +295,7 @@ fn check_presses(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
-/// Returns the time when the last imposed motion and the last change of a target force end, seconds.
+/// Returns the time at which the last imposed motion and the last change of a target force end, seconds.
 fn end(robots: &[PlannedRobot], objects: &[PlannedObject]) -> f64 {
     let objects = objects.iter().map(|object| {
         let press = object.press.as_ref().map_or(0.0, PlannedPress::end);

@@ -1,4 +1,4 @@
-//! Objects of a scene: contact models and motions.
+//! Objects of an executable scene: contact models and motions.
 
 use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
@@ -22,13 +22,13 @@ use glam::DVec3;
 pub struct PlannedObject {
     /// Name of the object in the scene.
     pub name: String,
-    /// How the object's pose is determined.
+    /// How the pose of the object is determined.
     pub movement: Movement,
-    /// Force control, if the motion is imposed and a force is given.
+    /// Force control; `None` unless the motion is imposed and a target force is given.
     pub press: Option<PlannedPress>,
-    /// Bounding ball (centre, radius), object frame, metres.
+    /// Bounding ball of the object (centre, radius), object frame, metres.
     pub(super) ball: (DVec3, f64),
-    /// Maximum distance of the spheres from the object's surface, metres.
+    /// Maximum distance between the spheres and the object's surface, metres.
     pub(super) surface_error: f64,
 }
 
@@ -41,26 +41,26 @@ impl ObjectSpec {
     }
 }
 
-/// How an object's pose is determined.
+/// How the pose of an object is determined.
 #[derive(Clone, Debug)]
 pub enum Movement {
-    /// Imposed motion, independent of contacts.
+    /// Motion that is imposed and does not depend on contacts.
     Imposed(Motion),
-    /// Fixed on a robot's link.
+    /// Pose that is fixed on a robot's link.
     Carried(Mount),
-    /// Free object under gravity and contact forces.
+    /// Free motion under gravity and contact forces.
     Free {
-        /// Initial pose `world_from_object`, before the first equilibrium.
+        /// Initial pose of the free object, `world_from_object`, before the first equilibrium.
         start: Pose,
-        /// Mass, kilograms.
+        /// Mass of the free object, kilograms.
         mass: f64,
-        /// Centre of mass, object frame, metres.
+        /// Centre of mass of the free object, object frame, metres.
         center_of_mass: DVec3,
     },
 }
 
 impl Reader<'_> {
-    /// Checks an object and returns it with its contact model. `finest_mm` is the finest pitch of all patches, `default` the default model of a mesh.
+    /// Checks an object and returns it with its contact model. `finest_mm` is the finest pitch of all patches; `default` is the default model of a mesh.
     pub fn object(
         &self,
         spec: &ObjectSpec,
@@ -103,7 +103,7 @@ impl Reader<'_> {
         Ok((object, model))
     }
 
-    /// Checks that each model in memory belongs to an object of the scene.
+    /// Checks that each model given in memory belongs to an object of the scene.
     pub fn check_models(&self, objects: &[ObjectSpec]) -> Result<()> {
         let names = objects.iter().map(|object| object.name.as_str());
         for name in self.models.keys() {
@@ -116,7 +116,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Returns the contact model of an object. `model` selects the contact model of a mesh.
+    /// Returns the contact model of an object; `model` selects the contact model of a mesh.
     fn model(
         &self,
         key: &str,
@@ -200,7 +200,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns a model in memory unchanged.
+    /// Returns a model given in memory unchanged.
     fn model_in_memory(&self, key: &str, spec: &ObjectSpec, model: &Model) -> Result<Model> {
         let shape = [
             ("object", spec.object.is_some()),
@@ -257,7 +257,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns a bounding ball, centred at the middle of the model's bounding box.
+/// Returns a bounding ball of the model, centred in the middle of its bounding box.
 fn ball(model: &Model) -> (DVec3, f64) {
     let bounds = model.bounds();
     let center = bounds.center();

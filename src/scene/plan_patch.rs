@@ -1,4 +1,4 @@
-//! Patches of a scene: layouts, taxels and mounts.
+//! Patches of an executable scene: layouts, taxels and mounts.
 
 use super::link_surface::LinkSurface;
 use super::mount::Mount;
@@ -20,22 +20,22 @@ use std::path::Path;
 pub struct PlannedPatch {
     /// Taxels and layout of the patch.
     pub skin: Patch,
-    /// Body that carries the patch.
+    /// Body to which the patch is fixed.
     pub mount: Mount,
-    /// Tangential springs of the taxels. `None` if the patch has no friction.
+    /// Tangential springs of the taxels; `None` if the patch has no friction.
     pub shears: Option<Shears>,
-    /// Signal chain. `None` if it has no steps.
+    /// Signal chain of the patch; `None` if it has no steps.
     pub signal: Option<PlannedSignal>,
 }
 
 impl PlannedPatch {
-    /// Returns whether the state depends on earlier steps: this holds for dampers and friction.
+    /// Returns whether the state of the patch depends on earlier steps, which is the case with dampers or friction.
     pub fn remembers(&self) -> bool {
         let mut taxels = self.skin.taxels().all().iter();
         self.shears.is_some() || taxels.any(|taxel| taxel.damping > 0.0)
     }
 
-    /// Returns whether a taxel has a positive friction coefficient.
+    /// Returns whether any taxel has a positive friction coefficient.
     pub fn has_friction(&self) -> bool {
         let shears = self.shears.iter().flat_map(|shears| shears.all());
         shears.into_iter().any(|shear| shear.friction > 0.0)
@@ -43,7 +43,7 @@ impl PlannedPatch {
 }
 
 impl LayoutSpec {
-    /// Returns the distance of neighbours, mm.
+    /// Returns the distance between neighbouring taxels of the layout, mm.
     pub fn pitch_mm(&self) -> f64 {
         match *self {
             Self::Grid { pitch_mm, .. }
@@ -170,7 +170,7 @@ impl Reader<'_> {
         self.under(key, layout)
     }
 
-    /// Mounts a patch that is draped over a link on this link.
+    /// Mounts a patch that is draped over a link on the same link.
     fn mount_on_draped_link(&self, key: &str, spec: &mut PatchSpec) -> Result<()> {
         let LayoutSpec::Draped { region, .. } = &spec.layout else {
             return Ok(());
@@ -191,7 +191,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the region of a mesh file, or of a link if `mesh` is `None`, that carries taxels.
+    /// Returns the part of a surface that carries taxels; the surface is a mesh file, or a link if `mesh` is `None`.
     fn region(&self, key: &str, spec: &RegionSpec, mesh: Option<&Path>) -> Result<DrapeRegion> {
         let refuse = |given: &str, allowed: &str| Err(self.check.error(key, given, allowed));
         if spec.shapes.is_some() && spec.link.is_none() {

@@ -13,20 +13,20 @@ use glam::DVec3;
 pub struct PlannedPress {
     /// Index of the patch whose force is controlled.
     pub patch: usize,
-    /// Direction of the travel: unit vector in the world frame.
+    /// Direction of the travel, a unit vector in the world frame.
     pub direction: DVec3,
-    /// Times of the target forces, seconds, strictly ascending; at least one.
+    /// Times of the target forces, seconds, strictly increasing; at least one.
     pub times: Vec<f64>,
-    /// Target spring forces Σ k δ at these times, N, not negative. The forces are interpolated linearly between the times and constant outside them.
+    /// Target spring forces Σ k δ at these times, N, at least 0. Between the times, the forces are interpolated linearly; outside, they are constant.
     pub forces: Vec<f64>,
-    /// Maximum speed along the direction, m/s, positive.
+    /// Maximum speed of the object along the direction, m/s, positive.
     pub speed: f64,
-    /// Maximum travel from the pose of the motion, metres, positive.
+    /// Maximum travel of the object from the pose of its motion, metres, positive.
     pub travel: f64,
 }
 
 impl PlannedPress {
-    /// Returns the target force at a time, N.
+    /// Returns the target force at a time (seconds), N.
     pub fn force_at(&self, time: f64) -> f64 {
         let after = self.times.partition_point(|&t| t <= time);
         match (after.checked_sub(1), self.forces.get(after)) {

@@ -1,4 +1,4 @@
-//! Robots of a scene with checked motions.
+//! Robots of an executable scene, with checked motions.
 
 use super::reader::Reader;
 use super::spec::RobotSpec;
@@ -20,12 +20,12 @@ pub struct PlannedRobot {
     pub folder: Option<PathBuf>,
     /// Motion of the robot's base.
     pub base: Motion,
-    /// Motion of the joints. `None` if they stay at their [rest positions](Robot::rest_positions).
+    /// Motion of the joints; `None` if they stay at their [rest positions](Robot::rest_positions).
     pub joints: Option<JointTrajectory>,
 }
 
 impl PlannedRobot {
-    /// Returns the time when the motion ends, seconds.
+    /// Returns the time at which the robot's motion ends, seconds.
     pub fn end(&self) -> f64 {
         let joints = self.joints.as_ref().map_or(0.0, JointTrajectory::end);
         self.base.end().max(joints)
@@ -94,7 +94,7 @@ impl Reader<'_> {
         self.under(key, trajectory).map(Some)
     }
 
-    /// Returns the way-points, shape (n_times, n_coordinates), rad and m. Joints that are not listed stay at their rest positions.
+    /// Returns the joint way-points, shape (n_times, n_coordinates), rad and m. Joints that are not listed stay at their rest positions.
     fn positions(&self, key: &str, joints: &JointsSpec, robot: &Robot) -> Result<Array2<f64>> {
         let key = &format!("{key}.positions");
         let n_times = joints.time_s.len();
@@ -110,7 +110,7 @@ impl Reader<'_> {
                 .enumerate()
                 .find_map(|(column, c)| {
                     let suffix = given.strip_prefix(&c.name)?;
-                    // The first unit is empty: here, each name needs its unit.
+                    // The first unit is empty, but here each name needs a unit.
                     let mut units = c.dimension.units().iter().skip(1);
                     units
                         .find(|(unit, _)| *unit == suffix)
@@ -147,7 +147,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the reason why the scene cannot move a joint.
+/// Returns the reason why the scene cannot move a joint, in words.
 fn stays(joint: &Joint, robot: &Robot) -> String {
     match joint.mimic {
         Some(mimic) => format!("mimics `{}`", robot.joints()[mimic.joint].name),

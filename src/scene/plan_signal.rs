@@ -1,4 +1,4 @@
-//! Signal chain of a patch, with checked steps, from deflections or forces to sensor output.
+//! Signal chain of a patch with checked steps; it converts deflections or forces to sensor output.
 
 use super::frame::PatchReading;
 use super::reader::{MM, Reader};
@@ -14,10 +14,10 @@ use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
 
-/// Key of smoothing. Other keys are those of [noise](NOISES) and of sensor errors.
+/// Key of the smoothing step. The other keys belong to [noise](NOISES) and sensor errors.
 const SMOOTHING: &str = "smoothing_mm";
 
-/// Signal chain of a patch, ready for use.
+/// Signal chain of a patch, ready for execution.
 #[derive(Clone, Debug)]
 pub struct PlannedSignal {
     chain: Chain,
@@ -26,12 +26,12 @@ pub struct PlannedSignal {
 }
 
 impl PlannedSignal {
-    /// Returns the physical quantity of the chain's output.
+    /// Returns the physical quantity of the signal chain's output.
     pub fn quantity(&self) -> Quantity {
         self.chain.quantity()
     }
 
-    /// Writes the output of the chain to the reading. `name` is the seed of the noise; `share` is the elapsed fraction of the scene's duration.
+    /// Writes the output of the signal chain to the reading. `name` is the seed of the noise; `share` is the elapsed fraction of the scene's duration, 0 to 1.
     pub(super) fn read(
         &self,
         reading: &mut PatchReading,
@@ -57,7 +57,7 @@ impl PlannedSignal {
 }
 
 impl Reader<'_> {
-    /// Returns the signal chain, or `None` if there are no steps.
+    /// Returns the signal chain of a patch, or `None` if it has no steps.
     pub fn signal(
         &self,
         key: &str,

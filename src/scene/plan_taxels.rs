@@ -1,4 +1,4 @@
-//! Taxel properties of a patch: one number for all, a list, or a column of a CSV file.
+//! Taxel properties of a patch: one number for all taxels, a list, or a column of a CSV file.
 
 use super::numbers::Numbers;
 use super::reader::{MM, Reader};
@@ -9,7 +9,7 @@ use crate::numbers_csv::NumberTable;
 use crate::spelling::nearest_names;
 use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};
 
-/// Default stiffness of taxels, N/m.
+/// Default stiffness of a taxel, N/m.
 const STIFFNESS: f64 = 100.0;
 
 const RADIUS: &str = "taxel_radius_mm";
@@ -25,7 +25,7 @@ struct Lookup<'a> {
     reader: &'a Reader<'a>,
     /// Key of the patch in the scene file.
     key: &'a str,
-    /// Table of the CSV file, one row for each taxel.
+    /// Table read from the CSV file, one row per taxel.
     table: NumberTable,
     n_taxels: usize,
 }
@@ -97,7 +97,7 @@ impl Reader<'_> {
 }
 
 impl Lookup<'_> {
-    /// Returns a required property; an absent property is an error.
+    /// Returns a required taxel property; returns an error if it is absent.
     fn needed(
         &self,
         name: &'static str,
@@ -112,7 +112,7 @@ impl Lookup<'_> {
         })
     }
 
-    /// Returns a property from the scene file or the CSV file, after checking each number.
+    /// Returns a taxel property from the scene file or the CSV file, after checking each number.
     fn find(
         &self,
         name: &'static str,
@@ -190,7 +190,7 @@ impl Lookup<'_> {
     }
 }
 
-/// Reads a table with one row for each taxel and one column for each property. Errors give line and column; unknown and repeated column names are errors.
+/// Reads a CSV table with one row per taxel and one column per property. Errors state line and column; unknown and repeated column names are errors.
 fn read_table(place: &str, source: impl std::io::Read) -> Result<NumberTable> {
     let allowed = "a header and one row a taxel, of as many numbers";
     let table = NumberTable::read(place, source, allowed)?;

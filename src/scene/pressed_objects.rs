@@ -1,4 +1,4 @@
-//! State of pressed objects: travel and force.
+//! State of the pressed objects of a scene: travel and force.
 
 use super::frame::{ObjectReading, PoseControl};
 use super::plan::ScenePlan;
@@ -15,14 +15,14 @@ pub(super) struct PressedObjects {
     workspace: Workspace,
 }
 
-/// One pressed object with its travel, force and contacts.
+/// Pressed object with its travel, force and contacts.
 #[derive(Clone, Debug)]
 struct Pressed {
     object: usize,
     now: HeldForce,
-    /// Target of the force on the patch, N.
+    /// Target of the spring force on the patch, N.
     wanted: f64,
-    /// Contacts with the pressed patch. A contact persists, however far the object travels.
+    /// Contacts with the pressed patch; a contact persists for any travel of the object.
     contacts: Vec<TaxelContact>,
 }
 
@@ -44,7 +44,7 @@ impl PressedObjects {
         }
     }
 
-    /// Moves each pressed object, in the order of the scene, from the pose of its motion. `dt`: time since the last call, seconds; infinite at the start.
+    /// Moves each pressed object, in the order of the scene, from the pose of its motion. `dt` is the time since the last call, seconds; infinite at the start.
     pub fn push(
         &mut self,
         plan: &ScenePlan,
@@ -78,7 +78,7 @@ impl PressedObjects {
         }
     }
 
-    /// Returns the contacts of a patch, by its index, with the objects that are pressed onto it.
+    /// Iterates over the contacts of a patch, given by its index, with the objects that are pressed onto it.
     pub fn contacts_on<'a>(
         &'a self,
         plan: &'a ScenePlan,
@@ -94,7 +94,7 @@ impl PressedObjects {
             .flat_map(|pressed| &pressed.contacts)
     }
 
-    /// Writes the readings of the pressed objects.
+    /// Writes the readings of all pressed objects.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for pressed in &self.all {
             readings[pressed.object].held = PoseControl::Pressed {
@@ -107,9 +107,9 @@ impl PressedObjects {
 }
 
 impl Pressed {
-    /// Moves the object towards the target force: by at most `way` metres, and at most `farthest` metres from the pose of its motion.
+    /// Moves the object towards the target force by at most `way` metres, and to at most `farthest` metres from the pose of its motion.
     ///
-    /// `poses`: pose of each object, `patch_from_object`. For this object, it is the pose of its motion.
+    /// `poses` contains the pose of each object, `patch_from_object`; for this object, it is the pose of its motion.
     fn go(
         &mut self,
         moved: &MovedObject,

@@ -1,4 +1,4 @@
-//! Functions for all parts of a scene plan: errors with file and key, poses, motions, and related files.
+//! Reading of keys for all parts of a scene plan: errors with file and key, poses, motions, and files.
 
 use super::spec::PlaneSpec;
 use crate::contact::equilibrium::HalfSpace;
@@ -15,15 +15,15 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Number of metres in a millimetre.
+/// Number of metres per millimetre.
 pub(super) const MM: f64 = 1e-3;
 
-/// Reader of a scene file.
+/// Reader of the keys of a scene file.
 pub(super) struct Reader<'a> {
     pub check: Check<'a>,
     /// Folder to which paths in the file are relative.
     pub folder: &'a Path,
-    /// Objects in memory, by their names in the scene.
+    /// Objects given in memory, by their names in the scene.
     pub models: &'a BTreeMap<String, Model>,
 }
 
@@ -33,7 +33,7 @@ impl Reader<'_> {
         result.map_err(|error| error.under(format!("{}, key {key}: ", self.check.place)))
     }
 
-    /// Returns the index of a name in the names that are allowed for `key`.
+    /// Returns the index of a name in the list of names that are allowed for `key`.
     pub fn known<'n>(
         &self,
         key: &str,
@@ -43,12 +43,12 @@ impl Reader<'_> {
         known(format!("{}, key {key}", self.check.place), name, names)
     }
 
-    /// Returns the path of a file that the scene names.
+    /// Returns the absolute path of a file that the scene refers to.
     pub fn path(&self, path: &Path) -> PathBuf {
         self.folder.join(path)
     }
 
-    /// Opens a file that the scene names. Also returns its path for errors.
+    /// Opens a file that the scene refers to; also returns its path for error messages.
     pub fn open(&self, key: &str, path: &Path) -> Result<(String, BufReader<File>)> {
         let path = self.path(path);
         let place = path.display().to_string();
@@ -63,7 +63,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Converts finite numbers to SI units; `unit` is the factor.
+    /// Converts a vector of finite numbers to SI units; `unit` is the factor.
     pub fn vector(&self, key: &str, numbers: [f64; 3], unit: f64) -> Result<DVec3> {
         for number in numbers {
             self.check
@@ -72,7 +72,7 @@ impl Reader<'_> {
         Ok(unit * DVec3::from_array(numbers))
     }
 
-    /// Converts a pose to SI units.
+    /// Converts the pose of a key to SI units.
     pub fn pose(&self, key: &str, pose: &PoseSpec) -> Result<Pose> {
         let position = self.vector(&format!("{key}.position_mm"), pose.position_mm, MM)?;
         let degree = 1f64.to_radians();
@@ -96,7 +96,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the motion of the body under `key`.
+    /// Returns the motion of the body that is described under `key`.
     pub fn motion(&self, key: &str, at: &PoseSpec, motion: Option<&MotionSpec>) -> Result<Motion> {
         let start = self.pose(&format!("{key}.at"), at)?;
         let Some(motion) = motion else {

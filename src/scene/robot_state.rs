@@ -4,13 +4,13 @@ use super::plan_robot::PlannedRobot;
 use crate::error::Result;
 use crate::geometry::Pose;
 
-/// Joint positions and link poses of a robot at one instant.
+/// Joint positions and link poses of a robot at one time.
 #[derive(Clone, Debug)]
 pub(super) struct RobotState {
     positions: Vec<f64>,
-    /// Whether the positions were set manually and no longer follow the plan.
+    /// Whether the joint positions were set manually and no longer follow the plan.
     are_set: bool,
-    /// Manually set pose of the base, `world_from_base`.
+    /// Pose of the base that was set manually, `world_from_base`; `None` if it follows the plan.
     pub base: Option<Pose>,
     /// Pose of each link, `world_from_link`.
     pub world_from_link: Vec<Pose>,
@@ -27,13 +27,13 @@ impl RobotState {
         }
     }
 
-    /// Sets the joint positions from now on, rad and m, one for each coordinate.
+    /// Sets the joint positions manually from now on, rad or m, one per coordinate.
     pub fn set_positions(&mut self, positions: &[f64]) {
         self.positions.copy_from_slice(positions);
         self.are_set = true;
     }
 
-    /// Computes the link poses at a time, seconds.
+    /// Computes the link poses at a time (seconds).
     pub fn place(&mut self, robot: &PlannedRobot, time: f64) -> Result<()> {
         if let (Some(joints), false) = (&robot.joints, self.are_set) {
             joints.positions_into(time, &mut self.positions);

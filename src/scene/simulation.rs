@@ -13,16 +13,16 @@ use crate::geometry::Pose;
 use crate::random::Seed;
 use crate::signal::SignalWorkspace;
 
-/// Choice of the time steps between frames.
+/// Choice of the time steps that are computed between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// Skips steps between frames if the scene has no memory. Otherwise, computes only patches with memory in these steps.
+    /// Skips the steps between frames if the scene has no memory. Otherwise, only patches with memory are computed in these steps.
     AsNeeded,
-    /// Computes all patches in all steps. The frames are equal, but slower to compute. For tests.
+    /// Computes all patches in all steps. The frames are equal but take longer to compute; used in tests.
     Always,
 }
 
-/// Simulation of a scene, which computes frames one after the other.
+/// Simulation of a scene, which computes its frames one after the other.
 #[derive(Clone, Debug)]
 pub struct Simulation<'p> {
     pub(super) plan: &'p ScenePlan,
@@ -30,7 +30,7 @@ pub struct Simulation<'p> {
     pub(super) robots: Vec<RobotState>,
     skins: Vec<SkinState>,
     objects: PlacedObjects,
-    /// Manually set poses of imposed objects, `world_from_object`. Objects with `None` follow their motions.
+    /// Poses of imposed objects that were set manually, `world_from_object`; `None` for objects that follow their motions.
     pub(super) put: Vec<Option<Pose>>,
     pressed: PressedObjects,
     pub(super) free: FreeObjects,
@@ -38,11 +38,11 @@ pub struct Simulation<'p> {
     noise: Vec<Seed>,
     frame: Frame,
     scratch: SignalWorkspace,
-    /// Time since the start, seconds.
+    /// Time since the start of the scene, seconds.
     pub(super) time: f64,
-    /// Whether the steps are made manually instead of by the scene's clock.
+    /// Whether a program makes the steps manually, instead of the scene's clock.
     pub(super) is_by_hand: bool,
-    /// Length of the last step, seconds, until the patches are computed. The detail of this computation depends on whether a frame is read.
+    /// Length of the last step, seconds, while its patches are not yet computed; what has to be computed depends on whether a frame is read.
     unfelt: Option<f64>,
     n_read: usize,
     pub(super) n_steps: usize,
@@ -50,12 +50,12 @@ pub struct Simulation<'p> {
 }
 
 impl<'p> Simulation<'p> {
-    /// Creates a simulation before its first frame.
+    /// Creates a simulation that is before its first frame.
     pub fn new(plan: &'p ScenePlan, stepping: Stepping) -> Self {
         Self::with_seed(plan, stepping, plan.spec.seed)
     }
 
-    /// Creates a simulation whose sensor noise has another seed than the plan.
+    /// Creates a simulation whose sensor noise has a given seed instead of the plan's.
     pub(super) fn with_seed(plan: &'p ScenePlan, stepping: Stepping, seed: u64) -> Self {
         let signals = Seed::new(seed).named("signal");
         let skins = plan.patches.iter();
@@ -97,7 +97,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Computes all remaining frames and passes each one to all sinks.
+    /// Computes all remaining frames and passes each frame to all sinks.
     ///
     /// # Errors
     /// If a sink or [`next_frame`](Self::next_frame) fails.
@@ -110,7 +110,7 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Computes the next frame of the scene's clock. Returns `None` after the last one.
+    /// Computes the next frame of the scene. Returns `None` after the last frame.
     ///
     /// # Errors
     /// If a pose overflows, or the scene has been [stepped](Self::step) manually.
@@ -137,8 +137,8 @@ impl<'p> Simulation<'p> {
         self.observe().map(Some)
     }
 
-    /// Returns the current frame. Before any step, it is the first frame of the scene, in its steady state. Sensor noise is drawn once for each
-    /// frame, so that a second call returns an equal frame.
+    /// Returns the current frame. Before any step, it is the first frame of the scene, in its steady state. Sensor noise is drawn once per frame, so a second
+    /// call returns an equal frame.
     ///
     /// # Errors
     /// If a pose overflows.
@@ -152,12 +152,12 @@ impl<'p> Simulation<'p> {
         Ok(&self.frame)
     }
 
-    /// Returns the number of steps so far, including frames.
+    /// Returns the number of steps computed so far, including frames.
     pub fn n_steps(&self) -> usize {
         self.n_steps
     }
 
-    /// Returns the number of steps, including frames, in which free objects did not come to rest.
+    /// Returns the number of steps, including frames, in which the free objects did not reach an equilibrium.
     pub fn n_unsettled(&self) -> usize {
         self.n_unsettled
     }
@@ -167,7 +167,7 @@ impl<'p> Simulation<'p> {
         if are_needed { self.plan.n_substeps } else { 1 }
     }
 
-    /// Computes the initial state if no step has been made.
+    /// Computes the initial state of the scene, if no step has been made.
     pub(super) fn begin(&mut self) -> Result<()> {
         match self.n_steps {
             0 => self.advance(0.0, f64::INFINITY),
@@ -175,7 +175,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Makes one step to a time, `dt` seconds after the last step.
+    /// Advances the simulation to a time, `dt` seconds after the last step.
     pub(super) fn advance(&mut self, time: f64, dt: f64) -> Result<()> {
         if let Some(dt) = self.unfelt.take() {
             self.feel(dt);
@@ -216,7 +216,7 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Computes the patches after a step without a frame.
+    /// Computes the patches after a step that makes no frame.
     fn feel(&mut self, dt: f64) {
         let plan = self.plan;
         for (number, (skin, patch)) in self.skins.iter_mut().zip(&plan.patches).enumerate() {
@@ -233,7 +233,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Returns the elapsed fraction of the scene's duration, 0 to 1, which determines the drift of the sensors.
+    /// Returns the elapsed fraction of the scene's duration, 0 to 1; it determines the drift of the sensors.
     fn share(&self) -> f64 {
         let n_frames = match self.is_by_hand {
             true => self.time * self.plan.output_rate,
@@ -242,7 +242,7 @@ impl<'p> Simulation<'p> {
         (n_frames / (self.plan.n_frames_uncut - 1).max(1) as f64).min(1.0)
     }
 
-    /// Computes the patches after a step and fills the frame.
+    /// Computes the patches after a step and writes the frame.
     fn read(&mut self, dt: f64) {
         let plan = self.plan;
         let share = self.share();

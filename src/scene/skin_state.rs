@@ -15,20 +15,20 @@ use glam::DVec3;
 /// Poses and bounding balls of all objects.
 #[derive(Clone, Debug)]
 pub(super) struct PlacedObjects {
-    /// Pose of each object, `world_from_object`. Escaped objects are [out of reach](OUT_OF_REACH).
+    /// Pose of each object, `world_from_object`. Escaped objects have the pose [`OUT_OF_REACH`].
     pub poses: Vec<Pose>,
     /// Bounding ball of each object (centre, radius), object frame, metres.
     pub balls: Vec<(DVec3, f64)>,
 }
 
-/// Pose of an object without contacts: farther away than any skin, but with a finite squared distance.
+/// Pose of an object without contacts: far from all skin, but with a finite squared distance.
 pub(super) const OUT_OF_REACH: Pose = Pose {
     rotation: glam::DQuat::IDENTITY,
     translation: DVec3::new(0.0, 0.0, 1e100),
 };
 
 impl PlacedObjects {
-    /// Returns the poses of the objects in the patch frame, `patch_from_object`. An object that carries the patch does not touch it and is out of reach.
+    /// Returns the poses of the objects in the patch frame, `patch_from_object`. An object that carries the patch does not touch it and is put out of reach.
     pub fn seen_by<'a>(
         &'a self,
         patch: &PlannedPatch,
@@ -45,7 +45,7 @@ impl PlacedObjects {
         })
     }
 
-    /// Returns whether any object may touch the patch: compares a bounding box of the taxels with the bounding balls of the objects.
+    /// Returns whether any object may touch the patch, by comparing a bounding box of the taxels with the bounding balls of the objects.
     pub fn can_reach(&self, patch: &PlannedPatch, world_from_patch: &Pose) -> bool {
         let skin = &patch.skin;
         let Some(bounds) = skin.tree().bounds() else {
@@ -62,7 +62,7 @@ impl PlacedObjects {
     }
 }
 
-/// State of a patch at one instant.
+/// State of a patch at one time.
 #[derive(Clone, Debug)]
 pub(super) struct SkinState {
     /// Pose of the patch, `world_from_patch`.
@@ -71,7 +71,7 @@ pub(super) struct SkinState {
     /// Whether no object pushes the patch and all deflections are zero.
     is_idle: bool,
     workspace: Workspace,
-    /// Friction state. `None` if the patch has no friction.
+    /// Friction state of the patch; `None` if it has no friction.
     friction: Option<FrictionState>,
     contact_modes: ContactModeCounts,
     /// Pose of each object in the patch frame, `patch_from_object`.
@@ -105,14 +105,15 @@ impl SkinState {
         self.workspace.hold(contacts);
     }
 
-    /// Returns the tangential springs that hold objects. Object numbers are those of the scene.
+    /// Returns the tangential springs that hold objects, with scene numbers of objects.
     pub fn tangential_springs(&self) -> impl Iterator<Item = TangentialSpring> {
         self.friction
             .iter()
             .flat_map(FrictionState::tangential_springs)
     }
 
-    /// Attaches tangential springs to the contacts of one object at its pose, as if it had just been placed there. `only` has all other objects out of reach.
+    /// Attaches tangential springs to the contacts of one object at its pose, as if it had just been placed there. In `only`, all other objects are out of
+    /// reach.
     pub fn put(
         &mut self,
         patch: &PlannedPatch,
@@ -127,12 +128,12 @@ impl SkinState {
         }
     }
 
-    /// Returns the deflections, metres, shape (n_taxels,).
+    /// Returns the deflections of the taxels, metres, shape (n_taxels,).
     pub fn deflection(&self) -> &[f64] {
         &self.damper.deflection
     }
 
-    /// Makes a [step](Self::feel) and writes the reading. `loads` and `tips` are the taxels' loads and tangential springs of free objects, in taxel order.
+    /// Makes a [step](Self::feel) and writes the reading. `loads` and `tips` contain the loads and tangential springs of free objects, in taxel order.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
@@ -173,7 +174,7 @@ impl SkinState {
         }
     }
 
-    /// Makes a step of `dt` seconds to the objects' current poses; an infinite `dt` gives the steady state. `tips`: tangential springs of free objects.
+    /// Makes a step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. `tips`: tangential springs of free objects.
     pub fn feel(
         &mut self,
         patch: &PlannedPatch,
@@ -213,7 +214,7 @@ impl SkinState {
     }
 }
 
-/// Adds the reactions of the stops to free objects to a reading.
+/// Adds the reactions of the stops to free objects to a patch reading.
 fn add_stops(
     patch: &PlannedPatch,
     contacts: &[TaxelContact],
@@ -234,8 +235,8 @@ fn add_stops(
     }
 }
 
-/// Returns the frictionless wrench of the taxels on the objects. Writes the force of the objects on each taxel to `force3`.
-/// A contact has one direction, but several spheres of free objects may share a taxel: the loads contain the force of each sphere.
+/// Returns the frictionless wrench of the taxels on the objects, and writes the force of the objects on each taxel to `force3`. A contact has one direction,
+/// but several spheres of free objects may touch one taxel: the loads contain the force of each sphere.
 fn on_objects(
     contacts: &[TaxelContact],
     loads: &[&TaxelLoad],
@@ -260,7 +261,7 @@ fn on_objects(
     sum
 }
 
-/// Results that a step computes.
+/// Results that a step has to compute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Detail {
     Deflections,
@@ -268,7 +269,7 @@ pub(super) enum Detail {
     Contacts,
 }
 
-/// Converts the wrench on an object into the opposite wrench on the patch, without negative zeros.
+/// Converts the wrench of the taxels on an object into the opposite wrench on the patch, without negative zeros.
 fn on_patch(on_object: Wrench) -> Wrench {
     Wrench::default() + -on_object
 }

@@ -1,4 +1,4 @@
-//! Specification of a scene: the keys of its TOML file, in the units of the keys.
+//! Specification of a scene: the keys of its TOML file, in the units of the file.
 //!
 //! Only names and types are checked here; [`ScenePlan`](super::ScenePlan) checks the values.
 
@@ -12,74 +12,74 @@ use crate::toml_text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Specification of a scene. Paths are relative to the folder of the scene file.
+/// Contents of a scene file. Paths are relative to the folder of the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
-    /// Description of the scene, one sentence.
+    /// Description of the scene in one sentence.
     pub title: String,
-    /// Maximum time step, ms. The time between two frames is divided into equal steps of at most this length; any length is stable.
+    /// Maximum time step, ms, positive. Default: 1. The time between two frames is divided into equal steps of at most this length; any length is stable.
     #[serde(default = "one")]
     pub dt_ms: f64,
-    /// Number of frames per second of scene time.
+    /// Number of frames per second of scene time, Hz, positive. Default: 100.
     #[serde(default = "hundred")]
     pub output_hz: f64,
-    /// Duration of the scene. Default: until the last imposed motion ends.
+    /// Duration of the scene, s. Default: until the last imposed motion ends.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
-    /// Gravitational acceleration, world frame, m/s².
+    /// Gravitational acceleration in the world frame, m/s². Default: (0, 0, −9.81).
     #[serde(default = "earth")]
     pub gravity_m_per_s2: [f64; 3],
-    /// Seed of all random numbers, such as the start of a draped layout.
+    /// Seed of all random numbers, such as sensor noise and the start of a draped layout. Default: 2018.
     #[serde(default = "seed")]
     pub seed: u64,
-    /// Robots: `[[robots]]`.
+    /// Tables `[[robots]]`: robots that carry patches or objects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<RobotSpec>,
-    /// Patches of skin: `[[patches]]`.
+    /// Tables `[[patches]]`: patches of skin.
     pub patches: Vec<PatchSpec>,
-    /// Objects: `[[objects]]`.
+    /// Tables `[[objects]]`: objects that touch the skin.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectSpec>,
-    /// Planes: `[[planes]]`.
+    /// Tables `[[planes]]`: rigid planes, such as tables.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<PlaneSpec>,
 }
 
-/// Rigid plane: `[[planes]]`. Free objects do not enter its half-space, for example a table.
+/// Keys of `[[planes]]`: a rigid plane, such as a table; free objects do not enter its half-space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneSpec {
-    /// Name, unique in the scene.
+    /// Name of the plane, unique in the scene.
     pub name: String,
-    /// Point on the surface, world frame.
+    /// Point on the plane, world frame, mm. Default: the origin.
     #[serde(default)]
     pub point_mm: [f64; 3],
-    /// Outward normal, world frame, of any length.
+    /// Outward normal of the plane, world frame, of any length. Default: +z.
     #[serde(default = "up")]
     pub normal: [f64; 3],
 }
 
-/// Robot that carries patches or objects: `[[robots]]`.
+/// Keys of `[[robots]]`: a robot that carries patches or objects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotSpec {
-    /// Name, unique in the scene.
+    /// Name of the robot, unique in the scene.
     pub name: String,
-    /// Path of the robot's URDF file.
+    /// Path of the robot's URDF file, relative to the scene file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub urdf: Option<FilePath>,
-    /// Robot of one link without joints, in place of `urdf`.
+    /// Whether the robot consists of one link without joints; replaces `urdf`. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub floating: bool,
-    /// Pose, or initial pose, of the base.
+    /// Pose of the robot's base, or its initial pose if it moves. Default: the world origin.
     #[serde(default)]
     pub at: PoseSpec,
-    /// Motion of the base. Default: no motion.
+    /// Imposed motion of the robot's base. Default: no motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSpec>,
-    /// Joint positions. A joint that is not listed stays at 0, or at the nearest limit.
+    /// Joint positions over time. A joint that is not listed stays at 0, or at the nearest limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
 }
@@ -93,7 +93,7 @@ impl SceneSpec {
         toml_text::read(place, text)
     }
 
-    /// Returns whether the text contains `rpy_deg`, the old name of `rotation_deg`, which is still read.
+    /// Returns whether the text contains `rpy_deg`, the former name of `rotation_deg`, which is still accepted.
     pub fn has_old_names(text: &str) -> bool {
         fn is_old(value: &toml::Value) -> bool {
             match value {
@@ -108,7 +108,7 @@ impl SceneSpec {
         table.is_some_and(|table| is_old(&table.into()))
     }
 
-    /// Returns the scene as TOML, including default values.
+    /// Returns the scene as TOML, with all defaults written out.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every field of a scene has a TOML form")
     }

@@ -7,85 +7,84 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Pose: `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`
+/// Pose, such as `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = with_rpy_deg)]
 pub struct PoseSpec {
-    /// Position of the origin, mm.
+    /// Position of the origin, mm. Default: 0.
     #[serde(default)]
     pub position_mm: [f64; 3],
-    /// Rotations about the fixed axes x, y, z, applied in this order, degrees.
+    /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0.
     #[serde(default, alias = "rpy_deg")]
     pub rotation_deg: [f64; 3],
 }
 
-/// Motion of a base or an object: phases of constant velocity, way-points, or a CSV file of way-points.
+/// Imposed motion of a base or an object: phases of constant velocity, way-points, or a CSV file of way-points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionSpec {
-    /// Phases of constant velocity in order, starting at `at`.
+    /// Phases of constant velocity, in order, starting at the pose `at`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<PhaseSpec>,
-    /// Poses in the world, in place of `at`.
+    /// Poses in the world at given times; replaces `at`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub way_points: Vec<WayPointSpec>,
-    /// CSV file of way-points: see [`PoseTrajectory::read_csv`](crate::world::PoseTrajectory::read_csv).
+    /// CSV file of way-points; see [`PoseTrajectory::read_csv`](crate::world::PoseTrajectory::read_csv).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
-    /// Interpolation between way-points.
+    /// Interpolation between way-points; see [`Interpolation`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,
 }
 
-/// Phase of constant velocity: `{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] }`
+/// Phase of constant velocity, such as `{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhaseSpec {
-    /// Duration of the phase, seconds.
+    /// Duration of the phase, s.
     pub duration_s: f64,
-    /// Velocity of the origin, world frame, mm/s.
+    /// Velocity of the origin in the world frame, mm/s. Default: 0.
     #[serde(default)]
     pub linear_mm_per_s: [f64; 3],
-    /// Angular velocity about the origin, world frame, degrees per second.
+    /// Angular velocity about the origin in the world frame, degrees per second. Default: 0.
     #[serde(default)]
     pub angular_deg_per_s: [f64; 3],
 }
 
-/// Way-point: `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`
+/// Way-point of a pose, such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = with_rpy_deg)]
 pub struct WayPointSpec {
-    /// Time of the way-point, seconds.
+    /// Time of the way-point, s.
     pub time_s: f64,
-    /// Position of the origin, world frame, mm.
+    /// Position of the origin in the world frame, mm. Default: 0.
     #[serde(default)]
     pub position_mm: [f64; 3],
-    /// Rotations about the fixed axes x, y, z, applied in this order, degrees.
+    /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0.
     #[serde(default, alias = "rpy_deg")]
     pub rotation_deg: [f64; 3],
 }
 
-/// Way-points of a robot's joints, in the scene file or in a CSV file.
+/// Joint positions over time: way-points in the scene file or in a CSV file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointsSpec {
-    /// CSV file of way-points: see [`JointTrajectory::read_csv`](crate::world::JointTrajectory::read_csv).
+    /// CSV file of way-points; see [`JointTrajectory::read_csv`](crate::world::JointTrajectory::read_csv).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
-    /// Interpolation between way-points.
+    /// Interpolation between way-points; see [`Interpolation`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,
-    /// Times of the way-points, seconds.
+    /// Times of the way-points, s.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
-    /// Positions of each moved joint, one number for each time. A key is the joint's name with its unit: `elbow_deg`, `elbow_rad`,
-    /// `slide_mm` or `slide_m`.
+    /// Positions of each moved joint, one number per time. A key is the joint's name with its unit, such as `elbow_deg`, `elbow_rad`, `slide_mm` or `slide_m`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub positions: BTreeMap<String, Vec<f64>>,
 }

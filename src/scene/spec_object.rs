@@ -1,4 +1,4 @@
-//! Specification of objects: `[[objects]]`.
+//! Specification of objects: the tables `[[objects]]`.
 
 use super::numbers::Numbers;
 use crate::files::FilePath;
@@ -9,25 +9,25 @@ use crate::scene::spec_motion::{MotionSpec, PoseSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Specification of one object: `[[objects]]`.
+/// Keys of `[[objects]]`: an object of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = with_mesh_unit)]
 pub struct ObjectSpec {
-    /// Name, unique in the scene.
+    /// Name of the object, unique in the scene.
     pub name: String,
-    /// Name of a built-in object (`bubbletouch objects` lists them).
+    /// Name of a built-in object; the command `bubbletouch objects` lists them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
     /// TOML file of objects that contains `object`. Default: the built-in objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub objects: Option<FilePath>,
-    /// CSV file of spheres with the columns x, y, z, r, in place of `object`.
+    /// CSV file of spheres with the columns x, y, z, r; replaces `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub spheres: Option<FilePath>,
-    /// PLY, OBJ or STL file, in place of `object`.
+    /// Mesh file of the object: PLY, OBJ or STL; replaces `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub mesh: Option<FilePath>,
@@ -38,34 +38,34 @@ pub struct ObjectSpec {
     #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
-    /// Maximum distance of the spheres from the surface of a solid or packed mesh, mm. Default: 0.25; for a packed mesh, a tenth of the finest pitch.
+    /// Maximum distance between the spheres and the surface of a solid or packed mesh, mm. Default: 0.25; for a packed mesh, a tenth of the finest pitch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
-    /// Robot that carries the object, in place of `motion`.
+    /// Name of the robot that carries the object; replaces `motion`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<String>,
-    /// Robot link that carries the object. Default: the base.
+    /// Name of the robot link that carries the object. Default: the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// Pose, or initial pose, in the world or on the link.
+    /// Pose of the object in the world or on the link, or its initial pose if it moves. Default: the origin.
     #[serde(default)]
     pub at: PoseSpec,
-    /// Imposed motion, independent of contacts. Default: no motion.
+    /// Imposed motion of the object, which does not depend on contacts. Default: no motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSpec>,
-    /// Force control, together with `motion`: the object also moves along a line until a patch reaches a force.
+    /// Force control, together with `motion`: the object also moves along a line until the force on a patch reaches a target.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub press: Option<PressSpec>,
-    /// Free object, in place of `motion`: its pose follows from gravity and contacts.
+    /// Free object, whose pose follows from gravity and contacts; replaces `motion`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free: Option<FreeSpec>,
 }
 
-/// Specification of a free object: `free = { mass_kg = 0.2 }`.
+/// Keys of a free object, such as `free = { mass_kg = 0.2 }`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FreeSpec {
-    /// Mass of the object, kg; required.
+    /// Mass of the object, kg, positive; required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
     /// Centre of mass in the object frame, mm. Default: the centre of mass of a homogeneous solid.
@@ -73,25 +73,25 @@ pub struct FreeSpec {
     pub center_of_mass_mm: Option<[f64; 3]>,
 }
 
-/// Force control: `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`
+/// Force control, such as `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`.
 ///
-/// The object starts at the pose of `at` and `motion` and moves along the direction until the patch reaches the force. If the force is too large, the object
-/// moves back. Speed and travel are limited. The object does not pass through the patch: pressed taxels stay at their stroke, even if the force is not
-/// reached. If the force is zero, the object returns to the pose of its motion.
+/// The object starts at the pose of `at` and `motion` and moves along the direction until the force on the patch reaches the target. If the force is too large,
+/// the object moves back. Speed and travel are limited. The object does not pass through the patch: pressed taxels stay at their stroke, even if the target is
+/// not reached. If the target is zero, the object returns to the pose of its motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PressSpec {
-    /// Patch whose force is controlled.
+    /// Name of the patch whose force is controlled.
     pub patch: String,
     /// Direction of the travel in the world frame, of any length.
     pub direction: [f64; 3],
-    /// Target of the spring force Σ k δ of the patch, from all objects: one number, or one for each time in `time_s`.
+    /// Target of the patch's spring force Σ k δ from all objects, N, at least 0: one number, or one for each time in `time_s`.
     pub force_n: Numbers,
-    /// Times of the forces, seconds. Forces are interpolated linearly and constant outside these times.
+    /// Times of the target forces, s. Between the times, forces are interpolated linearly; outside, they are constant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
-    /// Maximum speed along the direction, mm/s.
+    /// Maximum speed of the object along the direction, mm/s, positive.
     pub speed_mm_per_s: f64,
-    /// Maximum travel from the pose of the motion, mm.
+    /// Maximum travel of the object from the pose of its motion, mm, positive.
     pub travel_mm: f64,
 }

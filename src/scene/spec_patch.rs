@@ -1,4 +1,4 @@
-//! Specification of skin patches: `[[patches]]`.
+//! Specification of skin patches: the tables `[[patches]]`.
 
 use super::numbers::Numbers;
 use crate::files::FilePath;
@@ -13,61 +13,61 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// Specification of one patch: `[[patches]]`.
+/// Keys of `[[patches]]`: a patch of skin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PatchSpec {
-    /// Name, unique in the scene.
+    /// Name of the patch, unique in the scene.
     pub name: String,
-    /// Robot that carries the patch. Default: the patch is fixed in the world.
+    /// Name of the robot that carries the patch. Default: the patch is fixed in the world.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<String>,
-    /// Robot link that carries the patch. Default: the base.
+    /// Name of the robot link that carries the patch. Default: the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// Object that carries the patch, in place of a robot. The patch does not touch this object.
+    /// Name of the object that carries the patch, instead of a robot. The patch does not touch this object.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
-    /// Pose of the patch on the link, on the object, or in the world.
+    /// Pose of the patch on the link, on the object, or in the world. Default: the origin.
     #[serde(default)]
     pub at: PoseSpec,
     /// Layout of the taxels on the patch.
     pub layout: LayoutSpec,
-    /// Taxel radius ρ, mm. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number for each taxel, or a
-    /// column of `taxels_csv`. Lists are in the order of the layout (for a grid, row by row).
+    /// Radius ρ of the taxels, mm. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number per taxel, or a
+    /// column of `taxels_csv`. Lists have the order of the layout (for a grid, row by row).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_radius_mm: Option<Numbers>,
-    /// Stroke s of the taxels, mm; required.
+    /// Stroke s of the taxels, mm: their maximum deflection; required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stroke_mm: Option<Numbers>,
-    /// Stiffness k of the taxels, N/m. Default: 100.
+    /// Stiffness k of the taxels along their axes, N/m. Default: 100.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness_n_per_m: Option<Numbers>,
-    /// Damping c of the taxels, N·s/m. Default: none.
+    /// Damping coefficient c of the taxels, N·s/m. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_n_s_per_m: Option<Numbers>,
-    /// Friction coefficient μ. With friction, tangential springs hold the contacts until they slip. Without it, taxels only slide along their axes.
+    /// Friction coefficient μ of the taxels. With friction, tangential springs hold the contacts until they slip. Default: no friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Numbers>,
     /// Tangential stiffness k_t of the taxels, N/m, used with `friction`. Default: the axial stiffness.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shear_stiffness_n_per_m: Option<Numbers>,
-    /// CSV file with one row for each taxel. Its columns have the names of the keys above; only columns that differ between taxels are needed.
+    /// CSV file with one row per taxel. Its columns have the names of the keys above; only columns that differ between taxels are needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub taxels_csv: Option<FilePath>,
-    /// Steps of the signal chain of the patch, in order.
+    /// Steps of the patch's signal chain, in order. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub signal: Vec<SignalStepSpec>,
 }
 
-/// One step of `signal = ["force", { noise_std_n = 0.1 }, { dead_fraction = 0.01 }]`. The keys are those of `[signal]` in studies.
+/// Step of the signal chain, as in `signal = ["force", { noise_std_n = 0.1 }, { dead_fraction = 0.01 }]`. The keys are those of `[signal]` in studies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum SignalStepSpec {
-    /// The word `"force"`, as the first step: the chain starts with forces instead of deflections.
+    /// The word `"force"`, allowed as the first step: the chain then starts with forces instead of deflections.
     Word(String),
-    /// Strength of a step, by key. Two keys of one step may be given together.
+    /// Strengths of a step, by key. Two keys of one step may be given together.
     Strengths(BTreeMap<String, f64>),
 }
 
@@ -121,32 +121,32 @@ fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[schemars(transform = with_mesh_unit)]
 pub enum LayoutSpec {
-    /// Rectangular grid with square cells.
+    /// Grid of nx × ny taxels in square cells.
     Grid {
-        /// Number of columns, along patch x.
+        /// Number of columns, along the patch's x axis.
         nx: usize,
-        /// Number of rows, along patch y.
+        /// Number of rows, along the patch's y axis.
         ny: usize,
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
-    /// Rectangular layout with staggered rows (hexagonal lattice).
+    /// Hexagonal lattice with staggered rows, in a rectangle.
     Hexagonal {
-        /// Number of taxels in a row, along patch x.
+        /// Number of taxels per row, along the patch's x axis.
         nx: usize,
-        /// Number of rows, along patch y.
+        /// Number of rows, along the patch's y axis.
         ny: usize,
-        /// Distance between a taxel and its six neighbours, mm; the distance of rows is 0.866 times the pitch.
+        /// Distance between a taxel and its six neighbours, mm; the distance between rows is 0.866 times the pitch.
         pitch_mm: f64,
     },
-    /// Disc with a hexagonal lattice.
+    /// Hexagonal lattice in a disc.
     Disc {
         /// Radius of the disc, mm.
         radius_mm: f64,
         /// Distance between a taxel and its six neighbours, mm.
         pitch_mm: f64,
     },
-    /// Annulus between two radii.
+    /// Taxels in an annulus between two radii.
     Annulus {
         /// Inner radius of the annulus, mm.
         inner_mm: f64,
@@ -155,18 +155,18 @@ pub enum LayoutSpec {
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
-    /// Cylindrical surface, as on a forearm or finger.
+    /// Taxels on a cylindrical surface, as on a forearm or finger.
     Cylinder {
         /// Radius of the cylinder, mm.
         radius_mm: f64,
         /// Length along the cylinder's axis, mm.
         length_mm: f64,
-        /// Angle around the cylinder's axis, degrees.
+        /// Angle around the cylinder's axis that the taxels cover, degrees.
         arc_deg: f64,
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
-    /// Spherical cap, as on a fingertip.
+    /// Taxels on a spherical cap, as on a fingertip.
     SphereCap {
         /// Radius of the sphere, mm.
         radius_mm: f64,
@@ -175,9 +175,9 @@ pub enum LayoutSpec {
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
-    /// Outer surface of a triangle mesh, or of a link of the patch's robot.
+    /// Taxels on the outer surface of a triangle mesh, or of a link of the patch's robot.
     Draped {
-        /// Mesh file; left out if `region.link` names a link.
+        /// Mesh file of the surface; omitted if `region.link` names a link.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<String>")]
         mesh: Option<FilePath>,
@@ -193,35 +193,34 @@ pub enum LayoutSpec {
     },
 }
 
-/// Region of a surface: `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`. A place belongs to
-/// the region if it satisfies all given keys.
+/// Part of a surface, such as `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`. A point belongs to the region
+/// if it satisfies all given keys.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionSpec {
-    /// Smallest coordinates of a box in the mesh frame, together with `box_max_mm`.
+    /// Smallest coordinates of a box in the mesh frame, mm, together with `box_max_mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub box_min_mm: Option<[f64; 3]>,
-    /// Largest coordinates of the box.
+    /// Largest coordinates of the box in the mesh frame, mm, together with `box_min_mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub box_max_mm: Option<[f64; 3]>,
-    /// Normal of a plane, of any length. The region is on the side to which the normal points.
+    /// Normal of a plane that bounds the region, of any length; the region is on the side to which the normal points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane_normal: Option<[f64; 3]>,
-    /// A point of the plane, together with `plane_normal`. Default: the origin of the mesh.
+    /// Point of the plane, mm, together with `plane_normal`. Default: the origin of the mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane_point_mm: Option<[f64; 3]>,
-    /// Link of the patch's `robot` whose shapes replace a mesh file. This link carries the patch. The box and the plane are then in
-    /// the link frame.
+    /// Name of the link of the patch's `robot` whose shapes replace a mesh file; this link carries the patch. The box and the plane are then in the link frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// Shapes of `link`: `collision` or `visual`. Default: the collision shapes, or the visual ones if the link has no collision shapes.
+    /// Shapes of `link` that form the surface: `collision` or `visual`. Default: the collision shapes, or the visual ones if the link has no collision shapes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<ShapeRole>>")]
     pub shapes: Option<ShapeRole>,
-    /// Name of a group (`g`) or object (`o`) of an OBJ file.
+    /// Name of a group (`g`) or object (`o`) of an OBJ file that forms the region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
-    /// First and last triangle number, from 0 in the order of the file.
+    /// First and last triangle number of the region, from 0 in the order of the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub triangles: Option<[usize; 2]>,
 }

@@ -6,41 +6,41 @@ use crate::error::Result;
 /// Largest values of a patch over all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PatchPeaks {
-    /// Deflection of a taxel, metres.
+    /// Largest deflection of any taxel, metres.
     pub deflection: f64,
-    /// Sum of the taxel forces along the axes, newtons.
+    /// Largest sum of the taxel forces along their axes, newtons.
     pub force: f64,
-    /// Number of taxels with a force.
+    /// Largest number of taxels with a positive force.
     pub n_touched: usize,
-    /// Number of taxels at their stroke.
+    /// Largest number of taxels at their stroke.
     pub n_saturated: usize,
-    /// Number of taxels in grazing contact.
+    /// Largest number of taxels in grazing contact.
     pub n_grazing: usize,
-    /// Friction force on the patch, newtons.
+    /// Largest friction force on the patch, newtons.
     pub shear: f64,
-    /// Number of taxels with sticking contacts.
+    /// Largest number of taxels with sticking contacts.
     pub n_sticking: usize,
-    /// Number of taxels with slipping contacts.
+    /// Largest number of taxels with slipping contacts.
     pub n_slipping: usize,
 }
 
 /// Summary of an object over all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ObjectSummary {
-    /// Cause of the pose in the last frame.
+    /// How the pose of the object was determined in the last frame.
     pub held: PoseControl,
-    /// Number of frames without equilibrium.
+    /// Number of frames in which the object was not in equilibrium.
     pub n_unsettled: usize,
     /// Largest [imbalance](crate::contact::equilibrium::Equilibrium::imbalance) of a free object over all frames; 0 for other objects.
     pub imbalance: f64,
-    /// Number of frames in which the force on a pressed object differed from the target.
+    /// Number of frames in which the force on a pressed object differed from its target.
     pub n_off: usize,
 }
 
 /// Frame sink that computes the summary and stores no frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// Number of frames so far.
+    /// Number of frames received so far.
     pub n_frames: usize,
     /// Largest values of each patch, in the order of the plan.
     pub patches: Vec<PatchPeaks>,
