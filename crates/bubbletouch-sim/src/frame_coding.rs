@@ -1,7 +1,7 @@
 //! Compact encoding of a frame: one bit per taxel, in words of 64 bits, then the nonzero values as little-endian f32.
 //!
-//! In a typical touch a tenth of the taxels are nonzero, so the encoding takes an eighth of the memory of an f32 frame. At most it takes a thirty-second more
-//! than this frame.
+//! In a typical touch a tenth of the taxels are nonzero, so the encoding takes an eighth of the memory of an f32 frame. At most, the encoding takes one
+//! thirty-second more memory than the f32 frame.
 
 /// Number of taxels per word of bits.
 const WORD: usize = 64;

@@ -84,8 +84,7 @@ pub fn rotation_from_rpy(rpy: DVec3) -> DQuat {
     DQuat::from_euler(EulerRot::ZYX, rpy.z, rpy.y, rpy.x)
 }
 
-/// Normalises a quaternion from a file; `None` if its length differs from 1 by more than 0.001. Four written digits are
-/// accurate enough.
+/// Normalises a quaternion from a file; `None` if its length differs from 1 by more than 0.001. Components with four digits are accurate enough.
 pub fn written_rotation(quaternion: DQuat) -> Option<DQuat> {
     let is_near = (quaternion.length() - 1.0).abs() <= 1e-3;
     is_near.then(|| quaternion.normalize())

@@ -74,8 +74,8 @@ impl Workspace {
         &self.contacts
     }
 
-    /// Marks parts of objects that push their taxels even from behind the substrate, until the next call. An object that moves through the front of a patch
-    /// thereby continues to press the taxels that it has pressed.
+    /// Sets the contacts whose object parts push their taxels even from behind the substrate, until the next call. An object that moves through the front of a
+    /// patch thereby continues to press the taxels that it has pressed.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.held.clear();
         self.held

@@ -21,7 +21,8 @@ use ndarray::{ArrayView1, ArrayViewMut1, ArrayViewMut2};
 const ROUNDING: f64 = 1e-12;
 
 impl Features {
-    /// Converts measurements (n_touches × F·m) to features in place; `of_ones` is u = Φ1 (m). Image features leave the values unchanged.
+    /// Converts measurements, shape (n_touches, F·m), to features in place; `of_ones` is the vector u = Φ1, shape (m,). Image features leave the values
+    /// unchanged.
     ///
     /// # Panics
     /// If a row does not consist of whole frames.

@@ -24,7 +24,7 @@ impl Fit {
     /// surface is then the surface of the solid.
     ///
     /// At t times the half side of a square cell (or of an interval) the sphere is outside − h·t² above the surface. In a square, t² is the mean over the two
-    /// sides. Its mean over the cell is 1/3. If more is outside, objects are too large; if less is outside, more spheres are needed.
+    /// sides. The mean of t² over the cell is 1/3. If more is outside, objects are too large; if less is outside, more spheres are needed.
     pub fn within(tolerance: f64) -> Self {
         Self {
             outside: 0.5 * tolerance,

@@ -28,9 +28,9 @@ pub struct ContactFace {
     /// smooth surface this normal is therefore approximately minus the normal of this triangle. The normal is zero if there is not exactly one neighbour, or if
     /// the neighbour is too thin.
     pub across: [DVec3; 3],
-    /// Whether this triangle owns the side from each corner to the next.
+    /// For each side, from corner i to the next corner, whether this triangle owns it (and not the neighbouring triangle).
     pub has_edge: [bool; 3],
-    /// Whether this triangle owns each corner.
+    /// For each corner, whether this triangle owns it (and not another triangle with the same corner).
     pub has_corner: [bool; 3],
 }
 

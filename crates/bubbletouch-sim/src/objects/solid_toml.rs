@@ -9,7 +9,7 @@ use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
 
-/// Part `[[object.part]]` or cut `[[object.subtract]]` of an object: the name of a shape, its position, and the lengths of this shape only.
+/// Part `[[object.part]]` or cut `[[object.subtract]]` of an object: the name of a shape, its position, and its lengths.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WrittenPart {

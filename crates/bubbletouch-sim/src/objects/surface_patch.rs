@@ -50,7 +50,8 @@ impl SurfacePatch {
         }
     }
 
-    /// Creates a patch from a line of the half plane (distance from the axis, height), rotated about z by `angles`; the outside is on its right.
+    /// Creates a patch by rotating a line segment of the half plane (distance from the axis, height) about z, through the angles `angles[0]` to `angles[1]`.
+    /// The outside is on the right of the segment.
     pub fn turned(start: DVec2, end: DVec2, angles: [f64; 2]) -> Self {
         let length = (end - start).length();
         let along = (end - start) / length;

@@ -70,10 +70,11 @@ impl Ball {
         target.surface.contains(self.center - lift) || target.surface.contains(self.center + lift)
     }
 
-    /// Returns the ball with the largest radius t and the centre `foot + t·inward` for which no surface point is closer to its centre than t − `slack`.
+    /// Returns the largest ball inside the mesh that touches the point `foot` of the surface, if the surface may reach into the ball by up to `slack`.
     ///
-    /// Without slack this is the largest ball inside the mesh that touches the mesh at the foot \[MBC\]. With slack, the surface may reach that far into the
-    /// ball of radius t, so bumps lower than the slack are ignored. For a surface point q, u inward and s the slack,
+    /// The ball has the centre `foot + t·inward` and the largest radius t for which no surface point is closer to the centre than t − `slack`. Without slack
+    /// this is the largest ball inside the mesh that touches the mesh at the foot \[MBC\]. With slack, bumps lower than the slack are ignored. For a surface
+    /// point q, u inward and s the slack,
     ///
     /// ```text
     /// |foot + t u − q| ≥ t − s   ⟺   t ≤ (|q − foot|² − s²) / (2 (u·(q − foot) − s))   if u·(q − foot) > s

@@ -101,7 +101,8 @@ pub(super) struct Cover<'a> {
     weights: Vec<i32>,
     /// Number of chosen sets that contain each row.
     counts: Vec<u32>,
-    /// Exclusive or of the indices of the chosen sets that contain each row; if there is one such set, its index.
+    /// For each row, the exclusive or (XOR) of the indices of the chosen sets that contain it. If only one chosen set contains the row, this is the index of
+    /// that set.
     holders: Vec<u32>,
     /// Score of each set for the next exchange. For a set that is not chosen: the weight that it would cover. For a chosen set: minus the weight that only this
     /// set covers.

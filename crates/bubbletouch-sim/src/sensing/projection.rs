@@ -78,8 +78,8 @@ impl Projection {
 
     /// Prepares the scrambled block Hadamard ensemble with blocks of `block` taxels. Block size 32 is used in \[SBHE\] and by the constructor `new`.
     ///
-    /// m measurements use at most m · `block` taxels. If this is far below n, as on a body with millions of taxels, most taxels are never
-    /// used. A block of about n / m taxels or more uses every taxel, with few entries per taxel.
+    /// A projection with m measurements uses at most m · `block` taxels. If this is far below the number of taxels n, as on a body with millions of taxels,
+    /// most taxels are never used. A block of about n / m taxels or more uses every taxel, with few entries per taxel.
     ///
     /// # Errors
     /// If the size is invalid, as for `new`, or if `block` is not a power of two.

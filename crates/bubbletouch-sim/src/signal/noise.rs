@@ -59,7 +59,8 @@ impl Noise {
     }
 }
 
-/// Adds σ zᵢ to each value. The normal numbers z are drawn from the start of the stream and do not depend on σ. If σ = 0, nothing is drawn.
+/// Adds normal noise σ zᵢ with standard deviation σ = `std` to the values of a frame. The normal numbers z are drawn from the start of the stream and do not
+/// depend on σ. If σ = 0, nothing is drawn.
 pub(super) fn add_normal(frame: &mut [f64], std: f64, stream: &Seed) {
     if std == 0.0 {
         return;

@@ -23,7 +23,7 @@ struct Mount {
     link_from_patch: Pose,
 }
 
-/// Properties of a cover: the taxels and their pitch, and the size of the patches.
+/// Properties of a cover of skin: the type of the taxels, their pitch, and the size of the patches.
 #[derive(Clone, Copy)]
 struct Cover {
     taxel: Taxel,

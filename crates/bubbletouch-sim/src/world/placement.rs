@@ -63,11 +63,11 @@ impl RestPoses {
 pub enum TouchAxis {
     /// Resting pose of the object.
     Rest,
-    /// Offset of the patch along table x.
+    /// Offset of the patch along the x axis of the table.
     OffsetX,
-    /// Offset of the patch along table y.
+    /// Offset of the patch along the y axis of the table.
     OffsetY,
-    /// Turn of the object about table z.
+    /// Yaw: rotation of the object about the z axis of the table.
     Yaw,
     /// Tilt of the patch about its own x axis.
     TiltX,
@@ -91,8 +91,8 @@ impl TouchAxis {
         }
     }
 
-    /// Returns the spread of listed values without duplicates: of values that are one pose, the first is kept. Yaws of 0 and a full turn, for example, are one
-    /// yaw.
+    /// Returns the spread that consists of the given values without duplicates: of several values that mean the same pose, only the first is kept. For example,
+    /// the yaws 0 and 2π mean the same pose.
     pub fn listed(self, values: Vec<f64>) -> Spread {
         let mut first: Vec<usize> = (0..values.len()).collect();
         let pairs = self.same_poses(&values);
@@ -139,11 +139,11 @@ impl TouchAxis {
 pub struct Placement {
     /// Resting poses of the object.
     pub rest: RestPoses,
-    /// Range of the offset of the patch's axis along table x from the middle of the object's bounding box; metres.
+    /// Range of the offset of the patch's axis along the x axis of the table, from the middle of the object's bounding box; metres.
     pub offset_x: Spread,
-    /// Range of the offset of the patch's axis along table y from the middle of the object's bounding box; metres.
+    /// Range of the offset of the patch's axis along the y axis of the table, from the middle of the object's bounding box; metres.
     pub offset_y: Spread,
-    /// Range of the yaw, the turn of the object about table z; radians.
+    /// Range of the yaw, the rotation of the object about the z axis of the table; radians.
     pub yaw: Spread,
     /// Range of the patch's tilt about its own x axis; radians, less than a quarter turn in either direction.
     pub tilt_x: Spread,
@@ -162,7 +162,7 @@ pub struct Touch {
     pub rest: usize,
     /// Offset of the patch's axis at the height of the object's top, table x and y, metres.
     pub offset: [f64; 2],
-    /// Yaw: turn of the object about table z, radians.
+    /// Yaw: rotation of the object about the z axis of the table, radians.
     pub yaw: f64,
     /// Tilts of the patch about its own x axis, then about its own y axis, radians.
     pub tilt: [f64; 2],

@@ -122,7 +122,7 @@ impl TaxelTree {
         self.depth
     }
 
-    /// Returns whether a ball may push a taxel; metres, in the patch frame. The result may also be true for a ball that only comes near.
+    /// Returns whether a ball (centre and radius in metres, in the patch frame) may push a taxel. The result may also be true for a ball that only comes near.
     #[inline]
     pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
         let root = self.nodes.first();

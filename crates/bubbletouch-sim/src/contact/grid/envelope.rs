@@ -113,8 +113,8 @@ impl Sweep<'_> {
         low.z - self.radius
     }
 
-    /// Returns whether no triangle in a small box can lower the heights of the few taxels near the box. At a horizontal distance b from the box, a ball stops
-    /// no lower than √(ρ² − b²) below the box.
+    /// Returns whether the triangles in a small box certainly cannot lower the heights of the taxels near the box. At a horizontal distance b from the box, a
+    /// ball stops no lower than √(ρ² − b²) below the box.
     fn is_hidden(&self, low: DVec3, high: DVec3) -> bool {
         let (center, half) = (0.5 * (low + high), 0.5 * (high - low) + self.radius);
         let rows = self.lines.y.within(center.y, half.y);

@@ -240,7 +240,7 @@ fn step_row(
     });
 }
 
-/// Returns the objective at α minus the dual value; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
+/// Returns the duality gap at α, the objective minus the dual value; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
 fn duality_gap(
     alpha: ArrayView1<f64>,
     b: ArrayView1<f64>,

@@ -1,6 +1,6 @@
 //! Human touches: a hand that taps, presses and holds, strokes, shoves, pats or grabs a forearm.
 //!
-//! A kind of touch and its ranges → [`HumanTouch`] (randomly drawn parameters) → pose of the hand and bending of its fingers at any time.
+//! The ranges of a kind of touch → [`HumanTouch`] with randomly drawn parameters → pose of the hand and bending of its fingers at any time.
 //!
 //! **The forearm** is a cylinder around the z axis of the patch frame, as in [`Layout::cylinder`](super::Layout::cylinder). The skin ends
 //! at `surface` metres from the axis: the radius of the layout plus the radius of a taxel.
@@ -12,10 +12,10 @@
 //! **Time.** A touch is a sequence of phases between states (height, displacement along the skin, closing of the fingers). Each phase follows
 //! `10 τ³ − 15 τ⁴ + 6 τ⁵`, the minimum-jerk movement between two stops \[FH\]. The hand starts and ends in the air.
 //!
-//! The six kinds are gestures of \[CoST\] or similar to them (`hold` corresponds to its press). The motions of the six kinds in space and
-//! time are our choice. Tap and hold share the distributions of posture, place and depth and differ in time only. Pat is a repeated tap, mostly
-//! with the flat hand. Stroke and shove move along the skin, the shove more deeply. Grab closes the fingers around the arm. A single
-//! frame therefore cannot distinguish tap from hold.
+//! The six kinds are gestures of \[CoST\] or similar to them (`hold` corresponds to its press). The motions of the six kinds in space and time were chosen for
+//! this project. Tap and hold share the distributions of posture, place and depth and differ in time only. Pat is a repeated tap, mostly with the flat hand.
+//! Stroke and shove move along the skin, the shove more deeply. Grab closes the fingers around the arm. A single frame therefore cannot distinguish tap from
+//! hold.
 
 mod course;
 mod kind;

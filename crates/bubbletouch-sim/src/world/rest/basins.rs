@@ -139,7 +139,7 @@ impl Merging {
         self.parent[drop] = keep;
     }
 
-    /// Returns the height of the higher of two roots' minima.
+    /// Returns the larger of the minimum heights of two basins, which are given by their roots.
     fn floor(&self, a: usize, b: usize) -> f64 {
         self.minimum[a].1.max(self.minimum[b].1)
     }

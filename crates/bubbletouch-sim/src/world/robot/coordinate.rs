@@ -32,7 +32,8 @@ impl Dimension {
 /// One coordinate of a robot's joint positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
-    /// Name of the coordinate: the name of the joint. For joints with several coordinates, `.x`, `.y`, `.z`, `.theta`, `.roll`, `.pitch` or `.yaw` is appended.
+    /// Name of the coordinate, which is the name of its joint. For joints with several coordinates, `.x`, `.y`, `.z`, `.theta`, `.roll`, `.pitch` or `.yaw` is
+    /// appended.
     pub name: String,
     /// Index of the joint that has this coordinate.
     pub joint: usize,

@@ -54,7 +54,7 @@ impl<'a> Element<'a> {
         self.lines.line(self.node.range().start)
     }
 
-    /// Returns an error that contains this element's line.
+    /// Returns an input error that names the file and the line of this element.
     pub fn refuse(&self, given: impl ToString, allowed: impl ToString) -> Error {
         let place = format!("{}, line {}", self.lines.place, self.line());
         Error::input(place, given, allowed)
