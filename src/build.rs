@@ -43,7 +43,7 @@ fn add_files(path: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the 128-bit FNV-1a hash of all file names and contents. It distinguishes versions but is not secure against attacks.
+/// Returns the 128-bit FNV-1a hash of all file names and contents. The hash distinguishes versions but is not secure against attacks.
 fn hash(files: &[PathBuf]) -> u128 {
     let mut hash: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
     let mut add = |bytes: &[u8]| {

@@ -111,7 +111,6 @@ pub fn whole_number<T: TryFrom<i128>>(place: &str, given: i128) -> PyResult<T> {
 
 /// Returns whether an array has the shape of one frame, or of several frames along the first axis. A frame has one axis of all taxels or, for a grid, two axes
 /// `sides` (rows, columns).
-/// taxels in one row.
 pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>) -> bool {
     let is_frame = |frame: &[usize]| {
         let is_whole = frame.iter().product::<usize>() == n_taxels && !frame.is_empty();

@@ -14,7 +14,7 @@ pub struct Answer {
 /// Returns one answer per condition. If `worst` is true, returns a single answer that is based on the worst value of each choice over all conditions.
 ///
 /// # Errors
-/// If no condition has advice; the error is that of the first condition.
+/// If no condition has advice; returns the error of the first condition.
 pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Vec<Answer>> {
     let conditions = offers.by_condition();
     let answer = |condition: String, choices: &[Candidate]| Answer {

@@ -1,7 +1,7 @@
 //! Correction of p-values for multiple tests.
 
 /// Corrects the p-values of several tests, in input order (Holm, *A simple sequentially rejective multiple test procedure*, 1979). The probability of any false
-/// positive among all tests is then at most that of a single test.
+/// positive among all tests is then at most the probability for a single test.
 pub fn holm(p_values: &[f64]) -> Vec<f64> {
     let n = p_values.len();
     let mut order: Vec<usize> = (0..n).collect();

@@ -75,7 +75,7 @@ impl<R: Columns> File<R> {
         self.read_columns(R::columns(), folder)
     }
 
-    /// Reads the table from a folder, with the given columns instead of those of the row type.
+    /// Reads the table from a folder, with the given columns instead of the columns of the row type.
     ///
     /// # Errors
     /// Returns the errors of [`read`](Self::read).

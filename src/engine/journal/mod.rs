@@ -3,7 +3,6 @@
 //! A [`Journal`] is a text file beside the tables, with one line and one checksum for each finished work item. Its first line is the [`Identity`] of the study.
 //! A run of another study, with other objects or by another program, is rejected with a list of the differences. A journal without such a line, or with lines
 //! of two studies, is also rejected.
-//! lines of two studies, is rejected, too.
 //!
 //! The key of a line depends on all inputs of the result. A study with additional axis values or trials therefore reuses the existing results. If a process is
 //! killed, only the unfinished work items are lost. An incomplete last line is removed, and its item is computed again.

@@ -47,7 +47,7 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
     }
 
     /// Computes the pending work items with `measure`. Returns the rows of all items that did not fail in this or an earlier run, in the order of items, and
-    /// the failed items. Except for times, the rows equal those of a run that computes all items at once.
+    /// the failed items. Except for times, the rows equal the rows of a run that computes all items together.
     ///
     /// `place(number, rows)` sets the values that depend on an item's number, such as numbers of configurations. `words(number)` describes an item for
     /// failures.

@@ -101,7 +101,7 @@ struct Choice<'a> {
 /// Values of all choices of a design.
 type Design = Vec<String>;
 
-/// Table, and the mapping of its compression ratios to those of the other table.
+/// Table, with a mapping from its compression ratios to the ratios of the other table.
 struct Ranked<'a> {
     table: &'a Table,
     /// Equal ratio of the other table for each ratio of this table, by the bits of the ratio.

@@ -2,7 +2,6 @@
 //!
 //! **Ties.** If training rows have equal distances, the row with the lower index is the nearer one. If classes have equal votes, the lower label is predicted.
 //! Both rules equal scikit-learn's.
-//! scikit-learn's.
 //!
 //! Distances are computed by one matrix product per block, `|a|² + |b|² − 2 a·b`, which is inaccurate for close rows. The product therefore only selects
 //! candidates: all rows that can be among the k nearest within the rounding error. The distances of the candidates are recomputed by `Σ (a − b)²`, so the

@@ -48,7 +48,7 @@ pub struct MeasurementInputs<'a> {
     pub copies: Option<CopyInputs>,
 }
 
-/// Inputs in which the measurements of test touches differ from those of training touches.
+/// Inputs of the measurements that differ between test touches and training touches.
 #[derive(Clone, Debug)]
 pub struct TestInputs<'a> {
     /// Array of taxels of the test touches; its frames have the shape of the training touches' frames.

@@ -43,7 +43,7 @@ macro_rules! configuration {
             }
         }
 
-        /// Returns all columns except those of the axes in `[axes]`.
+        /// Returns all columns except the columns of the axes in `[axes]`.
         impl Columns for $configuration {
             fn columns() -> Vec<Column> {
                 let mut columns = Vec::new();
@@ -109,7 +109,7 @@ pub struct Configuration {
     train_touches: usize => always (Choice, "training touches", "", Log);
     /// Fraction of training touches that are labelled as another object, 0 to 1. Present only if the study has the key.
     mislabelled_fraction: Option<f64> => if_given (Condition, "mislabelled", "%", Share);
-    /// Ratio of the training touches of the most frequent object to those of the least frequent, at least 1. Present only if the study has the key.
+    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1. Present only if the study has the key.
     class_imbalance: Option<f64> => if_given (Condition, "class imbalance", ":1", Log);
     /// Number of test touches of an object that are combined into one decision by the sum of their scores.
     touches_per_decision: usize => always (Choice, "touches per decision", "", Log);

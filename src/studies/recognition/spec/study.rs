@@ -204,7 +204,7 @@ pub struct RecognitionSpec {
     pub train_touches: Option<Axis<usize>>,
     /// Axis: fraction of each object's training touches that are labelled as another, randomly drawn object, 0 to 1. Default: 0.
     pub mislabelled_fraction: Option<Axis<f64>>,
-    /// Axis: ratio of the training touches of the most frequent object to those of the least frequent, at least 1. The other objects lie between in a geometric
+    /// Axis: ratio of the numbers of training touches of the most and the least frequent object, at least 1. The other objects lie between in a geometric
     /// sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
     pub class_imbalance: Option<Axis<f64>>,
     /// Axis: number k of test touches of an object that are combined into one decision by the sum of their scores, at least 1. Default: 1. An object's test

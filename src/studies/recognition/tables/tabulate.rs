@@ -56,7 +56,7 @@ pub fn tabulate(
     tables.summary = summarise(&tables.accuracy, &groups, n_folds)?;
     tables.variance = variances(&tables.accuracy)?;
     tables.comparison = compare_with_best(&tables.accuracy)?;
-    // Confusions of single touches are more informative than those of decisions on several touches.
+    // Confusions of single touches are more informative than confusions of decisions on several touches.
     let configurations = || {
         tables
             .summary

@@ -57,7 +57,7 @@ pub struct FamilyInputs<'a> {
     pub train_touches: Option<usize>,
     /// Fraction of training touches that are labelled as another object, 0 to 1.
     pub mislabelled_fraction: Option<f64>,
-    /// Ratio of the training touches of the most frequent object to those of the least frequent.
+    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1.
     pub class_imbalance: Option<f64>,
     /// Classifier, with the candidates from which its C and γ are chosen.
     pub training: TrainingInputs,
