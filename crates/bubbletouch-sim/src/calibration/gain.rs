@@ -66,7 +66,7 @@ impl Gains {
     }
 }
 
-/// Returns d, the median log ratio of a taxel to its neighbours, of even and of odd frames for each taxel.
+/// Returns, for a taxel, the median log ratio d of its readings to those of its neighbours: first for the even frames, then for the odd frames.
 fn halves(
     skin: &RecordedSkin,
     touched: &Array2<f64>,

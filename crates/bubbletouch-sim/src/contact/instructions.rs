@@ -53,7 +53,7 @@ impl Instructions {
     }
 }
 
-/// Defines a function that is compiled once for each of the [`Instructions`], its first argument. The shared body must be
+/// Defines a function that is compiled once per variant of [`Instructions`]; its first argument selects the variant. The shared body must be
 /// `#[inline(always)]`, as must all functions that it calls.
 macro_rules! for_instructions {
     ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? = $body:ident) => {

@@ -8,8 +8,8 @@
 //! | q | S² − b² | m² |
 //! | B | −s − ρ, height of the substrate ([`Taxel::substrate`](crate::world::Taxel::substrate)) | m |
 //!
-//! A sphere needs the deflection `δ = √q − h` ([`deflection`]) where q > 0, unless the sphere is behind the substrate. A taxel that rests on the far
-//! side of the sphere has its centre at `h + √q`; the sphere counts if that is above B. Without a root this is
+//! Contact with a sphere requires the deflection `δ = √q − h` ([`deflection`]) where q > 0, unless the sphere is behind the substrate. A taxel that rests on
+//! the far side of the sphere has its centre at `h + √q`; the sphere counts if that is above B. Without a root this is
 //!
 //! ```text
 //! q > max(B − h, 0)²
@@ -30,11 +30,11 @@ pub fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)
 }
 
-/// Safety factor for squares that are compared before a root is taken: below 1 by more than rounding. If larger, rounding decides comparisons; if smaller,
-/// roots are taken needlessly.
+/// Factor slightly below 1, by more than the rounding error, for comparisons of squares before a root is taken. If larger, rounding decides comparisons; if
+/// smaller, roots are taken needlessly.
 const ALMOST: f64 = 1.0 - 1e-12;
 
-/// Returns the deflection √q − h, metres, that a sphere needs; q must be positive.
+/// Returns the deflection √q − h that contact with a sphere requires, metres; q must be positive.
 #[inline(always)]
 pub(crate) fn deflection(q: f64, height: f64) -> f64 {
     q.sqrt() - height
@@ -54,7 +54,7 @@ pub(super) fn reaches_front(far_side: f64, behind: f64) -> bool {
     far_side >= behind
 }
 
-/// Returns the deflection that a sphere needs, metres; 0 if the sphere does not count, and at most 0 if the sphere is above the taxel.
+/// Returns the deflection that contact with a sphere requires, metres; 0 if the sphere does not count, and at most 0 if the sphere is above the taxel.
 #[inline(always)]
 pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
     // The root is taken for every value, because selecting between two numbers compiles to a vector instruction and a branch does not.

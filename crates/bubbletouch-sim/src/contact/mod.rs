@@ -1,7 +1,7 @@
 //! Contact \[BT\]: computes the taxels' deflections from a [`Patch`](crate::world::Patch), objects and poses.
 //!
-//! For taxel i (rest centre p, axis n, radius ρ) and sphere j (centre c, radius R): `S = ρ + R`, `h = (c − p)·n`,
-//! `b² = |c − p|² − h²`. If `b < S`, the sphere needs `δ_ij = √(S² − b²) − h`. The contact deflection is
+//! For taxel i (rest centre p, axis n, radius ρ) and sphere j (centre c, radius R): `S = ρ + R`, `h = (c − p)·n`, `b² = |c − p|² − h²`. If `b < S`, contact
+//! with the sphere requires the deflection `δ_ij = √(S² − b²) − h`. The contact deflection is
 //!
 //! ```text
 //! δ*_i = min(s, max(0, max_j δ_ij))

@@ -20,7 +20,7 @@ pub struct TaxelContact {
     pub part: usize,
     /// Deflection δ of the taxel, metres, above 0 and at most the stroke.
     pub deflection: f64,
-    /// Deflection that the object needs, not limited to the stroke, metres; larger than `deflection` if the taxel is saturated.
+    /// Deflection that contact with the object requires, not limited to the stroke, metres; larger than `deflection` if the taxel is saturated.
     pub needed: f64,
     /// Contact normal n_c in the patch frame: a unit vector from the object's surface to the taxel at the deflection needed.
     pub normal: DVec3,

@@ -96,7 +96,7 @@ impl Feature for FourierMellin {
     }
 }
 
-/// Writes weighted sums of four magnitudes.
+/// Writes one interpolated magnitude per read: the weighted sum of four stored magnitudes.
 fn write_reads(reads: &[Read], magnitudes: &[f64], out: &mut [f64]) {
     for (to, read) in out.iter_mut().zip(reads) {
         let [a, b, c, d] = read.map(|(place, weight)| weight * magnitudes[place as usize]);

@@ -150,12 +150,12 @@ impl<'a> Parts<'a> {
         parts
     }
 
-    /// Returns the direction in which the triangle of a side passes the edge, after turning.
+    /// Returns whether the triangle of a side passes the edge forwards, after the triangle is turned if necessary.
     fn is_forward(&self, side: &Side) -> bool {
         side.is_forward != self.is_turned[side.triangle as usize]
     }
 
-    /// Returns for each part whether it is closed: every edge has equally many triangles in both directions.
+    /// Returns for each part whether it is closed: along every edge, equally many triangles pass in both directions.
     fn closed(&self) -> Vec<bool> {
         // Triangles with a repeated corner have no edges of their own; they are parts that enclose nothing.
         let mut is_closed = vec![true; self.triangles.len()];

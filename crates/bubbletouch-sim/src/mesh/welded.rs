@@ -59,7 +59,8 @@ impl Welded {
         self.sides.chunk_by(|a, b| a.edge == b.edge)
     }
 
-    /// Returns the number of edges with unequally many triangles in both directions. These edges occur at holes and between inconsistently oriented faces.
+    /// Returns the number of edges along which the numbers of triangles in the two directions differ. These edges occur at holes and between inconsistently
+    /// oriented faces.
     pub fn n_unbalanced(&self) -> usize {
         let sign = |side: &Side| if side.is_forward { 1 } else { -1 };
         let is_unbalanced = |sides: &&[Side]| sides.iter().map(sign).sum::<i32>() != 0;

@@ -37,7 +37,7 @@ impl Fit {
         self.outside + self.inside
     }
 
-    /// Returns the radius of the disc that an enlarged ball of tangent radius r covers on a flat face, around the point where it touches the face.
+    /// Returns the radius of the disc that an enlarged ball covers on a flat face, around the point where a ball of radius r touches the face; metres.
     pub fn disc(&self, radius: f64) -> f64 {
         self.disc_squared(radius).sqrt()
     }

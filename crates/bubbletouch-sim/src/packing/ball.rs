@@ -142,7 +142,7 @@ impl Ball {
         }
     }
 
-    /// Returns the largest distance from the centre at which the sphere comes within `e` of a surface point.
+    /// Returns the largest distance between the centre of the ball and a surface point to which the sphere comes within `e`; metres.
     pub fn reach(&self, e: f64) -> f64 {
         self.depth + relief(e)
     }

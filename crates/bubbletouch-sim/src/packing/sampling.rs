@@ -188,7 +188,7 @@ struct Sampler<'a> {
 /// Area of the surface per ball, computed as a function of position.
 struct Sizes<'a> {
     target: &'a Target<'a>,
-    /// Last computed ball: the surface normal, and the largest ball that covers the position, which is its foot.
+    /// The last position for which a ball was computed, stored as its surface normal and the largest ball that covers it.
     known: Option<(DVec3, Ball)>,
 }
 

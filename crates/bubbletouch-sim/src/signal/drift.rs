@@ -120,7 +120,7 @@ impl Effect for Zeros {
     }
 }
 
-/// Number of times that the session is halved for counter-based draws: 2⁶ intervals, as many random numbers per taxel as [`N_MODES`].
+/// Number of times that counter-based draws halve the session: 2⁶ intervals, with as many random numbers per taxel as [`N_MODES`].
 const N_HALVINGS: u32 = 6;
 
 /// Drift with counter-based random numbers: zeros σ W(t), σ in the unit of the frame.

@@ -30,7 +30,8 @@ pub(super) struct Multipliers {
 pub(super) struct Smoothness {
     /// Smoothing width μ of soft taxels, metres.
     pub smoothing: f64,
-    /// Smoothing of stiff taxels, μ k relative to the weight. A width that is small for a soft taxel can exceed the deflection of a stiff one.
+    /// Smoothing width of stiff taxels, given as the force μ k relative to the weight. A width that is small for a soft taxel can exceed the deflection of a
+    /// stiff one.
     pub load: f64,
     /// Minimum smoothing width μ, metres; below this value rounding of deflections would decide ties.
     pub least: f64,
@@ -57,7 +58,7 @@ impl Smoothness {
 pub(super) struct Load {
     /// Number of spheres that carry a share of the force.
     pub n_sharing: usize,
-    /// Largest deflection max δ that a sphere needs, metres; negative if nothing touches the taxel.
+    /// Largest deflection max δ that contact with a sphere requires, metres; negative if nothing touches the taxel.
     pub deepest: f64,
     /// Smoothing width μ of the taxel, metres.
     pub smoothing: f64,
@@ -78,7 +79,7 @@ pub(super) struct Loads {
     pub shares: Vec<f64>,
     /// Elastic energy E, joules.
     pub elastic: f64,
-    /// Deflections that the spheres need, metres, one per pair.
+    /// Deflections that contact with the spheres requires, metres, one per pair.
     deflections: Vec<f64>,
     known: Vec<f64>,
     sharing: Vec<f64>,

@@ -32,7 +32,8 @@ pub(super) struct Group {
 pub(super) struct Margins {
     /// Distance that spheres may move without meeting a taxel that is not gathered, metres.
     pub step: f64,
-    /// Largest difference, metres, between a taxel's largest deflection and the deflection of a gathered pair; other pairs are omitted.
+    /// Width of the window of gathered pairs, metres: a pair is omitted if its deflection is smaller than the taxel's largest deflection by more than this
+    /// width.
     pub window: f64,
 }
 

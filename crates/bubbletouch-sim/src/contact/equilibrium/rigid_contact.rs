@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 /// Rigid counterpart that a free object's sphere touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Touched {
-    /// Plane, by its index in the ground.
+    /// Plane, given by its index in the ground.
     Plane(usize),
     /// Sphere of an obstacle: index of the obstacle, and index of the sphere.
     Obstacle(usize, usize),

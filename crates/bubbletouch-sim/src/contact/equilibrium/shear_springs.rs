@@ -35,7 +35,7 @@ pub(super) struct Spring {
     axes: [DVec3; 2],
     /// Position of the point at the beginning of the step, moved with the patch; in the world, metres.
     start: DVec3,
-    /// Radius r = μ f / k_t of the friction cone, metres: the largest |v|.
+    /// Largest length |v| of the shear displacement without slip, r = μ f / k_t, metres: the radius of the friction cone.
     reach: f64,
 }
 

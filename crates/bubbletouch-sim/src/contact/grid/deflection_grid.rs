@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-/// Number of columns that are computed together: lanes of 256 bits, f64. A larger value computes needless columns beside narrow footprints; a smaller one needs
-/// more instructions.
+/// Number of columns that are computed together: four f64 values in a vector of 256 bits. A larger value computes needless columns beside narrow footprints; a
+/// smaller one needs more instructions.
 pub(super) const BLOCK: usize = 4;
 
 /// Number of columns that are computed together in footprints wider than three blocks: lanes of 512 bits, f64.

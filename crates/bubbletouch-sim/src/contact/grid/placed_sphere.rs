@@ -140,7 +140,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises each deflection to the deflection that the sphere needs with its centre at `height` above the grid, metres.
+    /// Raises each deflection to the deflection that contact with the sphere requires if its centre is at `height` above the grid, metres.
     #[inline(always)]
     pub fn indent(&self, lines: &GridLines, height: f64, deflections: &mut DeflectionGrid) {
         let reach2 = self.reach * self.reach;
@@ -261,7 +261,7 @@ impl PlacedSphere {
     /// Increases the deflection of each taxel that the sphere pushes further, and marks these taxels. A sphere behind the substrate, whose height is `behind`,
     /// does not count.
     ///
-    /// The footprint is the region where the sphere needs more than zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, small
+    /// The footprint is the region where contact with the sphere requires a deflection above zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, small
     /// footprints to a square. The comparison with S in the innermost loop decides exactly.
     pub fn indent_and_mark<M: Copy>(
         &self,

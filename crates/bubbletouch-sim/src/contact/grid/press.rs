@@ -112,7 +112,7 @@ impl GridPress {
         self.deflections.clear(grid.grid.nx, grid.grid.ny);
     }
 
-    /// Computes the deflections that the objects need at a travel, not limited to the stroke.
+    /// Computes the deflections that contact with the objects requires at a travel of the patch, not limited to the stroke.
     fn push(&mut self, grid: &EvenGrid, travel: f64, output: &mut OutputBuffer) {
         self.touch_nothing(grid);
         output.in_steps(self.search.found.len());

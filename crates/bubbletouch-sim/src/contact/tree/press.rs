@@ -14,7 +14,7 @@ use crate::objects::{MeshModel, Model, Sphere, SphereUnion};
 use crate::world::{EvenGrid, LEAF, Patch, PlacedTaxel, TaxelTree};
 use glam::DVec3;
 
-/// Raises the deflection of each taxel to the deflection that an object needs, not limited to the stroke.
+/// Raises the deflection of each taxel to the deflection that contact with an object requires, not limited to the stroke.
 pub(crate) fn push(
     patch: &Patch,
     objects: &[Model],

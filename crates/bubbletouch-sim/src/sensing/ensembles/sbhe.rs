@@ -25,7 +25,7 @@ pub(crate) struct ScrambledHadamard {
     block: usize,
     /// Taxel at each position before W; indices n and above denote added zeros.
     taxels: Vec<usize>,
-    /// Pairs of a coefficient after W and the measurement that uses it, ascending.
+    /// Pairs of indices, ascending: a coefficient of the transform W, and the measurement that uses it.
     picks: Vec<(usize, usize)>,
 }
 

@@ -85,8 +85,8 @@ fn linear_step(
     (t[0] * u + t[1] * v, z)
 }
 
-/// Returns three linear pieces that bound the step. The pieces are steeper than any sphere, exceed `height` outside a triangle of inradius `reach`, and stay
-/// below every possible minimum well inside it.
+/// Returns three linear functions that bound the step to a triangle: they are steeper than any sphere, exceed `height` outside a triangle of inradius `reach`,
+/// and stay below every possible minimum well inside it.
 fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
     let steep = 4.0 * radius;
     [0.0, 1.0, 2.0].map(|third| {
