@@ -1,4 +1,4 @@
-//! One press: the kernel beside every sphere against every taxel.
+//! Benchmarks of single presses: the contact kernel beside an evaluation of every sphere against every taxel.
 
 use bubbletouch::contact::equilibrium::{EquilibriumSolver, FreeObject, PlacedSkin};
 use bubbletouch::contact::{
@@ -20,7 +20,7 @@ use std::fs::File;
 use std::hint::black_box;
 use std::io::BufReader;
 
-/// A patch and the objects that press it.
+/// Patch and the objects that press it.
 struct Scene {
     patch: Patch,
     objects: Vec<Model>,
@@ -28,7 +28,7 @@ struct Scene {
 
 const DEPTH: f64 = 3e-3;
 
-/// A bumpy egg of n equal spheres on its surface, like the vertex spheres of a scanned object.
+/// Returns a bumpy egg of n equal spheres on its surface, like the vertex spheres of a scanned object.
 fn egg(n: usize) -> SphereUnion {
     let mut rng = Seed::new(6).rng();
     let spheres = (0..n).map(|_| {
@@ -69,7 +69,7 @@ fn zero_touch(object: &Model) -> Pose {
     touch.patch_from_object(&rest)
 }
 
-/// Every sphere against every taxel, at the travel that the kernel found.
+/// Evaluates every sphere against every taxel, at the travel that the kernel found.
 fn every_pair(scene: &Scene, pose: &Pose, travel: f64, deflections: &mut [f64]) {
     let grid = scene.patch.layout().as_grid().expect("a grid");
     let taxel = scene.patch.taxels().at(0);
@@ -168,7 +168,7 @@ fn catalogue(c: &mut Criterion) {
     group.finish();
 }
 
-/// A ball of n triangles with hills, like a scanned object.
+/// Returns a ball of n triangles with hills, like a scanned object.
 fn scan(n_rings: usize) -> TriangleMesh {
     let n = n_rings as u32;
     let corner = |ring: u32, k: u32| {
@@ -189,8 +189,8 @@ fn scan(n_rings: usize) -> TriangleMesh {
     TriangleMesh::new("scan", vertices.collect(), triangles.collect()).expect("a valid mesh")
 }
 
-/// A mustard bottle as one sphere a vertex of its scan, and packed to a tenth of the pitch: the mesh in BUBBLETOUCH_YCB, or a
-/// generated one beside the built-in bottle, which is said.
+/// Returns a mustard bottle as one sphere per vertex of its scan, and packed to a tenth of the pitch. The mesh is read from BUBBLETOUCH_YCB. Without it, a
+/// generated mesh and the built-in bottle are used, and a note is printed.
 fn bottles() -> [(&'static str, Model); 2] {
     let folder = std::env::var_os("BUBBLETOUCH_YCB").map(std::path::PathBuf::from);
     let path = folder.map(|folder| folder.join("006_mustard_bottle.ply"));
@@ -220,7 +220,7 @@ fn bottles() -> [(&'static str, Model); 2] {
     ]
 }
 
-/// Touches as in the original study: each of another offset, yaw or tilt; on the bottle as it stands and as it lies.
+/// Benchmarks touches as in the original study, each with another offset, yaw or tilt; the bottle stands or lies.
 fn touches(c: &mut Criterion) {
     let mut group = c.benchmark_group("press_64x64");
     for (name, model) in bottles() {
@@ -266,7 +266,7 @@ fn touches(c: &mut Criterion) {
     group.finish();
 }
 
-/// The same touch with each of the vector instructions that this machine has.
+/// Benchmarks one touch with each of the vector instruction sets that this machine supports.
 fn instructions(c: &mut Criterion) {
     let mut group = c.benchmark_group("press_instructions");
     for n_spheres in [1_000, 8_000] {
@@ -294,7 +294,7 @@ fn instructions(c: &mut Criterion) {
     group.finish();
 }
 
-/// The triangles themselves beside spheres around their vertices.
+/// Benchmarks triangles beside spheres around their vertices.
 fn mesh(c: &mut Criterion) {
     let mut group = c.benchmark_group("press_mesh_64x64");
     for n_rings in [32, 64] {
@@ -329,7 +329,7 @@ fn mesh(c: &mut Criterion) {
     group.finish();
 }
 
-/// A forearm's skin of 64 × 64 taxels pressed on the object, beside as many in a plane, by both kernels.
+/// Benchmarks a forearm's skin of 64 × 64 taxels beside a flat patch of as many taxels, with both kernels.
 fn curved(c: &mut Criterion) {
     let mut group = c.benchmark_group("curved_press");
     let radius = 64.0 * 4e-3 / std::f64::consts::TAU;
@@ -355,7 +355,7 @@ fn curved(c: &mut Criterion) {
     )
     .map_or(0.0, |contact| contact.travel);
     let down = Pose::from_translation(-travel * DVec3::Z).compose(&pose);
-    // The egg's broad side on the cylinder.
+    // The egg lies with its broad side on the cylinder.
     let beside = Pose::new(
         DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2),
         DVec3::X * (radius + 0.03 + 2e-3 + 1e-3 - DEPTH),
@@ -384,8 +384,8 @@ fn curved(c: &mut Criterion) {
     group.finish();
 }
 
-/// An egg of 1,000 spheres on 64 × 64 taxels: put to rest after each tenth of a millimetre that the skin is lifted, from where
-/// it was and with what was known of its forces.
+/// Benchmarks the equilibrium of an egg of 1,000 spheres on 64 × 64 taxels. After each 0.1 mm by which the skin is lifted, the solver starts from the last pose
+/// and forces.
 fn rest(c: &mut Criterion) {
     let mut group = c.benchmark_group("balance");
     let skin = patch(64);
@@ -411,8 +411,8 @@ fn rest(c: &mut Criterion) {
     group.finish();
 }
 
-/// A frame of a scene: an egg rocks on 64 × 64 taxels, and each frame says what touches what; without and with dampers and
-/// friction (a step a frame).
+/// Benchmarks a frame of a scene: an egg rocks on 64 × 64 taxels, and each frame lists the contacts. Runs without and with dampers and friction (one step per
+/// frame).
 fn frame(c: &mut Criterion) {
     let folder = tempfile::tempdir().expect("a folder for the egg");
     let egg = egg(8_000);

@@ -1,7 +1,7 @@
-//! A touch by one evaluation beside the same touch by taxels as bodies, at 8 × 8 to 64 × 64 taxels.
+//! Benchmarks of a touch: one quasi-static evaluation beside taxels simulated as bodies, for 8 × 8 to 64 × 64 taxels.
 //!
-//! Bodies are put under the object where it is to be, and stepped three times in 10 ms: fewer do not settle. Scene and all are built outside
-//! the timed part.
+//! Bodies start under the object at its final pose and make three steps in 10 ms; with fewer steps they do not reach equilibrium. The scene and all bodies are
+//! built outside the timed part.
 
 use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::dynamics::{Drive, ImplicitEuler, Integrator, SemiImplicit, System, skin_sim};
@@ -12,7 +12,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use std::hint::black_box;
 
-/// A patch and the objects that press it.
+/// Patch and the objects that press it.
 struct Scene {
     patch: Patch,
     objects: Vec<Model>,
@@ -22,7 +22,7 @@ const DT: f64 = 1e-2;
 const N_STEPS: usize = 3;
 const DEPTH: f64 = 3e-3;
 const STROKE: f64 = 5e-3;
-/// How much further objects are looked for, metres: they stay where they are.
+/// Additional distance within which objects are searched, metres; the objects do not move.
 const REACH: f64 = 1e-6;
 
 fn patch(side: usize) -> Patch {
@@ -41,7 +41,7 @@ fn patch(side: usize) -> Patch {
     Patch::grid(grid, taxel).expect("a good patch")
 }
 
-/// A built-in bottle within half a millimetre.
+/// Returns a built-in bottle, approximated within half a millimetre.
 fn bottle() -> Model {
     let catalogue = Catalogue::builtin().expect("the built-in catalogue is valid");
     let entry = catalogue
@@ -50,7 +50,7 @@ fn bottle() -> Model {
     entry.build(5e-4).expect("it can be packed").model
 }
 
-/// `patch_from_object` at the depth.
+/// Returns the pose of the pressed object, `patch_from_object`, at the depth.
 fn pressed(scene: &Scene) -> Pose {
     let rest = RestPoses::AsModelled
         .poses(&scene.objects[0])
@@ -76,7 +76,7 @@ fn pressed(scene: &Scene) -> Pose {
     Pose::from_translation(-travel * DVec3::Z).compose(&pose)
 }
 
-/// Mean |δ − δ*| over touched taxels, mm.
+/// Returns the mean |δ − δ*| over touched taxels, mm.
 fn error_mm(felt: &[f64], right: &[f64]) -> f64 {
     let pairs = felt.iter().zip(right);
     let (mut sum, mut n) = (0.0, 0);

@@ -1,8 +1,8 @@
-//! The press of a flat square patch in doubles and in singles, to say what singles would cost and gain. Nothing else uses it: the presses
-//! of studies and scenes are in doubles.
+//! Press of a flat square patch in double and in single precision, to measure the accuracy and speed of single precision. Only this benchmark uses it; studies
+//! and scenes compute presses in double precision.
 //!
-//! Spheres in the patch's frame, rows of the footprint, blocks of a register of 512 bits, no root where no deflection is beaten.
-//! Coordinates are from the middle of the patch, so that singles are as good as they can be.
+//! Spheres are given in the patch frame; rows of the footprint are processed in blocks of a 512-bit register. No root is computed where it cannot increase a
+//! deflection. Coordinates are relative to the middle of the patch, which makes single precision as accurate as possible.
 
 use multiversion::multiversion;
 
@@ -10,8 +10,8 @@ macro_rules! kernel {
     ($name:ident, $real:ty, $lanes:expr, $doc:expr) => {
         #[doc = $doc]
         ///
-        /// Spheres are (x, y, h, S) in metres, S with the taxels' radius; taxels stand at all pairs of `places`, ascending and equally far
-        /// apart, at least two and a whole number of blocks of them. Deflections (n × n, rows by y) are written, metres: not cut at a stroke.
+        /// Spheres are (x, y, h, S) in metres, where S includes the taxel radius. Taxels are at all pairs of `places`, which are ascending and evenly spaced,
+        /// at least two, and a whole number of blocks. Writes the deflections (n × n, rows by y), metres, without the limit of a stroke.
         #[multiversion(targets(
             "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
             "x86_64+avx2+fma"

@@ -1,8 +1,8 @@
-//! How many instructions a step of each hot path takes, counted by callgrind: a number that a busy machine does not change.
+//! Number of instructions per step of each hot path, counted by callgrind. The number does not depend on the load of the machine.
 //!
-//! `cargo bench --bench instructions` runs itself under `valgrind --tool=callgrind` once with few and once with more steps of each path
-//! and prints the difference a step; with `-- --write`, it also goes to `results/whole_body/instructions.csv`. Valgrind emulates
-//! processors with AVX2 and without AVX-512. Without valgrind it says so and counts nothing.
+//! `cargo bench --bench instructions` runs each path under `valgrind --tool=callgrind`, once with few and once with more steps, and prints the difference per
+//! step. With `-- --write`, the table is also written to `results/whole_body/instructions.csv`. Valgrind emulates processors with AVX2 and without AVX-512.
+//! Without valgrind, a note is printed and nothing is counted.
 
 use bubbletouch::files::CsvFile;
 use hot_paths::{Make, body_step, decision, sensing, sparse_press};
@@ -19,7 +19,7 @@ const PATHS: [(&str, Make); 4] = [
     ("decide", decision),
 ];
 
-/// Steps of the shorter and the longer run.
+/// Numbers of steps of the shorter and the longer run.
 const STEPS: [u64; 2] = [3, 13];
 
 #[derive(Serialize)]
@@ -28,7 +28,7 @@ struct Row {
     instructions_per_step: u64,
 }
 
-/// Goes so many steps.
+/// Runs a path for the given number of steps.
 fn walk(path: &str, n_steps: u64) -> String {
     let (_, make) = PATHS
         .into_iter()
@@ -39,7 +39,7 @@ fn walk(path: &str, n_steps: u64) -> String {
     path.name
 }
 
-/// Instructions of a whole run under callgrind; `None` where there is no valgrind.
+/// Returns the number of instructions of a whole run under callgrind; `None` without valgrind.
 fn count(path: &str, n_steps: u64) -> Option<u64> {
     let this = std::env::current_exe().ok()?;
     let mut command = Command::new("valgrind");

@@ -1,9 +1,9 @@
-//! What a press in singles instead of doubles would cost in accuracy and gain in time, on one core.
+//! Accuracy and speed of a press in single precision compared with double precision, on one core.
 //!
-//! `cargo bench --bench precision` prints a table; with `-- --write`, it also goes to `results/whole_body/precision.csv`, and as a chart
-//! to `precision.svg` beside it.
+//! `cargo bench --bench precision` prints a table. With `-- --write`, the table is also written to `results/whole_body/precision.csv`, and a chart to
+//! `precision.svg` beside it.
 //!
-//! The same kernel in both: `flat_press.rs`.
+//! Both precisions use the same kernel, `flat_press.rs`.
 
 use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::random::Seed;
@@ -21,43 +21,43 @@ mod flat_press;
 mod precision_chart;
 
 const PITCH: f64 = 2e-3;
-/// The taxels' own, in S.
+/// Radius of the taxels, metres; included in S.
 const RHO: f64 = 1e-3;
-/// Spheres in a touch.
+/// Number of spheres per touch.
 const N_SPHERES: usize = 32;
-/// Touches whose errors count; the first one is timed.
+/// Number of touches whose errors are evaluated; the first one is timed.
 const N_TOUCHES: u64 = 20;
-/// Each of the runs of which a time is the median takes at least so long.
+/// Minimum duration of each run; the time is the median over runs.
 const LEAST: Duration = Duration::from_millis(5);
-/// Metres.
+/// Radii of the spheres, metres.
 const RADII: [f64; 7] = [2e-3, 1e-2, 4.5e-2, 0.1, 0.3, 1.0, 4.0];
 
-/// A row of the table.
+/// Row of the result table.
 #[derive(Serialize)]
 pub struct Row {
-    /// Taxels along a side of the patch.
+    /// Number of taxels along a side of the patch.
     pub n: usize,
-    /// How deep the spheres are: `light`, 3 mm at most, or `middle`, as deep as their centres.
+    /// Depth of the spheres: `light` (at most 3 mm) or `middle` (as deep as their centres).
     pub depth: &'static str,
     pub radius_m: f64,
-    /// Touched taxels, mean over touches.
+    /// Number of touched taxels, averaged over touches.
     pub touched_mean: f64,
     pub f64_us: f64,
     pub f32_us: f64,
-    /// f64_us over f32_us.
+    /// Speed-up `f64_us / f32_us`.
     pub gain: f64,
-    /// Metres, over all touches and taxels.
+    /// Largest deflection error over all touches and taxels, metres.
     pub error_max_m: f64,
     pub error_mean_m: f64,
 }
 
-/// Spheres of about a radius, anywhere over n × n taxels.
+/// Returns spheres of about the given radius at random positions over n × n taxels.
 fn spheres(n: usize, radius: f64, is_light: bool, touch: u64) -> Vec<[f64; 4]> {
     let mut rng = Seed::new(11).named("precision").numbered(touch).rng();
     let half = 0.5 * PITCH * n as f64;
     let sphere = |_| {
         let s = RHO + radius * rng.gen_range(0.9..1.1);
-        // What is as deep as its centre must not be deeper than the patch is wide.
+        // A sphere as deep as its centre must not be deeper than the patch is wide.
         let height = match is_light {
             true => s - rng.gen_range(0.0..3e-3_f64.min(s)),
             false => rng.gen_range(-0.1..0.1) * s.min(half),
@@ -118,7 +118,7 @@ fn measure(n: usize, radius: f64, is_light: bool, is_test: bool) -> Row {
 
 fn main() -> bubbletouch::Result<()> {
     let has = |flag: &str| std::env::args().any(|argument| argument == flag);
-    // `cargo test --benches` and CI only want to know that it runs.
+    // `cargo test --benches` and CI only check that the benchmark runs.
     let is_test = has("--test");
     println!("taxels  depth   radius m  touched    f64 us    f32 us  gain  largest error m");
     let mut rows = Vec::new();

@@ -1,7 +1,7 @@
-//! Training, choice and prediction of the SVMs on our solver, with linfa-svm's own training and prediction beside it.
+//! Benchmarks of training, choice of parameters and prediction of SVMs, beside the training and prediction of linfa-svm.
 //!
-//! `cargo bench --bench recognition`: 20 classes of 30 training and 30 test touches, Gaussian measurements of synthetic
-//! frames, standardised. Ids end in the number of measurements m.
+//! `cargo bench --bench recognition`: 20 classes with 30 training and 30 test touches each; standardised Gaussian measurements of synthetic frames. Ids end
+//! with the number of measurements m.
 
 use bubbletouch::contact::{self, press_to_depth};
 use bubbletouch::kinds::recognition::RecognitionStudy;
@@ -32,7 +32,7 @@ const N_CLASSES: usize = 20;
 const N_PER_CLASS: usize = 30;
 const SIDE: usize = 24;
 
-/// Frames of smooth non-negative bumps, four to a class, shifted and turned at random, and projected to m numbers.
+/// Returns measurements of synthetic frames: smooth non-negative bumps, four per class, shifted and rotated at random, and projected to m numbers.
 fn touches(m: usize, seed: &Seed) -> Dataset {
     let n_rows = N_CLASSES * N_PER_CLASS;
     let mut frames = Array2::zeros((n_rows, SIDE * SIDE));
@@ -99,7 +99,7 @@ fn train(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Three C, and three γ of the RBF kernel, on three folds.
+/// Benchmarks the choice among three values of C, and three of γ for the RBF kernel, with three folds.
 fn choice(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("choose C and gamma");
     group.sample_size(10);
@@ -158,7 +158,7 @@ fn predict(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// linfa-svm's model of every pair of classes.
+/// Trains linfa-svm's model of every pair of classes.
 fn linfa_models(kernel: Kernel, data: &Dataset) -> Vec<Svm<f64, bool>> {
     let mut models = Vec::new();
     for a in 0..N_CLASSES {
@@ -169,7 +169,7 @@ fn linfa_models(kernel: Kernel, data: &Dataset) -> Vec<Svm<f64, bool>> {
             let params = Svm::<f64, bool>::params().eps(1e-3);
             let params = match kernel {
                 Kernel::Linear => params.linear_kernel(),
-                // Standardised features: 1/γ is their number.
+                // For standardised features, 1/γ is the number of features.
                 _ => params.gaussian_kernel(data.records.ncols() as f64),
             };
             let pair = DatasetBase::new(data.records.select(Axis(0), &rows), targets);
@@ -179,7 +179,7 @@ fn linfa_models(kernel: Kernel, data: &Dataset) -> Vec<Svm<f64, bool>> {
     models
 }
 
-/// Features of a frame of 64 × 64 taxels that a disc of half its width touches, one thread.
+/// Benchmarks the features of a frame of 64 × 64 taxels, touched by a disc of half its width, on one thread.
 fn features(criterion: &mut Criterion) {
     const TAXELS: usize = 64;
     let height = |i: usize| {
@@ -206,7 +206,7 @@ fn features(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Objects that lie anywhere, touched once with 10 % noise.
+/// Study of objects in any position, touched once with 10 % noise.
 const TOUCHES: &str = r#"
 question = "How long from touch to answer?"
 trials = 1
@@ -233,7 +233,7 @@ features = "fourier_mellin+polar_harmonics+descriptors"
 classifier = "linear_svm"
 "#;
 
-/// One touch at a time: press, noise and smoothing, joined invariants, answer; one thread.
+/// Benchmarks one touch from press to decision: press, noise and smoothing, joined invariant features, classification; on one thread.
 fn touch_to_answer(criterion: &mut Criterion) {
     let plan = StudySpec::parse("bench.toml", TOUCHES).unwrap();
     let plan = Plan::new("bench.toml", plan).unwrap();
@@ -251,7 +251,7 @@ fn touch_to_answer(criterion: &mut Criterion) {
         SignalStep::Smoothing { width: 4e-3 },
     ];
     let chain = Chain::new(&steps, array.patch()).unwrap();
-    // What smoothing leaves of the noise, 0.0149 of full scale, times √(2 ln 4096).
+    // Noise after smoothing, 0.0149 of full scale, times √(2 ln 4096).
     let cut = Cut {
         level: 3e-4,
         foremost: None,

@@ -1,4 +1,4 @@
-//! Time to find the resting poses of an object of 3,000 spheres, and to put free objects to rest again.
+//! Benchmarks of the resting poses of an object of 3,000 spheres, and of the equilibrium of free objects after a motion of the skin.
 
 use bubbletouch::contact::equilibrium::{
     EquilibriumSolver, FreeObject, Ground, Outcome, PlacedSkin,
@@ -10,7 +10,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use std::hint::black_box;
 
-/// Spheres of 3 mm on an ellipsoid with these half axes, in a spiral.
+/// Returns spheres of 3 mm in a spiral on an ellipsoid with the given half axes.
 fn ellipsoid(n: usize, axes: DVec3) -> SphereUnion {
     let point = |i: usize| {
         let z = 1.0 - (2 * i + 1) as f64 / n as f64;
@@ -21,7 +21,7 @@ fn ellipsoid(n: usize, axes: DVec3) -> SphereUnion {
     shell((0..n).map(point))
 }
 
-/// Spheres of 3 mm on a can.
+/// Returns spheres of 3 mm on the surface of a can.
 fn can(n: usize, radius: f64, length: f64) -> SphereUnion {
     let around = (n as f64).sqrt() as usize;
     let point = |i: usize| {
@@ -32,7 +32,7 @@ fn can(n: usize, radius: f64, length: f64) -> SphereUnion {
     shell((0..n).map(point))
 }
 
-/// Spheres of 3 mm on the six sides of a box.
+/// Returns spheres of 3 mm on the six sides of a box.
 fn carton(n: usize, size: DVec3) -> SphereUnion {
     let per_side = ((n / 6) as f64).sqrt() as usize;
     let place = |i: usize| i as f64 / (per_side - 1) as f64;
@@ -78,8 +78,8 @@ fn rest(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Four eggs of 1,000 spheres, side by side on 4,096 taxels so that they touch, put to rest again after the skin has moved by a fifth of a
-/// millimetre; and one of them.
+/// Benchmarks the equilibrium of one egg, and of four touching eggs, after the skin has moved by 0.2 mm. Each egg has 1,000 spheres; the patch has 4,096
+/// taxels.
 fn settle(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("settled_step_4096_taxels_1000_spheres");
     let grid = Grid {

@@ -1,13 +1,14 @@
-//! What share of what this machine can do the hot paths achieve, on one core.
+//! Roofline measurement: the fraction of the machine's peak performance that the hot paths reach on one core.
 //!
-//! `cargo bench --bench roofline` prints a table; with `-- --write`, it also goes to `results/whole_body/roofline.csv`
-//! and, as a page, to `roofline.md` beside it.
+//! `cargo bench --bench roofline` prints a table. With `-- --write`, the table is also written to `results/whole_body/roofline.csv`, and a page to
+//! `roofline.md` beside it.
 //!
-//! The machine's ceilings are measured first: operations a second (fused multiply-adds count as two; multiplications and additions by
-//! themselves, since a result that is the same on every processor may not fuse them), roots a second, and bytes a second of a
-//! triad a[i] = b[i] + 3 c[i] whose arrays together are as large as what a path looks at. A path's least time is the longest of its
-//! operations at the fused peak, its roots, and its bytes; its share is that over the time it takes. It is above one where a path does
-//! less than its equations ask for: a root that no deflection is beaten by is not taken.
+//! The ceilings of the machine are measured first: operations per second, roots per second, and bytes per second of the triad a[i] = b[i] + 3 c[i]. A fused
+//! multiply-add counts as two operations. Separate multiplications and additions are also measured, because results that are equal on every processor cannot
+//! use fused operations. The arrays of the triad are together as large as the working set of a path.
+//!
+//! The minimum time of a path is the largest of three times: of its operations at the fused peak, of its roots, and of its bytes. The fraction is the minimum
+//! time divided by the measured time. It exceeds one if a path skips work that its equations contain, such as roots that cannot increase a deflection.
 
 use bubbletouch::files::CsvFile;
 use clock::seconds;
@@ -21,29 +22,29 @@ use std::time::Duration;
 mod clock;
 mod hot_paths;
 
-/// Each of the runs of which a time is the median takes at least so long.
+/// Minimum duration of each run; the time is the median over runs.
 const LEAST: Duration = Duration::from_millis(10);
 
-/// A row of the table: a ceiling of the machine, or a path beside the ceilings.
+/// Row of the table: a ceiling of the machine, or a path compared with the ceilings.
 #[derive(Default, Serialize)]
 struct Row {
     name: String,
-    /// Of one step.
+    /// Number of operations per step.
     operations: Option<f64>,
     roots: Option<f64>,
     bytes: Option<f64>,
     working_set_bytes: Option<f64>,
-    /// Median.
+    /// Median time per step, µs.
     time_us: Option<f64>,
     giga_operations_per_s: Option<f64>,
     giga_roots_per_s: Option<f64>,
     gb_per_s: Option<f64>,
-    /// Which ceiling is the lowest.
+    /// Name of the ceiling that limits the path.
     bound: Option<&'static str>,
     fraction_of_roofline: Option<f64>,
 }
 
-/// What the machine can do, a second.
+/// Ceilings of the machine, per second.
 struct Ceilings {
     fused: f64,
     roots: f64,
@@ -51,7 +52,7 @@ struct Ceilings {
 
 macro_rules! loops {
     ($fused:ident, $unfused:ident, $roots:ident, $real:ty, $lanes:expr) => {
-        /// So many times a fused multiply-add of each number.
+        /// Applies fused multiply-adds to each number, for the given number of rounds.
         #[multiversion(targets(
             "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
             "x86_64+avx2+fma"
@@ -64,11 +65,11 @@ macro_rules! loops {
                     *x = x.mul_add(factor, 1e-3);
                 }
             }
-            // The numbers as they lie in memory: a sum would tempt the compiler to keep them one by one.
+            // Returns the numbers in memory; with a sum, the compiler might compute them one by one.
             black_box(&values)[0]
         }
 
-        /// The same in two operations.
+        /// Applies separate multiplications and additions to each number, for the given number of rounds.
         #[multiversion(targets(
             "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
             "x86_64+avx2+fma"
@@ -81,11 +82,11 @@ macro_rules! loops {
                     *x = *x * factor + 1e-3;
                 }
             }
-            // The numbers as they lie in memory: a sum would tempt the compiler to keep them one by one.
+            // Returns the numbers in memory; with a sum, the compiler might compute them one by one.
             black_box(&values)[0]
         }
 
-        /// So many times the root of each number.
+        /// Computes the root of each number, for the given number of rounds.
         #[multiversion(targets(
             "x86_64+avx512f+avx512bw+avx512dq+avx512vl+avx2+fma",
             "x86_64+avx2+fma"
@@ -97,13 +98,13 @@ macro_rules! loops {
                     *x = x.sqrt();
                 }
             }
-            // The numbers as they lie in memory: a sum would tempt the compiler to keep them one by one.
+            // Returns the numbers in memory; with a sum, the compiler might compute them one by one.
             black_box(&values)[0]
         }
     };
 }
 
-// Twelve registers of 256 bits or six of 512: enough for the latency of the units, few enough to stay in registers.
+// Twelve 256-bit registers or six 512-bit registers: enough for the latency of the units, few enough to stay in registers.
 loops!(fused_f64, unfused_f64, roots_f64, f64, 48);
 loops!(fused_f32, unfused_f32, roots_f32, f32, 96);
 
@@ -117,7 +118,7 @@ fn triad(a: &mut [f64], b: &[f64], c: &[f64]) {
     }
 }
 
-/// Bytes a second of a triad whose arrays take so many bytes together.
+/// Returns the bytes per second of a triad whose arrays together have the given number of bytes.
 fn bandwidth(working_set: f64, is_test: bool) -> f64 {
     let n = (working_set / 24.0).ceil() as usize;
     let (mut a, b, c) = (vec![0.0; n], vec![1.0; n], vec![2.0; n]);
@@ -219,7 +220,7 @@ fn print(row: &Row) {
     );
 }
 
-/// The same rows as a page: ceilings, then what each path asks for and achieves.
+/// Returns the rows as a Markdown page: the ceilings, then the work and the performance of each path.
 fn page(rows: &[Row]) -> String {
     let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
     let count = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.0}"));
@@ -265,7 +266,7 @@ fn page(rows: &[Row]) -> String {
 
 fn main() -> bubbletouch::Result<()> {
     let has = |flag: &str| std::env::args().any(|argument| argument == flag);
-    // `cargo test --benches` and CI only want to know that it runs.
+    // `cargo test --benches` and CI only check that the benchmark runs.
     let is_test = has("--test");
     let columns = [
         "path",

@@ -1,4 +1,4 @@
-//! Time to measure 1,000 touches of a 64 × 64 array, to make their noise and smoothing, and to reconstruct 64 of them.
+//! Benchmarks of measuring 1,000 touches of a 64 × 64 array, adding noise and smoothing to them, and reconstructing 64 of them.
 
 use bubbletouch::random::Seed;
 use bubbletouch::sensing::{
@@ -88,7 +88,7 @@ fn signal(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Bumps that wander over the array: what dictionaries learn from, and what is reconstructed.
+/// Returns frames of bumps at different positions on the array, for training dictionaries and for reconstruction.
 fn bumps(n_frames: usize) -> Array2<f64> {
     Array2::from_shape_fn((n_frames, SIDE * SIDE), |(i, j)| {
         let (y, x) = ((j / SIDE) as f64, (j % SIDE) as f64);

@@ -1,8 +1,8 @@
-//! What the engine of studies costs a cell, drawing and learning apart: `cargo bench --bench study`.
+//! Overhead of the study engine per configuration, without drawing and learning: `cargo bench --bench study`.
 //!
-//! 1. **Items**: 10,000 work items that do nothing but give a row, with a journal on disk; then the same study again, of which all is done.
-//! 2. **Cells**: a recognition study of 12,000 cells on one thread, with a journal on disk. Its touches, measurements and fits say what
-//!    they take; what is left of the time is the engine's: laying out, journal, tables.
+//! 1. **Items**: 10,000 work items that only return a row, with a journal on disk; then the same study again, in which all items are finished.
+//! 2. **Configurations**: a recognition study of 12,000 configurations on one thread, with a journal on disk. Touches, measurements and fits report their
+//!    times; the remaining time is the engine's: enumeration, journal and tables.
 
 use bubbletouch::Result;
 use bubbletouch::kinds::Study;
@@ -43,13 +43,13 @@ fn name(number: usize) -> String {
     format!("item number {number} of a study that does nothing")
 }
 
-/// Lists the items.
+/// Lists the work items.
 fn nothing_items() -> Vec<WorkItem> {
     let item = |n| WorkItem::new(name(n), n);
     (0..N_ITEMS).map(item).collect()
 }
 
-/// Computes the pending items.
+/// Computes the pending work items.
 fn measure_nothing(pending: &PendingItems<Rows>) -> Result<()> {
     (0..N_ITEMS).into_par_iter().try_for_each(|number| {
         pending.finish(number, || {
@@ -64,7 +64,7 @@ fn measure_nothing(pending: &PendingItems<Rows>) -> Result<()> {
     })
 }
 
-/// Two objects on an array of 64 taxels, in 12,000 ways.
+/// Study of two objects on an array of 64 taxels, with 12,000 configurations.
 const STUDY: &str = r#"
 question = "What does the engine cost?"
 trials = 1
@@ -99,7 +99,7 @@ features = ["raw", "unit_norm"]
 test_fraction = 0.5
 "#;
 
-/// Lines up what was measured: microseconds each.
+/// Prints an aligned line with the microseconds per item.
 fn say(what: &str, seconds: f64, n: usize) {
     println!("{what:<58} {:>8.1} µs", 1e6 * seconds / n as f64);
 }
@@ -183,7 +183,7 @@ fn time_cells(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Returns the seconds of a run on this thread.
+/// Returns the duration of a run on this thread, s.
 fn time_run(folder: &Path, study: &RecognitionStudy) -> Result<f64> {
     let start = Instant::now();
     let journal = journal(folder, "cells")?;

@@ -1,4 +1,4 @@
-//! A step of a body of skin: how it grows with the skin, with what touches it, and with the object's spheres.
+//! Benchmarks of a step of a whole skin, by the size of the skin, of the touch, and by the object's number of spheres.
 
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Part, Shape, Solid, Sphere, SphereUnion, pack};
@@ -20,8 +20,8 @@ const TAXEL: Taxel = Taxel {
 };
 const PITCH: f64 = 1e-3;
 
-/// At least `n_taxels` in patches of 10,000 at 1 mm: quarters of cylinders of 13 cm across, half a metre apart but for the first
-/// four, which are one trunk.
+/// Returns a skin of at least `n_taxels` in patches of 10,000 at 1 mm. The patches are quarters of cylinders of 13 cm diameter, half a metre apart; the first
+/// four form one trunk.
 fn body(n_taxels: usize) -> (WholeBody, Vec<Pose>) {
     let sleeve = Extrusion::cylinder(0.065, 0.1, 0.5 * PI, PITCH).expect("lengths are positive");
     let n = n_taxels.div_ceil(sleeve.n_taxels());
@@ -38,7 +38,7 @@ fn body(n_taxels: usize) -> (WholeBody, Vec<Pose>) {
     (body, (0..n).map(pose).collect())
 }
 
-/// A ball of `radius` metres as n spheres: one as large as lets the others, equal ones, lie on its surface, as packings have them.
+/// Returns a ball of `radius` metres made of n spheres: one large sphere, and equal small ones on its surface, as in packings.
 fn ball(n: usize, radius: f64) -> SphereClusters {
     let golden = PI * (3.0 - 5f64.sqrt());
     let each = radius.min(2.0 * radius / (n as f64).sqrt());
@@ -59,12 +59,12 @@ fn ball(n: usize, radius: f64) -> SphereClusters {
     SphereClusters::new(&SphereUnion::new(all.collect()).expect("radii are positive"))
 }
 
-/// A body with an object that moves over its trunk, about its middle and so deep.
+/// Skin with an object that moves over its trunk, about the trunk's axis and at a given depth.
 struct Bench {
     body: WholeBody,
     state: BodyState,
     object: [SphereClusters; 1],
-    /// From the trunk's middle to the object's, metres.
+    /// Distance between the trunk's axis and the object's centre, metres.
     away: f64,
     step: u32,
 }
@@ -83,7 +83,7 @@ impl Bench {
         }
     }
 
-    /// Goes on by a millisecond; how many taxels are touched.
+    /// Advances by one millisecond; returns the number of touched taxels.
     fn step(&mut self) -> usize {
         self.step += 1;
         let time = 1e-3 * f64::from(self.step);
@@ -94,7 +94,7 @@ impl Bench {
         contact.n_touched
     }
 
-    /// How deep so many taxels are touched.
+    /// Creates a benchmark in which the depth gives the requested number of touched taxels.
     fn touching(n_taxels: usize, n_spheres: usize, n_touched: usize) -> Self {
         let (mut deep, mut high) = (0.065, 0.165);
         let at = |away| Self::new(40_000, n_spheres, away).step();
@@ -150,7 +150,7 @@ fn spheres(c: &mut Criterion) {
     group.finish();
 }
 
-/// One thread beside two: of small touches neither is faster, as they are not shared.
+/// Benchmarks one thread beside two. For small touches neither is faster, because they are not divided among threads.
 fn threads(c: &mut Criterion) {
     let mut group = c.benchmark_group("body_threads_2000000_taxels_1000_spheres");
     for n_touched in [100, 1_000, 10_000, 20_000] {
@@ -167,7 +167,7 @@ fn threads(c: &mut Criterion) {
     group.finish();
 }
 
-/// Each of the vector instructions that this machine has, on small spheres and on one that touches everything.
+/// Benchmarks each vector instruction set that this machine supports, with small spheres and with one that touches everything.
 fn instructions(c: &mut Criterion) {
     let mut group = c.benchmark_group("body_instructions_2000000_taxels_10000_touched");
     for &instructions in Instructions::here() {
@@ -181,7 +181,7 @@ fn instructions(c: &mut Criterion) {
     group.finish();
 }
 
-/// A ball rolls on a flat patch of rows, and on the same taxels as a draped patch.
+/// Benchmarks a ball that rolls on a flat patch of rows, and on the same taxels as a draped patch.
 fn draped(c: &mut Criterion) {
     let grid = Grid {
         nx: 300,
@@ -212,7 +212,7 @@ fn draped(c: &mut Criterion) {
     group.finish();
 }
 
-/// Two people hug (the scene of `experiments/whole_body.toml`): the skin of one, two million taxels, and the other one's trunk, arms and head.
+/// Hug of two people (the scene of `experiments/whole_body.toml`): the skin of one has two million taxels; the other consists of a trunk, arms and a head.
 struct Hug {
     robot: CoveredRobot,
     state: BodyState,
@@ -265,7 +265,7 @@ impl Hug {
         }
     }
 
-    /// A millisecond of a breath; how many taxels are touched.
+    /// Advances a breath by one millisecond; returns the number of touched taxels.
     fn press(&mut self) -> usize {
         self.frame += 1;
         let breath = (PI * 1e-3 * self.frame as f64).sin();
@@ -277,7 +277,7 @@ impl Hug {
         contact.n_touched
     }
 
-    /// A frame of a session of an hour.
+    /// Returns the time of a frame within a session of one hour.
     fn moment(&self) -> Moment {
         Moment {
             frame: self.frame,
@@ -286,7 +286,7 @@ impl Hug {
     }
 }
 
-/// What the electronics make of a hug: press, read what is touched, both, and read every taxel.
+/// Benchmarks the readout of a hug: press, readout of the touched taxels, both, and readout of every taxel.
 fn readout(c: &mut Criterion) {
     let skin = Seed::new(2018).named("skin");
     let noise = SignalStep::Noise(Noise {

@@ -1,11 +1,11 @@
-//! Times of what is too short to be timed once.
+//! Timing of calls that are too short to be timed once.
 
 use std::time::{Duration, Instant};
 
-/// Each time is the median of so many.
+/// Number of runs; each time is the median over them.
 const REPEATS: usize = 15;
 
-/// Seconds a call, median of runs that take at least so long; of a test, of one call.
+/// Returns the seconds per call: the median over runs of at least the duration `least`. In a test, one call is timed.
 pub fn seconds(mut call: impl FnMut(), least: Duration, is_test: bool) -> f64 {
     let mut time = |n: u32| {
         let start = Instant::now();

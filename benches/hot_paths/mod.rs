@@ -1,4 +1,4 @@
-//! The four hot paths on scenes that are the same everywhere, and how much work each step of them is.
+//! The four hot paths on fixed scenes, and the amount of work per step.
 #![allow(dead_code, reason = "each bench uses some of it")]
 
 use bubbletouch::contact::{Workspace, press_at_pose, press_to_depth};
@@ -15,34 +15,34 @@ use glam::{DQuat, DVec3};
 use ndarray::{Array1, Array2, Axis};
 use rand::Rng;
 
-/// A patch and the objects that press it.
+/// Patch and the objects that press it.
 struct Scene {
     patch: Patch,
     objects: Vec<Model>,
 }
 
-/// A path of computation that is gone over again and again.
+/// Path of computation that is repeated step by step.
 pub struct HotPath {
-    /// Without spaces.
+    /// Name of the path, without spaces.
     pub name: String,
-    /// One step; each goes to another pose or row.
+    /// Function that makes one step; each step uses another pose or row.
     pub step: Box<dyn FnMut()>,
-    /// Of one step.
+    /// Work of one step.
     pub work: Work,
 }
 
-/// Makes a path ready to go.
+/// Function that prepares a path.
 pub type Make = fn() -> HotPath;
 
-/// What a step has to do at least, counted from the equations: each multiplication, addition, comparison and root is one operation,
-/// each number that is read or written counts with its bytes, however often it is in a cache.
+/// Minimum work of a step, counted from the equations. Each multiplication, addition, comparison and root is one operation. Each number that is read or written
+/// counts with its bytes, regardless of caches.
 #[derive(Clone, Copy, Default)]
 pub struct Work {
-    /// Operations that are no roots.
+    /// Number of operations that are not roots.
     pub operations: f64,
     pub roots: f64,
     pub bytes: f64,
-    /// Bytes of all the numbers that a step looks at, each once: which cache it lives in.
+    /// Bytes of all numbers that a step accesses, each counted once; determines which cache can hold them.
     pub working_set: f64,
 }
 
@@ -65,11 +65,11 @@ fn grid(n: usize) -> Grid {
     }
 }
 
-/// So many spheres of radii that make each of them touch all of n × n taxels when it goes a few millimetres into them; centres over
-/// the middle, lowest points at z = ρ, give or take half a millimetre.
+/// Returns spheres so large that each touches all of n × n taxels at a few millimetres of depth. The centres are over the middle of the patch; the lowest
+/// points are at z = ρ ± 0.5 mm.
 fn large_spheres(n_spheres: usize, n: usize) -> SphereUnion {
     let half = 0.5 * PITCH * n as f64;
-    // From the middle to a corner the sphere rises by a millimetre.
+    // From the middle to a corner, the sphere rises by a millimetre.
     let radius = half * half / 1e-3;
     let mut rng = Seed::new(8).named("large spheres").rng();
     let spheres = (0..n_spheres).map(|_| {
@@ -83,15 +83,15 @@ fn large_spheres(n_spheres: usize, n: usize) -> SphereUnion {
     SphereUnion::new(spheres.collect()).expect("radii are positive")
 }
 
-/// A different pose for each step: deeper and shallower by a tenth of a millimetre, `depth` metres below where objects are.
+/// Returns a different pose for each step: `depth` metres below the objects, varied by 0.1 mm.
 fn pose(step: usize, depth: f64) -> Pose {
     let wave = (0.7 * step as f64).sin();
     Pose::from_translation(DVec3::new(1e-3 * wave, 0.0, 1e-4 * wave - depth))
 }
 
-/// A grid patch of which every taxel is touched by every sphere.
+/// Returns the path of a grid patch whose taxels are all touched by every sphere.
 ///
-/// Of each sphere and taxel: dx (1), dx² (1), q = S² − dy² − dx² (1), √q, − h (1), the larger of two (1). Read: x, δ; written: δ.
+/// Per sphere and taxel: dx (1), dx² (1), q = S² − dy² − dx² (1), √q, − h (1), maximum of two (1). Read: x, δ; written: δ.
 pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
     let scene = Scene {
         patch: Patch::grid(grid(n), taxel(0.02)).expect("the grid has taxels"),
@@ -125,10 +125,9 @@ pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
     }
 }
 
-/// The same by the kernel of whole bodies.
+/// Returns the path of the same press with the kernel of whole bodies.
 ///
-/// Of each sphere and taxel: q = (S² − b²) − d² (1), is it above zero (1), √q, − h (1), the larger of two (1). Read: S² − b², h, δ;
-/// written: δ.
+/// Per sphere and taxel: q = (S² − b²) − d² (1), comparison with zero (1), √q, − h (1), maximum of two (1). Read: S² − b², h, δ; written: δ.
 pub fn dense_body(n: usize, n_spheres: usize) -> HotPath {
     let extrusion = Extrusion::grid(&grid(n)).expect("the grid has taxels");
     let patch = Patch::new("patch", extrusion, taxel(0.02)).expect("the taxel is a good one");
@@ -158,7 +157,7 @@ pub fn dense_body(n: usize, n_spheres: usize) -> HotPath {
     }
 }
 
-/// A touch of 64 × 64 taxels by 8,000 spheres on a bumpy egg, each in another pose: mostly a search.
+/// Returns the path of a touch of 64 × 64 taxels by 8,000 spheres on a bumpy egg, each step in another pose; most of the work is the search.
 pub fn sparse_press() -> HotPath {
     let mut rng = Seed::new(6).rng();
     let spheres = (0..8_000).map(|_| {
@@ -197,7 +196,7 @@ pub fn sparse_press() -> HotPath {
     }
 }
 
-/// A ball of 1,000 spheres that rolls over a body of 200,000 taxels, more than a thousand of which it touches.
+/// Returns the path of a ball of 1,000 spheres that rolls over a skin of 200,000 taxels and touches more than a thousand of them.
 pub fn body_step() -> HotPath {
     let sleeve = Extrusion::cylinder(0.065, 0.1, 0.5 * std::f64::consts::PI, 1e-3);
     let sleeve = sleeve.expect("lengths are positive");
@@ -246,10 +245,10 @@ pub fn body_step() -> HotPath {
     }
 }
 
-/// 1,024 scrambled-block measurements of 200,000 taxels, 10,000 of which are touched.
+/// Returns the path of 1,024 scrambled-block measurements of 200,000 taxels, of which 10,000 are touched.
 ///
-/// Each measurement has 32 taxels, so of the touched ones 1,638 numbers of Φ are not zero: for each a product and a sum; its
-/// measurement and itself are read, and the sum is read and written. Of each touched taxel, where its numbers begin and end is read.
+/// Each measurement has 32 taxels, so 1,638 entries of Φ of the touched taxels are non-zero. Each needs a product and a sum; its measurement index and its
+/// value are read, and the sum is read and written. For each touched taxel, the start and end of its entries are read.
 pub fn sensing() -> HotPath {
     const TOUCHED: usize = 10_000;
     let seed = Seed::new(9);
@@ -275,10 +274,10 @@ pub fn sensing() -> HotPath {
     }
 }
 
-/// The label of one touch by a linear SVM, one-vs-one among 20 classes, of 1,024 measurements.
+/// Returns the path of classifying one touch of 1,024 measurements by a linear SVM, one-vs-one among 20 classes.
 ///
-/// Of each of the 190 hyperplanes and each measurement: a product and a sum. Read: both; doubles, as fewer than 1,000 rows are
-/// learned from.
+/// For each of the 190 hyperplanes and each measurement: a product and a sum. Both factors are read, in double precision, because the training set has fewer
+/// than 1,000 rows.
 pub fn decision() -> HotPath {
     const CLASSES: usize = 20;
     const M: usize = 1024;

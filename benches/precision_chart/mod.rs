@@ -1,4 +1,4 @@
-//! The chart of singles against doubles: error above, gain in time below, by the radius of the spheres.
+//! Chart of single against double precision: error above, speed-up below, by the radius of the spheres.
 
 use super::Row;
 use bubbletouch::report::colours::{GRID, INK, LINES};
@@ -7,13 +7,13 @@ use bubbletouch::report::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 78.0;
 const RIGHT: f64 = 18.0;
-/// Of the largest error that would be allowed, metres.
+/// Largest allowed error, metres.
 const ALLOWED: f64 = 1e-8;
 
-/// A panel: a quantity over the radius, both by powers of ten or evenly.
+/// Panel of the chart: a quantity against the radius, on a logarithmic or linear scale.
 struct Panel {
     area: Area,
-    /// The ends of y, as its logarithm if it is a power of ten.
+    /// Ends of the y axis; logarithms on a logarithmic scale.
     y: (f64, f64),
     is_log: bool,
 }
@@ -67,7 +67,7 @@ impl Panel {
     }
 }
 
-/// Taxels along a side, depth, and what both are called.
+/// Number of taxels along a side, depth, and display names of both.
 const SERIES: [(usize, &str, &str); 4] = [
     (64, "light", "64 × 64 taxels, up to 3 mm deep"),
     (64, "middle", "64 × 64 taxels, to the middle of the spheres"),

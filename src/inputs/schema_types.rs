@@ -1,4 +1,4 @@
-//! JSON Schemas of values that the lower crates define, which do not depend on `schemars`.
+//! JSON Schemas of types of the lower crates, which do not depend on `schemars`.
 
 use bubbletouch_sim::features::{Features, ImageFeature};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// Schema of an enum that is read from one of its names.
+/// Schema of an enum that is deserialised from one of its names.
 pub struct Names<T>(PhantomData<T>);
 
 impl<T: DeserializeOwned> JsonSchema for Names<T> {
@@ -27,13 +27,13 @@ impl<T: DeserializeOwned> JsonSchema for Names<T> {
     }
 }
 
-/// Returns the names of an enum, as its reader lists them in the error for another name.
+/// Returns the names of an enum, which its deserialiser lists in the error for an unknown name.
 pub fn names<T: DeserializeOwned>() -> &'static [&'static str] {
     let found = T::deserialize(StrDeserializer::<Expected>::new("?"));
     found.err().map_or(&[], |Expected(names)| names)
 }
 
-/// Error that keeps the names that a reader expected.
+/// Deserialisation error that stores the expected names.
 #[derive(Debug)]
 struct Expected(&'static [&'static str]);
 
@@ -89,17 +89,17 @@ impl JsonSchema for FeatureNames {
     }
 }
 
-/// Adds `rpy_deg`, the former name of `rotation_deg`.
+/// Adds the key `rpy_deg`, the former name of `rotation_deg`, to a schema.
 pub fn with_rpy_deg(schema: &mut Schema) {
     also_named("rotation_deg", "rpy_deg", schema.ensure_object());
 }
 
-/// Adds `mesh_unit`, the former name of `unit`.
+/// Adds the key `mesh_unit`, the former name of `unit`, to a schema.
 pub fn with_mesh_unit(schema: &mut Schema) {
     also_named("unit", "mesh_unit", schema.ensure_object());
 }
 
-/// Adds `rotation_deg`, another name of `turn_deg`.
+/// Adds the key `rotation_deg`, another name of `turn_deg`, to a schema.
 pub fn with_rotation_deg(schema: &mut Schema) {
     also_named("turn_deg", "rotation_deg", schema.ensure_object());
 }

@@ -102,7 +102,7 @@ pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
     ("noise_std_n", NoiseUnit::N),
 ];
 
-/// Describes a key of the noise.
+/// Returns the description of a noise key.
 pub(crate) fn noise_words(unit: NoiseUnit) -> String {
     let unit = match unit {
         NoiseUnit::FullScale => "as a fraction of the full scale",
@@ -112,7 +112,7 @@ pub(crate) fn noise_words(unit: NoiseUnit) -> String {
     format!("Standard deviation of the noise, {unit}.")
 }
 
-/// Describes a key of a sensor error.
+/// Returns the description of a sensor-error key.
 pub(crate) fn strength_words(error: SensorError, strength: &Strength) -> String {
     let (step, allowed) = (error.about().step, strength.allowed);
     format!("Sensor error `{step}`: {}, {allowed}.", strength.words)

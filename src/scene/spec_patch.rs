@@ -71,7 +71,7 @@ pub enum SignalStepSpec {
     Strengths(BTreeMap<String, f64>),
 }
 
-/// Follows the list of sensor errors, like the reader.
+/// Schema built from the list of sensor errors, which also defines the keys that are accepted.
 impl JsonSchema for SignalStepSpec {
     fn inline_schema() -> bool {
         true
@@ -102,7 +102,7 @@ impl JsonSchema for SignalStepSpec {
     }
 }
 
-/// Returns the keys of the signal steps of a patch, with their meaning. Steps that need the frames before and after are absent.
+/// Returns the keys of the signal steps of a patch, with their descriptions. Steps that need earlier and later frames are omitted.
 fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
     let noises = NOISES.iter().map(|(key, unit)| (*key, noise_words(*unit)));
     let smoothing = "Standard deviation of the Gaussian smoothing over the array, mm.";

@@ -1,11 +1,11 @@
-//! Schemas of the tables `[axes]` and `[test]`, which repeat keys of other tables.
+//! JSON Schemas of the tables `[axes]` and `[test]`, which repeat keys of other tables.
 
 use super::study_schema::properties;
 use crate::studies::recognition::plan::tested::{SHARED, TABLES};
 use crate::studies::recognition::spec::study::AXIS_RULES;
 use serde_json::{Map, Value, json};
 
-/// Completes the schema of a recognition study with `[test]` and `[axes]`.
+/// Adds the tables `[test]` and `[axes]` to the schema of a recognition study.
 pub(super) fn complete(schema: &mut Value) {
     let test = test_table(schema);
     schema["properties"]["test"] = test;
@@ -13,7 +13,7 @@ pub(super) fn complete(schema: &mut Value) {
     schema["properties"]["axes"] = axes;
 }
 
-/// Returns the table `[test]`: the keys of other tables that may differ for test touches, none of which is required.
+/// Returns the schema of `[test]`: all keys of other tables that may differ for test touches. None of them is required.
 fn test_table(schema: &Value) -> Value {
     let tables = TABLES.iter().map(|&name| {
         let mut table = schema["properties"][name].clone();
@@ -31,7 +31,7 @@ fn test_table(schema: &Value) -> Value {
     })
 }
 
-/// Removes the lists of required keys, and defaults, of a table.
+/// Removes the lists of required keys and the defaults from the schema of a table.
 fn remove_required(table: &mut Value) {
     if let Some(table) = table.as_object_mut() {
         table.remove("required");
@@ -44,7 +44,7 @@ fn remove_required(table: &mut Value) {
     }
 }
 
-/// Returns the table `[axes]`. A key is a path in quotes, or a table with the last parts of paths.
+/// Returns the schema of `[axes]`. A key is a path in quotes, or a table with the last parts of paths.
 fn axes_table(schema: &Value) -> Value {
     let mut axes = Map::new();
     for (name, of_key) in properties(schema) {
@@ -74,7 +74,7 @@ fn add_paths(path: &str, schema: &Value, axes: &mut Map<String, Value>) {
     }
 }
 
-/// Returns the schema of a list of values of a key, or of a table with such lists.
+/// Returns the schema of a list of a key's values, or of a table of such lists.
 fn lists(schema: &Value) -> Value {
     let inner = inner_keys(schema).into_iter();
     let inner: Map<String, Value> = inner
@@ -97,7 +97,7 @@ fn inner_keys(schema: &Value) -> Vec<(&String, &Value)> {
         .collect()
 }
 
-/// Returns the schema of a list of values of a key; `None` for a table.
+/// Returns the schema of a list of a key's values; `None` for a table.
 fn list_of(schema: &Value) -> Option<Value> {
     if schema.get("properties").is_some() {
         return None;

@@ -1,4 +1,4 @@
-//! JSON Schemas of study and scene files, for editors and other programs that check such files.
+//! JSON Schemas of study and scene files, used by editors and other programs that check such files.
 //!
 //! The keys, types, defaults and descriptions come from the specifications, whose doc comments are the descriptions. Ranges come from the descriptions of
 //! keys ([`inputs::keys`](crate::inputs)). [`reference`] writes the pages `guide/reference.md` and `guide/tables.md`.
@@ -14,7 +14,7 @@ use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 
-/// Version of JSON Schema.
+/// Address of the JSON Schema version.
 const DIALECT: &str = "https://json-schema.org/draft/2020-12/schema";
 
 /// Returns the JSON Schema of scene files.
@@ -25,7 +25,7 @@ pub fn scene_schema() -> Value {
     schema
 }
 
-/// Returns a generator that writes each type at its place, without references.
+/// Returns a schema generator that writes each type in place, without references.
 fn generator() -> SchemaGenerator {
     let settings = SchemaSettings::draft2020_12();
     settings

@@ -1,6 +1,6 @@
 //! JSON Schema of study files of all kinds.
 //!
-//! Kinds share tables such as `[skin]`, so the schema lists the tables of all kinds once. Conditions then state which tables a file of each kind may have and
+//! All kinds use tables such as `[skin]`, so the schema lists each table once. Conditions then state which tables a file of each kind may have and
 //! must have; the kind follows from the table that only this kind has.
 
 use super::tidy::tidy;
@@ -8,9 +8,9 @@ use super::{DIALECT, axes_schema, generator};
 use crate::studies;
 use serde_json::{Map, Value, json};
 
-/// A kind of study and the schema of its files.
+/// Kind of study with the schema of its files.
 pub(super) struct KindSchema {
-    /// Table that only this kind has.
+    /// Name of the table that only this kind has.
     pub table: &'static str,
     /// Schema of a file of this kind, without conditions.
     pub schema: Value,
@@ -73,7 +73,7 @@ fn rules_of_kinds(kinds: &[KindSchema]) -> Value {
 }
 
 impl KindSchema {
-    /// Returns which tables a file of this kind may have and must have.
+    /// Returns the condition that states which tables a file of this kind may have and must have.
     fn rules(&self) -> Value {
         let names: Vec<&String> = properties(&self.schema).map(|(name, _)| name).collect();
         json!({ "propertyNames": { "enum": names }, "required": self.schema["required"] })

@@ -1,4 +1,4 @@
-//! Changes of generated schemas: TOML has no null, and descriptions are plain text.
+//! Changes of generated schemas, because TOML has no null and descriptions are plain text.
 
 use serde_json::{Map, Value};
 
@@ -45,7 +45,7 @@ fn tidy_object(keys: &mut Map<String, Value>) {
     keys.values_mut().for_each(tidy);
 }
 
-/// Returns a doc comment in one line for each paragraph, without links to items of the library.
+/// Converts a doc comment to plain text: one line per paragraph, without links to items of the library.
 pub(super) fn plain(words: &str) -> String {
     let paragraphs = words.split("\n\n").map(|paragraph| {
         let words = paragraph.split_whitespace().collect::<Vec<_>>();
@@ -73,7 +73,7 @@ pub(super) fn plain(words: &str) -> String {
     plain.replace("\\[", "[").replace("\\]", "]")
 }
 
-/// Splits a text that begins with a link to an item, [`Type`] or [words](path), into the words and the rest.
+/// Splits a text that begins with a link to an item into the words of the link and the rest. A link is [`Type`] or [words](path).
 fn link_of(text: &str) -> Option<(&str, &str)> {
     let end = text.find(']')?;
     let (words, after) = (&text[1..end], &text[end + 1..]);

@@ -75,7 +75,7 @@ pub(crate) fn schemas(generator: fn() -> SchemaGenerator) -> Vec<(About, serde_j
     schemas.collect()
 }
 
-/// Table that only recognition studies have.
+/// Name of the table that only recognition studies have.
 pub(crate) const RECOGNITION_TABLE: &str = RECOGNITION.about.table;
 
 /// Returns the kind of a study file; `None` if the file has no table of a kind.

@@ -166,7 +166,7 @@ impl<'de> Deserialize<'de> for SignalSpec {
     }
 }
 
-/// Follows the list of sensor errors, like the reader.
+/// Schema built from the list of sensor errors, which also defines the keys that are accepted.
 impl JsonSchema for SignalSpec {
     fn schema_name() -> Cow<'static, str> {
         "SignalSpec".into()
