@@ -1,4 +1,4 @@
-//! Random rows, and folds of them.
+//! Random data sets, and folds of their rows.
 
 use bubbletouch_svm::dataset::{Dataset, dataset};
 use bubbletouch_svm::split::Split;
@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use sha2::{Digest, Sha256};
 
-/// Random numbers by name: the ChaCha8 stream whose key is the SHA-256 of a seed and words. The laws' bars on rounding were measured on these rows.
+/// Returns the random generator of a seed and words: the ChaCha8 stream whose key is their SHA-256. The tolerances of the laws were measured on its rows.
 pub fn rng(seed: u64, words: &[&str]) -> ChaCha8Rng {
     let start: [u8; 32] = Sha256::digest(seed.to_le_bytes()).into();
     let key = words.iter().fold(start, |key, word| {
@@ -18,7 +18,7 @@ pub fn rng(seed: u64, words: &[&str]) -> ChaCha8Rng {
     ChaCha8Rng::from_seed(key)
 }
 
-/// Clusters around the corners of a simplex, `apart` standard deviations from the middle: so many rows of each class.
+/// Returns Gaussian clusters around the corners of a simplex, `apart` standard deviations from its middle, with the given number of rows per class.
 pub fn clusters(counts: &[usize], apart: f64, seed: u64) -> Dataset {
     let mut rng = rng(seed, &["clusters"]);
     let labels: Vec<usize> = (0..*counts.iter().max().unwrap())
@@ -31,7 +31,7 @@ pub fn clusters(counts: &[usize], apart: f64, seed: u64) -> Dataset {
     dataset(features, Array1::from(labels)).unwrap()
 }
 
-/// `n` folds: each class's rows go to the folds in turn.
+/// Returns `n` folds; the rows of each class are dealt to the folds one after the other.
 pub fn folds(labels: &Array1<usize>, n: usize) -> Vec<Split> {
     let mut seen = std::collections::BTreeMap::<usize, usize>::new();
     let fold_of: Vec<usize> = (labels.iter())

@@ -1,5 +1,5 @@
-//! The SVM engine against the definitions: every objective, violation and duality gap here is computed again from the
-//! features, one kernel value at a time, whatever the solver kept, shared, shrank, cached or rounded on its way.
+//! The SVM engine against the definitions: every objective, violation and duality gap is recomputed from the features, one kernel value at a time. The checks
+//! use no cached or rounded values of the solver.
 
 use crate::drawn::{folds, rng};
 use crate::svm_conditions::{Worth, kernel_value};
@@ -38,8 +38,8 @@ fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
     }
 }
 
-/// Normal clouds of `counts` rows in `m` features of unit spread, a class each, whose centres lie `apart` times a normal
-/// vector from the origin; the rows of all classes are mixed.
+/// Returns normal clouds of `counts` rows, one cloud per class, in `m` features of unit standard deviation. The centres lie `apart` times a normal vector from
+/// the origin; the rows of all classes are mixed.
 fn clouds(counts: &[usize], m: usize, apart: f64, seed: u64) -> Dataset {
     let mut draws = rng(seed, &["centres"]);
     let centres = Array2::from_shape_fn((counts.len(), m), |_| {
@@ -71,12 +71,12 @@ fn assert_same_objectives(a: &SvmModel, b: &SvmModel, relative: f64, name: &str)
     }
 }
 
-/// Whether kernel values are f32. Which precision stands behind a model is seen from its `Debug` alone.
+/// Returns whether the kernel values of a model are f32. Only the `Debug` form of the model shows the precision.
 fn is_single(model: &SvmModel) -> bool {
     format!("{model:?}").contains("Single(")
 }
 
-/// The share of equal labels.
+/// Returns the fraction of equal labels.
 fn agreement(a: &Array1<usize>, b: &Array1<usize>) -> f64 {
     a.iter().zip(b).filter(|(a, b)| a == b).count() as f64 / a.len() as f64
 }
@@ -87,7 +87,7 @@ fn worst_difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
 
 // Memory.
 
-/// 400 rows in a pair and 600 in all, so that variables are left out on the way where there is room for what remains.
+/// Asserts that the memory limit changes no result. Pairs have 400 rows and all classes 600, so that variables are omitted if the submatrix fits in memory.
 fn assert_memory_changes_nothing(multiclass: Multiclass) {
     let data = clouds(&[200, 200, 200], 6, 0.6, 1);
     let probes = clouds(&[70, 70, 70], 6, 0.6, 1).records;
@@ -97,7 +97,7 @@ fn assert_memory_changes_nothing(multiclass: Multiclass) {
             ..params(kernel, 1.0, 1e-5)
         };
         let expected = ample.train(&data).unwrap();
-        // Two rows; some dozen rows; most rows, and room for a part of the matrix.
+        // Memory for two rows, for some dozen rows, and for most rows with a part of the matrix.
         for memory_bytes in [1, 45_000, 1_100_000] {
             let scarce = SvmParams {
                 memory_bytes,
@@ -160,7 +160,7 @@ fn each_model_of_a_path_is_that_of_training_its_c_alone_in_the_order_asked() {
 
 #[test]
 fn wide_rows_that_few_support_are_solved_to_the_optimum_of_all_rows() {
-    // So many features that only rows near a margin are multiplied with each other; classes far apart, touching and mixed.
+    // With this many features, only rows near a margin are multiplied with each other; the classes are far apart, touching, or mixed.
     for (apart, counts) in [
         (1.0, [90, 80, 70]),
         (0.12, [90, 80, 70]),
@@ -187,7 +187,7 @@ fn wide_rows_that_few_support_are_solved_to_the_optimum_of_all_rows() {
                         "{name}: {worth:?}"
                     );
                 }
-                // The products of all rows do not fit: pairs are solved one by one, on all their rows.
+                // The products of all rows do not fit, so pairs are solved one by one, on all their rows.
                 let memory_bytes = 400_000;
                 let slow = SvmParams {
                     memory_bytes,
@@ -203,11 +203,11 @@ fn wide_rows_that_few_support_are_solved_to_the_optimum_of_all_rows() {
 
 #[test]
 fn wide_classes_that_overlap_in_few_dimensions_are_parted_in_all_of_them() {
-    // Two classes have 170 rows in 130 features, so some hyperplane parts them whatever they are, but none in 64 dimensions.
+    // Two classes have 170 rows in 130 features, so some hyperplane separates them for any labels; in 64 dimensions, none does.
     let data = clouds(&[90, 80, 70], 130, 0.12, 11);
     let params = params(Kernel::Linear, 1e4, 1e-3);
     let model = optimal(params, &data);
-    // The products of all rows do not fit: pairs are solved one by one, on all their rows.
+    // The products of all rows do not fit, so pairs are solved one by one, on all their rows.
     let slow = SvmParams {
         memory_bytes: 400_000,
         ..params
@@ -224,14 +224,14 @@ fn wide_rows_that_span_no_dimension_are_solved_too() {
     let model = params(Kernel::Linear, 0.5, 1e-3)
         .train(&equal.unwrap())
         .unwrap();
-    // Nothing parts them: every row is left on the wrong side at the full cost.
+    // No hyperplane separates the classes: every row is on the wrong side, with the full cost.
     assert_eq!(model.problems()[0].solution.objective, 140.0 * 0.5);
     assert_eq!(model.n_capped(), 0);
 }
 
 // Precision.
 
-/// Four classes of 300 rows: f32 at the usual tolerance.
+/// Returns four classes of 300 rows, which are solved in f32 at the default tolerance.
 fn large() -> (Dataset, Array2<f64>) {
     let data = clouds(&[300, 300, 300, 300], 8, 0.7, 3);
     let mut rng = rng(4, &[]);
@@ -245,7 +245,7 @@ fn single_precision_is_double_precision_to_the_tolerance() {
     for (kernel, penalties) in [
         (Kernel::Linear, &[0.1, 1.0, 100.0][..]),
         (RBF, &[0.1, 1.0, 100.0]),
-        // Values of up to some hundred: with a larger C it takes f64.
+        // Kernel values reach some hundred; with a larger C, f64 is used.
         (CUBIC, &[0.1, 1.0]),
     ] {
         for &c in penalties {
@@ -253,7 +253,7 @@ fn single_precision_is_double_precision_to_the_tolerance() {
             assert!(!is_single(&double));
             let expected = double.decision_values(probes.view()).unwrap();
             for tolerance in [1e-3, 1e-4] {
-                // Some tolerances, since it bounds f at the support vectors alone, and f32's rounding times C.
+                // The bound is a multiple of the tolerance, which bounds f only at the support vectors, plus the rounding of f32 times C.
                 let apart = 20.0 * tolerance + 3e-5 * c;
                 let single = params(kernel, c, tolerance).train(&data).unwrap();
                 let name = format!("{kernel:?}, C = {c}, tolerance {tolerance}");
@@ -276,7 +276,7 @@ fn a_million_added_to_every_feature_changes_only_their_rounding() {
     let moved = dataset(&data.records + 1e6, data.targets.clone()).unwrap();
     let moved_probes = &probes + 1e6;
     for kernel in [Kernel::Linear, RBF] {
-        // At 1e6 features lose digits from 1e-10 on: in f64 no label changes, in f32 what the tolerance leaves open may.
+        // At 1e6, features lose digits from 1e-10 on. In f64 no label changes; in f32, labels within the tolerance may change.
         for (tolerance, least, apart) in [(1e-3, 0.99, 2e-2), (1e-6, 1.0, 1e-5)] {
             let params = params(kernel, 1.0, tolerance);
             let (here, there) = (params.train(&data).unwrap(), params.train(&moved).unwrap());
@@ -296,7 +296,7 @@ fn a_million_added_to_every_feature_changes_only_their_rounding() {
 
 #[test]
 fn classes_that_lie_close_in_clusters_that_lie_far_apart_are_told_apart() {
-    // Distances of 1 within clusters that lie 4,000 apart: the difference of squares of 4e6 has no digit left in f32.
+    // Distances are 1 within clusters that are 4,000 apart: the difference of squares of 4e6 has no correct digit in f32.
     let mut data = clouds(&[550, 550], 4, 0.0, 5);
     for (i, (mut row, &label)) in data
         .records
@@ -318,7 +318,7 @@ fn classes_that_lie_close_in_clusters_that_lie_far_apart_are_told_apart() {
 
 // Optimality.
 
-/// Two overlapping classes of 750 rows: thousands of iterations, in which most variables are left out at some time.
+/// Asserts optimality for two overlapping classes of 750 rows. The solver needs thousands of iterations, in which most variables are omitted at some time.
 fn assert_optimal(kernel: Kernel) {
     let data = clouds(&[750, 750], 6, 0.5, 6);
     let own = |row| kernel_value(kernel, &data, row, row);
@@ -328,8 +328,8 @@ fn assert_optimal(kernel: Kernel) {
         let problem = &model.problems()[0];
         let worth = Worth::new(&params, &data, problem);
         let name = format!("{kernel:?}, C = {c}");
-        // f32 kernel values are rounded by 6e-8, and up to C times that adds up over hundreds of support vectors: of values as large
-        // as those of unlike rows mostly are (or 1, which exponents are rounded to), and at the most as the largest.
+        // f32 kernel values have rounding errors of 6e-8, multiplied by up to C and summed over hundreds of support vectors. Their unit is the typical kernel
+        // value of two different rows (or 1, the unit of exponents), and at most the largest kernel value.
         let unit = if is_single(&model) { 2e-6 } else { 1e-10 };
         let n = data.targets.len();
         let largest = (0..n).map(own).fold(1.0, f64::max);
@@ -345,7 +345,7 @@ fn assert_optimal(kernel: Kernel) {
             worth.spread <= 1.01 * params.tolerance + unit * c * usual,
             "{name}"
         );
-        // Each row's hinge is within the tolerance of what its multiplier says: C each at the most.
+        // The hinge loss of each row is within the tolerance of the value that its multiplier implies; it costs at most C per unit.
         assert!(worth.gap() >= -1e-9 * worth.dual, "{name}");
         assert!(worth.gap() <= c * 1500.0 * params.tolerance, "{name}");
         assert!(worth.gap() <= 2e-3 * worth.dual, "{name}");
@@ -371,7 +371,7 @@ fn a_cubic_solution_is_optimal_by_its_definition() {
     assert_optimal(CUBIC);
 }
 
-/// linfa-svm's β and ρ of a problem.
+/// Returns β and ρ of linfa-svm's solution of a problem.
 fn solved_by_linfa(params: &SvmParams, data: &Dataset, problem: &BinaryProblem) -> (Vec<f64>, f64) {
     let mut records = data.records.select(Axis(0), &problem.rows);
     let theirs = Svm::<f64, bool>::params()
@@ -382,7 +382,7 @@ fn solved_by_linfa(params: &SvmParams, data: &Dataset, problem: &BinaryProblem) 
         Kernel::Rbf {
             gamma: Gamma::Value(gamma),
         } => theirs.gaussian_kernel(1.0 / gamma),
-        // Its polynomial kernel has no γ: it goes into the features.
+        // linfa-svm's polynomial kernel has no γ, so the features are scaled by it.
         Kernel::Polynomial {
             gamma: Gamma::Value(gamma),
             coef0,
@@ -420,7 +420,7 @@ fn our_solver_and_linfas_reach_the_same_objective_and_bias() {
                     let theirs = Worth::of_solution(&params, &data, sides, (&beta, rho));
                     let solution = &problem.solution;
                     assert!(near(solution.objective, theirs.dual, 1e-5), "{name}");
-                    // Where no row is free, a range of ρ is optimal.
+                    // If no row is free, a range of ρ is optimal.
                     let is_free =
                         |beta: &f64| beta.abs() > 1e-6 * c && beta.abs() < c * (1.0 - 1e-6);
                     if solution.coefficients.iter().any(is_free) {
@@ -438,7 +438,7 @@ fn our_solver_and_linfas_reach_the_same_objective_and_bias() {
 
 // Hard sets.
 
-/// Trains and looks at every problem by its definition: feasible, within the tolerance, not capped.
+/// Trains a model and asserts that every problem is feasible, optimal within the tolerance, and not capped.
 fn optimal(params: SvmParams, data: &Dataset) -> SvmModel {
     let model = params.train(data).unwrap();
     for problem in model.problems() {
@@ -487,7 +487,7 @@ fn two_rows_a_class_are_enough_for_thirty_classes() {
 
 #[test]
 fn of_equal_rows_the_more_frequent_label_wins() {
-    // 3 rows of class 0 and 5 of class 1, or 500 and 600 (f32): Kβ = 0, so the fewer all end at C, and f = −1 everywhere.
+    // 3 rows of class 0 and 5 of class 1, or 500 and 600 (f32). Kβ = 0, so all rows of the smaller class end at C, and f = −1 everywhere.
     for counts in [[3, 5], [500, 600]] {
         let labels = (0..2).flat_map(|class| std::iter::repeat_n(class, counts[class]));
         let equal = Array2::from_elem((counts[0] + counts[1], 3), 0.7);
@@ -519,7 +519,7 @@ fn as_c_vanishes_every_multiplier_is_zero_or_c() {
             for problem in model.problems() {
                 let n_positive = data.targets.iter().filter(|&&l| l == problem.positive);
                 let n_positive = n_positive.count();
-                // All rows of the smaller side, and as many of the other.
+                // All rows of the smaller class, and equally many of the other class, are at C.
                 let n_fewer = n_positive.min(problem.rows.len() - n_positive) as f64;
                 assert!(near(problem.solution.objective, 2.0 * n_fewer * c, 1e-6));
             }
@@ -604,7 +604,7 @@ fn training_again_gives_the_same_bytes_and_another_order_of_rows_the_same_labels
             let model = params.train(&permuted).unwrap();
             let labels = params.train(&data).unwrap().labels(probes.view()).unwrap();
             let other = model.labels(probes.view()).unwrap();
-            // What the tolerance leaves open depends on the order in which equally good steps are taken.
+            // Within the tolerance, the result depends on the order in which equally good steps are made.
             let least = if tolerance < 1e-6 { 1.0 } else { 0.99 };
             assert!(agreement(&labels, &other) >= least, "{kernel:?}");
         }
@@ -620,7 +620,7 @@ fn candidates() -> Candidates {
     }
 }
 
-/// [`choose`] by its definition: a model for every fold and candidate, trained alone.
+/// Returns the accuracies of [`choose`] by definition: a separate model for every fold and candidate.
 fn accuracies(params: SvmParams, data: &Dataset, folds: &[Split], chosen: &Chosen) -> Vec<f64> {
     let of = |c: f64, gamma: Option<f64>| {
         let gamma = gamma.map(Gamma::Value);
@@ -645,8 +645,8 @@ fn accuracies(params: SvmParams, data: &Dataset, folds: &[Split], chosen: &Chose
     chosen.tried.iter().map(|t| of(t.c, t.gamma)).collect()
 }
 
-// One-vs-rest is compared where classes are larger (`choice`): with four rows against 168 most classes have the constant decision value −1, and
-// rounding decides between equal values (labels change between tolerances of 1e-8 and 1e-10).
+// One-vs-rest is compared for larger classes (`choice`). With four rows against 168, most classes have the constant decision value −1, and rounding decides
+// between equal values (labels change between tolerances of 1e-8 and 1e-10).
 #[test]
 fn of_43_small_classes_the_choice_on_one_matrix_is_that_of_training_one_by_one() {
     let data = clouds(&[8; 43], 12, 0.8, 16);
@@ -678,7 +678,7 @@ fn labels_of_rows_that_no_fold_holds_change_no_choice() {
     for kernel in [Kernel::Linear, RBF] {
         let params = params(kernel, 1.0, 1e-6);
         let expected = choose(&params, &data, &folds, &candidates()).unwrap();
-        // The labels of others, and of classes that no fold knows.
+        // Labels of other classes, and labels that no fold contains.
         for flip in [|label| (label + 1) % 3, |label| 100 + label] {
             let mut flipped = data.clone();
             held.iter()
@@ -691,7 +691,7 @@ fn labels_of_rows_that_no_fold_holds_change_no_choice() {
 
 #[test]
 fn a_class_that_a_fold_does_not_train_on_is_never_recognised_there() {
-    // Three far clusters; the first fold trains without class 2, the second without class 0.
+    // Three clusters far apart; the first fold trains without class 2, the second without class 0.
     let data = clouds(&[20, 20, 20], 4, 8.0, 18);
     let of = |wanted: &[usize], part: usize| -> Vec<usize> {
         let is_in = |row: &usize| wanted.contains(&data.targets[*row]) && row % 2 == part;
@@ -709,7 +709,7 @@ fn a_class_that_a_fold_does_not_train_on_is_never_recognised_there() {
     ];
     let n_absent = of(&[2], 1).len() + of(&[0], 0).len();
     let expected = (60 - n_absent) as f64 / 60.0;
-    // Candidates of γ are multiples of the kernel's own.
+    // Candidates of γ are multiples of the kernel's own γ.
     let rbf = Kernel::Rbf {
         gamma: Gamma::Scale,
     };

@@ -1,4 +1,4 @@
-//! Sets on which support vector machines break: their outcome is known without another program.
+//! Difficult data sets for support vector machines whose solution is known without another program.
 
 use bubbletouch_svm::dataset::dataset;
 use bubbletouch_svm::kernel::{Gamma, Kernel};
@@ -25,7 +25,7 @@ fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
 
 #[test]
 fn an_enormous_c_separates_what_can_be_separated() {
-    // Six well separated clusters: the hard margin of C = 1e6 is found, and capped nowhere.
+    // Six well separated clusters: with C = 1e6, the hard margin is found and no problem is capped.
     let features = Array2::from_shape_fn((60, 2), |(i, j)| {
         [(i % 6) as f64, ((i % 6) * (i % 6)) as f64][j] * 3.0 + (i as f64 * 1.3 + j as f64).sin()
     });
@@ -82,7 +82,7 @@ fn duplicated_points_with_opposite_labels_end_at_c() {
 #[test]
 fn two_to_thirty_classes_are_told_apart_even_with_gaps_between_labels() {
     for n_classes in 2..=30 {
-        // Class c sits on its own axis of an n-dimensional grid; its label is 3c + 1.
+        // Class c lies on an axis of its own in an n-dimensional grid; its label is 3c + 1.
         let features = Array2::from_shape_fn((3 * n_classes, n_classes), |(i, j)| {
             let jitter = 0.1 * ((i * n_classes + j) as f64 * 2.3).sin();
             jitter + if i % n_classes == j { 2.0 } else { 0.0 }

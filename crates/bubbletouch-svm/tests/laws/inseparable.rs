@@ -1,5 +1,5 @@
-//! SVMs at the ends of C on rows that no plane parts: optimal, as an independent program says too, or counted as capped. `guide::limits`
-//! states it.
+//! SVMs with extreme C on rows that no hyperplane separates: the solution is optimal according to an independent program, or counted as capped. `guide::limits`
+//! states this limit.
 
 use crate::svm_conditions::Worth;
 use bubbletouch_svm::dataset::{Dataset, dataset};
@@ -11,7 +11,7 @@ const RBF: Kernel = Kernel::Rbf {
     gamma: Gamma::Value(0.5),
 };
 
-/// Eighteen places of a lattice in three classes, of which no plane parts any two.
+/// Returns eighteen points of a lattice in three classes; no hyperplane separates any two of them.
 fn lattice() -> Dataset {
     let features = Array2::from_shape_fn((18, 2), |(row, column)| match column {
         0 => ((row * 7) % 5) as f64 - 2.0,
@@ -21,7 +21,7 @@ fn lattice() -> Dataset {
     dataset(features, labels).unwrap()
 }
 
-/// Every row twice, once with each label: not even an RBF kernel parts them.
+/// Returns every row twice, once with each label; not even an RBF kernel separates them.
 fn contradictory() -> Dataset {
     let features = Array2::from_shape_fn((12, 2), |(row, column)| {
         ((row / 2 * (3 + column)) % 5) as f64
@@ -29,8 +29,8 @@ fn contradictory() -> Dataset {
     dataset(features, Array1::from_shape_fn(12, |row| row % 2)).unwrap()
 }
 
-/// Dual objectives of the three pairs by scikit-learn 1.9.1 (LIBSVM), tolerance 1e-3. With a linear kernel its iterations go with C: 16 million
-/// at 1e6, and at 1e9 it is stopped at 20 million.
+/// Dual objectives of the three pairs by scikit-learn 1.9.1 (LIBSVM), tolerance 1e-3. With a linear kernel, LIBSVM's iterations grow with C: 16 million at 1e6;
+/// at 1e9, it is stopped at 20 million.
 const LIBSVM: [(Kernel, f64, [f64; 3]); 11] = [
     (Kernel::Linear, 1e-12, [8.0e-12, 1.0e-11, 8.0e-12]),
     (
@@ -82,7 +82,7 @@ fn at_a_trillion_a_problem_is_optimal_or_counted_and_its_bounds_enclose_the_opti
                 if name == &"lattice"
                     && (kernel, multiclass) == (Kernel::Linear, Multiclass::OneVsRest)
                 {
-                    // Ten million steps each, as those of pairs.
+                    // One-vs-rest problems need ten million steps each, like those of pairs.
                     continue;
                 }
                 let params = SvmParams {
@@ -114,7 +114,7 @@ fn at_a_trillion_a_problem_is_optimal_or_counted_and_its_bounds_enclose_the_opti
                     }
                 }
                 assert_eq!(n_capped, model.n_capped());
-                // Bent space parts all but rows that contradict each other; no plane parts the lattice, and the cap says so.
+                // A non-linear kernel separates all rows except contradictory ones; no hyperplane separates the lattice, and the solver reports its cap.
                 let is_parted = *name == "lattice" && kernel == RBF;
                 assert!(!is_parted || n_capped == 0);
                 let is_mixed = *name == "lattice" && kernel == Kernel::Linear;

@@ -1,8 +1,8 @@
-//! The support vector machines against LIBSVM on sets that are hard for such programs.
+//! The support vector machines against LIBSVM on data sets that are difficult for such solvers.
 //!
-//! `libsvm.json` holds sets and LIBSVM's solutions, by scikit-learn 1.9.1; `make_libsvm.py` beside it
-//! made it and says how exact LIBSVM's solutions are: it keeps kernel values in 32 bits, and the file gives for every case
-//! the duality gap of its coefficients and what follows for its decision values.
+//! `libsvm.json` contains data sets and the solutions of LIBSVM (scikit-learn 1.9.1); it was written by `make_libsvm.py` in the same folder. LIBSVM stores
+//! kernel values in 32 bits. The file therefore contains the duality gap of the coefficients for every case, and the resulting error bound of the decision
+//! values.
 
 use crate::svm_conditions::{Worth, kernel_value};
 use bubbletouch_svm::dataset::{Dataset, dataset};
@@ -34,17 +34,17 @@ struct Case {
     c: f64,
     multiclass: Multiclass,
     tolerance: f64,
-    /// Sum over the binary problems of what training minimises.
+    /// Objective that training minimises, summed over the binary problems.
     dual: f64,
-    /// The optimum is not below `dual − gap`.
+    /// Duality gap: the optimum is at least `dual − gap`.
     gap: f64,
-    /// How far a decision value may be from the optimum's.
+    /// Largest possible difference between a decision value and its optimum.
     decision_error: f64,
-    /// Problems that LIBSVM gave up.
+    /// Number of problems that LIBSVM stopped before convergence.
     n_capped: usize,
-    /// Of the probes.
+    /// Predicted labels of the probe rows.
     labels: Vec<usize>,
-    /// Probes × problems, where their error is small against them.
+    /// Decision values, probes × problems; `None` if their error is not small.
     decision: Option<Vec<Vec<f64>>>,
 }
 
@@ -89,8 +89,7 @@ fn matrix(rows: &[Vec<f64>]) -> Array2<f64> {
     Array2::from_shape_fn((rows.len(), rows[0].len()), |(i, j)| rows[i][j])
 }
 
-/// Sums over a model's problems of what training minimises and of the duality gap, and how far the decision values may be from the
-/// optimum's (as in `make_libsvm.py`).
+/// Sums over a model's problems of the objective and of the duality gap, and the largest possible error of its decision values (as in `make_libsvm.py`).
 struct Sums {
     dual: f64,
     gap: f64,
@@ -123,7 +122,7 @@ fn trained(case: &Case, set: &Set) -> (Dataset, SvmModel) {
     (data, model)
 }
 
-/// The case's solution must reach LIBSVM's objective and agree with its decisions as far as both are exact.
+/// Asserts that our solution reaches LIBSVM's objective and agrees with its decisions, as far as both are exact.
 fn check(case: &Case, set: &Set) {
     let name = case.name();
     let (data, model) = trained(case, set);
@@ -138,13 +137,13 @@ fn check(case: &Case, set: &Set) {
         case.n_capped
     );
     let scale = case.dual.abs();
-    // No better than the duality gap of LIBSVM's solution allows.
+    // The objective is at most as good as the duality gap of LIBSVM's solution allows.
     assert!(ours.dual >= case.dual - case.gap - 1e-9 * scale, "{name}");
     if case.n_capped == 0 {
         assert_eq!(model.n_capped(), 0, "{name}");
         assert!((ours.dual - case.dual).abs() <= 1e-3 * scale, "{name}");
     } else {
-        // Where LIBSVM gave up: no worse than it, or given up as well and counted.
+        // If LIBSVM stopped early, our solution is at least as good, or was also stopped and counted.
         let is_no_worse = ours.dual <= case.dual + 1e-3 * scale;
         assert!(is_no_worse || model.n_capped() > 0, "{name}");
     }
@@ -165,7 +164,7 @@ fn check(case: &Case, set: &Set) {
     }
 }
 
-/// Whether no decision that the label depends on is within the error.
+/// Returns whether all decision values that determine the label exceed the error.
 fn is_clear(multiclass: Multiclass, values: ArrayView1<f64>, near: f64) -> bool {
     if multiclass == Multiclass::OneVsOne {
         return values.iter().all(|value| value.abs() > near);

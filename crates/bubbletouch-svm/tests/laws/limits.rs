@@ -1,4 +1,4 @@
-//! C at its ends: the solution is optimal, or counted as capped.
+//! SVMs with extreme C: the solution is optimal, or counted as capped.
 
 use crate::drawn::clusters;
 use crate::svm_conditions::Worth;
@@ -14,7 +14,7 @@ const KERNELS: [Kernel; 2] = [
     },
 ];
 
-/// On a line: 0 1 0 1 0.
+/// Returns five points on a line with the labels 0 1 0 1 0.
 fn five() -> Dataset {
     dataset(
         array![[0.0], [1.0], [2.0], [3.0], [4.5]],
@@ -25,7 +25,7 @@ fn five() -> Dataset {
 
 #[test]
 fn from_a_trillionth_to_a_trillion_of_c_a_solution_is_optimal_or_counted_as_capped() {
-    // Labels of two classes, a share of each class exchanged.
+    // Labels of two classes, with a fraction of each class exchanged.
     let wrong = |data: Dataset, share: f64| {
         let n_wrong = (share * data.targets.len() as f64).round() as usize;
         let mut labels = data.targets;
@@ -50,7 +50,7 @@ fn from_a_trillionth_to_a_trillion_of_c_a_solution_is_optimal_or_counted_as_capp
     let mut n_capped = 0;
     for (name, data) in &sets {
         for kernel in KERNELS {
-            // What no plane separates takes the ten million steps of the cap at a large C.
+            // Classes that no hyperplane separates need ten million steps, the cap, at a large C.
             let is_mixed = ["overlapping", "mislabelled", "no point"]
                 .iter()
                 .any(|word| name.contains(word));
@@ -87,7 +87,7 @@ fn from_a_trillionth_to_a_trillion_of_c_a_solution_is_optimal_or_counted_as_capp
 
 #[test]
 fn at_a_tiny_c_every_multiplier_of_equal_classes_is_c_and_the_middles_decide() {
-    // Then w = C (n₁ x̄₁ − n₀ x̄₀): the direction from mean to mean.
+    // For a small C, w = C (n₁ x̄₁ − n₀ x̄₀): the direction from mean to mean.
     let data = clusters(&[15, 15], 3.0, 7);
     for kernel in KERNELS {
         for c in [1e-12, 1e-9, 1e-6] {
@@ -116,7 +116,7 @@ fn at_a_tiny_c_every_multiplier_of_equal_classes_is_c_and_the_middles_decide() {
 
 #[test]
 fn at_an_enormous_c_what_can_be_separated_has_the_hard_margin() {
-    // The nearest rows are at −1 and 1: w = 1, b = 0, both multipliers ½, whatever C.
+    // The nearest rows are at −1 and 1: w = 1, b = 0, and both multipliers are ½ for any C.
     let data = dataset(
         array![[-1.0], [1.0], [-3.0], [2.0], [-7.0], [1.5]],
         array![0, 1, 0, 1, 0, 1],

@@ -1,6 +1,7 @@
 //! Linear SVMs without a kernel matrix, and logistic regression.
 //!
-//! Goldens: scikit-learn 1.9.1, `LinearSVC(C=0.5, loss="hinge", dual=True, tol=1e-9, max_iter=10**6)` and `LogisticRegression(tol=1e-10)`, on the rows of [`waves`].
+//! Expected numbers: scikit-learn 1.9.1, `LinearSVC(C=0.5, loss="hinge", dual=True, tol=1e-9, max_iter=10**6)` and `LogisticRegression(tol=1e-10)`, on the rows
+//! of [`waves`].
 
 use crate::drawn;
 use bubbletouch_svm::classifiers::ClassifierKind;
@@ -15,7 +16,7 @@ use linfa::traits::Fit;
 use ndarray::{Array1, Array2};
 use rand::Rng;
 
-/// 60 rows of 5 features, 4 classes in turn.
+/// Returns 60 rows of 5 features in 4 alternating classes.
 fn waves() -> Dataset {
     let value = |(i, j): (usize, usize)| {
         let wave = (1.7 * (i * 5 + j) as f64 + 0.3 * (j * j) as f64).sin();
@@ -25,7 +26,7 @@ fn waves() -> Dataset {
     dataset(features, Array1::from_iter((0..60).map(|i| i % 4))).unwrap()
 }
 
-/// Overlapping clusters of unequal size.
+/// Returns overlapping clusters of unequal size.
 fn clusters(n_rows: usize, m: usize, n_classes: usize, seed: u64) -> Dataset {
     let mut rng = drawn::rng(seed, &["overlapping clusters"]);
     let centres = Array2::from_shape_fn((n_classes, m), |_| rng.gen_range(-1.0..1.0));
@@ -172,7 +173,7 @@ fn logistic_regression_reaches_scikit_learns_optimum() {
 
 #[test]
 fn logistic_regression_on_separable_rows_stays_right() {
-    // Scores of rows differ by far more than 34 here, where linfa-logistic goes wrong: a larger C must only fit closer.
+    // The scores of rows differ by far more than 34 here, which linfa-logistic does not handle; a larger C must only fit more closely.
     let mut data = clusters(300, 30, 5, 3);
     data.records *= 3.0;
     let loss = |c: f64| {

@@ -1,4 +1,4 @@
-//! The laws of support vector machines: optimality conditions, LIBSVM's solutions, and the choice of C and γ.
+//! Laws of support vector machines: optimality conditions, agreement with LIBSVM, and the choice of C and γ.
 
 mod drawn;
 mod engine;

@@ -1,4 +1,4 @@
-//! The support vector machines against scikit-learn's numbers and the optimality conditions, on easy and on hard sets.
+//! The support vector machines against scikit-learn's results and the optimality conditions, on easy and difficult data sets.
 
 use crate::svm_conditions::Worth;
 use bubbletouch_svm::dataset::{Dataset, dataset};
@@ -7,8 +7,8 @@ use bubbletouch_svm::{BinaryProblem, Multiclass, SvmParams};
 use linfa::DatasetBase;
 use ndarray::{Array1, Array2, Axis, array, s};
 
-/// Rows that Python evaluates to the same bits: the linear congruential generator
-/// `s ← (1103515245 s + 12345) mod 2³¹` from 12345 gives `s / 2³¹`, and class c moves feature j by `0.25 (c (j + 2) mod 5)`.
+/// Returns rows that Python reproduces bit by bit. The linear congruential generator `s ← (1103515245 s + 12345) mod 2³¹`, started at 12345, gives `s / 2³¹`;
+/// class c shifts feature j by `0.25 (c (j + 2) mod 5)`.
 fn generated(n_rows: usize, n_columns: usize, n_classes: usize) -> Dataset {
     let mut state = 12345_u64;
     let features = Array2::from_shape_fn((n_rows, n_columns), |(i, j)| {
@@ -19,7 +19,7 @@ fn generated(n_rows: usize, n_columns: usize, n_classes: usize) -> Dataset {
     dataset(features, labels).unwrap()
 }
 
-/// 80 training and 40 test rows of 4 features in 4 classes.
+/// Returns 80 training and 40 test rows of 4 features in 4 classes.
 fn fixed() -> (Dataset, Array2<f64>) {
     let all = generated(120, 4, 4);
     let test = all.records.slice(s![80.., ..]).to_owned();
@@ -30,9 +30,9 @@ fn fixed() -> (Dataset, Array2<f64>) {
     )
 }
 
-/// How far decision values may lie from LIBSVM's, however small the tolerance: it keeps kernel values in f32, and the
-/// multipliers, up to C each, carry their rounding on. (On classes 1 and 2, linear, C = 100, its solution at a
-/// tolerance of 1e-9 violates the optimality conditions by 1.4e-4, this crate's by 1e-9.)
+/// Returns the allowed difference from LIBSVM's decision values for any tolerance. LIBSVM stores kernel values in f32, and multipliers of up to C amplify their
+/// rounding. (On classes 1 and 2, linear, C = 100, LIBSVM's solution at a tolerance of 1e-9 violates the optimality conditions by 1.4e-4, this crate's by
+/// 1e-9.)
 fn near(c: f64) -> f64 {
     1e-4 * c.sqrt()
 }
@@ -58,7 +58,7 @@ fn params(kernel: Kernel, c: f64, tolerance: f64) -> SvmParams {
     }
 }
 
-/// Optimal within the tolerance and what rounding in sums of thousands of steps leaves open.
+/// Asserts that a solution is optimal within the tolerance and the rounding error of thousands of steps.
 fn assert_optimal(params: SvmParams, data: &Dataset, problem: &BinaryProblem) {
     let worth = Worth::new(&params, data, problem);
     let allowed = params.tolerance + worth.rounding + 1e-9 * params.c.max(1.0);
@@ -69,9 +69,8 @@ fn digits(labels: &Array1<usize>) -> String {
     labels.iter().map(usize::to_string).collect()
 }
 
-/// scikit-learn 1.9.1 on `fixed()`: SVC(C, kernel, gamma="scale", degree=3, coef0=1): labels with the default
-/// tolerance; with tol=1e-9 the first test row's decision values and the sum of the pairs' dual objectives. Laplacian: kernel="precomputed" of
-/// laplacian_kernel(gamma=1 / (4 · std)).
+/// Results of scikit-learn 1.9.1 on `fixed()`, SVC(C, kernel, gamma="scale", degree=3, coef0=1): labels with the default tolerance; with tol=1e-9, the decision
+/// values of the first test row and the sum of the pairs' dual objectives. Laplacian: kernel="precomputed" with laplacian_kernel(gamma=1 / (4 · std)).
 const SCIKIT_LEARN: [(Kernel, f64, &str, [f64; 6], f64); 8] = [
     (
         LAPLACIAN,
@@ -215,7 +214,7 @@ fn labels_decisions_and_objectives_are_those_of_scikit_learn() {
 
 #[test]
 fn one_against_the_rest_is_that_of_scikit_learn() {
-    // scikit-learn 1.9.1: SVC(C=1, tol=1e-9) per class against the rest, largest decision value.
+    // scikit-learn 1.9.1: SVC(C=1, tol=1e-9) for each class against the rest; the largest decision value is predicted.
     let rbf = Kernel::Rbf {
         gamma: Gamma::Value(0.5),
     };
@@ -294,7 +293,7 @@ fn solutions_are_optimal_for_every_kernel_and_c() {
                 .for_each(|problem| assert_optimal(params, &train, problem));
         }
     }
-    // Wide features: the factor of the kernel is solved in their stead.
+    // With more features than rows, the factor of the kernel matrix is used instead of the rows.
     let wide = generated(24, 64, 3);
     for kernel in [Kernel::Linear, RBF, CUBIC] {
         let params = params(kernel, 1.0, 1e-3);
@@ -334,7 +333,7 @@ fn constant_features_change_nothing() {
             "{kernel:?}"
         );
     }
-    // Nothing but constants: no class can be told, none is preferred over the first in every vote, nothing breaks.
+    // All features are constant, so no class can be distinguished, every vote is tied for the first class, and no error occurs.
     let blind = dataset(Array2::ones((6, 3)), array![0, 0, 1, 1, 2, 2]).unwrap();
     let model = params(RBF, 1.0, 1e-3).train(&blind).unwrap();
     let values = model.decision_values(blind.records.view()).unwrap();
