@@ -66,7 +66,7 @@ pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
     }
 }
 
-/// Returns whether a sphere may need more than a given deflection (metres, at least 0), without taking a root. The result `false` is exact.
+/// Returns whether contact with a sphere may require more than a given deflection (metres, at least 0), without taking a root. The result `false` is exact.
 #[inline(always)]
 pub(super) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
     shortfall(q, height, deflection) < 0.0

@@ -123,7 +123,7 @@ impl Workspace {
         self.deciding.resize(n_taxels, [0; 2]);
     }
 
-    /// Raises the deflection of a taxel to `needed`, metres; of parts that need equal deflections the first counts.
+    /// Raises the deflection of a taxel to `needed`, metres; if several parts require equal deflections, the first part counts.
     #[inline(always)]
     pub(super) fn push(&mut self, taxel: u32, needed: f64, deciding: [u32; 2]) {
         let number = taxel as usize;

@@ -31,7 +31,7 @@ pub enum RapierJoints {
     /// Model of SkinSim \[SK\]: forces computed before each step and constant within it. Taxels are held by joints only,
     /// on a light base that a joint without range of motion holds in the world.
     SkinSim {
-        /// Mass of the base, kg.
+        /// Mass of the base, the body to which the taxels are attached, kg.
         base_mass: f64,
     },
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use glam::DVec3;
 use std::io::BufRead;
 
-/// Index that marks a vertex no face has used.
+/// Index that marks a vertex that no face uses.
 const UNUSED: u32 = u32::MAX;
 
 /// Reads the mesh in an OBJ file; all objects and groups of the file form one mesh.

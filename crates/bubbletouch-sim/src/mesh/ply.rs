@@ -221,7 +221,7 @@ impl PropertyAccess for Face {
     }
 }
 
-/// Element of a file that is skipped.
+/// Element of a PLY file that the reader skips.
 struct Skipped;
 
 impl PropertyAccess for Skipped {

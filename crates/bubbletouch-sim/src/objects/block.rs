@@ -150,8 +150,8 @@ struct EdgeRow {
     half_spacing: f64,
 }
 
-/// Fraction of the squared reach that a ball in a round edge uses across the faces. If smaller, the faces need more spheres; if larger, the edge needs more
-/// spheres and protrudes.
+/// Fraction of its squared disc radius that a ball in a round edge uses to cover the faces; the rest covers the edge. If smaller, the faces need more spheres;
+/// if larger, the edge needs more spheres and protrudes.
 const ACROSS: f64 = 0.1;
 
 impl EdgeRow {

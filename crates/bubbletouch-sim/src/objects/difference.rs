@@ -168,7 +168,7 @@ impl Covering<'_> {
         false
     }
 
-    /// Returns the spheres; `None` if no sphere covers a doubtful cell.
+    /// Returns the spheres; `None` if a doubtful cell is not covered by any sphere.
     fn spheres(mut self) -> Option<Vec<Sphere>> {
         for cell in std::mem::take(&mut self.doubtful) {
             let reach = self.fit.reach();

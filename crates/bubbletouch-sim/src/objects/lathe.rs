@@ -74,7 +74,7 @@ impl Lathe {
         }
     }
 
-    /// Returns the ring that covers an end of the first uncovered interval and, among these rings, the largest edge length per sphere.
+    /// Returns the best ring among those that cover an end of the first uncovered interval: the ring that covers the largest length of edges per sphere.
     fn next_ring(&self, uncovered: &Uncovered, fit: Fit) -> Option<Ring> {
         let (edge, target, step) = uncovered.first_end(&self.outline)?;
         let available = if step > 0.0 {
@@ -112,7 +112,7 @@ impl Lathe {
         best.map(|(.., ring)| ring)
     }
 
-    /// Returns candidate rings of the largest ball that touches an edge at a point, with several numbers of balls.
+    /// Returns candidate rings with different numbers of balls; every ball is the largest one that touches an edge at a point.
     fn rings(&self, edge: usize, along: f64, fit: Fit) -> impl Iterator<Item = Ring> {
         let foot = self.outline.edges[edge].point(along);
         let inward = self.outline.edges[edge].inward;

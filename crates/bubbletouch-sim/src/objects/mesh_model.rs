@@ -24,9 +24,9 @@ struct Data {
 pub struct ContactFace {
     /// Unit normal of the triangle; zero if the triangle is too thin.
     pub normal: DVec3,
-    /// Unit normal of the neighbour across each side. The neighbour's corners are ordered as if it passed the side in the direction of this triangle. On a
-    /// smooth surface this normal is therefore approximately minus the normal of this triangle. The normal is zero if there is not exactly one neighbour, or if
-    /// the neighbour is too thin.
+    /// Unit normal of the neighbouring triangle across each side. The neighbour's corners are ordered as if it passed the side in the direction of this
+    /// triangle. On a smooth surface this normal is therefore approximately minus the normal of this triangle. The normal is zero if there is not exactly one
+    /// neighbour, or if the neighbour is too thin.
     pub across: [DVec3; 3],
     /// For each side, from corner i to the next corner, whether this triangle owns it (and not the neighbouring triangle).
     pub has_edge: [bool; 3],

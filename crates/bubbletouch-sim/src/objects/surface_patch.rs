@@ -33,7 +33,7 @@ enum PatchForm {
 pub(super) struct PatchCell {
     pub low: DVec2,
     pub high: DVec2,
-    /// Corners in the order low, along x, along y, high.
+    /// Corners of the cell: the low corner, its neighbours along x and along y, and the high corner.
     pub corners: [DVec3; 4],
     bulge: f64,
 }

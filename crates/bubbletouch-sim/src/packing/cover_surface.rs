@@ -19,7 +19,7 @@ const SAMPLING_TIME: f64 = 0.2;
 
 /// Parameters of one optimisation pass over all cells.
 struct Pass {
-    /// Fraction of the points below each cut. Passes with different fractions have different cell borders.
+    /// Fraction of a cell's samples below the plane that divides the cell. Passes with different fractions have different cell borders.
     cut: f64,
     /// Fraction of the search steps per ball that this pass may use to exchange balls.
     steps: f64,

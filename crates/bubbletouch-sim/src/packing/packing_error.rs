@@ -64,7 +64,7 @@ pub fn packing_error(
     }
 }
 
-/// Returns the distance from a point of the mesh, along its normal, to the end of the spheres, metres. The point must be inside the spheres.
+/// Returns how far the spheres reach outside the mesh along the normal of a point of the mesh, metres. The point must be inside the spheres.
 fn protrusion(surface: &Surface, tree: &SphereTree, point: DVec3, normal: DVec3) -> f64 {
     let end = tree.end(point, normal);
     match surface.closest(end, f64::INFINITY) {

@@ -268,8 +268,8 @@ pub(super) struct SampleTree {
     tree: BoxTree,
 }
 
-/// Fraction of a sample's radius that must also be covered, times the slope of the ball there. If larger, more spheres are needed; if smaller, more gaps must
-/// be repaired, which needs more spheres in the end.
+/// Factor of the margin around a sample that a ball must also cover. The margin is this factor times the sample's radius times the slope of the ball. If
+/// larger, more spheres are needed; if smaller, more gaps must be repaired, which needs more spheres in the end.
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {

@@ -9,7 +9,7 @@ use std::fmt::Debug;
 
 /// Number of taxels that are read together. If larger, the data leave the processor's cache; if smaller, blocks of counters are only partly used.
 pub(super) const CHUNK: usize = 512;
-/// Number of counters that are computed together: f64 lanes of 512 bits.
+/// Number of counters that are computed together: eight f64 values in a vector of 512 bits.
 const LANES: usize = 8;
 
 /// Time at which a whole body is read.

@@ -4,8 +4,7 @@ use crate::contact::LanesBelow;
 use crate::objects::{ClusterBounds, MAX_IN_CLUSTER, Sphere, SphereClusters};
 use glam::{DMat3, DVec3};
 
-/// Number of taxels or balls in a block: f64 lanes of 512 bits. If larger, taxels beside small spheres are evaluated needlessly; if smaller, more blocks are
-/// tested.
+/// Number of taxels or balls in a block: eight f64 values in a vector of 512 bits.
 pub(super) const LANES: usize = 8;
 /// Factor that covers rounding of a radius: far above 1e-16 and far below any measurable difference.
 pub(super) const ROUNDING: f64 = 1.0 + 1e-9;

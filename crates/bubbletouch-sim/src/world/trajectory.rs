@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 /// Phase of a motion, with constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
-    /// Duration of the period, seconds, zero or positive.
+    /// Duration of the phase, seconds, zero or positive.
     pub duration: f64,
     /// Velocity of the body's origin in the world, m/s.
     pub linear: DVec3,

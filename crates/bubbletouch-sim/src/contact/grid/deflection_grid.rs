@@ -6,7 +6,7 @@ use std::ops::Range;
 /// smaller one needs more instructions.
 pub(super) const BLOCK: usize = 4;
 
-/// Number of columns that are computed together in footprints wider than three blocks: lanes of 512 bits, f64.
+/// Number of columns that are computed together in footprints wider than three blocks: eight f64 values in a vector of 512 bits.
 pub(super) const WIDE: usize = 8;
 
 /// Deflections of a grid, row by row, and a rectangle outside of which all deflections are zero.

@@ -72,7 +72,7 @@ pub(crate) fn needed_along(from: DVec3, frame: [DVec3; 3], reach: f64, behind: f
     law::needed(q, height, behind)
 }
 
-/// Returns the deflections that a sphere (in the patch frame) needs of the taxels in a leaf of the taxel tree, metres.
+/// Returns the deflections that contact with a sphere (in the patch frame) requires of the taxels in a leaf of the taxel tree, metres.
 #[inline(always)]
 pub(crate) fn needed_of_leaf(leaf: &Leaf, sphere: &Sphere) -> [f64; LEAF] {
     let mut needed = [0.0; LEAF];

@@ -126,7 +126,7 @@ impl Posture {
         ball.radius + surface - at.y.hypot(at.z + height + surface)
     }
 
-    /// Returns `patch_from_hand` for the anchor at `height` metres above a place of the arm.
+    /// Returns `patch_from_hand` with the anchor above the place (along, around) of the arm, `radius` metres from the arm's axis.
     pub fn pose(&self, (along, around): (f64, f64), radius: f64) -> Pose {
         // Frame of the touched place at +x (its x is −z of the arm, y is unchanged, z is the arm's x), rotated around the arm.
         let rotation = DQuat::from_rotation_z(around) * DQuat::from_rotation_y(FRAC_PI_2);

@@ -23,7 +23,7 @@ pub struct TouchRanges {
     pub clearance: RangeInclusive<f64>,
     /// Depth of the hand past first contact, metres.
     pub depth: RangeInclusive<f64>,
-    /// Time from first contact to the largest depth, and back, seconds each.
+    /// Time from first contact to the largest depth, seconds; the return takes the same time.
     pub rise: RangeInclusive<f64>,
     /// Time at the largest depth, seconds.
     pub hold: RangeInclusive<f64>,

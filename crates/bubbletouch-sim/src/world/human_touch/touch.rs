@@ -39,7 +39,7 @@ pub struct HumanTouch {
     pub around: f64,
     /// Largest depth of the hand past first contact, metres; the palm's depth for a grab.
     pub depth: f64,
-    /// Time from first contact to the largest depth, seconds; the way back takes the same time.
+    /// Time from first contact to the largest depth, seconds; the return takes the same time.
     pub rise: f64,
     /// Time that each contact lasts at the largest depth, seconds.
     pub hold: f64,

@@ -60,8 +60,8 @@ impl<'a> Element<'a> {
         Error::input(place, given, allowed)
     }
 
-    /// Returns the value of an optional part. If the part is invalid, the error becomes a note that ends with
-    /// `consequence`, and `instead` is returned.
+    /// Returns the value of an optional part of the file. If the part is invalid, the error becomes a note that ends with `consequence`, and `instead` is
+    /// returned.
     pub fn or_note<T>(&self, part: Result<T>, instead: T, consequence: &str) -> T {
         part.unwrap_or_else(|error| {
             self.lines.note(format!("{error}: {consequence}"));
