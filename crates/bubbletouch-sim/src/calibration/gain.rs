@@ -66,7 +66,7 @@ impl Gains {
     }
 }
 
-/// Returns, for a taxel, the median log ratio d of its readings to those of its neighbours: first for the even frames, then for the odd frames.
+/// Returns the median log ratio d between the readings of a taxel and of its neighbours: first for the even frames, then for the odd frames.
 fn halves(
     skin: &RecordedSkin,
     touched: &Array2<f64>,

@@ -68,7 +68,7 @@ impl Surface {
         self.normals.at(closest.triangle, closest.feature)
     }
 
-    /// Returns the winding number of the surface around a point, with an error of about 0.1. It is 1 inside a closed mesh and 0 outside.
+    /// Returns the winding number of the surface around a point, with an error of about 0.1. The winding number is 1 inside a closed mesh and 0 outside.
     pub fn winding_number(&self, point: DVec3) -> f64 {
         self.winding.winding_number(&self.bvh, point)
     }

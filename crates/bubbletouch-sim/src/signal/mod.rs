@@ -28,8 +28,8 @@
 //!
 //! **Randomness.** The draws z depend on the touch (a [`Seed`](crate::random::Seed)) and on the position among the noise steps of the chain, but not on the
 //! level σ. Two chains that differ only in σ add the same pattern with another amplitude, so a sweep over noise compares paired frames. Properties of one piece
-//! of hardware (gains, the drift's walk, faults) are constant over all touches. They depend on the `skin`'s seed and are drawn when the chain is created.
-//! Errors that change from touch to touch are drawn when the chain is applied. Their patterns do not depend on the strengths either.
+//! of hardware (gains, the drift's walk, faults) are constant over all touches. These properties depend on the `skin`'s seed and are drawn when the chain is
+//! created. Errors that change from touch to touch are drawn when the chain is applied. Their patterns do not depend on the strengths either.
 //!
 //! **Whole bodies.** A [`BodyReadout`] supports the steps that act on each taxel independently. Its random numbers are counter-based instead of streams, so
 //! the touched taxels among millions are read at a cost proportional to their number.

@@ -1,7 +1,7 @@
 //! Descent from a direction to the nearest local minimum of the support function.
 //!
 //! The function is the maximum of smooth pieces, one per sphere, with creases where two spheres touch the table. Each step exactly minimises the maximum of the
-//! linearised pieces inside a trust region. At a face with three contacts the convergence is that of Newton's method.
+//! linearised pieces inside a trust region. At a face with three contacts, the descent converges like Newton's method.
 
 use super::support::Support;
 use crate::objects::Sphere;
@@ -85,8 +85,8 @@ fn linear_step(
     (t[0] * u + t[1] * v, z)
 }
 
-/// Returns three linear functions that bound the step to a triangle: they are steeper than any sphere, exceed `height` outside a triangle of inradius `reach`,
-/// and stay below every possible minimum well inside it.
+/// Returns three linear functions that keep the step inside a triangle of inradius `reach`. They are steeper than any sphere, exceed `height` outside the
+/// triangle, and stay below every possible minimum well inside it.
 fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
     let steep = 4.0 * radius;
     [0.0, 1.0, 2.0].map(|third| {

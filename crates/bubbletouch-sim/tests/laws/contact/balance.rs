@@ -343,8 +343,8 @@ fn pushed(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> Option<Vec<f64>> {
         .collect()
 }
 
-/// Returns whether a taxel is beside the widest part of a sphere, where the energy jumps: an infinitesimal lateral motion of the sphere releases the taxel or
-/// pushes it in.
+/// Returns whether a taxel is beside the widest part of a sphere. The energy jumps there, because an infinitesimal lateral motion of the sphere releases the
+/// taxel or pushes it in.
 fn stands_on_a_cliff(bed: &Patch, spheres: &SphereUnion, pose: &Pose) -> bool {
     const NEAR: f64 = 2e-4;
     let radius = bed.taxels().at(0).radius;

@@ -168,7 +168,7 @@ fn untouched(n: usize) -> (Patch, WholeBody) {
     (patch, body)
 }
 
-/// Returns the readings of all `n` taxels of a skin, each with the deflection `felt`, in strokes.
+/// Returns the readings of all `n` taxels of a skin with equal deflections, given in strokes.
 fn read(n: usize, steps: &[SignalStep], moment: Moment, felt: f64) -> Vec<f64> {
     let (_, body) = untouched(n);
     let readout = BodyReadout::new(steps, &body, &skin()).unwrap();

@@ -215,8 +215,8 @@ fn a_penalty_above_every_correlation_leaves_nothing() {
     assert!(!found.capped.contains(&true));
 }
 
-/// Returns a small problem with known solutions: 24 taxels in a row, 10 averages over blocks of 2, 2, 3, 2, 3, 2, 2, 3, 2, 3 taxels, all 24 cosines, and given
-/// y.
+/// Returns a small problem with known solutions: 24 taxels in a row, all 24 cosines as atoms, and 10 measurements. The measurements are averages over blocks of
+/// 2, 2, 3, 2, 3, 2, 2, 3, 2, 3 taxels.
 fn golden_problem() -> (Projection, Dictionary, Array2<f64>) {
     let grid = (1, 24);
     let projection = Projection::new(Ensemble::BlockAverage, grid, 10, &Seed::new(1)).unwrap();
