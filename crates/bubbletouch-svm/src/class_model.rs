@@ -10,12 +10,12 @@ use crate::predict::voting::first_maximum;
 /// Trained classifier that computes one score per class.
 ///
 /// Scores are additive: the sum of the scores of k touches of one object is the score of all touches. A probabilistic model therefore returns
-/// `ln p(x | class)` up to a constant per row. The prior `ln p(class)` is separate ([`log_prior`](Self::log_prior)) and is added once for all summed touches.
+/// `ln p(x | class)` up to a constant per row. The log-prior `ln p(class)` is separate and is added once for all summed touches.
 pub trait ClassModel: Debug + Send + Sync {
     /// Returns the class labels of the training rows, ascending. Every predicted label is one of them.
     fn classes(&self) -> &[usize];
 
-    /// Returns the scores (n_rows × n_classes, in the order of [`classes`](Self::classes)). Larger scores favour the class.
+    /// Returns the scores of all classes (n_rows × n_classes), in ascending order of the labels. Larger scores favour the class.
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.
@@ -48,7 +48,7 @@ pub trait ClassModel: Debug + Send + Sync {
     /// Returns the predicted label of each row of features (n_rows × m).
     ///
     /// # Errors
-    /// Returns the errors of [`scores`](Self::scores).
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
         Ok(self.labels_of_scores(self.scores(features)?.view()))
     }

@@ -11,7 +11,7 @@ pub type Dataset = DatasetBase<Array2<f64>, Array1<usize>>;
 /// Creates a checked data set from features (n_rows × m) and labels (n_rows).
 ///
 /// # Errors
-/// If there are no rows or columns, the number of labels differs from the number of rows, or a feature is NaN or infinite (the error names row and column).
+/// If there are no rows or columns, or the number of labels differs from the number of rows. If a feature is NaN or infinite (the error names row and column).
 pub fn dataset(features: Array2<f64>, labels: Array1<usize>) -> Result<Dataset> {
     check_features(features.view())?;
     check_labels(features.nrows(), labels.view())?;

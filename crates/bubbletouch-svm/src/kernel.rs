@@ -37,8 +37,8 @@ pub enum Kernel {
         /// Width parameter γ.
         gamma: Gamma,
     },
-    /// Laplacian kernel `exp(−γ|x − z|₁)`, where |x − z|₁ is the sum of absolute differences. Outlying features have less influence than with
-    /// [`Rbf`](Self::Rbf). The kernel is slower, because L1 distances are not computed by matrix products.
+    /// Laplacian kernel `exp(−γ|x − z|₁)`, where |x − z|₁ is the sum of absolute differences. Outlying features have less influence than with the Gaussian
+    /// kernel. The kernel is slower, because L1 distances are not computed by matrix products.
     Laplacian {
         /// Width parameter γ.
         gamma: Gamma,
@@ -79,7 +79,7 @@ impl Kernel {
         }
     }
 
-    /// Returns the numeric value of [`Gamma::Scale`] for the training features (n_rows × m).
+    /// Returns the default γ of the kernel ('scale') for the training features (n_rows × m).
     pub fn gamma_scale(&self, features: ArrayView2<f64>) -> f64 {
         let variance = variance(features);
         let spread = match self {
@@ -173,8 +173,7 @@ pub(crate) enum KernelFunction {
 
 impl KernelFunction {
     /// Returns an error if kernel values can overflow, given the largest squared norm of a row. No kernel value exceeds `K(x, x)` of the row with the largest
-    /// norm,
-    /// and no squared distance exceeds four times the largest squared norm.
+    /// norm, and no squared distance exceeds four times the largest squared norm.
     fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,

@@ -15,8 +15,8 @@ use crate::{Error, Result};
 /// Training rows and test rows, by index.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Split {
-    /// Training rows in drawing order: the classes alternate, and the rows of each class are shuffled. A smaller training set is therefore a prefix of a
-    /// larger one; see [`at_most`](Split::at_most).
+    /// Training rows in drawing order: the classes alternate, and the rows of each class are shuffled. A smaller training set is therefore a prefix of a larger
+    /// one.
     pub train: Vec<usize>,
     /// Test rows, ascending.
     pub test: Vec<usize>,
@@ -170,7 +170,7 @@ pub fn group_hold_out(
 /// Groups are assigned in random order, larger groups first, to the fold with the fewest rows so far.
 ///
 /// # Errors
-/// If k is below 2, there are fewer than k groups, the numbers of groups and labels differ, or a class has no training or no test row in some fold.
+/// If k is below 2, there are fewer than k groups, or the numbers of groups and labels differ. If a class has no training or no test row in some fold.
 pub fn group_k_fold(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,

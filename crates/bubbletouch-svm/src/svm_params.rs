@@ -28,7 +28,7 @@ pub enum Solver {
     /// Sequential minimal optimisation on shared Gram matrices.
     #[default]
     Smo,
-    /// Dual coordinate descent for the linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem); see [`linear_svm`](crate::linear_svm).
+    /// Dual coordinate descent for the linear kernel and one-vs-rest, with a regularised bias (LIBLINEAR's problem).
     CoordinateDescent,
 }
 
@@ -49,16 +49,14 @@ pub struct SvmParams {
     /// Strategy that combines binary classifiers into a multi-class classifier.
     pub multiclass: Multiclass,
     /// Penalty C > 0 per unit of margin violation. With a larger C, the training rows are fitted more closely, and training takes longer. The solver of a
-    /// binary
-    /// problem stops after 10 million iterations, or 100 per row if that is more.
+    /// binary problem stops after 10 million iterations, or 100 per row if that is more.
     pub c: f64,
     /// Stopping tolerance, above 0: the largest violation of the optimality (KKT) conditions, in units of the decision value. LIBSVM's default is 1e-3.
     pub tolerance: f64,
     /// Solver of the binary problems.
     pub solver: Solver,
     /// Maximum size of the kernel values in memory at one time, bytes. If the kernel values do not fit, rows are computed on demand and the most recent rows
-    /// are
-    /// cached. Training is then slower, with equal solutions.
+    /// are cached. Training is then slower, with equal solutions.
     pub memory_bytes: usize,
 }
 
@@ -90,19 +88,18 @@ impl SvmParams {
     /// The binary problems are in ascending order of classes: for one-vs-one (0, 1), (0, 2), …, (1, 2), …
     ///
     /// # Errors
-    /// If C, the tolerance or a kernel parameter is out of range, or the [`Solver`] does not support the parameters. If the data are empty, a feature is NaN or
-    /// infinite (the error names row and column), the number of labels differs from the number of rows, or there is a single class.
+    /// If C, the tolerance or a kernel parameter is out of range, or the [`Solver`] does not support the parameters. If the data are empty, or a feature is NaN
+    /// or infinite (the error names row and column). If the number of labels differs from the number of rows, or there is a single class.
     pub fn train(&self, data: &Dataset) -> Result<SvmModel> {
         let mut models = self.train_path(data, &[self.c])?;
         Ok(models.swap_remove(0))
     }
 
     /// Trains one model for each C in `path` (instead of `self.c`) with shared kernel values. Returns the models in the order of `path`. The solver starts from
-    /// the
-    /// solution of the next smaller C.
+    /// the solution of the next smaller C.
     ///
     /// # Errors
-    /// Returns the errors of [`train`](Self::train).
+    /// If a parameter is out of range, or the data cannot be used for training.
     pub fn train_path(&self, data: &Dataset, path: &[f64]) -> Result<Vec<SvmModel>> {
         self.check(path)?;
         let statistics = RowStatistics::new(data.records.view())?;

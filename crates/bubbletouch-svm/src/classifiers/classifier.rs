@@ -41,7 +41,7 @@ pub enum Cost {
 const FOLDS: usize = 5;
 
 /// Kind of classifier and its parameters. Parameters that the kind does not use are ignored, for example γ of a linear SVM. Only SVMs and logistic regression
-/// use C ([`ClassifierKind::has_c`]); for other kinds, [`TrainedClassifier::c`] is `None`.
+/// use C.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classifier {
     /// Kind of classifier.
@@ -60,7 +60,7 @@ pub struct Classifier {
     pub coef0: f64,
     /// Degree of the polynomial kernel, 1 to 20.
     pub degree: u32,
-    /// Stopping tolerance of the solver, above 0; see [`SvmParams::tolerance`] and [`LinearSvmParams::tolerance`]. Logistic regression uses one tenth of it.
+    /// Stopping tolerance of the solver, above 0, in units of the decision value. Logistic regression uses one tenth of it.
     pub tolerance: f64,
     /// Number k of nearest neighbours, 1 to the number of training rows.
     pub n_neighbours: usize,
@@ -68,7 +68,7 @@ pub struct Classifier {
     pub n_trees: usize,
     /// Maximum depth of the trees of a random forest, at least 1; with `None`, trees grow until their leaves are pure.
     pub max_depth: Option<usize>,
-    /// Maximum size of the kernel values that an SVM's solver keeps in memory, bytes; see [`SvmParams::memory_bytes`].
+    /// Maximum size of the kernel values that an SVM's solver keeps in memory, bytes.
     pub memory_bytes: usize,
 }
 
@@ -113,7 +113,7 @@ impl Classifier {
     /// may, for example, keep groups apart. The scaling is fitted to all training rows, without their labels. Other random draws use `seed`.
     ///
     /// # Errors
-    /// If a parameter is out of range, or the training of the kind or [`choose`](Self::choose) rejects the data.
+    /// If a parameter is out of range, the candidates or folds are invalid, or the data cannot be used for training.
     pub fn train_validated(
         &self,
         training: &Dataset,
@@ -134,7 +134,7 @@ impl Classifier {
         }
     }
 
-    /// Chooses the best candidate on folds of the training rows; see [`choose`].
+    /// Chooses the best candidate on folds of the training rows ([`choose`]).
     ///
     /// # Errors
     /// Returns the errors of [`choose`].
@@ -180,10 +180,10 @@ impl Classifier {
         self.train_with_c(training, c, None, seed)
     }
 
-    /// Trains one classifier per value of C, in the order of `path`. Kernel SVMs share one Gram matrix ([`SvmParams::train_path`]).
+    /// Trains one classifier per value of C, in the order of `path`. Kernel SVMs share one Gram matrix.
     ///
     /// # Errors
-    /// Returns the errors of [`train`](Self::train), or an error if the kind has no C.
+    /// If the kind has no C, a parameter is out of range, or the data cannot be used for training.
     pub fn train_path(
         &self,
         training: &Dataset,
@@ -299,7 +299,7 @@ impl Classifier {
 impl Fit<Array2<f64>, Array1<usize>, Error> for Classifier {
     type Object = TrainedClassifier;
 
-    /// Trains the classifier with the seed 0; see [`Classifier::train`].
+    /// Trains the classifier with the random seed 0.
     fn fit(&self, training: &Dataset) -> Result<TrainedClassifier> {
         self.train(training, &0_u64)
     }

@@ -1,7 +1,7 @@
 //! k-nearest-neighbours classifier: the k training rows with the smallest Euclidean distances vote for their classes.
 //!
 //! **Ties.** If training rows have equal distances, the row with the lower index is the nearer one. If classes have equal votes, the lower label is predicted.
-//! Both rules equal scikit-learn's.
+//! The two rules equal scikit-learn's.
 //!
 //! Distances are computed by one matrix product per block, `|a|² + |b|² − 2 a·b`, which is inaccurate for close rows. The product therefore only selects
 //! candidates: all rows that can be among the k nearest within the rounding error. The distances of the candidates are recomputed by `Σ (a − b)²`, so the
@@ -35,8 +35,8 @@ impl KNearest {
     /// Stores the labelled training rows; `n_neighbours` of them vote on each prediction.
     ///
     /// # Errors
-    /// If `n_neighbours` is not in 1 to the number of rows, the data are empty, a feature is NaN, infinite or too large to square, the number of labels
-    /// differs from the number of rows, or there is a single class.
+    /// If `n_neighbours` is not in 1 to the number of rows. If the data are empty, or a feature is NaN, infinite or too large to square. If the number of
+    /// labels differs from the number of rows, or there is a single class.
     pub fn train(data: &Dataset, n_neighbours: usize) -> Result<Self> {
         let classes = checked_classes(data)?;
         let n_rows = data.records.nrows();

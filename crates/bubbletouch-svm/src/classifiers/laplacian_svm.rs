@@ -1,4 +1,4 @@
-//! Soft-margin SVM with a Laplacian kernel; see the [crate documentation](crate).
+//! Soft-margin SVM with a Laplacian kernel ([crate documentation](crate)).
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::kernel::Kernel;

@@ -1,4 +1,4 @@
-//! Linear soft-margin SVM; see the [crate documentation](crate), and [`crate::linear_svm`] for coordinate descent.
+//! Linear soft-margin SVM, trained by SMO or by [coordinate descent](crate::linear_svm).
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::kernel::Kernel;

@@ -57,8 +57,8 @@ impl LogisticParams {
     /// Trains the logistic regression on labelled rows. The result is deterministic.
     ///
     /// # Errors
-    /// If C or the tolerance is out of range, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or there
-    /// is a single class.
+    /// If C or the tolerance is out of range, the data are empty, or a feature is NaN or infinite. If the number of labels differs from the number of rows, or
+    /// there is a single class.
     pub fn train(&self, data: &Dataset) -> Result<Logistic> {
         for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
             if !(value > 0.0 && value.is_finite()) {

@@ -29,8 +29,8 @@ impl NaiveBayes {
     /// Estimates the means and variances of all features per class from labelled rows.
     ///
     /// # Errors
-    /// If the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, there is a single class, or all features
-    /// are constant (no variance for smoothing).
+    /// If the data are empty, or a feature is NaN or infinite. If the number of labels differs from the number of rows, or there is a single class. If all
+    /// features are constant (no variance for smoothing).
     pub fn train(data: &Dataset) -> Result<Self> {
         let classes = checked_classes(data)?;
         let is_constant = |column: ArrayView1<f64>| column.iter().all(|x| *x == column[0]);

@@ -2,7 +2,7 @@
 //! with the class fractions of their leaves, as in scikit-learn.
 //!
 //! Differs from linfa-ensemble 0.8.1 for three reasons. Its trees (linfa-trees 0.8.1) sum impurities in f32 in the order of a `HashMap`, so two models trained
-//! on equal rows differ. It breaks ties of votes in the order of a `HashMap`. It draws features once per tree instead of once per node.
+//! on equal rows differ. linfa-ensemble breaks ties of votes in the order of a `HashMap`, and draws features once per tree instead of once per node.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array2, ArrayView2};
@@ -29,7 +29,7 @@ impl RandomForest {
     /// larger forest contains the trees of a smaller forest.
     ///
     /// # Errors
-    /// If there are no trees, the depth is 0, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of rows, or
+    /// If there are no trees, the depth is 0, the data are empty, or a feature is NaN or infinite. If the number of labels differs from the number of rows, or
     /// there is a single class.
     pub fn train(
         data: &Dataset,

@@ -1,4 +1,4 @@
-//! Soft-margin SVM with a Gaussian kernel; see the [crate documentation](crate).
+//! Soft-margin SVM with a Gaussian kernel ([crate documentation](crate)).
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use crate::kernel::Kernel;

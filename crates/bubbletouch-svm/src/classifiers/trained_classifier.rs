@@ -70,8 +70,8 @@ impl TrainedClassifier {
         self.model.labels(scaled.view())
     }
 
-    /// Returns the scores (n_rows × n_scores) of unscaled features; [`labels_of_scores`](Self::labels_of_scores) converts them to labels. Scores are
-    /// additive: the sum of the scores of several touches of one object is their joint score.
+    /// Returns the scores (n_rows × n_scores) of unscaled features. Scores are additive: the sum of the scores of several touches of one object is their joint
+    /// score.
     ///
     /// | classifier | score |
     /// |---|---|
@@ -81,7 +81,7 @@ impl TrainedClassifier {
     /// | k nearest neighbours, tree, forest | `ln((v_k + 1) / (Σ v + n_classes))`, where v are the votes or the rows of the leaf; finite without votes |
     ///
     /// # Errors
-    /// Returns the errors of [`labels`](Self::labels).
+    /// If the number of columns differs from training, or a feature is NaN or infinite.
     pub fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>> {
         let scaled = self.scaling.apply(features)?;
         match &self.model {
@@ -113,7 +113,7 @@ impl TrainedClassifier {
         self.model.n_capped()
     }
 
-    /// Returns the trained kernel SVM; `None` for other kinds. The SVM expects scaled features, see [`scaling`](Self::scaling).
+    /// Returns the trained kernel SVM; `None` for other kinds. The SVM expects scaled features.
     pub fn svm(&self) -> Option<&SvmModel> {
         match &self.model {
             Model::Svm(model) => Some(model),
@@ -131,7 +131,7 @@ impl<D: Data<Elem = f64>> PredictInplace<ArrayBase<D, Ix2>, Array1<usize>> for T
     /// Writes the predicted labels into `targets`.
     ///
     /// # Panics
-    /// If the features are invalid or `targets` has a wrong length; [`TrainedClassifier::labels`] returns an error instead.
+    /// If the features are invalid or `targets` has a wrong length. The method `labels` returns an error instead.
     fn predict_inplace(&self, features: &ArrayBase<D, Ix2>, targets: &mut Array1<usize>) {
         match self.labels(features.view()) {
             Ok(labels) => targets.assign(&labels),

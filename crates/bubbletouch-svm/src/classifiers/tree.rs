@@ -1,7 +1,8 @@
 //! Classification trees of a random forest [Breiman et al. 1984]: Gini impurity, binary splits `x_f ≤ threshold`, no pruning.
 //!
-//! A node is divided by the split with the lowest impurity, i.e. the largest `Σ_k l_k² / l + Σ_k r_k² / r` (l_k, r_k: rows of class k on the left and right).
-//! If splits are equal, the first visited feature and its lowest threshold are chosen. Thresholds are midpoints between values that occur in the node.
+//! A node is divided by the split with the lowest impurity, i.e. the largest `Σ_k l_k² / l + Σ_k r_k² / r`. Here l_k and r_k are the numbers of rows of class k
+//! on the left and right. If splits are equal, the first visited feature and its lowest threshold are chosen. Thresholds are midpoints between values that
+//! occur in the node.
 //!
 //! Differs from linfa-trees 0.8.1, which sums impurities in f32 in the order of a `HashMap`. Two trees grown on equal rows can differ there (2,000 rows, 20
 //! classes: 3 of 500 predictions). linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and feature at every node.
@@ -273,8 +274,8 @@ mod tests {
         (features, (0..60).map(|i| i * i / 7 % 3).collect())
     }
 
-    /// The labels equal those of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally good, so scikit-learn's
-    /// tree does not depend on its `random_state`.
+    /// The labels equal the labels of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally good, so
+    /// scikit-learn's tree does not depend on its `random_state`.
     #[test]
     fn a_shallow_tree_is_scikit_learns() {
         let (features, label) = waves();

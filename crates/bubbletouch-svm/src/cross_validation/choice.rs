@@ -19,7 +19,7 @@ use crate::{Error, Result};
 pub struct Candidates {
     /// Candidate values of C; at least one.
     pub c: Vec<f64>,
-    /// Candidate values of γ, as multiples of the kernel's γ; if empty, the kernel's γ is used. With [`Gamma::Scale`], the kernel's γ is computed from the
+    /// Candidate values of γ, as multiples of the kernel's γ; if empty, the kernel's γ is used. With `Gamma::Scale`, the kernel's γ is computed from the
     /// training rows. A linear kernel has no γ.
     pub gamma_scales: Vec<f64>,
 }
@@ -53,8 +53,8 @@ pub struct Chosen {
 /// matrix of products. Duplicated candidates count once.
 ///
 /// # Errors
-/// If there are no candidates or folds, a candidate is out of range, or a fold contains a row beyond the training rows or a single class. If
-/// [`SvmParams::train`] returns an error, or the matrix exceeds the memory limit.
+/// If there are no candidates or folds, a candidate is out of range, or a fold contains a row beyond the training rows or a single class. If a model cannot be
+/// trained, or the matrix exceeds the memory limit.
 pub fn choose(
     params: &SvmParams,
     training: &Dataset,
@@ -84,8 +84,8 @@ pub fn choose(
     Ok(Chosen::new(tried.collect(), n_capped))
 }
 
-/// Chooses C like [`choose`], for any classifier. `train` fits a classifier to rows with a given C; it returns a prediction function and the number of capped
-/// solver runs.
+/// Chooses C by cross-validation for any classifier. `train` fits a classifier to rows with a given C; it returns a prediction function and the number of
+/// capped solver runs.
 ///
 /// # Errors
 /// Returns the errors of [`choose`] and of `train`.

@@ -34,8 +34,8 @@ pub(crate) struct FoldSolution {
 }
 
 impl FoldPath {
-    /// Solves a pair of classes for all folds and passes each solved fold to `told`. `folds` contains the labels of each fold, one per row of the Gram matrix;
-    /// the rows of `positive` are positive.
+    /// Solves a pair of classes for all folds and passes each solved fold to a callback. `folds` contains the labels of each fold, one per row of the Gram
+    /// matrix; the rows of `positive` are positive.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
         (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
@@ -63,7 +63,7 @@ impl FoldPath {
         }
     }
 
-    /// Solves one class against all others for all folds and passes each solved fold to `told`. If a class is not separable from the rest, several decision
+    /// Solves one class against all others for all folds and passes each solved fold to a callback. If a class is not separable from the rest, several decision
     /// values can be equal within the tolerance. The starting point then determines the predicted class, so each fold starts from zero, as in training.
     pub fn of_class<T: SolverScalar>(
         gram: &mut Dense<T>,

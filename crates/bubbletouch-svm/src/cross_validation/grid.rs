@@ -1,9 +1,8 @@
 //! Cross-validation of a whole grid of C and kernels on one matrix of products.
 //!
-//! All folds and candidates share the products of rows. The kernel values of a pair of classes are computed once for all folds, which [hold out
-//! rows](crate::cross_validation::fold_path). For each C, the solver starts from the solution of the previous C. For the first C, a pair starts with all
-//! multipliers at their bounds, or from [the previous fold](super::alpha_seeding) if that start is closer. Validation rows are
-//! [scored](super::validation_scorer) by the problems of their own class first.
+//! All folds and candidates share the products of rows. The kernel values of a pair of classes are computed once for all folds (`fold_path`). For each C, the
+//! solver starts from the solution of the previous C. For the first C, a pair starts with all multipliers at their bounds, or from the previous fold
+//! (`alpha_seeding`) if that start is closer. Validation rows are scored by the problems of their own class first (`validation_scorer`).
 
 use ndarray::{Array1, Array2};
 
@@ -44,8 +43,8 @@ struct Fold {
 }
 
 impl<T: SolverScalar> Grid<'_, T> {
-    /// Returns the number of correctly classified validation rows over all folds, per kernel and C (kernels.len() × path.len()), and the number of solver runs
-    /// that stopped at the iteration cap.
+    /// Returns the number of correctly classified validation rows over all folds, per kernel and C (kernels.len() × path.len()). Also returns the number of
+    /// solver runs that stopped at the iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
         // The kernels differ only in γ, so they share the pairwise numbers.

@@ -1,7 +1,7 @@
 //! Scoring of a fold: determines which validation rows are classified correctly.
 //!
 //! A row's own class is scored as soon as the problems of this class are solved. If the class wins all its pairs, the row is classified correctly, because
-//! every other class has lost a pair. The remaining rows are classified by the votes of all problems, with the matrix products of [prediction](crate::predict).
+//! every other class has lost a pair. The remaining rows are classified by the votes of all problems, with the matrix products of the module `predict`.
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ const ROWS_AT_ONCE: usize = 512;
 /// Scorer of a fold's validation rows; receives the binary problems as they are solved.
 pub(crate) struct ValidationScorer<T> {
     multiclass: Multiclass,
-    /// All binary problems as pairs of class positions, in the order of [`Multiclass::problems`].
+    /// All binary problems as pairs of class positions, in the order of the multi-class strategy.
     problems: Vec<(usize, Option<usize>)>,
     /// Whether each class has training rows.
     is_class: Vec<bool>,

@@ -83,7 +83,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         self.part((&self.own, self.rows.start), rows, columns)
     }
 
-    /// Selects kernel values of another group's rows with this group's rows from the result of [`with`](Self::with).
+    /// Selects kernel values of another group's rows with this group's rows from the result of `with`.
     pub fn part_with<'v>(
         &self,
         other: &Self,

@@ -36,7 +36,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self::of_rows_and(rows, centre, |_| ())
     }
 
-    /// Creates centred rows from slices, and calls `told` with the [`CenteredRow`] of each row.
+    /// Creates centred rows from slices, and passes the [`CenteredRow`] of each row to a callback.
     pub fn of_rows_and<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
@@ -186,7 +186,7 @@ impl<T: Scalar> PointsView<'_, T> {
         values
     }
 
-    /// Converts [pairwise products](KernelFunction::pairwise) with other rows to kernel values, in place.
+    /// Converts pairwise products (or L1 distances) with other rows to kernel values, in place.
     pub fn apply(
         &self,
         mut pairwise: ArrayViewMut2<T>,

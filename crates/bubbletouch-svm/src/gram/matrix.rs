@@ -16,8 +16,7 @@ pub(crate) trait Gram<T> {
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
     /// Returns row i and the diagonal, both padded to whole lanes.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
-    /// Returns the inverse curvature `1 / (K_ii + K_jj − 2 K_ij)` for each j, padded like a row. The curvature is at least
-    /// [`smallest_curvature`](Self::smallest_curvature).
+    /// Returns the inverse curvature `1 / (K_ii + K_jj − 2 K_ij)` for each j, with the padding of a row. The curvature is at least the minimum curvature.
     fn inverse_curvatures(&mut self, i: usize) -> &[T];
     /// Returns the minimum curvature of a pair of variables.
     fn smallest_curvature(&self) -> T;

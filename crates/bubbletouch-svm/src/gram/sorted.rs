@@ -148,7 +148,7 @@ impl<T: Scalar> Sorted<T> {
             )
     }
 
-    /// Returns the change of the offset ρ that is caused by centring the rows, for the given coefficients. It is 0 unless the kernel is linear.
+    /// Returns the change of the offset ρ that is caused by centring the rows, for the given coefficients. The change is 0 unless the kernel is linear.
     pub fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
         if self.centre_products.is_empty() {
             return 0.0;

@@ -1,7 +1,7 @@
 //! Inner products and weighted sums of a few selected rows of a large matrix.
 //!
 //! A matrix product first copies its rows into panels. For a few dozen rows with many features, the copy takes as long as the multiplications. If the
-//! processor supports it, rows are therefore multiplied [without copying](crate::linalg::row_tiles).
+//! processor supports it, rows are therefore multiplied without copying (`row_tiles`).
 
 use ndarray::Array2;
 

@@ -103,7 +103,7 @@ mod avx512 {
         }
     }
 
-    /// Returns the inner products of one row with a few others, bitwise equal to those of a [`tile`].
+    /// Returns the inner products of one row with a few others, bitwise equal to the products of a [`tile`].
     #[target_feature(enable = "avx512f")]
     fn row([left]: [&[f32]; 1], right: [&[f32]; N]) -> [f32; N] {
         let n = left.len();
@@ -223,7 +223,7 @@ mod avx2 {
     const LANES: usize = 8;
     /// Number of rows multiplied with [`M`] others in one tile; the sums and the loaded values fill 16 vector registers.
     const N: usize = 4;
-    /// Number of other rows per tile; see [`N`].
+    /// Number of other rows per tile, chosen together with [`N`].
     const M: usize = 3;
 
     #[target_feature(enable = "avx2,fma")]

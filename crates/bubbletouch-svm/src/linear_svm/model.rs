@@ -19,7 +19,7 @@ pub struct Convergence {
     pub dual: f64,
     /// Number of passes over the rows.
     pub n_passes: usize,
-    /// Whether the solver stopped at [`LinearSvmParams::max_passes`] before reaching its tolerance.
+    /// Whether the solver stopped at the maximum number of passes before reaching its tolerance.
     pub is_capped: bool,
 }
 
@@ -35,7 +35,7 @@ impl LinearSvmParams {
     /// Trains the linear SVM on labelled rows. The rows are visited in an order drawn from `seed`.
     ///
     /// # Errors
-    /// If C, the tolerance or the cap is out of range; if the data are empty, or a feature is NaN, infinite or too large to square; if the number of labels
+    /// If C, the tolerance or the cap is out of range. If the data are empty, or a feature is NaN, infinite or too large to square. If the number of labels
     /// differs from the number of rows, or there is a single class.
     pub fn train(&self, data: &Dataset, seed: &dyn Streams) -> Result<LinearSvm> {
         self.check()?;

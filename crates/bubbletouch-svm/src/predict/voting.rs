@@ -77,7 +77,7 @@ impl VoteCounter {
     }
 
     /// Adds the values of one binary problem, minus ρ; a positive value is a vote for the positive class. The problem is given by the positions of its positive
-    /// and negative class. Problems must be added in the order of [`Multiclass::problems`].
+    /// and negative class. Problems must be added in the order of all problems of the multi-class strategy.
     pub fn take<T: Scalar>(
         &mut self,
         (positive, negative): (usize, Option<usize>),

@@ -7,6 +7,6 @@ pub(crate) const FEW_DIMENSIONS: usize = 64;
 /// the tiles of matrix products are incomplete.
 pub(crate) const CLASSES_AT_ONCE: usize = 8;
 
-/// Number of other classes per block, see [`CLASSES_AT_ONCE`]. If larger, their rows near margins exceed the second-level cache; if smaller, there are more
-/// blocks.
+/// Number of other classes per block, with which [`CLASSES_AT_ONCE`] classes are paired. If larger, their rows near margins exceed the second-level cache; if
+/// smaller, there are more blocks.
 pub(crate) const OTHERS_AT_ONCE: usize = 4;

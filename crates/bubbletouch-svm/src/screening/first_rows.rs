@@ -1,4 +1,4 @@
-//! Selection of the first rows on which pairs of classes are solved, for [screening](crate::screening::near_margin).
+//! Selection of the first rows on which pairs of classes are solved, for screening (`near_margin`).
 //!
 //! The rows are selected in a low-dimensional subspace spanned by some of the rows. The pairs are solved there by a few rounds of screening with a rough
 //! tolerance. These rounds start with the rows that are nearest to the other class along the line between the class means.

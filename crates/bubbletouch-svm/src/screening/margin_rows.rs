@@ -14,14 +14,15 @@ pub(crate) type Sides = [Vec<usize>; 2];
 /// Row of a pair of classes: its class (0 or 1) and its number within the class.
 pub(crate) type RowOfPair = (usize, usize);
 
-/// Row of a pair of classes, ranked by a distance and then by its position. Both are packed into one number, because rows are compared more often than read.
+/// Row of a pair of classes, ranked by a distance and then by its position. Distance and position are packed into one number, because rows are compared more
+/// often than read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct RankedRow(u128);
 
 impl RankedRow {
     /// Creates a ranked row with the given distance.
     pub fn new(beyond: f64, (side, row): RowOfPair) -> Self {
-        // The bits are ordered like the numbers: the bits of negative numbers are inverted, and positive numbers follow.
+        // The bits have the order of the numbers: the bits of negative numbers are inverted, and positive numbers follow.
         let bits = beyond.to_bits();
         let turned = match bits >> 63 {
             0 => bits | 1 << 63,

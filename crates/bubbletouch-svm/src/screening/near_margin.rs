@@ -5,7 +5,7 @@
 //! added, and the pair is solved again from the last solution. At the end, every row satisfies the conditions, so the solution solves the whole problem. The
 //! pairs of a block share rounds: one matrix product multiplies all hyperplanes of a round with the rows of a class.
 //!
-//! The [first rows](crate::screening::first_rows) are selected in a low-dimensional subspace.
+//! The first rows are selected in a low-dimensional subspace (`first_rows`).
 
 use std::ops::Range;
 
@@ -109,14 +109,14 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         all
     }
 
-    /// Returns the maximum memory of the screening, bytes. It includes the products if all rows of all pairs are active, the hyperplanes of a round, the rows
-    /// of a pair, the directions of the subspace, and all projected rows.
+    /// Returns the maximum memory of the screening, bytes: the products of all pairs if all their rows are active, the hyperplanes of a round, and the
+    /// projected rows.
     pub fn most_bytes(sorted: &Sorted<T>) -> usize {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
         let largest = sizes().max().unwrap_or(0);
         let n_pairs = CLASSES_AT_ONCE * OTHERS_AT_ONCE;
-        // Both orders of each pair.
+        // Each pair is counted in both orders.
         let across = n_pairs * 2 * largest.pow(2);
         let normals = n_pairs * (sorted.centre().len() + 2 * largest);
         let few = sorted.points().len() * FEW_DIMENSIONS;

@@ -1,5 +1,5 @@
-//! Two passes of the solver over all variables, written for automatic vectorisation. For f32, there are [explicit vector instructions](super::passes_512) if
-//! the processor supports them.
+//! Two passes of the solver over all variables, written for automatic vectorisation. For f32, there are explicit vector instructions (`passes_512`) if the
+//! processor supports them.
 //!
 //! The length of every slice is a multiple of [`LANES`] ([`padded`]). Each lane has its own extreme value. The position of the overall extreme is searched
 //! afterwards; if values are equal, the lowest index is chosen, so results do not depend on the processor.
@@ -66,7 +66,7 @@ fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
     0
 }
 
-/// Returns the next variable to raise: the first index with the largest `f + up`. Returns `None` if no variable can be raised.
+/// Returns the next variable to increase: the first index with the largest `f + up`. Returns `None` if no variable can increase.
 #[inline(always)]
 pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     let up = &up[..f.len()];
@@ -78,7 +78,7 @@ pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     }
 }
 
-/// Updates f to `f − step (row_i − row_j)` in place, and returns the next variable to raise.
+/// Updates f to `f − step (row_i − row_j)` in place, and returns the next variable to increase.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn step_along<T: Scalar>(
     f: &mut [T],
@@ -94,16 +94,16 @@ pub(crate) fn step_along<T: Scalar>(
     select_up(f, up)
 }
 
-/// Result of the second pass: the variable to lower, and the violation of the optimality conditions.
+/// Result of the second pass: the variable to decrease, and the violation of the optimality conditions.
 pub(crate) struct Down<T> {
-    /// Variable to lower together with `i`: the one with the largest second-order gain of the dual objective [Fan, Chen, Lin 2005]. `None` if no pair violates
-    /// the optimality conditions.
+    /// Variable to decrease while `i` increases: the one with the largest second-order gain of the dual objective [Fan, Chen, Lin 2005]. `None` if no pair
+    /// violates the optimality conditions.
     pub j: Option<usize>,
-    /// Violation of the optimality conditions: the largest f of variables that can be raised minus the smallest f of variables that can be lowered.
+    /// Violation of the optimality conditions: the largest f of variables that can increase minus the smallest f of variables that can decrease.
     pub violation: T,
 }
 
-/// Returns the variable to lower when variable i, with f = `highest`, is raised. `low` is 0 for variables that can be lowered and −∞ for others. `inverses`
+/// Returns the variable to decrease when variable i, with f = `highest`, increases. `low` is 0 for variables that can decrease and −∞ for others. `inverses`
 /// contains the inverse curvatures for i; `gains` is scratch memory.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn select_down<T: Scalar>(

@@ -1,4 +1,4 @@
-//! Passes of the solver over f32 variables, sixteen values at a time. The results equal those of [the generic passes](super::passes), bit by bit.
+//! Passes of the solver over f32 variables, sixteen values at a time. The results equal the results of the generic passes, bit by bit.
 
 use std::arch::x86_64::{
     __m512, __m512i, _CMP_EQ_OQ, _CMP_GT_OQ, _mm512_add_epi32, _mm512_add_ps, _mm512_cmp_ps_mask,
@@ -14,8 +14,7 @@ use crate::gram::matrix::Gram;
 use crate::linalg::lanes::LANES;
 use crate::linalg::vector_registers::{load, store};
 
-/// Runs pairwise steps like [`run_plain`](super::iterations::run_plain), with explicit vector instructions. The passes are closures, because function calls
-/// would take as long as a few of their steps.
+/// Runs pairwise steps with explicit vector instructions. The passes are closures, because function calls would take as long as a few of their steps.
 #[target_feature(enable = "avx512f")]
 pub(crate) fn run<G: Gram<f32>>(
     gram: &mut G,
@@ -23,7 +22,7 @@ pub(crate) fn run<G: Gram<f32>>(
     search: &mut Search,
     first_look: u64,
 ) -> Stop {
-    // Equals `passes::select_down`.
+    // Equals the generic `select_down`.
     let select_down =
         |(f, low): (&[f32], &[f32]), inverses: &[f32], highest: f32, _: &mut [f32]| {
             let f = lanes(f);
@@ -46,7 +45,7 @@ pub(crate) fn run<G: Gram<f32>>(
                 violation: _mm512_reduce_max_ps(violation),
             }
         };
-    // Equals `passes::step_along`.
+    // Equals the generic `step_along`.
     let step_along = |f: &mut [f32], (row_i, row_j): (&[f32], &[f32]), step: f32, up: &[f32]| {
         let f = f.as_chunks_mut::<LANES>().0;
         let n = f.len();

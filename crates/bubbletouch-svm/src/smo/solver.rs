@@ -27,7 +27,7 @@ impl<G> Smo<'_, G> {
         self.solve_or_from(c, tolerance, |_| None)
     }
 
-    /// Solves the problem like [`solve`](Self::solve), or from another feasible start (β and its f) if that start has a higher objective.
+    /// Solves the problem from the last solution, or from another feasible start (β and its f) if that start has a higher objective.
     pub fn solve_or_from<T: SolverScalar>(
         &mut self,
         c: f64,
@@ -45,7 +45,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Solves the problem like [`solve_or_from`](Self::solve_or_from), but returns only the state of convergence.
+    /// Solves the problem from the better of two starts, and returns only the state of convergence.
     pub fn reach<T: SolverScalar>(
         &mut self,
         c: f64,

@@ -19,7 +19,7 @@ fn mark<T: Scalar>(can_move: bool) -> T {
     }
 }
 
-/// Marks for every variable whether β can be raised and whether it can be lowered.
+/// Marks for every variable whether β can increase and whether it can decrease.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
     let n = beta.len();
@@ -46,9 +46,9 @@ pub(crate) struct Variables<T> {
     c: f64,
     /// Gradient `f_i = y_i − (Kβ)_i` of the dual objective along β_i.
     pub f: Vec<T>,
-    /// Marks of the variables that can be raised: 0 if β_i can be raised, otherwise −∞.
+    /// Marks of the variables that can increase: 0 if β_i can increase, otherwise −∞.
     pub up: Vec<T>,
-    /// Marks of the variables that can be lowered: 0 if β_i can be lowered, otherwise −∞.
+    /// Marks of the variables that can decrease: 0 if β_i can decrease, otherwise −∞.
     pub low: Vec<T>,
     /// Scratch memory of the second pass.
     pub gains: Vec<T>,
@@ -94,7 +94,7 @@ impl<T: Scalar> Variables<T> {
         }
     }
 
-    /// Raises β_i and lowers β_j by an equal amount, to the optimum along this line or to the first bound. Returns the amount.
+    /// Increases β_i and decreases β_j by an equal amount, to the optimum along this line or to the first bound. Returns the amount.
     #[inline(always)]
     pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
         let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
@@ -117,8 +117,8 @@ impl<T: Scalar> Variables<T> {
         step
     }
 
-    /// Returns the variables that may still move. `highest` is the largest f of variables that can be raised, `lowest` the smallest f of variables that can
-    /// be lowered. The other variables are at a bound, and their gradient pushes them against it [Joachims 1999].
+    /// Returns the variables that may still move. `highest` is the largest f of variables that can increase, `lowest` the smallest f of variables that can
+    /// decrease. The other variables are at a bound, and their gradient pushes them against it [Joachims 1999].
     pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
         (0..self.beta.len())
             .filter(|&i| {
@@ -135,7 +135,7 @@ impl<T: Scalar> Variables<T> {
     }
 }
 
-/// Returns the largest f of variables that can be raised and the smallest f of variables that can be lowered, in f64, for any feasible β.
+/// Returns the largest f of variables that can increase and the smallest f of variables that can decrease, in f64, for any feasible β.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     // Each lane has its own extreme; the lanes are combined by halving.

@@ -82,7 +82,7 @@ fn at_a_trillion_a_problem_is_optimal_or_counted_and_its_bounds_enclose_the_opti
                 if name == &"lattice"
                     && (kernel, multiclass) == (Kernel::Linear, Multiclass::OneVsRest)
                 {
-                    // One-vs-rest problems need ten million steps each, like those of pairs.
+                    // One-vs-rest problems need ten million steps each, as pairs do.
                     continue;
                 }
                 let params = SvmParams {

@@ -1,9 +1,9 @@
 //! Active-set method: solution of a binary problem by linear equations [Scheinberg 2006].
 //!
-//! Pairwise steps approach the optimum quickly, but may need a million steps to reach it. If the variables at bounds are known, the optimum is the solution of
-//! linear equations: f is equal on all free variables, and the sum of their changes is 0. If the solution exceeds a bound, the step ends at the bound, and the
-//! variable is removed from the free variables. Otherwise, the bound variable with the largest violation of the optimality conditions becomes free. The method
-//! ends when no variable violates the conditions. Few features imply few free variables, so [their equations](super::active_set::free_factor) are small.
+//! Pairwise steps approach the optimum quickly, but may need a million steps to reach it. If the variables at bounds are known, the optimum solves linear
+//! equations: f is equal on all free variables, and their changes sum to 0. If the solution exceeds a bound, the step ends at the bound, and the variable is
+//! removed from the free variables. Otherwise, the bound variable with the largest violation of the optimality conditions becomes free. The method ends when no
+//! variable violates the conditions. Few features imply few free variables, so their equations (`free_factor`) are small.
 
 mod free_factor;
 
