@@ -7,8 +7,8 @@
 //! measurements. Nothing is removed if u = 0 (scrambled Hadamard measurements without a block's mean). A
 //! single measurement with u ≠ 0 becomes zero.
 //!
-//! Differs from centring the frame before measuring it, y − mean(x) u, because the mean of the frame is not known from its
-//! measurements; both have equal invariance.
+//! The result differs from centring the frame before measuring it, y − mean(x) u, because the mean of the frame is not known from its measurements; both have
+//! equal invariance.
 //!
 //! **Unit norm.** All F·m values of a touch are divided by their Euclidean norm, so features do not depend on the stiffness of the
 //! skin. Ratios between the frames of a touch are preserved. A touch of zeros stays zero.

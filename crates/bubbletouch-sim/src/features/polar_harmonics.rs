@@ -67,7 +67,7 @@ mod tests {
     use super::super::tests::features_of;
     use super::*;
 
-    /// Compares the harmonics of a plane with the exact ones. A plane δ = 1 + 0.1 (x − x̄) over a disc has harmonic 0 of 1 and harmonic 1 of 0.05 r. Bilinear
+    /// Compares the harmonics of a plane with the exact ones. For a plane δ = 1 + 0.1 (x − x̄) over a disc, harmonic 0 is 1 and harmonic 1 is 0.05 r. Bilinear
     /// interpolation is exact on planes.
     #[test]
     fn harmonics_of_a_plane_are_its_height_and_its_slope() {

@@ -81,7 +81,7 @@ impl Ball {
     /// ```
     ///
     /// so t decreases from `limit` until no such q exists. Returns `None` if the centre is beyond a wall thinner than the slack, and if the mesh represents a
-    /// surface.
+    /// surface without thickness.
     pub fn largest(
         target: &Target,
         foot: DVec3,

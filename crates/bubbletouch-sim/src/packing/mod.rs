@@ -40,7 +40,7 @@
 //! 2. `cover_surface`: chooses, cell by cell, few balls that cover all samples. A greedy choice is followed by a local search with row
 //!    weights \[RWLS\] (`set_cover`), which removes a fifth to a quarter of the spheres. The choice is repeated with other cells, with
 //!    balls beside the chosen ones, and with new samples where the proof found a gap.
-//! 3. Adds balls at the remaining gaps until there is none.
+//! 3. `cover_surface` adds balls at the remaining gaps until there is none.
 //!
 //! # How many spheres?
 //!

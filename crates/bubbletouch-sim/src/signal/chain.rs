@@ -144,7 +144,7 @@ impl Chain {
 
     /// Converts the deflections of a touch with a single frame to readings, in place.
     ///
-    /// Equivalent to `apply_recording` with one frame (metres, ny × nx, row after row) and no history.
+    /// The function is equivalent to `apply_recording` with one frame (metres, ny × nx, row after row) and no history.
     ///
     /// # Panics
     /// If the frame or the rates do not have one number per taxel.

@@ -21,7 +21,7 @@ pub struct Moment {
     pub time: f64,
 }
 
-/// Step of a `BodyReadout`, prepared for one patch. Acts on each taxel independently.
+/// Step of a `BodyReadout`, prepared for one patch. The step acts on each taxel independently.
 pub trait TaxelEffect: Debug + Send + Sync {
     /// Replaces the true values of the taxels in `chunk` by readings, in the unit of their patch.
     fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]);

@@ -1,7 +1,7 @@
 //! Presses of spheres on a spherical patch, in which a sphere covers one interval of each ring of taxels.
 //!
-//! The axis of every taxel passes through the centre. With t = c·n and Q = |c|² − S² the sphere therefore needs
-//! `δ = √(t² − Q) − (t − R)` for any taxel. The deflection is positive where t is above
+//! The axis of every taxel passes through the centre. With t = c·n and Q = |c|² − S² contact with the sphere therefore requires `δ = √(t² − Q) − (t − R)` for
+//! any taxel. The deflection is positive where t is above
 //!
 //! ```text
 //! √Q                if 0 ≤ Q ≤ R²: for smaller t the sphere misses the taxel's axis

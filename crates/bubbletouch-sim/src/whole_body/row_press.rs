@@ -1,8 +1,8 @@
 //! Presses of spheres on a patch of rows: first bundles of columns are selected, then rows.
 //!
-//! Computed in f64, although f32 roots would be 4.6 times as fast: the rounding of S² in f32 grows with the sphere. For 32 spheres of radius 45 mm that touch
-//! all of 64 × 64 taxels, the f32 error is 5e-9 m in a light press. Pressed to the sphere's centre, the error is 2e-7 m. The f32 error is 6e-7 m for a radius
-//! of 4 m, and up to 5e-5 m for 512 × 512 taxels. `cargo bench --bench precision` repeats the measurement.
+//! Deflections are computed in f64, although f32 roots would be 4.6 times as fast: the rounding of S² in f32 grows with the sphere. For 32 spheres of radius 45
+//! mm that touch all of 64 × 64 taxels, the f32 error is 5e-9 m in a light press. Pressed to the sphere's centre, the error is 2e-7 m. The f32 error is 6e-7 m
+//! for a radius of 4 m, and up to 5e-5 m for 512 × 512 taxels. `cargo bench --bench precision` repeats the measurement.
 
 use super::lanes::LANES;
 use super::object_press::Pushed;
@@ -12,8 +12,8 @@ use crate::contact::LanesBelow;
 use crate::contact::law::{beats, indent};
 use glam::DVec3;
 
-/// Maximum number of bundles for which a sphere counts as small. For a small sphere, testing whether it needs more than the present deflection takes as long as
-/// the root.
+/// Maximum number of bundles for which a sphere counts as small. For a small sphere, testing whether contact requires more than the present deflection takes as
+/// long as the root.
 const FEW: usize = 3;
 
 impl Pushed for RowPatch {

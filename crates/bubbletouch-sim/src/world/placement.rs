@@ -16,7 +16,7 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Half a turn about x: the patch's z points down. Written as constants, so that the rotation is exact.
+/// Half a turn about x: the patch's z points down. The components are constants, so that the rotation is exact.
 const FACING_DOWN: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
 
 /// Difference, metres or radians, below which two values count as one pose: far below the resolution of any skin and far above rounding. If larger, fine steps

@@ -18,7 +18,7 @@ pub struct Phase {
 /// Pose of a body over time: a start pose, then phases of constant velocity, then rest.
 ///
 /// Rotations are integrated exactly, `R(t) = exp(ω t) R(0)`.
-/// Differs from \[BT\]: the original adds ω × R at each step, so its matrices grow, and switches phases one step early.
+/// Differences from \[BT\]: the original adds ω × R at each step, so its matrices grow, and it switches phases one step early.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VelocityPlan {
     start: Pose,

@@ -1,7 +1,7 @@
 //! Equilibrium of free objects on taxels, tables, obstacles and each other.
 //!
 //! Without friction the forces of the taxels are −∇ of their elastic energy. Objects are therefore at rest where `E = Σ ½ k δ² − Σ m g·x` is stationary, and
-//! stable where E has a minimum \[BT\]. All objects form one problem with six unknowns each, since δ is the largest deflection that any of them needs. The
+//! stable where E has a minimum \[BT\]. All objects form one problem with six unknowns each, since δ is the largest deflection that any of them requires. The
 //! solver ([`EquilibriumSolver`]) minimises E from the initial poses by a trust-region Newton method with closed-form derivatives. The energy never increases,
 //! and the method leaves saddles because it follows negative curvature. If the energy has no minimum for an object, the object [escapes](Outcome::Escaped), and
 //! the others continue without it.

@@ -1,8 +1,8 @@
 //! Presses of a flat grid of equal taxels along its axis to a force.
 //!
-//! On a grid every taxel moves along the direction of travel t. Taxel i needs the deflection t − t_i, where t_i is the travel at which it begins to
-//! move. The total force `F(t) = k Σ min(s, max(0, t − t_i))` is continuous, piecewise linear and never decreases. One deep press
-//! therefore yields all t_i, from which the travel for a force follows.
+//! On a grid every taxel moves along the direction of travel t. Contact requires the deflection t − t_i of taxel i, where t_i is the travel at which it begins
+//! to move. The total force `F(t) = k Σ min(s, max(0, t − t_i))` is continuous, piecewise linear and never decreases. One deep press therefore yields all t_i,
+//! from which the travel for a force follows.
 
 use super::output_buffer::OutputBuffer;
 use super::placed_objects::TravelGoal;

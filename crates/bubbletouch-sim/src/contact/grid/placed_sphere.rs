@@ -20,7 +20,7 @@ pub(crate) struct PlacedSphere {
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Largest number of columns for which a sphere's footprint is treated as a square. If larger, taxels beside large spheres are computed needlessly; if smaller,
-/// the ends of short rows are.
+/// taxels at the ends of short rows are.
 const SQUARE: usize = 10;
 
 /// Transform from an object's frame to the patch frame, with which spheres are selected.

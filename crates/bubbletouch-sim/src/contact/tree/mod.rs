@@ -2,7 +2,7 @@
 //!
 //! | stage | input → output |
 //! |---|---|
-//! | `near_spheres` | a sphere and taxels → the deflections that they need |
+//! | `near_spheres` | a sphere and taxels → the deflections that contact requires |
 //! | `press` | objects and poses → deflections and contacts |
 //! | `path` | a direction → presses from step to step along it |
 //! | `approach` | a direction → first contact, and presses past it |

@@ -209,7 +209,7 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 ///
 /// Parts of objects behind the substrate of a taxel do not count for this taxel (rule in the module `contact`). An object below a forearm therefore does not
 /// press on its upper side. A part pushed far past the stroke is also behind the substrate; a press to a depth counts it because its path is known. One part
-/// determines each deflection: of parts with equal deflections the first object, and its first sphere.
+/// determines each deflection; if several parts require equal deflections, it is the first sphere of the first object.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};

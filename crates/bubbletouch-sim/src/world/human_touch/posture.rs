@@ -7,8 +7,8 @@ use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::FRAC_PI_2;
 
-/// Largest distance between the spheres of a hand and its surface, metres. If larger, a finger acts like a row of balls; if smaller, a frame costs more (10 to
-/// 30 µs for 100 spheres).
+/// Largest distance between the spheres of a hand and its surface, metres. If larger, a finger acts like a row of balls; if smaller, a frame takes longer (10
+/// to 30 µs for 100 spheres).
 const SURFACE_ERROR: f64 = 0.5e-3;
 
 /// Largest inclination of a hand against the skin, radians. If larger, a flat hand (which is rigid) touches only with the ball of the thumb or a finger.

@@ -11,7 +11,7 @@ use std::ops::RangeInclusive;
 pub struct TouchRanges {
     /// Length of the hand, metres; adults have 0.16 to 0.21 \[BK\].
     pub hand_length: RangeInclusive<f64>,
-    /// Numbers of touching fingers: 1 to 4 are fingertips, 5 is the flat hand. Ignored by shove (always the flat hand) and grab.
+    /// Numbers of touching fingers: 1 to 4 are fingertips, 5 is the flat hand. Shove, which always uses the flat hand, and grab ignore this list.
     pub fingers: Vec<usize>,
     /// Position of the touch along the arm's axis, metres from the middle.
     pub along: RangeInclusive<f64>,

@@ -144,8 +144,8 @@ impl Merging {
         self.minimum[a].1.max(self.minimum[b].1)
     }
 
-    /// Moves each minimum from its mesh direction to the true local minimum. If a minimum ends among another basin's directions, it got there without a rise,
-    /// and the two basins are merged.
+    /// Moves each minimum from its mesh direction to the true local minimum. If a minimum ends among another basin's directions, the height never increased on
+    /// the path to it, and the two basins are merged.
     fn descend_minima(&mut self, support: &Support, label: &[usize]) {
         let mut roots: Vec<_> = label.iter().map(|&label| self.root(label)).collect();
         roots.sort_unstable();

@@ -51,7 +51,7 @@ pub struct Limits {
     pub upper: f64,
     /// Highest speed, rad/s or m/s, zero or positive; +∞ without a limit.
     pub velocity: f64,
-    /// Highest torque or force, N·m or N, zero or positive; +∞ without a limit. Unused by this library.
+    /// Highest torque or force, N·m or N, zero or positive; +∞ without a limit. This library does not use the limit.
     pub effort: f64,
 }
 
