@@ -7,11 +7,16 @@ use crate::mesh::Mesh;
 use crate::poses::Poses;
 use bubbletouch::contact::Workspace;
 use bubbletouch::geometry::Aabb;
+use bubbletouch::inputs::layout_file::{LayoutFile, LayoutOptions};
 use bubbletouch::random::Seed;
 use bubbletouch::world::{self, DrapeRegion, Grid, Layout, Taxel, Taxels};
-use numpy::PyArray2;
+use ndarray::Array2;
+use numpy::{IntoPyArray, PyArray2};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use std::ffi::CString;
+use std::path::PathBuf;
 
 /// Default stiffness of a taxel, N/m. It equals the command's default, and signatures state it for `help()`.
 const STIFFNESS: f64 = 100.0;
@@ -26,7 +31,9 @@ pub struct Patch {
     patch: world::Patch,
     /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
     shape: Vec<usize>,
-    /// Workspaces that successive presses reuse.
+    /// Row and column of each taxel in the sensor's image, if the layout file has one.
+    pixels: Option<Vec<[usize; 2]>>,
+    /// Workspaces reused by presses.
     spare: Spare<Workspace>,
 }
 
@@ -36,6 +43,7 @@ impl Patch {
         let grid = patch.layout().as_grid();
         Self {
             shape: grid.map_or(vec![patch.n_taxels()], |grid| vec![grid.ny, grid.nx]),
+            pixels: None,
             spare: Spare::new(),
             patch,
         }
@@ -277,6 +285,84 @@ impl Patch {
                 false => Self::with(layout, Taxels::Each(taxels)),
             }
         })
+    }
+
+    /// Returns the taxels of a layout file.
+    ///
+    /// path: .csv (x_mm, y_mm, z_mm, nx, ny, nz, optional radius_mm, row, column); .npz (positions and normals, or poses and taxel2pixel as for
+    /// DEX-01); .txt or .ini (iCub); .json (PaXini, with `mesh` for the normals); .urdf (<tactile> of urdf_tactile, or XELA's prismatic joints, with
+    /// `sensor` if there are several). Default radius: the file's, or half the median distance of neighbours. Notes of the reader are UserWarnings.
+    #[staticmethod]
+    #[pyo3(signature = (path, stroke, *, mesh=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[expect(clippy::too_many_arguments, reason = "a signature of Python")]
+    fn read(
+        py: Python,
+        path: PathBuf,
+        stroke: f64,
+        mesh: Option<&Mesh>,
+        sensor: Option<&str>,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let options = LayoutOptions {
+                mesh: mesh.map(Mesh::triangle_mesh),
+                sensor,
+            };
+            let file = LayoutFile::read(&path, options).map_err(exception)?;
+            for note in &file.notes {
+                let note = CString::new(note.as_str()).unwrap_or_default();
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 1)?;
+            }
+            let with_radius = |radius| Taxel {
+                radius,
+                stiffness,
+                damping,
+                stroke,
+            };
+            let taxels = match (taxel_radius, &file.radii) {
+                (None, Some(radii)) => {
+                    Taxels::Each(radii.iter().copied().map(with_radius).collect())
+                }
+                (given, _) => {
+                    let radius = given.unwrap_or_else(|| file.default_radius());
+                    Taxels::Equal(with_radius(radius))
+                }
+            };
+            let patch = Self::with(file.layout, taxels)?;
+            Ok(Self {
+                pixels: file.pixels,
+                ..patch
+            })
+        })
+    }
+
+    /// Writes the layout as a CSV file that `read` reads: x_mm, y_mm, z_mm, nx, ny, nz, radius_mm, and row and column if the patch has pixels.
+    fn write(&self, path: PathBuf) -> PyResult<()> {
+        guarded(|| {
+            let file = LayoutFile {
+                layout: self.patch.layout().clone(),
+                radii: Some(
+                    (0..self.patch.n_taxels())
+                        .map(|taxel| self.patch.taxels().at(taxel).radius)
+                        .collect(),
+                ),
+                pixels: self.pixels.clone(),
+                link: None,
+                notes: Vec::new(),
+            };
+            file.write_csv(&path).map_err(exception)
+        })
+    }
+
+    /// Row and column of each taxel in the sensor's image, (n_taxels, 2) integers; None if the layout file has no image.
+    #[getter]
+    fn pixels<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<i64>>> {
+        let pixels = self.pixels.as_ref()?;
+        let numbers = pixels.iter().flatten().map(|&number| number as i64);
+        let array = Array2::from_shape_vec((pixels.len(), 2), numbers.collect());
+        Some(array.expect("two numbers for each taxel").into_pyarray(py))
     }
 
     /// Returns a copy of the patch that is moved in the patch frame; the copy is not a grid. pose: (7,) or (4, 4).

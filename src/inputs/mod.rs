@@ -4,6 +4,7 @@ pub mod arrays;
 pub(crate) mod check;
 pub mod content_hash;
 pub(crate) mod defaults;
+pub mod layout_file;
 pub mod memory;
 pub mod npy;
 pub mod object_files;

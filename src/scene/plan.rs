@@ -6,7 +6,7 @@ use super::plan_patch::PlannedPatch;
 use super::plan_press::PlannedPress;
 use super::plan_robot::PlannedRobot;
 use super::reader::{MM, Reader};
-use super::spec::SceneSpec;
+use super::spec::{LayoutSpec, SceneSpec};
 use crate::contact::equilibrium::HalfSpace;
 use crate::error::{Error, Result};
 use crate::files::with_absolute_paths;
@@ -100,7 +100,11 @@ impl ScenePlan {
             .iter_mut()
             .map(|patch| reader.patch(patch, (&robots, &spec.objects), &seed));
         let patches = patches.collect::<Result<Vec<_>>>()?;
-        let pitches = spec.patches.iter().map(|patch| patch.layout.pitch_mm());
+        let pitches = spec.patches.iter().zip(&patches).map(|(spec, patch)| {
+            let radii = patch.skin.taxels().all().iter().map(|taxel| taxel.radius);
+            let listed = 2.0 * radii.fold(f64::INFINITY, f64::min) / MM;
+            spec.layout.pitch_mm().unwrap_or(listed)
+        });
         let finest_mm = pitches.fold(f64::INFINITY, f64::min);
         // Free objects touch only spheres.
         let default_model = match spec.objects.iter().any(|object| object.free.is_some()) {
@@ -168,14 +172,33 @@ impl ScenePlan {
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let of_robot = |robot: &PlannedRobot| {
             let trajectory = robot.joints.iter().flat_map(|joints| joints.notes());
-            let notes = robot.robot.notes().iter().chain(trajectory);
-            let of = |note: &String| format!("robots.{}: {note}", robot.name);
-            notes.map(of).collect::<Vec<_>>()
+            let sensors = robot.robot.tactile_sensors().iter();
+            let unused = sensors.filter(|sensor| !self.has_sensor(&robot.name, &sensor.name));
+            let unused = unused.map(|sensor| {
+                format!(
+                    "tactile sensor `{0}` on link `{1}` is not read: layout = {{ sensor = \"{0}\" }} of a patch reads its {2} taxels",
+                    sensor.name,
+                    sensor.link,
+                    sensor.taxels.len()
+                )
+            });
+            let notes = robot.robot.notes().iter().chain(trajectory).cloned();
+            let of = |note: String| format!("robots.{}: {note}", robot.name);
+            notes.chain(unused).map(of).collect::<Vec<_>>()
         };
         self.robots.iter().flat_map(of_robot)
     }
 
-    /// Returns whether frames depend on the steps between them, which is the case with dampers, friction, free objects or pressed objects.
+    /// Returns whether a patch has the taxels of a robot's tactile sensor.
+    fn has_sensor(&self, robot: &str, sensor: &str) -> bool {
+        let mut patches = self.spec.patches.iter();
+        patches.any(|patch| {
+            let is_of_sensor = matches!(&patch.layout, LayoutSpec::Sensor(name) if name == sensor);
+            is_of_sensor && patch.robot.as_deref() == Some(robot)
+        })
+    }
+
+    /// Returns whether frames depend on the steps between them: this holds for dampers, friction, free objects and pressed objects.
     pub fn needs_steps(&self) -> bool {
         let remembers = |object: &PlannedObject| {
             matches!(object.movement, Movement::Free { .. }) || object.press.is_some()

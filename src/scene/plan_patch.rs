@@ -5,14 +5,15 @@ use super::mount::Mount;
 use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
 use super::reader::{MM, Reader};
-use super::spec::{LayoutSpec, ObjectSpec, PatchSpec, RegionSpec};
+use super::spec::{FileLayoutSpec, LayoutSpec, ObjectSpec, PatchSpec, RegionSpec};
 use crate::error::Result;
 use crate::geometry::Aabb;
 use crate::inputs::check::positive;
+use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::inputs::object_files::read_mesh;
 use crate::mesh::{MeshFormat, SizeLimits, obj_group};
 use crate::random::Seed;
-use crate::world::{DrapeRegion, Grid, Layout, Patch, Shears};
+use crate::world::{DrapeRegion, Grid, Layout, Patch, PerTaxel, Shears};
 use std::path::Path;
 
 /// Checked patch of an executable scene, with its mount.
@@ -43,9 +44,10 @@ impl PlannedPatch {
 }
 
 impl LayoutSpec {
-    /// Returns the distance between neighbouring taxels of the layout, mm.
-    pub fn pitch_mm(&self) -> f64 {
-        match *self {
+    /// Returns the distance of neighbours, mm; `None` for layouts whose taxels are listed one by one.
+    pub fn pitch_mm(&self) -> Option<f64> {
+        Some(match *self {
+            Self::File(_) | Self::Sensor(_) => return None,
             Self::Grid { pitch_mm, .. }
             | Self::Hexagonal { pitch_mm, .. }
             | Self::Disc { pitch_mm, .. }
@@ -53,7 +55,7 @@ impl LayoutSpec {
             | Self::Cylinder { pitch_mm, .. }
             | Self::SphereCap { pitch_mm, .. }
             | Self::Draped { pitch_mm, .. } => pitch_mm,
-        }
+        })
     }
 }
 
@@ -67,13 +69,21 @@ impl Reader<'_> {
     ) -> Result<PlannedPatch> {
         let key = &format!("patches.{}", spec.name);
         let pitch_key = format!("{key}.layout.pitch_mm");
-        let pitch_mm = spec.layout.pitch_mm();
-        self.check
-            .value(&pitch_key, pitch_mm, positive, "a positive number")?;
+        if let Some(pitch_mm) = spec.layout.pitch_mm() {
+            self.check
+                .value(&pitch_key, pitch_mm, positive, "a positive number")?;
+        }
         let layout_key = &format!("{key}.layout");
-        let layout = self.layout(layout_key, spec, robots, &seed.named(&spec.name))?;
+        let (layout, radii) = match self.listed_taxels(layout_key, spec, robots)? {
+            Some(listed) => listed,
+            None => {
+                let layout = self.layout(layout_key, spec, robots, &seed.named(&spec.name))?;
+                let half_pitch = spec.layout.pitch_mm().map(|pitch_mm| 0.5 * pitch_mm);
+                (layout, PerTaxel::Equal(half_pitch.unwrap_or_default()))
+            }
+        };
         self.mount_on_draped_link(layout_key, spec)?;
-        let (taxels, shears) = self.taxels(key, spec, layout.n_taxels())?;
+        let (taxels, shears) = self.taxels(key, spec, (layout.n_taxels(), radii))?;
         let skin = self.under(key, Patch::new(&spec.name, layout, taxels))?;
         if let Some(shears) = &shears {
             self.under(key, shears.check_on(&skin))?;
@@ -93,8 +103,9 @@ impl Reader<'_> {
         robots: &[PlannedRobot],
         seed: &Seed,
     ) -> Result<Layout> {
-        let pitch = spec.layout.pitch_mm() * MM;
+        let pitch = spec.layout.pitch_mm().unwrap_or_default() * MM;
         let layout = match spec.layout {
+            LayoutSpec::File(_) | LayoutSpec::Sensor(_) => unreachable!("taxels that are listed"),
             LayoutSpec::Grid { nx, ny, .. } => Layout::grid(&Grid { nx, ny, pitch }),
             LayoutSpec::Hexagonal { nx, ny, .. } => Layout::hexagonal(nx, ny, pitch),
             LayoutSpec::Disc { radius_mm, .. } => Layout::disc(radius_mm * MM, pitch),
@@ -170,7 +181,69 @@ impl Reader<'_> {
         self.under(key, layout)
     }
 
-    /// Mounts a patch that is draped over a link on the same link.
+    /// Returns the taxels of a layout file or of a robot's tactile sensor, with their radii in mm; `None` for other layouts. A patch of a sensor is
+    /// mounted on the sensor's link.
+    fn listed_taxels(
+        &self,
+        key: &str,
+        spec: &mut PatchSpec,
+        robots: &[PlannedRobot],
+    ) -> Result<Option<(Layout, PerTaxel<f64>)>> {
+        let file = match &spec.layout {
+            LayoutSpec::File(file) => self.layout_file(&format!("{key}.file"), file)?,
+            LayoutSpec::Sensor(sensor) => {
+                let key = &format!("{key}.sensor");
+                let Some(name) = &spec.robot else {
+                    let given = format!("`{sensor}` without a robot");
+                    return Err(self
+                        .check
+                        .error(key, given, "robot = \"NAME\" of the patch"));
+                };
+                let names = robots.iter().map(|robot| robot.name.as_str());
+                let robot = &robots[self.known(key, name, names)?].robot;
+                let sensors = robot.tactile_sensors();
+                let names = sensors.iter().map(|sensor| sensor.name.as_str());
+                let sensor = &sensors[self.known(key, sensor, names)?];
+                let link = spec.link.get_or_insert_with(|| sensor.link.clone());
+                if *link != sensor.link {
+                    let given = format!("a sensor of link `{}` on link `{link}`", sensor.link);
+                    return Err(self.check.error(key, given, "the link of the sensor"));
+                }
+                LayoutFile::of_sensor(&self.check.place.to_owned(), sensor)?
+            }
+            _ => return Ok(None),
+        };
+        let radii = match &file.radii {
+            Some(radii) => PerTaxel::Each(radii.iter().map(|radius| radius / MM).collect()),
+            None => PerTaxel::Equal(file.default_radius() / MM),
+        };
+        Ok(Some((file.layout, radii)))
+    }
+
+    fn layout_file(&self, key: &str, spec: &FileLayoutSpec) -> Result<LayoutFile> {
+        let (path, parts) = match spec {
+            FileLayoutSpec::Path(path) => (path, None),
+            FileLayoutSpec::Parts(parts) => (&parts.path, Some(parts)),
+        };
+        let mesh = parts.and_then(|parts| Some((parts.mesh.as_ref()?, parts.unit)));
+        let mesh = mesh.map(|(mesh, unit)| -> Result<_> {
+            let (place, _) = self.open(&format!("{key}.mesh"), mesh)?;
+            let (mesh, orientation) = self.under(
+                key,
+                read_mesh(&self.path(mesh), unit, &SizeLimits::ANY, None),
+            )?;
+            self.under(key, orientation.require(&place))?;
+            Ok(mesh)
+        });
+        let mesh = mesh.transpose()?;
+        let options = LayoutOptions {
+            mesh: mesh.as_ref(),
+            sensor: parts.and_then(|parts| parts.sensor.as_deref()),
+        };
+        self.under(key, LayoutFile::read(&self.path(path), options))
+    }
+
+    /// Mounts a patch that is draped over a link on this link.
     fn mount_on_draped_link(&self, key: &str, spec: &mut PatchSpec) -> Result<()> {
         let LayoutSpec::Draped { region, .. } = &spec.layout else {
             return Ok(());

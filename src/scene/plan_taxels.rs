@@ -36,7 +36,7 @@ impl Reader<'_> {
         &self,
         key: &str,
         spec: &mut PatchSpec,
-        n_taxels: usize,
+        (n_taxels, default_radius_mm): (usize, PerTaxel<f64>),
     ) -> Result<(Taxels, Option<Shears>)> {
         let table = match &spec.taxels_csv {
             Some(path) => {
@@ -62,8 +62,7 @@ impl Reader<'_> {
         };
         let (above, from) = ("a positive number", "zero or a positive number");
         let radius = lookup.find(RADIUS, spec.taxel_radius_mm.as_ref(), positive, above)?;
-        let half_pitch = PerTaxel::Equal(0.5 * spec.layout.pitch_mm());
-        let radius = radius.unwrap_or(half_pitch);
+        let radius = radius.unwrap_or(default_radius_mm);
         let stroke = lookup.needed(STROKE, spec.stroke_mm.as_ref(), positive, above)?;
         let stiffness = lookup.needed(STIFF, spec.stiffness_n_per_m.as_ref(), positive, above)?;
         let damping = spec.damping_n_s_per_m.as_ref();

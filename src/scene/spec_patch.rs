@@ -175,7 +175,11 @@ pub enum LayoutSpec {
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
-    /// Taxels on the outer surface of a triangle mesh, or of a link of the patch's robot.
+    /// Taxels of a file: `layout = { file = "palm.csv" }`; see [`layout_file`](crate::inputs::layout_file) for the formats.
+    File(FileLayoutSpec),
+    /// Tactile sensor that the file of the patch's robot declares, by its name.
+    Sensor(String),
+    /// Outer surface of a triangle mesh, or of a link of the patch's robot.
     Draped {
         /// Mesh file of the surface; omitted if `region.link` names a link.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -191,6 +195,36 @@ pub enum LayoutSpec {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         region: Option<Box<RegionSpec>>,
     },
+}
+
+/// Layout file, as `file = "palm.csv"` or `file = { path = "points.json", mesh = "fingertip.stl" }`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum FileLayoutSpec {
+    /// Path of the file.
+    Path(#[schemars(with = "String")] FilePath),
+    /// Path of the file, and what its format needs besides.
+    Parts(FileLayoutParts),
+}
+
+/// Layout file with what its format needs besides.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FileLayoutParts {
+    /// Path of the file.
+    #[schemars(with = "String")]
+    pub path: FilePath,
+    /// Mesh whose surface gives the normals, for files of points without normals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
+    pub mesh: Option<FilePath>,
+    /// Length unit of the mesh file. Default: metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Names<LengthUnit>>")]
+    pub unit: Option<LengthUnit>,
+    /// Name of the sensor in a robot's file with several sensors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
 }
 
 /// Part of a surface, such as `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`. A point belongs to the region

@@ -126,7 +126,7 @@ fn what_is_not_read_of_a_robots_file_is_noted_on_standard_error() {
     );
     assert!(
         sensor.contains(
-            "r.urdf, line 3: tactile sensor `pad_tactile` on link `base`, which is not read"
+            "r.urdf, line 3: <tactile> without taxels; an <array> or <taxel>s: tactile sensor `pad_tactile` on link `base` is not read"
         ),
         "{sensor}"
     );

@@ -8,6 +8,7 @@ mod reference_data;
 mod stored;
 
 mod human_touch;
+mod layout_files;
 mod scene_by_hand;
 mod scene_cut;
 mod scene_errors;

@@ -70,7 +70,7 @@ fn what_a_robots_file_has_and_is_not_read_is_said() {
         panic!("{notes:?}");
     };
     assert!(axis.starts_with("robots.robot: ") && axis.contains("r.urdf, line 4: joint `stuck`"));
-    assert!(sensor.contains("tactile sensor `skin` on link `c`, which is not read"));
+    assert!(sensor.contains("tactile sensor `skin` on link `c` is not read"));
 }
 
 #[test]

@@ -352,6 +352,31 @@ class Patch:
     1 %, and are normalised. The other arguments are (n,) or one number for all.
     """
 
+    @staticmethod
+    def read(
+        path: str | PathLike[str],
+        stroke: float,
+        *,
+        mesh: Mesh | None = None,
+        sensor: str | None = None,
+        taxel_radius: float | None = None,
+        stiffness: float = 100.0,
+        damping: float = 0.0,
+    ) -> Patch:
+        """Returns the taxels of a layout file.
+
+        path: .csv (x_mm, y_mm, z_mm, nx, ny, nz, optional radius_mm, row, column); .npz (positions and normals, or poses and taxel2pixel as for
+        DEX-01); .txt or .ini (iCub); .json (PaXini, with `mesh` for the normals); .urdf (<tactile> of urdf_tactile, or XELA's prismatic joints, with
+        `sensor` if there are several). Default radius: the file's, or half the median distance of neighbours. Notes of the reader are UserWarnings.
+        """
+
+    def write(self, path: str | PathLike[str]) -> None:
+        """Writes the layout as a CSV file that `read` reads: x_mm, y_mm, z_mm, nx, ny, nz, radius_mm, and row and column if the patch has pixels."""
+
+    @property
+    def pixels(self) -> NDArray[np.int64] | None:
+        """Row and column of each taxel in the sensor's image, (n_taxels, 2) integers; None if the layout file has no image."""
+
     def moved(self, pose: ArrayLike) -> Patch:
         """Returns a copy moved in the frame of the patch; the copy is not a grid. pose: (7,) or (4, 4)."""
 

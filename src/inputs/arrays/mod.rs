@@ -101,7 +101,20 @@ pub fn read_matrix(path: &Path, name: &str) -> Result<Array2<f64>> {
     }
 }
 
-/// Returns whether a file is a `.npz` archive that contains the array `name` and other arrays.
+/// Returns the names of the arrays of a `.npz` archive.
+///
+/// # Errors
+/// If the file is not an archive.
+pub fn member_names(path: &Path) -> Result<Vec<String>> {
+    let archive = zip::ZipArchive::new(BufReader::new(open(path)?));
+    let archive = archive.map_err(|_| Error::input(path.display(), "no archive", "a .npz file"))?;
+    let names = archive
+        .file_names()
+        .map(|name| name.trim_end_matches(".npy").to_owned());
+    Ok(names.collect())
+}
+
+/// Returns whether a `.npz` archive contains the array `name` and other arrays; `false` for other files.
 pub fn is_member(path: &Path, name: &str) -> bool {
     let is_archive = || matches!(format_of(path), Ok(Format::Npz));
     is_archive()

@@ -41,7 +41,7 @@ pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};
 pub use rest::{RestPose, as_modelled, center_of_mass, stable_poses, stable_poses_about};
 pub use robot::{
     Coordinate, Dimension, Joint, JointKind, Limits, Link, LinkGeometry, LinkShape, Mimic, Robot,
-    ShapeRole,
+    ShapeRole, TactileSensor,
 };
 pub use shear::{Shear, Shears};
 pub use taxel::{Grid, Taxel};

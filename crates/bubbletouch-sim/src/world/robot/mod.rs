@@ -33,3 +33,4 @@ pub use coordinate::{Coordinate, Dimension};
 pub use joint::{Joint, JointKind, Limits, Mimic};
 pub use link::{Link, LinkGeometry, LinkShape, ShapeRole};
 pub use model::Robot;
+pub use tactile::TactileSensor;

@@ -1,6 +1,7 @@
 //! Robot as links and joints, with its forward kinematics.
 
 use super::mimic::Drive;
+use super::tactile::TactileSensor;
 use super::tree::Tree;
 use super::{Coordinate, Joint, Link};
 use crate::error::{Error, Result};
@@ -39,6 +40,7 @@ pub struct Robot {
     /// Sources of the joints' coordinates, one per joint.
     drives: Vec<Drive>,
     coordinates: Vec<Coordinate>,
+    tactile_sensors: Vec<TactileSensor>,
     pub(super) notes: Vec<String>,
 }
 
@@ -59,6 +61,7 @@ impl Robot {
             },
             drives: Vec::new(),
             coordinates: Vec::new(),
+            tactile_sensors: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -96,8 +99,21 @@ impl Robot {
             tree,
             drives,
             coordinates,
+            tactile_sensors: Vec::new(),
             notes,
         })
+    }
+
+    pub(super) fn with_tactile_sensors(self, tactile_sensors: Vec<TactileSensor>) -> Self {
+        Self {
+            tactile_sensors,
+            ..self
+        }
+    }
+
+    /// Returns the tactile sensors that the robot's file declares, in the order of the file.
+    pub fn tactile_sensors(&self) -> &[TactileSensor] {
+        &self.tactile_sensors
     }
 
     /// Returns the name of the robot.

@@ -1,41 +1,147 @@
-//! Tactile sensors of a URDF file (`<sensor>` with `<tactile>`). The sensors are not read; each one is reported in a note.
+//! Tactile sensors of a URDF file: `<sensor>` with `<tactile>`, in the syntax of urdf_tactile (github.com/ubi-agni/tactile_toolbox).
 
 use super::xml::Element;
+use crate::error::Result;
+use crate::geometry::{Pose, rotation_from_rpy};
+use glam::DVec3;
 use roxmltree::Node;
 
-/// Adds a note for each tactile sensor of the robot.
-pub(super) fn note_tactile_sensors(robot: Element) {
+/// Tactile sensor that a robot's file declares: the poses of its taxels on a link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TactileSensor {
+    /// Name of the sensor.
+    pub name: String,
+    /// Name of the link that carries the sensor.
+    pub link: String,
+    /// Pose `link_from_sensor`, metres.
+    pub link_from_sensor: Pose,
+    /// Pose `sensor_from_taxel` of each taxel, metres, in the order of the data vector; z is the taxel's normal.
+    pub taxels: Vec<Pose>,
+}
+
+/// Largest number of taxels of an array. A larger number is a mistake in the file.
+const MAX_TAXELS: usize = 1_000_000;
+
+/// Returns the tactile sensors of a robot. An incomplete sensor becomes a note that names the sensor and its link.
+pub(super) fn read_tactile_sensors(robot: Element) -> Vec<TactileSensor> {
     let all = robot.node.descendants();
-    for node in all.filter(|node| node.tag_name().name() == "tactile") {
+    let elements = all.filter(|node| node.tag_name().name() == "tactile");
+    let sensors = elements.filter_map(|node| {
+        let tactile = Element { node, ..robot };
+        let place = Place::new(node);
+        let consequence = format!(
+            "tactile sensor `{}` on link `{}` is not read",
+            place.name.unwrap_or("without a name"),
+            place.link.unwrap_or("without a name"),
+        );
+        let sensor = read_sensor(tactile, &place);
+        tactile.or_note(sensor.map(Some), None, &consequence)
+    });
+    sensors.collect()
+}
+
+/// Where a sensor is declared.
+struct Place<'a> {
+    sensor: Option<Node<'a, 'a>>,
+    name: Option<&'a str>,
+    link: Option<&'a str>,
+}
+
+impl<'a> Place<'a> {
+    fn new(node: Node<'a, 'a>) -> Self {
         let above = |tag: &str| {
             let mut ancestors = node.ancestors();
             ancestors.find(|node| node.tag_name().name() == tag)
         };
         let sensor = above("sensor");
-        let named = sensor.and_then(|sensor| sensor.attribute("name"));
-        let parent = sensor.and_then(parent_link);
+        let parent = sensor.and_then(|sensor| {
+            let mut children = sensor.children();
+            let parent = children.find(|node| node.tag_name().name() == "parent")?;
+            parent.attribute("link")
+        });
         let link = above("link").and_then(|link| link.attribute("name"));
         let gazebo = above("gazebo").and_then(|element| element.attribute("reference"));
-        let on = parent.or(link).or(gazebo);
-        let element = Element { node, ..robot };
-        robot.lines.note(
-            element
-                .refuse(
-                    format!(
-                        "tactile sensor `{}` on link `{}`, which is not read",
-                        named.unwrap_or("without a name"),
-                        on.unwrap_or("without a name"),
-                    ),
-                    "[[patches]] of a scene with this robot and link",
-                )
-                .to_string(),
-        );
+        Self {
+            sensor,
+            name: sensor.and_then(|sensor| sensor.attribute("name")),
+            link: parent.or(link).or(gazebo),
+        }
     }
 }
 
-/// Returns the name of the link in `<parent link="…"/>` of a sensor.
-fn parent_link<'a>(sensor: Node<'a, 'a>) -> Option<&'a str> {
-    let mut children = sensor.children();
-    let parent = children.find(|node| node.tag_name().name() == "parent")?;
-    parent.attribute("link")
+fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
+    let (Some(sensor), Some(name), Some(link)) = (place.sensor, place.name, place.link) else {
+        let allowed = "a <sensor> with a name and <parent link=\"…\"/> around it";
+        return Err(tactile.refuse("<tactile>", allowed));
+    };
+    let sensor = Element {
+        node: sensor,
+        ..tactile
+    };
+    let mut taxels = match tactile.child("array")? {
+        Some(array) => array_taxels(array)?,
+        None => Vec::new(),
+    };
+    let mut listed = tactile
+        .children("taxel")
+        .enumerate()
+        .map(|(number, taxel)| {
+            let index = taxel.number("idx")?.unwrap_or(number as f64);
+            let xyz = taxel.numbers("xyz")?.unwrap_or([0.0; 3]);
+            let rpy = taxel.numbers("rpy")?.unwrap_or([0.0; 3]);
+            let pose = Pose::new(rotation_from_rpy(DVec3::from(rpy)), DVec3::from(xyz));
+            Ok((index, pose))
+        });
+    let mut listed = listed.by_ref().collect::<Result<Vec<_>>>()?;
+    listed.sort_by(|one, other| one.0.total_cmp(&other.0));
+    taxels.extend(listed.into_iter().map(|(_, pose)| pose));
+    if taxels.is_empty() {
+        return Err(tactile.refuse("<tactile> without taxels", "an <array> or <taxel>s"));
+    }
+    Ok(TactileSensor {
+        name: name.to_owned(),
+        link: link.to_owned(),
+        link_from_sensor: sensor.origin()?,
+        taxels,
+    })
+}
+
+/// Returns the taxels of `<array rows cols order size spacing offset>`: rows run along x and columns along y, and the taxel (0, 0) is at −offset.
+fn array_taxels(array: Element) -> Result<Vec<Pose>> {
+    let count = |attribute: &str| -> Result<usize> {
+        let [number] = array.needed_numbers::<1>(attribute)?;
+        let is_count = number >= 1.0 && number.fract() == 0.0 && number <= MAX_TAXELS as f64;
+        match is_count {
+            true => Ok(number as usize),
+            false => Err(array.refuse(format!("`{attribute}` {number}"), "an integer from 1")),
+        }
+    };
+    let (rows, columns) = (count("rows")?, count("cols")?);
+    if rows * columns > MAX_TAXELS {
+        let given = format!("{rows} × {columns} taxels");
+        return Err(array.refuse(given, format!("at most {MAX_TAXELS}")));
+    }
+    let size = array.numbers::<2>("size")?;
+    let spacing = array.numbers::<2>("spacing")?.or(size);
+    let Some([along_x, along_y]) = spacing else {
+        return Err(array.refuse("<array> without size and spacing", "one of them"));
+    };
+    let [x, y] = array.numbers::<2>("offset")?.unwrap_or([0.0; 2]);
+    let is_by_rows = match array.node.attribute("order") {
+        None | Some("row-major") => true,
+        Some("column-major" | "col-major") => false,
+        Some(other) => {
+            let given = format!("`order` \"{other}\"");
+            return Err(array.refuse(given, "row-major or column-major"));
+        }
+    };
+    let taxels = (0..rows * columns).map(|index| {
+        let (row, column) = match is_by_rows {
+            true => (index / columns, index % columns),
+            false => (index % rows, index / rows),
+        };
+        let place = DVec3::new(row as f64 * along_x - x, column as f64 * along_y - y, 0.0);
+        Pose::from_translation(place)
+    });
+    Ok(taxels.collect())
 }

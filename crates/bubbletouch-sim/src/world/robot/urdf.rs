@@ -5,7 +5,7 @@
 
 use super::link::read_link;
 use super::mimic::{Drive, drives};
-use super::tactile::note_tactile_sensors;
+use super::tactile::read_tactile_sensors;
 use super::text::{parsed, repaired};
 use super::tree::Tree;
 use super::xml::{Element, Lines};
@@ -43,9 +43,10 @@ pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
     if let Some(element) = not_expanded {
         lines.note(format!("{}: it is passed over", xacro_error(element)));
     }
-    note_tactile_sensors(root);
+    let sensors = read_tactile_sensors(root);
     let notes = lines.into_notes();
-    Robot::assembled((name, place), links, joints, tree, drives, notes)
+    let robot = Robot::assembled((name, place), links, joints, tree, drives, notes)?;
+    Ok(robot.with_tactile_sensors(sensors))
 }
 
 type Parts = (String, Vec<Link>, Vec<Joint>, Tree, Vec<Drive>);

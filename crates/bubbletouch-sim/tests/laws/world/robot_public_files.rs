@@ -374,7 +374,7 @@ fn a_tactile_sensor_is_named_in_a_note() {
         let robot = read(&format!("<robot name='r'><link name='a'/>{sensor}</robot>"));
         has_note(
             &robot,
-            "tactile sensor `pad_tactile` on link `a`, which is not read",
+            "tactile sensor `pad_tactile` on link `a` is not read",
         );
     }
     let robot =

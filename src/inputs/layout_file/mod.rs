@@ -1,0 +1,161 @@
+//! Files of taxel layouts: where the taxels of a real skin are, in the formats in which makers and laboratories publish them.
+//!
+//! | file | format | content |
+//! |---|---|---|
+//! | `.csv` | [`csv`] | `x_mm, y_mm, z_mm, nx, ny, nz[, radius_mm][, row, column]`, one row for each taxel |
+//! | `.npz` | [`npz`] | `positions` and `normals`, each n × 3, metres; or `poses`, n × 3 × 4, and `taxel2pixel`, n × 2, as for Analog Devices' DEX-01 |
+//! | `.txt`, `.ini` | [`icub`] | the position files of iCub's skin: x, y, z and normal of each taxel, metres |
+//! | `.json` | [`paxini`] | points of PaXini's sensors, mm, without normals |
+//! | `.urdf`, `.xml` | [`urdf`] | `<sensor><tactile>` of urdf_tactile, or taxels of three prismatic joints, as for XELA's uSkin |
+
+pub mod csv;
+pub mod icub;
+mod normals;
+pub mod npz;
+pub mod paxini;
+pub mod urdf;
+
+use crate::error::{Error, Result};
+use crate::mesh::TriangleMesh;
+use crate::world::{Layout, TactileSensor};
+use glam::DVec3;
+use std::path::Path;
+
+/// Formats, for error messages.
+const FORMATS: &str = "a layout in .csv, .npz, .txt or .ini (iCub), .json (PaXini) or .urdf";
+
+/// Taxels of a layout file.
+#[derive(Clone, Debug)]
+pub struct LayoutFile {
+    /// Rest centres and axes of the taxels.
+    pub layout: Layout,
+    /// Radius of each taxel, metres, shape (n_taxels,). `None` if the file has no radii.
+    pub radii: Option<Vec<f64>>,
+    /// Row and column of each taxel in the sensor's image, shape (n_taxels,). `None` if the file has no image.
+    pub pixels: Option<Vec<[usize; 2]>>,
+    /// Link to which the layout is fixed, for a layout from a robot's file.
+    pub link: Option<String>,
+    /// Notes on parts of the file that are not taxels, such as unused rows.
+    pub notes: Vec<String>,
+}
+
+/// What a reader needs besides the file.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LayoutOptions<'a> {
+    /// Surface whose normals the taxels take, if the file has points only.
+    pub mesh: Option<&'a TriangleMesh>,
+    /// Name of the sensor in a file with several sensors.
+    pub sensor: Option<&'a str>,
+}
+
+impl LayoutFile {
+    /// Reads a layout file; the ending of its name gives the format.
+    ///
+    /// # Errors
+    /// If the file cannot be read, has no taxels, or has an invalid row. The error contains the file and the row (from 1). Also if the file needs an
+    /// option that is missing, or has no use for an option that is given.
+    pub fn read(path: &Path, options: LayoutOptions) -> Result<Self> {
+        let place = path.display().to_string();
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let ending = ending.unwrap_or_default().to_ascii_lowercase();
+        let refuse =
+            |option: &str, of: &str| Err(Error::input(&place, option, format!("none: {of}")));
+        if options.mesh.is_some() && ending != "json" {
+            return refuse("a mesh for normals", "this format has normals of its own");
+        }
+        if options.sensor.is_some() && !matches!(&ending[..], "urdf" | "xml") {
+            return refuse("a sensor's name", "only robots' files have several sensors");
+        }
+        let text =
+            || crate::files::read_to_string(path).map_err(|e| Error::unreadable(path, FORMATS, e));
+        let file = match &ending[..] {
+            "csv" => csv::read(&place, &text()?)?,
+            "npz" => npz::read(path)?,
+            "txt" | "ini" => icub::read(&place, &text()?)?,
+            "json" => paxini::read(&place, &text()?, options.mesh)?,
+            "urdf" | "xml" => urdf::read(&place, &text()?, options.sensor)?,
+            _ => return Err(Error::input(place, "another file", FORMATS)),
+        };
+        Ok(file)
+    }
+
+    /// Creates the file's content from taxels: places in metres, and vectors along the axes of any length.
+    ///
+    /// # Errors
+    /// If a number is not finite or an axis has length zero; the error contains the taxel's row, from `rows`.
+    fn new(place: &str, taxels: Vec<(DVec3, DVec3)>, rows: &[usize]) -> Result<Self> {
+        let Some(_) = taxels.first() else {
+            return Err(Error::input(place, "no taxel", "at least one taxel"));
+        };
+        for ((center, axis), row) in taxels.iter().zip(rows) {
+            let at = || format!("{place}, row {row}");
+            if !center.is_finite() || !axis.is_finite() {
+                let allowed = "finite numbers for place and normal";
+                return Err(Error::input(at(), "a number that is not finite", allowed));
+            }
+            if axis.length() < MIN_AXIS {
+                let given = format!("normal {axis} of length {}", axis.length());
+                return Err(Error::input(at(), given, "a vector with a direction"));
+            }
+        }
+        let (centers, axes) = taxels.into_iter().map(|(c, a)| (c, unit(a))).unzip();
+        Ok(Self {
+            layout: Layout::new(centers, axes).map_err(|error| error.under(place))?,
+            radii: None,
+            pixels: None,
+            link: None,
+            notes: Vec::new(),
+        })
+    }
+
+    /// Returns the taxels of a tactile sensor, in the frame of its link.
+    ///
+    /// # Errors
+    /// If the sensor's poses are no layout; the error begins with `place`.
+    pub fn of_sensor(place: &str, sensor: &TactileSensor) -> Result<Self> {
+        let poses = sensor
+            .taxels
+            .iter()
+            .map(|taxel| sensor.link_from_sensor.compose(taxel));
+        let taxels = poses.map(|pose| (pose.translation, pose.rotation * DVec3::Z));
+        let rows: Vec<usize> = (1..=sensor.taxels.len()).collect();
+        Ok(Self {
+            link: Some(sensor.link.clone()),
+            ..Self::new(place, taxels.collect(), &rows)?
+        })
+    }
+
+    /// Returns half the median distance of a taxel to its nearest neighbour, metres: the default radius of taxels without one. One taxel alone has
+    /// radius 1 mm.
+    pub fn default_radius(&self) -> f64 {
+        let centers = self.layout.centers();
+        let nearest = |one: &DVec3| {
+            let others = centers.iter().filter(|other| *other != one);
+            others
+                .map(|other| one.distance(*other))
+                .min_by(f64::total_cmp)
+        };
+        let looked_at = centers
+            .iter()
+            .step_by(centers.len().div_ceil(MAX_LOOKED_AT));
+        let mut nearest: Vec<f64> = looked_at.filter_map(nearest).collect();
+        nearest.sort_by(f64::total_cmp);
+        nearest
+            .get(nearest.len() / 2)
+            .map_or(1e-3, |pitch| 0.5 * pitch)
+    }
+}
+
+/// Largest number of taxels whose neighbours are searched for the default radius. A larger number takes longer and moves the median little.
+const MAX_LOOKED_AT: usize = 200;
+
+/// Shortest vector that has a direction. Files have normals of four decimals; shorter vectors are zero up to their rounding.
+const MIN_AXIS: f64 = 1e-3;
+
+/// Returns the unit vector; a vector that already has length one, up to rounding, keeps its bits.
+fn unit(axis: DVec3) -> DVec3 {
+    match (axis.length() - 1.0).abs() < 1e-15 {
+        true => axis,
+        false => axis.normalize(),
+    }
+}

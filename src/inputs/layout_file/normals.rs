@@ -1,0 +1,33 @@
+//! Normals of a surface at points near it.
+
+use crate::error::{Error, Result};
+use crate::mesh::{Surface, TriangleMesh};
+use glam::DVec3;
+
+/// Largest distance of a taxel from the surface, metres. A larger distance indicates another frame or unit than the mesh's.
+const MAX_DISTANCE: f64 = 5e-3;
+
+/// Returns the outward unit normal of the surface at the place nearest to each point.
+pub(super) fn surface_normals(
+    place: &str,
+    points: &[DVec3],
+    mesh: &TriangleMesh,
+) -> Result<Vec<DVec3>> {
+    let surface = Surface::new(mesh.clone());
+    let normal = |(row, point): (usize, &DVec3)| {
+        let closest = surface.closest(*point, f64::INFINITY);
+        let near = closest.filter(|closest| closest.distance <= MAX_DISTANCE);
+        let Some(near) = near else {
+            let distance = closest.map_or(f64::INFINITY, |closest| closest.distance);
+            let given = format!("a point {:.1} mm from the mesh", 1e3 * distance);
+            let allowed = "points on the mesh, within 5 mm, in the frame of the mesh";
+            return Err(Error::input(
+                format!("{place}, row {}", row + 1),
+                given,
+                allowed,
+            ));
+        };
+        Ok(surface.pseudonormal(&near).normalize_or_zero())
+    };
+    points.iter().enumerate().map(normal).collect()
+}

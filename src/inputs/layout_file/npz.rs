@@ -1,0 +1,122 @@
+//! Layouts as NumPy archives: `positions` and `normals` (n × 3, metres) with optional `radii` (n, metres) and `pixels` (n × 2: row, column); or `poses`
+//! (n × 3 × 4: rotation, whose third column is the normal, and place in metres) with `taxel2pixel` (n × 2), as for Analog Devices' DEX-01.
+
+use super::LayoutFile;
+use crate::error::{Error, Result};
+use crate::inputs::arrays::file_array::FileArray;
+use glam::{DMat3, DVec3};
+use ndarray::ArrayD;
+use std::path::Path;
+
+/// Largest deviation of an entry of Rᵀ R from the identity. Files have single precision.
+const MAX_ROTATION_ERROR: f64 = 1e-3;
+
+/// Reads a layout from an archive.
+pub(super) fn read(path: &Path) -> Result<LayoutFile> {
+    let place = path.display().to_string();
+    let names = crate::inputs::arrays::member_names(path)?;
+    let has = |name: &str| names.iter().any(|known| known == name);
+    let read = |name: &str, shape: &[Option<usize>]| -> Result<ArrayD<f64>> {
+        let array = FileArray::read(path, name)?.into_numbers()?;
+        let fits = |(length, wanted): (&usize, &Option<usize>)| wanted.is_none_or(|w| w == *length);
+        if array.ndim() == shape.len() && array.shape().iter().zip(shape).all(fits) {
+            return Ok(array);
+        }
+        let words = |length: &Option<usize>| length.map_or("n".to_owned(), |n| n.to_string());
+        let allowed: Vec<String> = shape.iter().map(words).collect();
+        let given = format!("an array of shape {:?}", array.shape());
+        Err(Error::input(
+            format!("{place}, {name}"),
+            given,
+            allowed.join(" × "),
+        ))
+    };
+    let taxels = match (has("poses"), has("positions")) {
+        (true, false) => from_poses(&place, &read("poses", &[None, Some(3), Some(4)])?)?,
+        (false, true) => {
+            let positions = vectors(&read("positions", &[None, Some(3)])?);
+            let normals = vectors(&read("normals", &[Some(positions.len()), Some(3)])?);
+            positions.into_iter().zip(normals).collect()
+        }
+        _ => {
+            let given = format!("the arrays {}", names.join(", "));
+            let allowed = "positions and normals, or poses";
+            return Err(Error::input(place, given, allowed));
+        }
+    };
+    let n = taxels.len();
+    let pixels = ["pixels", "taxel2pixel"].into_iter().find(|name| has(name));
+    let pixels = pixels.map(|name| -> Result<_> {
+        let pixels = read(name, &[Some(n), Some(2)])?;
+        let whole = |(row, number): (usize, &f64)| {
+            let is_whole = *number >= 0.0 && number.fract() == 0.0 && *number < 1e9;
+            is_whole.then_some(*number as usize).ok_or_else(|| {
+                let place = format!("{place}, {name}, row {}", row / 2 + 1);
+                Error::input(place, number, "integers from 0")
+            })
+        };
+        let numbers = pixels.iter().enumerate().map(whole);
+        let numbers = numbers.collect::<Result<Vec<usize>>>()?;
+        Ok(numbers
+            .chunks(2)
+            .map(|pixel| [pixel[0], pixel[1]])
+            .collect())
+    });
+    let radii = has("radii").then(|| {
+        let radii = read("radii", &[Some(n)])?.into_iter().collect::<Vec<f64>>();
+        match radii
+            .iter()
+            .position(|radius| !(radius.is_finite() && *radius > 0.0))
+        {
+            Some(row) => {
+                let place = format!("{place}, radii, row {}", row + 1);
+                Err(Error::input(
+                    place,
+                    radii[row],
+                    "a positive number of metres",
+                ))
+            }
+            None => Ok(radii),
+        }
+    });
+    let rows: Vec<usize> = (1..=n).collect();
+    Ok(LayoutFile {
+        pixels: pixels.transpose()?,
+        radii: radii.transpose()?,
+        ..LayoutFile::new(&place, taxels, &rows)?
+    })
+}
+
+fn vectors(array: &ArrayD<f64>) -> Vec<DVec3> {
+    let numbers: Vec<f64> = array.iter().copied().collect();
+    numbers.chunks(3).map(DVec3::from_slice).collect()
+}
+
+/// Returns place and normal of each pose.
+fn from_poses(place: &str, poses: &ArrayD<f64>) -> Result<Vec<(DVec3, DVec3)>> {
+    let numbers: Vec<f64> = poses.iter().copied().collect();
+    let pose = |(row, m): (usize, &[f64])| {
+        let rotation =
+            DMat3::from_cols_array(&[m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]]);
+        let error = rotation.transpose() * rotation - DMat3::IDENTITY;
+        let largest = error
+            .to_cols_array()
+            .into_iter()
+            .fold(0.0, |a: f64, b| a.max(b.abs()));
+        let is_rotation = largest <= MAX_ROTATION_ERROR && rotation.determinant() > 0.0;
+        if !is_rotation {
+            let given = match rotation.determinant() < 0.0 {
+                true => "a left-handed frame",
+                false => "a matrix that is no rotation",
+            };
+            let at = format!("{place}, poses, row {}", row + 1);
+            return Err(Error::input(
+                at,
+                given,
+                "three columns of length one, right-handed",
+            ));
+        }
+        Ok((DVec3::new(m[3], m[7], m[11]), rotation.z_axis))
+    };
+    numbers.chunks(12).enumerate().map(pose).collect()
+}

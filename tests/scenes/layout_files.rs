@@ -1,0 +1,311 @@
+//! Layouts from files: each format reads as the taxels that its file describes, and a wrong file is refused with its row.
+
+use bubbletouch::inputs::layout_file::{LayoutFile, LayoutOptions};
+use bubbletouch::mesh::TriangleMesh;
+use bubbletouch::scene::ScenePlan;
+use glam::DVec3;
+use ndarray::{Array1, Array2, Array3, array};
+use ndarray_npy::NpzWriter;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+/// Position file in the layout of iCub's, with two channels without a taxel.
+const ICUB: &str = "name palm\nspatial_sampling taxel\ntaxel2Repr ( 0 0 1 -2 )\n\n[calibration]\n0 0 0 0 0 0\n\
+                    -0.016 0.0034 -0.0123 0.0000 0.0001 -1.0000\n-0.016 0.0067 -0.0119 -0.0872 0.0 -0.9962\n0.0 0.0 0.0 0.0 0.0 0.0\n";
+
+const URDF: &str = "<robot name='pad'><link name='base'/><sensor name='pad_tactile'><parent link='base'/>\
+                    <origin xyz='0 0 0.01' rpy='0 0 0'/><tactile channel='pad'>TAXELS</tactile></sensor></robot>";
+
+/// Three prismatic joints for each of two taxels, as XELA's files have them.
+const XELA: &str = "<robot name='u'><link name='finger'/><link name='ax'/><link name='ay'/><link name='az'/><link name='bx'/><link name='by'/><link name='bz'/>\
+    <joint name='j0' type='prismatic'><parent link='finger'/><child link='ax'/><origin xyz='0.001 0 0.002'/><axis xyz='1 0 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>\
+    <joint name='j1' type='prismatic'><parent link='ax'/><child link='ay'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>\
+    <joint name='j2' type='prismatic'><parent link='ay'/><child link='az'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>\
+    <joint name='k0' type='prismatic'><parent link='finger'/><child link='bx'/><origin xyz='0.005 0 0.002' rpy='0 1.5707963267948966 0'/><axis xyz='1 0 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>\
+    <joint name='k1' type='prismatic'><parent link='bx'/><child link='by'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>\
+    <joint name='k2' type='prismatic'><parent link='by'/><child link='bz'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint></robot>";
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn file(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.0.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    }
+
+    fn npz(&self, name: &str, write: impl FnOnce(&mut NpzWriter<File>)) -> PathBuf {
+        let path = self.0.path().join(name);
+        let mut npz = NpzWriter::new(File::create(&path).unwrap());
+        write(&mut npz);
+        npz.finish().unwrap();
+        path
+    }
+}
+
+fn read(path: &Path) -> LayoutFile {
+    LayoutFile::read(path, LayoutOptions::default()).unwrap()
+}
+
+fn refused(path: &Path, wanted: &str) {
+    let error = LayoutFile::read(path, LayoutOptions::default()).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    let name = path.file_name().unwrap().to_str().unwrap();
+    assert!(error.to_string().contains(name), "{error}");
+    assert!(
+        error.to_string().contains(wanted),
+        "no `{wanted}` in: {error}"
+    );
+}
+
+#[track_caller]
+fn near(one: DVec3, other: DVec3) {
+    assert!((one - other).length() < 1e-9, "{one} is not {other}");
+}
+
+#[test]
+fn a_csv_file_is_read_with_radii_and_image_and_written_back_as_the_same_layout() {
+    let folder = Folder::new();
+    let text = "nx,ny,nz,x_mm,y_mm,z_mm,radius_mm,row,column\n0,0,2,1.5,0,3,0.7,0,1\n0.6,0,0.8,-4,0.1,3.25,0.8,2,5\n";
+    let path = folder.file("palm.csv", text);
+    let file = read(&path);
+    near(file.layout.centers()[0], DVec3::new(1.5e-3, 0.0, 3e-3));
+    assert_eq!(file.layout.axes()[0], DVec3::Z);
+    assert_eq!(file.radii.as_deref(), Some(&[0.7 * 1e-3, 0.8 * 1e-3][..]));
+    assert_eq!(file.pixels.as_deref(), Some(&[[0, 1], [2, 5]][..]));
+    let copy = folder.0.path().join("copy.csv");
+    file.write_csv(&copy).unwrap();
+    let again = read(&copy);
+    assert_eq!(again.layout, file.layout);
+    assert_eq!((again.radii, again.pixels), (file.radii, file.pixels));
+}
+
+#[test]
+fn a_position_file_of_icub_is_read_without_its_unused_rows() {
+    let folder = Folder::new();
+    let file = read(&folder.file("palm.txt", ICUB));
+    assert_eq!(file.layout.n_taxels(), 2);
+    near(
+        file.layout.centers()[1],
+        DVec3::new(-0.016, 0.0067, -0.0119),
+    );
+    assert!((file.layout.axes()[1].length() - 1.0).abs() < 1e-15);
+    assert!(
+        file.notes[0].contains("2 rows of zeros"),
+        "{:?}",
+        file.notes
+    );
+    assert!((file.default_radius() - 0.5 * 0.0033f64.hypot(0.0004)).abs() < 1e-12);
+}
+
+#[test]
+fn an_archive_has_positions_and_normals_or_poses_and_pixels() {
+    let folder = Folder::new();
+    let path = folder.npz("own.npz", |npz| {
+        npz.add_array("positions", &array![[0.0, 0.0, 1e-3], [2e-3, 0.0, 1e-3]])
+            .unwrap();
+        npz.add_array("normals", &array![[0.0f32, 0.0, 1.0], [0.0, 1.0, 0.0]])
+            .unwrap();
+        npz.add_array("radii", &array![1e-3, 2e-3]).unwrap();
+    });
+    let file = read(&path);
+    assert_eq!(file.layout.axes(), [DVec3::Z, DVec3::Y]);
+    assert_eq!(file.radii.as_deref(), Some(&[1e-3, 2e-3][..]));
+    // A rotation by 90° about x takes z to −y.
+    let poses = Array3::from_shape_vec(
+        (1, 3, 4),
+        vec![
+            1.0f32, 0.0, 0.0, 0.01, 0.0, 0.0, -1.0, 0.02, 0.0, 1.0, 0.0, 0.03,
+        ],
+    );
+    let poses = poses.unwrap();
+    let path = folder.npz("dex.npz", |npz| {
+        npz.add_array("poses", &poses).unwrap();
+        npz.add_array("taxel2pixel", &array![[25i64, 15]]).unwrap();
+    });
+    let file = read(&path);
+    near(file.layout.axes()[0], DVec3::NEG_Y);
+    assert!((file.layout.centers()[0] - DVec3::new(0.01, 0.02, 0.03)).length() < 1e-8);
+    assert_eq!(file.pixels.as_deref(), Some(&[[25, 15]][..]));
+    let mirrored = folder.npz("left.npz", |npz| {
+        npz.add_array("poses", &poses.mapv(|x| -x)).unwrap()
+    });
+    refused(&mirrored, "row 1: a left-handed frame");
+    let wrong = folder.npz("counts.npz", |npz| {
+        npz.add_array("positions", &Array2::<f64>::zeros((3, 3)))
+            .unwrap();
+        npz.add_array("normals", &Array2::<f64>::ones((2, 3)))
+            .unwrap();
+    });
+    refused(&wrong, "normals: an array of shape [2, 3]; 3 × 3");
+    let flat = folder.npz("flat.npz", |npz| {
+        npz.add_array("other", &Array1::<f64>::zeros(3)).unwrap()
+    });
+    refused(&flat, "positions and normals, or poses");
+}
+
+#[test]
+fn points_of_paxini_take_the_normals_of_a_mesh() {
+    let folder = Folder::new();
+    let path = folder.file(
+        "s.json",
+        r#"{"model": "S", "units": "mm", "taxels_mm": [[0, 0, 5.01], [5, 0.2, 1]]}"#,
+    );
+    refused(&path, "points without normals");
+    let cube = TriangleMesh::cuboid("cube", DVec3::splat(0.01)).unwrap();
+    let options = LayoutOptions {
+        mesh: Some(&cube),
+        sensor: None,
+    };
+    let file = LayoutFile::read(&path, options).unwrap();
+    assert_eq!(file.layout.axes(), [DVec3::Z, DVec3::X]);
+    let far = folder.file("far.json", "[[0, 0, 50]]");
+    let error = LayoutFile::read(&far, options).unwrap_err().to_string();
+    assert!(
+        error.contains("far.json, row 1: a point 45.0 mm from the mesh"),
+        "{error}"
+    );
+    refused(
+        &folder.file("m.json", r#"{"units": "m", "points": []}"#),
+        "units \"m\"; \"mm\"",
+    );
+    refused(
+        &folder.file("two.json", "[[0, 0]]"),
+        "row 1: `[0,0]`; three numbers",
+    );
+    refused(&folder.file("cut.json", r#"{"taxels_mm": [[0, 0"#), "EOF");
+}
+
+#[test]
+fn a_robots_file_has_arrays_taxels_or_prismatic_joints() {
+    let folder = Folder::new();
+    let array = "<array rows='2' cols='3' order='row-major' size='0.003 0.004' offset='0.001 0'/>";
+    let file = read(&folder.file("pad.urdf", &URDF.replace("TAXELS", array)));
+    let centers = file.layout.centers();
+    near(centers[0], DVec3::new(-0.001, 0.0, 0.01));
+    near(centers[1], DVec3::new(-0.001, 0.004, 0.01));
+    near(centers[3], DVec3::new(0.002, 0.0, 0.01));
+    assert_eq!(
+        (file.layout.n_taxels(), file.link.as_deref()),
+        (6, Some("base"))
+    );
+    let listed = "<taxel idx='1' xyz='0.02 0.01 0' rpy='0 0 0'/><taxel idx='0' xyz='0.01 0.01 0' rpy='1.5707963267948966 0 0'/>";
+    let file = read(&folder.file("list.urdf", &URDF.replace("TAXELS", listed)));
+    near(file.layout.centers()[0], DVec3::new(0.01, 0.01, 0.01));
+    near(file.layout.axes()[0], DVec3::NEG_Y);
+    let file = read(&folder.file("uskin.urdf", XELA));
+    near(file.layout.centers()[0], DVec3::new(0.001, 0.0, 0.002));
+    near(file.layout.axes()[1], DVec3::X);
+    assert_eq!(file.link.as_deref(), Some("finger"));
+    refused(
+        &folder.file("none.urdf", "<robot name='r'><link name='a'/></robot>"),
+        "no tactile sensor",
+    );
+}
+
+#[test]
+fn a_wrong_file_is_refused_with_its_row() {
+    let folder = Folder::new();
+    let header = "x_mm,y_mm,z_mm,nx,ny,nz\n";
+    for (name, text, wanted) in [
+        ("empty.csv", String::new(), "an empty file"),
+        ("header.csv", header.to_owned(), "no taxel"),
+        (
+            "cut.csv",
+            format!("{header}1,2,3,0,0,1\n1,2,3,0"),
+            "line 3: 4 columns; 6 columns",
+        ),
+        (
+            "nan.csv",
+            format!("{header}1,2,nan,0,0,1\n"),
+            "line 2, column z_mm: `nan`",
+        ),
+        (
+            "zero.csv",
+            format!("{header}1,2,3,0,0,1\n1,2,3,0,0,0\n"),
+            "row 2: normal",
+        ),
+        ("name.csv", "x,y,z\n1,2,3\n".to_owned(), "column `x`"),
+        ("twice.csv", format!("x_mm,{header}"), "column `x_mm` twice"),
+        (
+            "few.csv",
+            "x_mm,y_mm,z_mm\n1,2,3\n".to_owned(),
+            "no column nx",
+        ),
+        (
+            "radius.csv",
+            "x_mm,y_mm,z_mm,nx,ny,nz,radius_mm\n1,2,3,0,0,1,-1\n".to_owned(),
+            "column radius_mm: -1",
+        ),
+        (
+            "cut.txt",
+            ICUB.replace(" -0.9962", ""),
+            "row 8: 5 numbers; six numbers",
+        ),
+        ("word.txt", ICUB.replace("-0.9962", "x"), "six numbers"),
+        ("nan.txt", ICUB.replace("-0.9962", "nan"), "not finite"),
+        (
+            "zero.txt",
+            ICUB.replace("0.0000 0.0001 -1.0000", "0 0 0"),
+            "row 7: normal",
+        ),
+        ("none.txt", "name palm\n".to_owned(), "no taxel"),
+        (
+            "rows.urdf",
+            URDF.replace("TAXELS", "<array rows='0' cols='2' size='1 1'/>"),
+            "no tactile sensor",
+        ),
+        ("a.step", String::new(), "another file"),
+    ] {
+        refused(&folder.file(name, &text), wanted);
+    }
+}
+
+#[test]
+fn a_patch_of_a_scene_has_the_taxels_of_a_file_or_of_its_robots_sensor() {
+    let folder = Folder::new();
+    folder.file("palm.txt", ICUB);
+    let array = "<array rows='4' cols='6' size='0.003 0.003' spacing='0.004 0.004'/>";
+    folder.file("pad.urdf", &URDF.replace("TAXELS", array));
+    let scene = |patch: &str| {
+        let text = format!(
+            "title = \"A pad\"\nrobots = [{{ name = \"r\", urdf = \"pad.urdf\" }}]\n\
+             [[patches]]\nname = \"p\"\nrobot = \"r\"\nstroke_mm = 5.0\nlayout = {patch}\n"
+        );
+        ScenePlan::read(&folder.file("s.toml", &text))
+    };
+    let plan = scene("{ sensor = \"pad_tactile\" }").unwrap();
+    assert_eq!(plan.patches[0].skin.n_taxels(), 24);
+    near(
+        plan.patches[0].skin.layout().centers()[0],
+        DVec3::new(0.0, 0.0, 0.01),
+    );
+    assert!((plan.patches[0].skin.taxels().at(0).radius - 2e-3).abs() < 1e-12);
+    assert_eq!(plan.notes().count(), 0);
+    let plan = scene("{ file = \"palm.txt\" }").unwrap();
+    assert_eq!(plan.patches[0].skin.n_taxels(), 2);
+    let notes: Vec<String> = plan.notes().collect();
+    assert!(
+        notes[0].contains("`pad_tactile` on link `base` is not read: layout = { sensor"),
+        "{notes:?}"
+    );
+    for (patch, wanted) in [
+        ("{ sensor = \"pad\" }", "layout.sensor: `pad`"),
+        ("{ file = \"none.csv\" }", "none.csv"),
+        (
+            "{ file = { path = \"palm.txt\", sensor = \"a\" } }",
+            "layout.file: ",
+        ),
+    ] {
+        let error = scene(patch).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        assert!(
+            error.to_string().contains(wanted),
+            "no `{wanted}` in: {error}"
+        );
+    }
+}
