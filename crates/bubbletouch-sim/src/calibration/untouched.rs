@@ -14,10 +14,9 @@ use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 const N_RUN: usize = 50;
 /// Minimum number of untouched frames for an estimate.
 const FEWEST: usize = 20;
-/// Range of the fraction of frames with readings above the lowest possible reading. Inside this range the zero of a clipped taxel is computed. A wider range
-/// uses too few frames at its ends.
+/// Range of the fraction of unclipped frames in which the zero of a clipped taxel can be computed. A wider range uses too few frames at its ends.
 const CLIPPED: [f64; 2] = [0.3, 0.98];
-/// Minimum fraction of runs without a reading at the lowest possible value. If more runs are free of such readings, the other runs are omitted.
+/// Minimum fraction of runs without clipped readings. If at least this fraction is clear, the other runs are omitted.
 const SUFFICIENT_CLEAR: f64 = 0.1;
 
 /// Zero of a taxel in a run of untouched frames.

@@ -31,7 +31,7 @@ pub struct Workspace {
     pub(super) poses: Vec<Pose>,
 }
 
-/// Taxel that is held by a part of an object, even from behind the substrate.
+/// Taxel that a part of an object continues to push, even from behind the substrate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldTaxel {
     pub taxel: u32,

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// Triangles over welded corners, with all sides of all triangles sorted by edge.
 #[derive(Clone, Debug)]
 pub struct Welded {
-    /// Corners of each triangle; a corner has the index of the first vertex with its coordinates.
+    /// Corners of each triangle. Vertices with equal coordinates share the index of the first of them.
     pub corners: Vec<[u32; 3]>,
     /// Sides of all triangles with three different corners, sorted by edge.
     pub sides: Vec<Side>,
@@ -103,7 +103,7 @@ impl Joined {
     }
 }
 
-/// Returns, for each vertex, the first vertex with its coordinates.
+/// Returns, for each vertex, the index of the first vertex with equal coordinates.
 fn places(mesh: &TriangleMesh) -> Vec<u32> {
     let mut first = HashMap::new();
     let vertices = mesh.vertices().iter().enumerate();

@@ -31,7 +31,7 @@ pub struct BodyState {
 pub struct BodyContact {
     /// Number of taxels with a deflection above zero.
     pub n_touched: usize,
-    /// Number of saturated taxels: at their stroke, and an object would push them further.
+    /// Number of saturated taxels, that is, taxels at their stroke that an object would push further.
     pub n_saturated: usize,
     /// Number of patches with a deflected taxel.
     pub n_patches: usize,

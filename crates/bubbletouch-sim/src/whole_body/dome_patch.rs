@@ -4,7 +4,7 @@ use super::lanes::ball_around;
 use crate::objects::Sphere;
 use crate::world::Dome;
 
-/// Equal taxels on a dome, with the quantities for presses.
+/// Equal taxels on a dome, with quantities precomputed for presses.
 #[derive(Clone, Debug)]
 pub(super) struct DomePatch {
     dome: Dome,

@@ -38,7 +38,7 @@ pub(crate) struct Travelling {
     pub taxels: TaxelTree,
     /// Largest coordinate of a taxel along the direction, including its radius, metres.
     pub front: f64,
-    /// Whether the taxels' own axes equal the direction. Each deflection then equals the travel past first contact of the taxel.
+    /// Whether the taxels' own axes equal the direction of travel. Each deflection then equals the travel past first contact of the taxel.
     pub is_flat: bool,
 }
 

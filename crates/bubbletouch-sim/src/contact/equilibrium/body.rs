@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 /// about them. Rotations are multiplied by the arm (the object's radius), so that all components are in metres.
 #[derive(Clone, Debug)]
 pub(super) struct Body<'a> {
-    /// Number of the object in the list passed to the solver.
+    /// Index of the object in the list passed to the solver.
     pub number: usize,
     pub object: FreeObject<'a>,
     /// Weight m g, newtons.

@@ -7,13 +7,13 @@ use super::reach::Reach;
 use super::rigid_contact::{Touched, Touching};
 use glam::{DMat3, DVec3};
 
-/// Sphere of a body: index of the body in the descent, and number of the sphere.
+/// Sphere of a body: index of the body in the descent, and index of the sphere.
 pub(super) type Part = (u32, u32);
 
 /// Taxel or rigid contact that a sphere pushes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Key {
-    /// Number of the skin, and number of the taxel in it.
+    /// Index of the skin, and index of the taxel in it.
     Taxel(u32, u32),
     /// Rigid contact of one sphere; another free object is given by its index among the bodies.
     Rigid(Part, Touched),

@@ -10,14 +10,14 @@ use std::io::Read;
 /// Name of the column with the waypoints' times.
 const TIME: &str = "time_s";
 
-/// Table of waypoints whose columns are claimed one by one.
+/// Table of waypoints, from which a trajectory claims the columns that it uses, one by one.
 pub(super) struct Table {
     /// Numbers of the file, one row per waypoint.
     numbers: NumberTable,
     claimed: Vec<bool>,
 }
 
-/// Column that was claimed, and the factor that converts its numbers to SI units.
+/// Column of a table that a trajectory uses (claims), with the factor that converts its numbers to SI units.
 #[derive(Clone, Copy)]
 pub(super) struct Column {
     index: usize,
