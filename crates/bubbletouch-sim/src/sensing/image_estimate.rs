@@ -33,8 +33,8 @@ pub struct ImageEstimate {
     noise_std: f64,
 }
 
-/// Number of steps to a nonnegative image. With fewer steps, larger oscillations remain; each step costs one linear estimate and one measurement of the
-/// image.
+/// Number of steps that make the image nonnegative. With fewer steps, larger oscillations remain; each step costs one linear estimate and one measurement of
+/// the image.
 pub const N_STEPS: usize = 20;
 
 impl ImageEstimate {

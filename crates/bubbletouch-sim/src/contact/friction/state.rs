@@ -139,7 +139,7 @@ struct TaxelContactState {
     object: usize,
     /// Material point of the object that the taxel touches, metres, in the object's frame.
     point: DVec3,
-    /// Positions, in the patch frame, metres: of the material point, and of the point where the friction acts.
+    /// Position of the material point, and position of the point where the friction acts; metres, in the patch frame.
     place: DVec3,
     acts_at: DVec3,
     /// Tangential displacement u of the shear spring, metres, along x and y of the taxel's frame.

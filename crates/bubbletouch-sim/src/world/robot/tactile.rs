@@ -40,7 +40,7 @@ pub(super) fn read_tactile_sensors(robot: Element) -> Vec<TactileSensor> {
     sensors.collect()
 }
 
-/// Where a sensor is declared.
+/// Place of a sensor in the file: its XML element, its name, and the name of its link.
 struct Place<'a> {
     sensor: Option<Node<'a, 'a>>,
     name: Option<&'a str>,
