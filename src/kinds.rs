@@ -1,4 +1,4 @@
-//! Kinds of studies under the short path `bubbletouch::kinds`; the code is in [`studies`](crate::studies).
+//! Short path to the kinds of studies. The code is in [`studies`](crate::studies).
 
 pub use crate::studies::*;
 

@@ -1,6 +1,6 @@
 //! The `bubbletouch` command.
 
-// The standard print macros panic if a pipe is closed; `command::terminal::streams` does not.
+// The standard print macros panic if a pipe is closed; the command's own streams do not.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
 mod command;

@@ -9,7 +9,7 @@
 //! | [`evaluation`] | labels | a [confusion matrix](evaluation::metrics), [decisions on several touches](evaluation::fusion), [the next touch](evaluation::next_touch) |
 //! | [`statistics`] | scores of trials | [intervals](statistics::interval), [comparisons](statistics::comparison), [variance components](statistics::variance) |
 //!
-//! A [`Classifier`](classifiers::classifier::Classifier) fits its scaling, its parameters and its model on training rows only; test rows are only predicted.
+//! A classifier fits its scaling, its parameters and its model on training rows only; test rows are only predicted.
 //! All results are deterministic, because random numbers come from a named [`Seed`](crate::random::Seed).
 //!
 //! ```

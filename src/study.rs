@@ -1,5 +1,4 @@
-//! Names of recognition studies under the short path `bubbletouch::study`. Their code is in [`engine`](crate::engine), [`inputs`](crate::inputs) and
-//! [`studies::recognition`](crate::studies::recognition).
+//! Short paths to the types of recognition studies. Their code is in the modules `engine`, `inputs` and `studies`.
 
 pub use crate::engine::axis::Axis;
 pub use crate::engine::shard::Shard;

@@ -1,7 +1,7 @@
 //! Derivatives of deflections with respect to the object's pose, computed from the contact normals.
 //!
-//! A motion of the object in the patch frame consists of a translation dx of its origin o and a rotation dω about o. It changes the deflection of contact i
-//! by `g·dx + ((p − o) × g)·dω`, where p is the contact point and g = −n_c / (n_c·n). The travel of the patch to its goal also changes:
+//! A motion of the object in the patch frame consists of a translation dx of its origin o and a rotation dω about o. The motion changes the deflection of
+//! contact i by `g·dx + ((p − o) × g)·dω`, where p is the contact point and g = −n_c / (n_c·n). The travel of the patch to its goal also changes:
 //!
 //! - to a pose or a travel, the travel is constant;
 //! - to a depth past first contact, on a flat patch, the deepest taxel d keeps its deflection, so its derivative is subtracted: `J_i − J_d`;

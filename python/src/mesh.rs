@@ -121,7 +121,7 @@ impl Mesh {
     /// Packs the solid enclosed by the mesh with few spheres, on all cores.
     ///
     /// No sphere extends more than tolerance / 2 (metres, positive) beyond the surface. No point of the surface is more than the tolerance outside
-    /// the spheres. Both bounds are verified; otherwise ValueError is raised. The mesh must be closed. Parts that face inwards are turned
+    /// the spheres. If a bound cannot be reached, ValueError is raised. The mesh must be closed. Parts that face inwards are turned
     /// outwards, with a UserWarning. With sheet=True, the surface is packed as a sheet without thickness. A scan of 16,000 triangles takes
     /// seconds. Ctrl-C ends the call.
     #[pyo3(signature = (tolerance, *, sheet=false))]

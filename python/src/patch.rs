@@ -18,10 +18,10 @@ use pyo3::types::{PyDict, PyTuple};
 use std::ffi::CString;
 use std::path::PathBuf;
 
-/// Default stiffness of a taxel, N/m. It equals the command's default, and signatures state it for `help()`.
+/// Default stiffness of a taxel, N/m. The value equals the command's default, and signatures state it for `help()`.
 const STIFFNESS: f64 = 100.0;
 
-/// Patch: taxels on a rigid substrate; created by one of the static methods.
+/// Taxels on a rigid substrate. A patch is created by one of the static methods.
 ///
 /// A taxel is a sphere of `taxel_radius` (metres, positive; half the pitch if None) on a spring of `stiffness` (N/m, positive). Its `damping` (N·s/m, zero or
 /// more) is used by signal chains and scenes. Its deflection is at most its `stroke` (metres, positive). The methods raise ValueError for values out of range,
@@ -196,10 +196,10 @@ impl Patch {
 
     /// Returns a patch of taxels that are distributed over the outer surface of a mesh.
     ///
-    /// The number of taxels equals that of a grid with this pitch; they are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A taxel whose axis
-    /// would meet the mesh again is omitted; see n_left_out. The region is the intersection of the given conditions: bounds (2, 3), its smallest and largest
-    /// coordinates; plane (2, 3), a point and the direction to the covered side; triangles, their numbers. Closed parts of the mesh that face inwards are
-    /// turned outwards, with a UserWarning.
+    /// The number of taxels equals the number in a grid with this pitch. The taxels are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A taxel
+    /// whose axis would meet the mesh again is omitted (n_left_out). The region is the intersection of the given conditions: bounds (2, 3), its smallest and
+    /// largest coordinates; plane (2, 3), a point and the direction to the covered side; triangles, their numbers. Closed parts of the mesh that face inwards
+    /// are turned outwards, with a UserWarning.
     #[staticmethod]
     #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, bounds=None, plane=None, triangles=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -496,7 +496,7 @@ impl Patch {
     /// Returns (n, ny, nx) for a grid, and (n, n_taxels) for another patch; without n for a single pose. The result is bitwise equal for any number
     /// of threads. With contacts=True, the Contacts are returned too; the frames are unchanged. With jacobian=True, the derivatives (…, 6) of the
     /// deflections are returned too: per metre along x, y, z, and per radian about x, y, z through the object's origin, in the axes of the patch.
-    /// They are zero for free and saturated taxels. With a depth or a force, the derivatives include the change of the travel; a depth then needs a
+    /// The derivatives are zero for free and saturated taxels. With a depth or a force, the derivatives include the change of the travel; a depth then needs a
     /// flat patch.
     ///
     /// Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.

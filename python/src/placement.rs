@@ -57,8 +57,8 @@ impl Groups {
 /// Returns object poses for Patch.press: the object lies on a table under a patch that faces down.
 ///
 /// The object stands with its own z axis up or, with `rest`, in the stable pose of that number (0: the most probable). Its bounding box is centred at x = y = 0
-/// and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y; metres) at the height of the object's top. It is tilted by `tilt`
-/// about the patch's x axis, then about its y axis.
+/// and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y; metres) at the height of the object's top. The axis is tilted by
+/// `tilt` about the patch's x axis, then about its y axis.
 ///
 /// offset, tilt: (2,) or (n, 2); yaw: a number or (n,). Returns (7,) if all arguments are single values, otherwise (n, 7). Raises ValueError.
 #[pyfunction]

@@ -243,7 +243,8 @@ impl KernelSvm {
     }
 }
 
-/// Trained linear SVM without a kernel matrix for labels 0, 1, …, used by bubbletouch.learning.LinearSVC. It is pickled like KernelSvm.
+/// Trained linear SVM without a kernel matrix for labels 0, 1, …, used by bubbletouch.learning.LinearSVC. Pickling stores its training rows; unpickling trains
+/// it again.
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct LinearModel {
     svm: LinearSvm,

@@ -5,8 +5,8 @@
 //! "touches.depth_mm" = [1.0, 2.0, 4.0]
 //! "skin.stiffness_n_per_m" = [500.0, 2000.0]
 //! ```
-//! A key in `[axes]` replaces the same key in its own table. Each combination of values is a study of its own and is checked like any study. A key that accepts
-//! a list in its own table is also an axis there, and may be written in either place. `"touches.offset_{x,y}_mm"` sets two keys together.
+//! A key in `[axes]` replaces the same key in its own table. Each combination of values is a study of its own and is checked as any other study. A key that
+//! accepts a list in its own table is also an axis there, and may be written in either place. `"touches.offset_{x,y}_mm"` sets two keys together.
 //!
 //! With `combine = "one_at_a_time"`, the first configuration has the values of the study's own tables. In each further configuration, one axis alone takes
 //! another value. The keys may then also have values in their own tables.
@@ -29,7 +29,7 @@ use toml::de::{DeTable, DeValue};
 /// Rules of a kind of study for the keys that may be axes.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisRules {
-    /// Function that returns whether a key accepts a list in its own table. Such keys are moved from `[axes]` to their table.
+    /// Function that returns whether a key accepts a list in its own table. These keys are moved from `[axes]` to their table.
     pub in_place: fn(&str) -> bool,
     /// Keys that cannot be axes, because they must be equal within a study; includes all keys below them.
     pub refused: &'static [&'static str],
@@ -79,7 +79,7 @@ pub struct AxisValues {
 }
 
 impl AxisValues {
-    /// Returns the axis values of a combination, for tables with these [columns](StudyAxes::columns).
+    /// Returns the axis values of a combination, for tables with these columns.
     pub fn new(
         number: usize,
         (axes, columns): (&StudyAxes, &[Column]),

@@ -1,7 +1,7 @@
 //! Engine of all studies: axes, work items, the journal, shards, progress and provenance.
 //!
-//! The engine runs the [work items](work_items) of a study independently of what they measure. It stores each finished item in the [`journal`], so that an
-//! interrupted run continues, and divides items among shards ([`shard`]).
+//! The engine runs the [work items](work_items) of a study independently of what they measure. Each finished item is stored in the [`journal`], so that an
+//! interrupted run can continue. Items are divided among shards ([`shard`]).
 
 pub mod axes;
 pub mod axis;

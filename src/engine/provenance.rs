@@ -22,7 +22,7 @@ const TARGET: &str = env!("BUBBLETOUCH_TARGET");
 
 pub use crate::files::MANIFEST_FILE;
 
-/// Version of the names and meanings of all table columns. It increases when a column is renamed or changes its meaning.
+/// Version of the names and meanings of all table columns. The version increases when a column is renamed or changes its meaning.
 pub const SCHEMA: u32 = 1;
 
 /// Subcommand in the manifest of a folder that `bubbletouch report` wrote without a run.
@@ -40,7 +40,7 @@ pub struct Manifest {
     /// Folder of the study file; paths in the study are relative to it. Empty in manifests of earlier versions.
     #[serde(default)]
     pub paths_from: PathBuf,
-    /// Version of the table columns, see [`SCHEMA`]; 0 in folders of versions with other column names.
+    /// Version of the table columns ([`SCHEMA`]); 0 in folders of versions with other column names.
     #[serde(default)]
     pub schema: u32,
     /// Name and version of the program that computed the results.

@@ -1,7 +1,6 @@
 //! Writing of NumPy's `.npy` files row by row, for arrays larger than memory. The header is followed by the elements; the last index changes fastest.
 //!
-//! Arrays in memory are written by ndarray-npy ([`write_npy`]), which cannot write a header alone. The module [`arrays`](crate::inputs::arrays) reads array
-//! files.
+//! Arrays in memory are written by ndarray-npy ([`write_npy`]), which cannot write a header alone. The module `arrays` reads array files.
 
 use crate::error::Result;
 use crate::files::{WholeFile, write_whole};

@@ -57,10 +57,10 @@ pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<O
     Ok(objects)
 }
 
-/// Reads the objects of a TOML file ([its keys](crate::guide::own_objects)) as a set with the name of the file.
+/// Reads the objects of a TOML file as a set with the name of the file.
 ///
 /// # Errors
-/// If the file cannot be read, or [`Catalogue::parse`] returns an error.
+/// If the file cannot be read or does not describe objects.
 pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
     let place = path.display().to_string();
     let text = crate::files::read_to_string(path).map_err(|e| {
@@ -244,7 +244,7 @@ fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
 }
 
 /// Reads the triangles of a mesh file, and orients the faces of closed parts outwards. Returns the mesh and its orientation. Holes of up to `close_holes`
-/// metres are closed first. Both changes are reported on standard error.
+/// metres are closed first. Changes are reported on standard error.
 ///
 /// # Errors
 /// If [`read_mesh_file`] fails, a face is not convex, or the width is negative.

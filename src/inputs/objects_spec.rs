@@ -26,7 +26,7 @@ pub struct ObjectsSpec {
     pub meshes: Option<FilePath>,
     /// Model that is built from each mesh: `mesh` (default), `packed` or `vertex_spheres`.
     pub model: Option<ModelSpec>,
-    /// Length unit of the mesh files. Default: metres; the size of each mesh must then be within plausible limits.
+    /// Length unit of the mesh files. Default: metres. The size of each mesh must then be within plausible limits.
     #[serde(alias = "mesh_unit")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
@@ -38,8 +38,8 @@ pub struct ObjectsSpec {
     #[serde(skip)]
     pub pitch: Option<f64>,
     /// Maximum distance between the surface of a solid or packed mesh and its spheres, mm, at least 1e-6. Spheres extend at most half of this distance beyond
-    /// the surface, so the mean heights are equal. Default: 0.25; with `model = "packed"`, a tenth of the finest pitch, which gives a mean deflection error of
-    /// about 2 % of the pitch.
+    /// the surface, so the mean heights are equal. Default: 0.25, or a tenth of the finest pitch with `model = "packed"`, which gives a mean deflection error
+    /// of about 2 % of the pitch.
     pub surface_error_mm: Option<f64>,
     /// Maximum width of holes that are closed before a mesh is packed or used, mm. Default: no holes are closed.
     pub close_holes_mm: Option<f64>,

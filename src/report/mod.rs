@@ -1,8 +1,8 @@
 //! Reports: result tables are converted to files for readers.
 //!
-//! The inputs are the result tables ([`Table`](crate::table::Table)) with their chart specifications, frames (ny × nx, metres or newtons), and the metadata of
-//! the study ([`StudyAbout`](page::StudyAbout)). The outputs are CSV files, charts and pictures (SVG and PNG), terminal text, and one self-contained HTML page.
-//! Equal inputs give equal bytes. Each file is written completely or not at all.
+//! The inputs are the result tables with their chart specifications, frames (ny × nx, metres or newtons), and the metadata of the study. The outputs are CSV
+//! files, charts and pictures (SVG and PNG), terminal text, and one self-contained HTML page. Equal inputs give equal bytes. Each file is written completely or
+//! not at all.
 //!
 //! [`study_folder::files_with`] returns the files of a result folder. [`terminal::table_text`] returns the table that is printed after a run.
 //! [`frame_files::write_frame`] and [`pressure_map`] output a single frame. [`recording`] writes frames over time to a file and draws them as pictures or

@@ -35,7 +35,7 @@ const WRENCHES: &str = "wrenches.csv";
 const SCENE: &str = "scene.toml";
 
 /// Writer of a scene's output files in one folder: `recording.npz`, `wrenches.csv` (wrenches on each patch, in its frame) and `scene.toml`.
-/// [`finish`](Self::finish) completes the files. If the writer is dropped before, no file remains.
+/// The method `finish` completes the files. If the writer is dropped before, no file remains.
 pub struct SceneFiles {
     folder: PathBuf,
     claimed: DataFolder,
@@ -49,7 +49,7 @@ impl SceneFiles {
     /// Creates the output files in an existing folder.
     ///
     /// # Errors
-    /// If the folder contains one of these files and no simulation wrote it; if a file cannot be written; or if a name contains a slash or another invalid
+    /// If the folder contains one of these files and no simulation wrote it. If a file cannot be written, or a name contains a slash or another invalid
     /// character.
     pub fn create(folder: &Path, plan: &ScenePlan) -> Result<Self> {
         let claimed = DataFolder::claim(folder, "simulate", [RECORDING, WRENCHES, SCENE])?;

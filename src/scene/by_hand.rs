@@ -2,7 +2,7 @@
 //!
 //! A manually set pose takes effect in the next step and remains. All other motions follow the scene file.
 //!
-//! A manual step equals a step of the [time loop](Simulation::next_frame) bit by bit if its length, time and poses are equal. The manual step must then be
+//! A manual step equals a step of the time loop bit by bit if its length, time and poses are equal. The manual step must then be
 //! observed where the time loop makes a frame.
 
 use super::plan_object::Movement;
@@ -15,7 +15,7 @@ use crate::world::{Interpolation, JointTrajectory};
 use ndarray::Array2;
 
 impl Simulation<'_> {
-    /// Advances the simulation by one step of `dt` seconds; [`observe`](Self::observe) returns the new state.
+    /// Advances the simulation by one step of `dt` seconds. The method `observe` returns the new state.
     ///
     /// ```
     /// use bubbletouch::geometry::Pose;
@@ -63,7 +63,7 @@ impl Simulation<'_> {
         self.time
     }
 
-    /// Sets a robot's joint positions from the next step on: one number per [coordinate](crate::world::Robot::coordinates), rad or m.
+    /// Sets a robot's joint positions from the next step on: one number per joint coordinate, rad or m.
     ///
     /// # Errors
     /// If the scene has no robot of this name, the number of positions is wrong, or a position is not finite or exceeds the limits of its joint.

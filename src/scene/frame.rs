@@ -38,7 +38,7 @@ pub struct PatchReading {
     pub n_touched: usize,
     /// Number of taxels at their stroke that an object would push further, or whose stop carries a free object.
     pub n_saturated: usize,
-    /// Number of taxels with a grazing contact; see [`GRAZING`](crate::contact::GRAZING).
+    /// Number of taxels with a grazing contact (`contact::GRAZING`).
     pub n_grazing: usize,
     /// Sum of the reactions of all stops to free objects, newtons; included in `force` and `force3`.
     pub stop_force: f64,
@@ -46,7 +46,7 @@ pub struct PatchReading {
     pub wrench: Wrench,
     /// Friction state of the patch; `None` if the patch has no friction.
     pub friction: Option<FrictionReading>,
-    /// Centre of pressure: mean rest centre of the taxels, weighted by their forces; metres, patch frame. `None` if no taxel has a force.
+    /// Centre of pressure: mean rest centre of the taxels, weighted by their forces, metres, patch frame. `None` if no taxel has a force.
     pub center_of_pressure: Option<DVec3>,
 }
 

@@ -1,4 +1,4 @@
-//! Scenes: a TOML file describes robots, skin and moving objects; a simulation computes frames over time.
+//! Scenes: a TOML file describes robots, skin and moving objects. A simulation computes frames over time.
 //!
 //! A [`SceneSpec`] (keys as written) is checked and converted to a [`ScenePlan`] (SI units, files read). A [`Simulation`] steps the plan and passes each
 //! [`Frame`] to the [`FrameSink`]s as soon as it is computed. Only the current state is stored.

@@ -33,7 +33,7 @@ pub struct ScenePlan {
     pub output_rate: f64,
     /// Number of frames, at least one. Frame k is at k / output_rate seconds.
     pub n_frames: usize,
-    /// Number of frames before the scene was [cut](Self::cut); the drift of sensors depends on this duration.
+    /// Number of frames before the scene was cut; the drift of sensors depends on this duration.
     pub n_frames_uncut: usize,
     /// Number of equal time steps between two frames, if steps are needed.
     pub n_substeps: usize,
@@ -55,7 +55,7 @@ impl ScenePlan {
     /// Reads and checks a scene file.
     ///
     /// # Errors
-    /// If the file cannot be read; otherwise returns the errors of [`new`](Self::new).
+    /// If the file cannot be read, or a key is invalid.
     pub fn read(path: &Path) -> Result<Self> {
         let place = path.display().to_string();
         let text = crate::files::read_to_string(path).map_err(|e| {
@@ -77,7 +77,7 @@ impl ScenePlan {
     /// Checks a scene with some objects given in memory, by their names in the scene. For these objects, the scene must not have `object`, `spheres` or `mesh`.
     ///
     /// # Errors
-    /// Returns the errors of [`new`](Self::new), or an error if the scene has no object with the name of a model.
+    /// If a key is invalid, a file cannot be read, or the scene has no object with the name of a model.
     pub fn with_models(
         place: &str,
         folder: &Path,

@@ -20,7 +20,7 @@ pub struct PlannedRobot {
     pub folder: Option<PathBuf>,
     /// Motion of the robot's base.
     pub base: Motion,
-    /// Motion of the joints; `None` if they stay at their [rest positions](Robot::rest_positions).
+    /// Motion of the joints; `None` if they stay at their rest positions.
     pub joints: Option<JointTrajectory>,
 }
 

@@ -1,4 +1,4 @@
-//! Time loop of a scene, which passes on each frame as soon as it is computed. For manual steps, see [`by_hand`](super::by_hand).
+//! Time loop of a scene, which passes on each frame as soon as it is computed. The module `by_hand` contains manual steps.
 
 use super::frame::{Frame, FrameSink, FrictionReading, ObjectReading, PatchReading, PoseControl};
 use super::free_objects::FreeObjects;
@@ -100,7 +100,7 @@ impl<'p> Simulation<'p> {
     /// Computes all remaining frames and passes each frame to all sinks.
     ///
     /// # Errors
-    /// If a sink or [`next_frame`](Self::next_frame) fails.
+    /// If a sink fails, a pose overflows, or the scene has been stepped manually.
     pub fn run(&mut self, sinks: &mut [&mut dyn FrameSink]) -> Result<()> {
         while let Some(frame) = self.next_frame()? {
             for sink in sinks.iter_mut() {
@@ -113,7 +113,7 @@ impl<'p> Simulation<'p> {
     /// Computes the next frame of the scene. Returns `None` after the last frame.
     ///
     /// # Errors
-    /// If a pose overflows, or the scene has been [stepped](Self::step) manually.
+    /// If a pose overflows, or the scene has been stepped manually.
     pub fn next_frame(&mut self) -> Result<Option<&Frame>> {
         let plan = self.plan;
         if self.is_by_hand {

@@ -133,7 +133,7 @@ impl SkinState {
         &self.damper.deflection
     }
 
-    /// Makes a [step](Self::feel) and writes the reading. `loads` and `tips` contain the loads and tangential springs of free objects, in taxel order.
+    /// Makes a step and writes the reading. `loads` and `tips` contain the loads and tangential springs of free objects, in taxel order.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,

@@ -1,6 +1,6 @@
 //! Specification of a scene: the keys of its TOML file, in the units of the file.
 //!
-//! Only names and types are checked here; [`ScenePlan`](super::ScenePlan) checks the values.
+//! Only names and types are checked here. The scene plan checks the values.
 
 pub use super::numbers::Numbers;
 pub use super::spec_motion::*;
@@ -46,7 +46,7 @@ pub struct SceneSpec {
     pub planes: Vec<PlaneSpec>,
 }
 
-/// Keys of `[[planes]]`: a rigid plane, such as a table; free objects do not enter its half-space.
+/// Keys of `[[planes]]`: a rigid plane, such as a table. Free objects do not enter its half-space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneSpec {

@@ -30,11 +30,11 @@ pub struct MotionSpec {
     /// Poses in the world at given times; replaces `at`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub way_points: Vec<WayPointSpec>,
-    /// CSV file of way-points; see [`PoseTrajectory::read_csv`](crate::world::PoseTrajectory::read_csv).
+    /// CSV file of way-points of a pose.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
-    /// Interpolation between way-points; see [`Interpolation`].
+    /// Interpolation between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,
@@ -73,11 +73,11 @@ pub struct WayPointSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointsSpec {
-    /// CSV file of way-points; see [`JointTrajectory::read_csv`](crate::world::JointTrajectory::read_csv).
+    /// CSV file of way-points of the joints.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
-    /// Interpolation between way-points; see [`Interpolation`].
+    /// Interpolation between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,

@@ -27,18 +27,18 @@ pub struct ObjectSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub spheres: Option<FilePath>,
-    /// Mesh file of the object: PLY, OBJ or STL; replaces `object`.
+    /// Mesh file (PLY, OBJ or STL) of the object; replaces `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub mesh: Option<FilePath>,
     /// Contact model of a mesh. Default: spheres around its vertices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelSpec>,
-    /// Length unit of a mesh or of spheres. Default: metres; the size must then be between 0.1 mm and 10 m.
+    /// Length unit of a mesh or of spheres. Default: metres. The size must then be between 0.1 mm and 10 m.
     #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
-    /// Maximum distance between the spheres and the surface of a solid or packed mesh, mm. Default: 0.25; for a packed mesh, a tenth of the finest pitch.
+    /// Maximum distance between the spheres and the surface of a solid or packed mesh, mm. Default: 0.25, or a tenth of the finest pitch for a packed mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
     /// Name of the robot that carries the object; replaces `motion`.

@@ -37,7 +37,7 @@ pub struct PatchSpec {
     /// column of `taxels_csv`. Lists have the order of the layout (for a grid, row by row).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_radius_mm: Option<Numbers>,
-    /// Stroke s of the taxels, mm: their maximum deflection; required.
+    /// Stroke s (maximum deflection) of the taxels, mm; required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stroke_mm: Option<Numbers>,
     /// Stiffness k of the taxels along their axes, N/m. Default: 100.
@@ -61,7 +61,7 @@ pub struct PatchSpec {
     pub signal: Vec<SignalStepSpec>,
 }
 
-/// Step of the signal chain, as in `signal = ["force", { noise_std_n = 0.1 }, { dead_fraction = 0.01 }]`. The keys are those of `[signal]` in studies.
+/// Step of the signal chain, as in `signal = ["force", { noise_std_n = 0.1 }, { dead_fraction = 0.01 }]`. The keys are the same as in `[signal]` of studies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum SignalStepSpec {
@@ -116,7 +116,7 @@ fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
         .chain(errors)
 }
 
-/// Layout of the taxels, as `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`: see [`Layout`](crate::world::Layout).
+/// Layout of the taxels, such as `layout = { grid = { nx = 64, ny = 64, pitch_mm = 2.0 } }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[schemars(transform = with_mesh_unit)]
@@ -185,7 +185,7 @@ pub enum LayoutSpec {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<String>")]
         mesh: Option<FilePath>,
-        /// Length unit of the mesh file. Default: metres; the size must then be between 0.1 mm and 10 m.
+        /// Length unit of the mesh file. Default: metres. The size must then be between 0.1 mm and 10 m.
         #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<Names<LengthUnit>>")]
         unit: Option<LengthUnit>,

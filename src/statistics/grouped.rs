@@ -14,7 +14,7 @@
 //! D*  = (k D + M)/(k + 1)    k = n min(θ, 1 − θ): number of rows with the rarer outcome
 //! ```
 //!
-//! The interval is [Wilson's interval](Interval::wilson) for n/D* rows, with Student's t of G − 1 degrees of freedom instead of the normal quantile.
+//! The interval is Wilson's interval for n/D* rows, with Student's t of G − 1 degrees of freedom instead of the normal quantile.
 //!
 //! - Counts divided by the design effect behave as counts of independent rows: Rao and Scott, *A simple method for the analysis of clustered binary data*,
 //!   Biometrics 48, 1992.
@@ -185,7 +185,7 @@ fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {
 /// groups is `None`. With grouped tests, [`interval_of_groups`] computes both.
 ///
 /// # Errors
-/// Returns the errors of [`Interval::wilson`] and [`interval_of_groups`].
+/// If there are no rows, more rows are correct than exist, or the confidence is outside 0..1.
 pub fn interval_of(
     [n_correct, n_rows]: [usize; 2],
     tests: &[GroupedTest],

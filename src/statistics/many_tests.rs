@@ -9,7 +9,7 @@ pub fn holm(p_values: &[f64]) -> Vec<f64> {
     let mut corrected = vec![0.0; n];
     let mut highest: f64 = 0.0;
     for (rank, &test) in order.iter().enumerate() {
-        // A corrected p-value is at least that of every test with a smaller p-value.
+        // A corrected p-value is at least the corrected p-value of every test with a smaller p-value.
         highest = highest.max(((n - rank) as f64 * p_values[test]).min(1.0));
         corrected[test] = highest;
     }

@@ -43,8 +43,8 @@ pub struct Components {
 
 /// Estimates the variance components of `scores` (n_rows × n_columns) in the model y_rc = μ + a_r + b_c + e_rc. All effects are random and independent.
 ///
-/// Method of moments (Searle, Casella, McCulloch, *Variance components*, 1992, chapter 4), with the mean squares of rows, columns and residual:
-/// σ²_a = (MS_a − MS_e) / n_columns, σ²_b = (MS_b − MS_e) / n_rows, σ²_e = MS_e.
+/// Method of moments (Searle, Casella, McCulloch, *Variance components*, 1992, chapter 4), with the mean squares of rows, columns and residual. σ²_a = (MS_a −
+/// MS_e) / n_columns, σ²_b = (MS_b − MS_e) / n_rows, σ²_e = MS_e.
 ///
 /// The interval of the residual is exact (χ²). The intervals of σ²_a and σ²_b use modified large samples. Source: Ting, Burdick, Graybill, Jeyaratnam, Lu,
 /// *Confidence intervals on linear combinations of variance components that are unrestricted in sign*, 1990. The p-values are F tests of MS_a / MS_e and

@@ -47,7 +47,7 @@ impl<K: Study> Loaded<K> {
     /// Reads, checks and loads a study.
     ///
     /// # Errors
-    /// If [`Study::load`] fails.
+    /// If a key is unknown or out of its range, or a file cannot be read.
     pub fn load(source: &Source) -> Result<Self> {
         let kind = K::load(source);
         let kind = kind.map_err(|error| with_line(&source.place, &source.text, error))?;

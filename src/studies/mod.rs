@@ -1,6 +1,6 @@
 //! Kinds of studies: one folder and one entry in `KINDS` for each kind.
 //!
-//! A kind of study ([`Study`]) lists the [work items](crate::engine::work_items) of a study, computes them, and makes tables, charts, pictures and answers. All
+//! A kind of study ([`Study`]) lists the work items of a study, computes them, and makes tables, charts, pictures and answers. All
 //! commands use [`AnyStudy`], so that every command works with every kind.
 
 pub(crate) mod any_study;
@@ -86,7 +86,7 @@ pub fn about(text: &str) -> Option<About> {
 /// Reads and checks a study of any kind. A file without a table of a kind is read as a recognition study.
 ///
 /// # Errors
-/// If the kind's [`Study::load`] fails.
+/// If a key is unknown or out of its range, or a file cannot be read.
 pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
     check_removed(&source.place, &source.text)?;
     let entry = find(&source.text).unwrap_or(&RECOGNITION);

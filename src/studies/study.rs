@@ -78,19 +78,19 @@ impl Facts {
 
 /// Type-erased [`File`], with rows of any type.
 pub trait AnyFile: Sync {
-    /// Returns the name of the table file; see [`File::name`].
+    /// Returns the name of the table file.
     fn name(&self) -> &'static str;
 
-    /// Reads the table from a folder; see [`File::read`].
+    /// Reads the table from a folder.
     ///
     /// # Errors
-    /// If [`File::read`] fails.
+    /// If the file cannot be read or is not a table of this kind.
     fn read(&self, folder: &Path) -> Result<Table>;
 
-    /// Reads the table from a folder if the file exists; see [`File::read_if_there`].
+    /// Reads the table from a folder; returns `None` if the file does not exist.
     ///
     /// # Errors
-    /// If [`File::read_if_there`] fails.
+    /// If the file cannot be read or is not a table of this kind.
     fn read_if_there(&self, folder: &Path) -> Result<Option<Table>>;
 }
 
@@ -147,7 +147,7 @@ impl TableFiles {
         }
     }
 
-    /// Reads all tables of a folder, in the order of [`Study::tables`].
+    /// Reads all tables of a folder, in the order in which a study creates them.
     ///
     /// # Errors
     /// If a table cannot be read or has other columns.
@@ -179,7 +179,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Description of the kind of study.
     const ABOUT: About;
 
-    /// Table files to which the result of [`tables`](Self::tables) is written.
+    /// Table files to which the result tables are written.
     const TABLES: TableFiles;
 
     /// Function that returns the text at the end of a run, wrapped at a number of characters. With `None`, the text contains the first table with a value, and
@@ -213,7 +213,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Computes the pending work items, in any order and on any threads. Data that several items share are computed only if one of these items is pending.
     ///
     /// # Errors
-    /// If [`PendingItems::finish`] fails, or data that all items need cannot be computed.
+    /// If the journal cannot be written, a work item fails and the first failure ends the run, or data that all items need cannot be computed.
     fn measure(&self, pending: &PendingItems<Self::Rows>) -> Result<()>;
 
     /// Sets the values in a work item's rows that depend on its number, such as numbers of configurations. Rows in the journal may come from a study with other
@@ -243,10 +243,10 @@ pub trait Study: Send + Sized + Sync + 'static {
     }
 }
 
-/// Computes the work items of a study that the options select; see [`StudyRun::run`].
+/// Computes the work items of a study that the options select.
 ///
 /// # Errors
-/// If [`StudyRun::run`] fails.
+/// If the journal cannot be written, a work item fails and the first failure ends the run, or the computation fails as a whole.
 pub(crate) fn run_items<S: Study>(
     study: &S,
     items: &[WorkItem],

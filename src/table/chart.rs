@@ -11,7 +11,7 @@ pub struct ChartSpec {
     pub title: String,
     /// Explanation for the reader, one or two sentences; may be empty.
     pub note: String,
-    /// File name of the [table](super::Table) that the chart shows.
+    /// File name of the table that the chart shows.
     pub table: &'static str,
     /// Filters of the rows: only rows with these values are drawn.
     pub shown: Vec<Shown>,
@@ -29,7 +29,7 @@ pub struct ChartSpec {
     pub mark: Mark,
     /// Reference lines across the chart, such as the chance level, a limit, or a published value.
     pub rules: Vec<Rule>,
-    /// Whether the Pareto front of the points is drawn. The cost is x, and the [role](super::Role) of y defines the better direction.
+    /// Whether the Pareto front of the points is drawn. The cost is x, and the role of y defines the better direction.
     pub front: bool,
 }
 

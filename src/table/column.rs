@@ -33,7 +33,7 @@ pub enum Better {
     More,
     /// Smaller values are better.
     Less,
-    /// Neither direction is better.
+    /// No direction is better.
     Neither,
 }
 

@@ -60,7 +60,7 @@ impl<R: Columns> File<R> {
     /// Creates the table of rows with the given columns, for studies that define their own axes.
     ///
     /// # Errors
-    /// Returns the errors of [`table`](Self::table), or an error if a row has other columns.
+    /// If a row cannot be serialised as CSV, or has other columns.
     pub fn of_columns(&self, columns: Vec<Column>, rows: &[impl Serialize]) -> Result<Table> {
         let csv = csv_of(rows, &columns);
         let csv = csv.map_err(|e| Error::io(self.name, "write", std::io::Error::other(e)))?;
@@ -78,7 +78,7 @@ impl<R: Columns> File<R> {
     /// Reads the table from a folder, with the given columns instead of the columns of the row type.
     ///
     /// # Errors
-    /// Returns the errors of [`read`](Self::read).
+    /// If the file cannot be read, or has other columns or invalid values.
     pub fn read_columns(&self, columns: Vec<Column>, folder: &Path) -> Result<Table> {
         let path = folder.join(self.name);
         let csv = crate::files::read(&path)
@@ -89,7 +89,7 @@ impl<R: Columns> File<R> {
     /// Reads a table that only some studies have. Returns `None` if the file does not exist.
     ///
     /// # Errors
-    /// Returns the errors of [`read`](Self::read).
+    /// If the file cannot be read, or has other columns or invalid values.
     pub fn read_if_there(&self, folder: &Path) -> Result<Option<Table>> {
         let is_there = folder.join(self.name).exists();
         is_there.then(|| self.read(folder)).transpose()

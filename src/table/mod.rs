@@ -1,6 +1,6 @@
 //! Result tables of a study: the only input of reports, pages, advice and comparisons. Each column has a role.
 //!
-//! Rows are typed structs with one field per column. [`row!`](crate::row) defines the struct and its columns together: each field has a display name, a unit, a
+//! Rows are typed structs with one field per column. The macro `row!` defines the struct and its columns together. Each field has a display name, a unit, a
 //! scale and a [`Role`]. A field without a role does not compile. [`File`] specifies a table independently of its rows. A table created from rows equals the
 //! table that is read from the file of the same run. [`ChartSpec`] names the columns of a table that a chart shows; it contains no pixels.
 

@@ -67,7 +67,7 @@ impl fmt::Display for Value {
 }
 
 /// Relative tolerance for equal settings, with respect to the larger number. Example: a ratio of 100 on 4,096 taxels gives 41 measurements, which is a ratio of
-/// 99.90:1. If larger, neighbouring settings are merged; if smaller, this ratio is rejected.
+/// 99.90. If larger, neighbouring settings are merged; if smaller, this ratio is rejected.
 const SAME_SETTING: f64 = 1e-3;
 
 impl Value {

@@ -18,7 +18,7 @@ pub const JOURNAL_FILE: &str = "journal.jsonl";
 /// Key of the journal's first line.
 const HEADER: &str = "study";
 
-/// Time between flushes of journal lines to the disk. When [`Journal::keep`] returns, the operating system has the line, so it survives the end of the process.
+/// Time between flushes of journal lines to the disk. When `keep` returns, the operating system has the line, so it survives the end of the process.
 /// If larger, a power failure loses more results; a flush after each line would take longer than a work item of a millisecond.
 const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 
@@ -77,7 +77,7 @@ impl Journal {
     /// Reads the identity and the records of a journal, even while another process writes to it. Returns `None` if there is no file or no complete line.
     ///
     /// # Errors
-    /// If the file cannot be read or is damaged, as for [`open`](Self::open).
+    /// If the file cannot be read or is damaged.
     pub fn read(path: &Path) -> Result<Option<(Identity, Self)>> {
         let bytes = match std::fs::read(path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -203,7 +203,7 @@ impl Writer {
     }
 }
 
-/// Returns whether the bytes begin like a first line: a checksum of 8 hexadecimal digits, a space and the key.
+/// Returns whether the bytes begin as a first line does, with a checksum of 8 hexadecimal digits, a space and the key.
 fn begins_header(bytes: &[u8]) -> bool {
     let expected = format!(" {{\"key\":\"{HEADER}\"");
     let is_digit = |byte: &u8| byte.is_ascii_hexdigit();

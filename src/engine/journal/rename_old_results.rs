@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// link, its target is renamed, and the link remains.
 ///
 /// # Errors
-/// If the folder contains files but no results, or a file that this command reads; if a run is still writing to it; or if it cannot be renamed.
+/// If the folder contains files but no results, or a file that this command reads. If a run is still writing to it, or it cannot be renamed.
 pub fn rename_old_results(folder: &Path) -> Result<Option<PathBuf>> {
     check_set_aside(folder)?;
     if !folder.exists() {

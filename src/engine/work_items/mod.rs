@@ -1,7 +1,7 @@
 //! Work items: named, independent parts of a study's work.
 //!
-//! A study lists its work items, computes the pending ones, and makes tables from their rows. A [`StudyRun`] stores each finished item in the
-//! [journal](crate::engine::journal), reads stored items when the study continues, records failures, and divides items among shards.
+//! A study lists its work items, computes the pending ones, and makes tables from their rows. A [`StudyRun`] stores each finished item in the journal, reads
+//! stored items when the study continues, records failures, and divides items among shards.
 
 pub use crate::engine::work_items::work_item::WorkItem;
 pub mod any_number;

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Returns a copy of the labels in which a given fraction (0 to 1) is wrong. In each class, the number of wrong labels is the fraction of its rows, rounded to
 /// whole rows. A wrong label is drawn uniformly from the other classes.
 ///
-/// For one seed, the wrong labels of a smaller fraction are a subset of those of a larger fraction. With a single class, no label is changed.
+/// For one seed, the wrong labels of a smaller fraction are a subset of the wrong labels of a larger fraction. With a single class, no label is changed.
 ///
 /// # Errors
 /// If the fraction is outside 0 to 1.

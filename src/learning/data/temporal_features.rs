@@ -37,7 +37,7 @@ pub enum TemporalFeatures {
     Stacked(usize),
     /// Mean, standard deviation and largest absolute value of each measurement over time: 3 m numbers.
     Moments,
-    /// Course of the touch: ten numbers that describe contact strength, duration and change; see the module documentation.
+    /// Course of the touch: ten numbers that describe contact strength, duration and change.
     Course,
     /// Moments, followed by the course: 3 m + 10 numbers.
     Summarised,
@@ -65,7 +65,7 @@ impl TemporalFeatures {
     /// Writes the temporal features of one touch into `row`. `frames` has shape F × m, with F at least 1.
     ///
     /// # Panics
-    /// If the length of `row` differs from [`n_features`](Self::n_features).
+    /// If the length of `row` differs from the number of features.
     pub fn write(self, frames: ArrayView2<f64>, mut row: ArrayViewMut1<f64>) {
         let (n_frames, m) = frames.dim();
         assert_eq!(row.len(), self.n_features(n_frames, m));

@@ -11,8 +11,8 @@
 //! P(a | o) = (n_oa + 1/n) / (n_o + 1), for n objects and n_o touches of o, of which n_oa have the label a.
 //!
 //! The distance d² sums squared differences along the axes of a pose, each divided by the bandwidth of its axis. The bandwidths and s maximise the
-//! leave-one-out likelihood of the labels. The most informative pose has the lowest expected entropy of P(o) after the touch, that is the greatest
-//! [information](PoseAnswers::information)
+//! leave-one-out likelihood of the labels. The most informative pose has the lowest expected entropy of P(o) after the touch, that is, the greatest mutual
+//! information
 //!
 //! I(O; A | x) = H(A | x) − Σ_o P(o) H(A | o, x), P(a | x) = Σ_o P(o) P(a | o, x) (Lindley, 1956).
 
@@ -227,7 +227,7 @@ pub fn most_informative(
 }
 
 /// Returns a sequence of k ≤ n of the touches `0..n` that starts with `first`. Each further touch is chosen by `next`, which receives the previous touches in
-/// order and the remaining touches in ascending order, and returns a position in the latter list.
+/// order and the remaining touches in ascending order. It returns a position in the latter list.
 pub fn sequence(
     (first, k): (usize, usize),
     n: usize,

@@ -91,7 +91,7 @@ impl LegendEntry {
         }
     }
 
-    /// Creates a legend entry with a mark, drawn like the marks in the chart.
+    /// Creates a legend entry with a mark, drawn in the style of the marks in the chart.
     pub(super) fn new(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         let mark: DrawMark = Box::new(mark);
         Self {

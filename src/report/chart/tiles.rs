@@ -78,7 +78,7 @@ pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawin
     Ok(drawing)
 }
 
-/// Draws the sign on a background of its own, so that no reference line crosses it; a crossed minus would look like a plus.
+/// Draws the sign on a background of its own, so that no reference line crosses it; a crossed minus would appear as a plus.
 fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
     let (x, y) = place.at(0.5, 0.5);

@@ -1,6 +1,6 @@
 //! Exact comparison of two versions of a table: common rows, and columns in which the entries of such rows differ.
 //!
-//! The module [`differences`](super::differences) compares means over trials. This module compares single entries exactly. It includes outcomes, notes, numbers
+//! The module `differences` compares means over trials. This module compares single entries exactly. The entries include outcomes, notes, numbers
 //! that one version lacks, and tables that identify configurations by number.
 
 use crate::report::swept::Setting;

@@ -9,8 +9,8 @@ use crate::table::{Role, Value};
 /// Maximum number of listed rows per Pareto front.
 const MAX_ROWS: usize = 200;
 
-/// Returns the HTML of one table per cost. It lists, for each condition, the choices that are better than all choices of equal or lower cost. Empty if no table
-/// has choices with costs.
+/// Returns the HTML of one table per cost. Each table lists, for each condition, the choices that are better than all choices of equal or lower cost. Empty if
+/// no table has choices with costs.
 pub(crate) fn choices_html(found: &Found) -> String {
     let Ok(offers) = Candidates::new(found.tables, &AdviceQuery::default()) else {
         return String::new();

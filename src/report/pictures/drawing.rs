@@ -12,7 +12,7 @@ use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
 use kuva::render::render::{PathData, Primitive, Scene, TextSpan, build_path};
 
-/// Scale at which kuva renders before [`Drawing::picture`] averages blocks of 2 × 2 pixels.
+/// Scale at which kuva renders before blocks of 2 × 2 pixels are averaged.
 ///
 /// kuva renders rotated text and slanted lines with jagged edges. At a scale of 4 they are smooth; at a smaller scale they are not.
 const FINE: u32 = 4;
@@ -238,7 +238,7 @@ impl Drawing {
         }
     }
 
-    /// Draws a group of elements with `data-` attributes. Only [`Self::svg_with_data`] contains the group element.
+    /// Draws a group of elements with `data-` attributes. Only the SVG with data contains the group element.
     pub fn group(&mut self, data: &[(&str, &str)], draw: impl FnOnce(&mut Self)) {
         let attributes = data
             .iter()

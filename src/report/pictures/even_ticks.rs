@@ -7,7 +7,7 @@ pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
         (low / step - 1e-9).ceil() as i64,
         (high / step + 1e-9).floor() as i64,
     );
-    // Division by the inverse step gives the nearest floating-point number; multiplication does not: 3 × 0.1.
+    // Division by the inverse step gives the nearest floating-point number; multiplication does not, for example 3 × 0.1.
     let value = |tick: i64| match step < 1.0 {
         true => tick as f64 / (1.0 / step).round(),
         false => tick as f64 * step,

@@ -1,4 +1,4 @@
-//! Animation of a recording as an animated PNG, which browsers and image viewers play. The colours equal those of all other pictures.
+//! Animation of a recording as an animated PNG, which browsers and image viewers play. The colours are the same as in all other pictures.
 //!
 //! GIF is not supported, because it would need another crate and has fewer colours and larger files.
 

@@ -131,7 +131,7 @@ pub(crate) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
     (room / n_cells as f64).floor().max(1.0)
 }
 
-/// Returns the median distance to the nearest taxel, metres, estimated from about 200 taxels. It affects only the appearance of the picture.
+/// Returns the median distance to the nearest taxel, metres, estimated from about 200 taxels. The distance affects only the appearance of the picture.
 fn typical_distance(places: &[DVec2]) -> Option<f64> {
     let sample = places.iter().step_by(places.len().div_ceil(200).max(1));
     let nearest = sample.filter_map(|place| {

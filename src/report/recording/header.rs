@@ -168,7 +168,7 @@ impl RecordingHeader {
         Ok(())
     }
 
-    /// Returns the arrays with one row per frame: time; deflection, force, signal (if any) and pose of each patch; pose of each object.
+    /// Returns the arrays with one row per frame: the time, the deflection, force, signal (if any) and pose of each patch, and the pose of each object.
     pub(super) fn members(&self) -> Vec<Member> {
         use Element::{Double, Single};
         let pose = |name: &String| Member::new(format!("{name}/pose"), Double, &[7]);

@@ -1,6 +1,6 @@
 //! Recordings: skin readings over time, written frame by frame to an `.npz` file that NumPy opens.
 //!
-//! [`RecordingWriter`] receives the [`Frame`](crate::scene::Frame)s of a scene and writes a zip file of `.npy` members, stored without compression, as ZIP64 if
+//! [`RecordingWriter`] receives the frames of a scene and writes a zip file of `.npy` members, stored without compression, as ZIP64 if
 //! necessary; `np.load(path)` opens it without pickle. Only a block of rows is in memory: earlier blocks are stored in an unnamed temporary file until the
 //! recording is complete. [`RecordingFile`] reads a recording row by row.
 //!

@@ -98,7 +98,7 @@ impl RecordingFile {
     /// The zip checksum is compared at the end.
     ///
     /// # Errors
-    /// Returns the errors of [`frame`](Self::frame), or an error if the checksum differs.
+    /// If the file cannot be read, or the checksum differs.
     pub fn each_frame(
         &mut self,
         patch: usize,

@@ -16,7 +16,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 /// Maximum size of the rows in memory, bytes. If smaller, there are more and shorter reads and writes; if larger, the rows exceed the processor's cache.
 const BLOCK: usize = 2 << 20;
 
-/// Writer of an `.npz` recording. [`finish`](Self::finish) completes the file; if the writer is dropped before, no file remains.
+/// Writer of an `.npz` recording. The method `finish` completes the file. If the writer is dropped before, no file remains.
 ///
 /// The writer keeps about 2 MiB of rows in memory (or one frame, if it is larger), for any number of frames. Because a member of a zip file is contiguous,
 /// earlier rows are stored in an unnamed temporary file beside the target. While the recording is completed, the disk contains the data twice.
@@ -39,7 +39,7 @@ impl RecordingWriter {
     /// Creates a recording at `path`.
     ///
     /// # Errors
-    /// Returns the errors of [`RecordingHeader::check`], or an error if the file cannot be created.
+    /// If the header is invalid, or the file cannot be created.
     pub fn create(path: &Path, header: RecordingHeader) -> Result<Self> {
         header.check()?;
         let target = WholeFile::create(path)?;
@@ -65,7 +65,7 @@ impl RecordingWriter {
     /// Appends a frame; its patches and objects must have the order of the header.
     ///
     /// # Errors
-    /// If the time does not increase; if the patches, objects or taxels differ from the header; or if a write fails. The frame is then not part of the
+    /// If the time does not increase, the patches, objects or taxels differ from the header, or a write fails. The frame is then not part of the
     /// recording.
     pub fn push(&mut self, frame: &Frame) -> Result<()> {
         let place = || format!("recording, frame {}", self.n_frames);

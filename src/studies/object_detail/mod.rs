@@ -3,7 +3,7 @@
 //! A file with an `[object_detail]` table is an object-detail study: [`ObjectDetailStudySpec`] (as written) → [`ObjectDetailPlan`]
 //! (checked, SI) → [`ObjectDetailStudy`] → tables of [`rows`].
 //!
-//! Each mesh is touched exactly ([`MeshModel`](crate::objects::MeshModel)). Sphere models of the mesh are then pressed with the patch in the same poses:
+//! Each mesh is touched exactly. Sphere models of the mesh are then pressed with the patch in the same poses:
 //!
 //! - **error**: mean of |δ − δ\*| over the taxels of all touches that the mesh (δ\*) or the model (δ) touches.
 //! - **error after offset**: the error with the patch retracted by a constant distance, which is equal for all touches of a model and minimises the error. A

@@ -83,11 +83,11 @@ pub struct DetailSummary {
     n_spheres_median: f64 => Cost "spheres an object": Log between [n_spheres_q1, n_spheres_q3];
     /// Upper quartile of the number of spheres per object.
     n_spheres_q3: f64 => Note "quartiles of spheres, upper": Log;
-    /// Lower quartile over objects of [`DetailScore::surface_error_mm`], mm.
+    /// Lower quartile over objects of `surface_error_mm`, mm.
     surface_error_q1_mm: f64 => Note "quartiles of mean distance of the surfaces, lower" in "mm": Log;
-    /// Median over objects of [`DetailScore::surface_error_mm`], mm.
+    /// Median over objects of `surface_error_mm`, mm.
     surface_error_median_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log between [surface_error_q1_mm, surface_error_q3_mm];
-    /// Upper quartile over objects of [`DetailScore::surface_error_mm`], mm.
+    /// Upper quartile over objects of `surface_error_mm`, mm.
     surface_error_q3_mm: f64 => Note "quartiles of mean distance of the surfaces, upper" in "mm": Log;
     /// Lower quartile over objects of the larger of `protrusion_max_mm` and `gap_max_mm`, mm.
     surface_error_max_q1_mm: f64 => Note "quartiles of largest distance of the surfaces, lower" in "mm": Log;
@@ -95,25 +95,25 @@ pub struct DetailSummary {
     surface_error_max_median_mm: f64 => Value(Less) "largest distance of the surfaces" in "mm": Log between [surface_error_max_q1_mm, surface_error_max_q3_mm];
     /// Upper quartile over objects of the larger of `protrusion_max_mm` and `gap_max_mm`, mm.
     surface_error_max_q3_mm: f64 => Note "quartiles of largest distance of the surfaces, upper" in "mm": Log;
-    /// Lower quartile over objects of [`DetailScore::error_mm`], mm.
+    /// Lower quartile over objects of `error_mm`, mm.
     error_q1_mm: f64 => Note "quartiles of deflection error, lower" in "mm": Log;
-    /// Median over objects of [`DetailScore::error_mm`], mm.
+    /// Median over objects of `error_mm`, mm.
     error_median_mm: f64 => Value(Less) "deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
-    /// Upper quartile over objects of [`DetailScore::error_mm`], mm.
+    /// Upper quartile over objects of `error_mm`, mm.
     error_q3_mm: f64 => Note "quartiles of deflection error, upper" in "mm": Log;
-    /// Largest [`DetailScore::error_mm`] of any object, mm.
+    /// Largest `error_mm` of any object, mm.
     error_worst_mm: f64 => Value(Less) "deflection error of the worst object" in "mm": Log;
-    /// Lower quartile over objects of [`DetailScore::error_after_offset_mm`], mm.
+    /// Lower quartile over objects of `error_after_offset_mm`, mm.
     error_after_offset_q1_mm: f64 => Note "quartiles of deflection error after offset, lower" in "mm": Log;
-    /// Median over objects of [`DetailScore::error_after_offset_mm`], mm.
+    /// Median over objects of `error_after_offset_mm`, mm.
     error_after_offset_median_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
-    /// Upper quartile over objects of [`DetailScore::error_after_offset_mm`], mm.
+    /// Upper quartile over objects of `error_after_offset_mm`, mm.
     error_after_offset_q3_mm: f64 => Note "quartiles of deflection error after offset, upper" in "mm": Log;
-    /// Largest [`DetailScore::error_after_offset_mm`] of any object, mm.
+    /// Largest `error_after_offset_mm` of any object, mm.
     error_after_offset_worst_mm: f64 => Value(Less) "deflection error after offset of the worst object" in "mm": Log;
-    /// Median over objects of [`DetailScore::error_own_contact_mm`], mm.
+    /// Median over objects of `error_own_contact_mm`, mm.
     error_own_contact_median_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
-    /// Largest [`DetailScore::error_own_contact_mm`] of any object, mm.
+    /// Largest `error_own_contact_mm` of any object, mm.
     error_own_contact_worst_mm: f64 => Value(Less) "deflection error past own contact of the worst object" in "mm": Log;
     /// Ratio of `error_after_offset_mm` to the error after offset of the packing with the same tolerance, median over objects; empty without such a packing.
     times_packing: Option<f64> => Value(Less) "times the error of the packing": Log;
@@ -136,7 +136,7 @@ pub struct DetailRecognition {
     n_test: usize => Note "test touches": Linear;
     /// Number of measurements per touch.
     n_measurements: usize => Note "measurements": Linear;
-    /// Median over objects of [`DetailScore::error_own_contact_mm`], mm; training touches are also pressed past the model's own contact.
+    /// Median over objects of `error_own_contact_mm`, mm; training touches are also pressed past the model's own contact.
     error_own_contact_median_mm: f64 => Value(Less) "median deflection error past own contact" in "mm": Log;
     /// Accuracy on test touches of the meshes, 0 to 1.
     accuracy_on_mesh: f64 => Value(More) "accuracy on the exact meshes": Share between [accuracy_on_mesh_low, accuracy_on_mesh_high];

@@ -42,7 +42,7 @@ pub struct ObjectDetailSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DetailRecognitionSpec {
-    /// Number of training touches per object, at least 1, drawn like the study's touches.
+    /// Number of training touches per object, at least 1, drawn as in `[touches]`.
     pub training_touches: usize,
     /// Number of additional touches per object for testing, at least 1.
     pub test_touches: usize,
@@ -52,7 +52,7 @@ pub struct DetailRecognitionSpec {
     pub ensemble: Ensemble,
     /// Number m of measurements per frame, at least 1.
     pub measurements: usize,
-    /// Kinds of classifiers, with the default parameters of [`Classifier::new`](crate::learning::classifiers::classifier::Classifier::new).
+    /// Kinds of classifiers, each with its default parameters.
     #[schemars(with = "Vec<Names<ClassifierKind>>")]
     pub classifiers: Vec<ClassifierKind>,
 }
@@ -76,7 +76,7 @@ pub enum DetailMethod {
     VertexSpheres,
     /// One sphere at each of n evenly spread vertices. For each packing, n is the number of its spheres, or the number of all vertices if that is smaller.
     DecimatedVertexSpheres,
-    /// The largest spheres inside the mesh that touch it at n points ([`medial_spheres`](crate::packing::medial_spheres)). For each packing, n is the number of
+    /// The largest spheres inside the mesh that touch it at n points (medial spheres). For each packing, n is the number of
     /// its spheres.
     MedialSpheres,
 }

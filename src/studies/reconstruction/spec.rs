@@ -20,7 +20,7 @@ pub struct ReconstructionStudySpec {
     pub skin: SkinSpec,
     /// Table `[touches]`: poses and depths of the touches.
     pub touches: TouchesSpec,
-    /// Table `[signal]`: noise and processing of frames before compression; smoothing is not allowed.
+    /// Table `[signal]`: noise and processing of frames before compression. Smoothing is not allowed.
     #[serde(default)]
     pub signal: SignalSpec,
     /// Table `[sensing]`: compression of frames.
@@ -33,10 +33,10 @@ pub struct ReconstructionStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReconstructionSpec {
-    /// Axis: solver of the coefficients: `omp` (orthogonal matching pursuit), `l1` (ℓ1 minimisation) or `lmmse` (linear minimum mean square error).
+    /// Axis: solver of the coefficients, `omp` (orthogonal matching pursuit), `l1` (ℓ1 minimisation) or `lmmse` (linear minimum mean square error).
     #[schemars(with = "Axis<Names<Solver>>")]
     pub solver: Axis<Solver>,
-    /// Axis: dictionary of the frames: `dct`, `haar`, `daubechies4` or `pca`.
+    /// Axis: dictionary of the frames, `dct`, `haar`, `daubechies4` or `pca`.
     #[schemars(with = "Axis<Names<Basis>>")]
     pub dictionary: Axis<Basis>,
     /// Maximum number of atoms of a dictionary, at least 2; the atoms with the most energy in the training frames are used. Default: all, or 256 for PCA.

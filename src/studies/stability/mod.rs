@@ -7,8 +7,8 @@
 //! [scenes](StabilityScene). In two scenes, two or four balls are stacked in a smooth tube. Without friction, a free stack has no stable upright state. In the
 //! tube, the taxels carry the whole weight and the walls carry nothing.
 //!
-//! In every scene, the exact result is known at one time without time stepping: either the motion of the ball determines the deflections, or the springs carry
-//! the weight ([`rest`](crate::dynamics::rest)). Each method is evaluated at this time:
+//! In every scene, the exact result is known at one time without time stepping. Either the motion of the ball determines the deflections, or the springs carry
+//! the weight. Each method is evaluated at this time:
 //!
 //! - **force imbalance**: |Σ f − expected| / expected, at the end of the simulation or, for an imposed motion, at the end of the hold.
 //! - **deflection error**: Σ |δ − δ\*| / Σ δ\* at this time. For an imposed motion, the error also includes the time after the release, when all deflections

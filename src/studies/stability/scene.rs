@@ -28,7 +28,7 @@ const REACH: f64 = 1.5;
 /// Minimum simulated time of a free ball, seconds.
 const LEAST_TIME: f64 = 0.5;
 
-/// Array of taxels under a ball that touches all of them nearly at once; see the module documentation.
+/// Array of taxels under a ball that touches all of them nearly at once.
 #[derive(Clone, Debug)]
 pub(super) struct TestBed {
     pub patch: Patch,

@@ -53,11 +53,11 @@ pub struct StabilityPartSpec {
     pub taxel_mass_kg: Axis<f64>,
     /// Axis: mass M of each ball, kg, positive. Required if the balls are free; not allowed if their motion is imposed.
     pub object_mass_kg: Option<Axis<f64>>,
-    /// Axis: mass M of the ball divided by the number of taxels, kg, so that each taxel carries the same load on all arrays; replaces `object_mass_kg`.
+    /// Axis: mass M of the ball divided by the number of taxels, kg, so that each taxel carries the same load on all arrays. Replaces `object_mass_kg`.
     pub object_mass_per_taxel_kg: Option<Axis<f64>>,
     /// Axis: time step Δt, s, positive.
     pub dt_s: Axis<f64>,
-    /// Axis: number of iterations of an engine's solver per step, at least 1; for [`RapierSkinSim`](ContactMethod::RapierSkinSim), the number of sweeps.
+    /// Axis: number of iterations of an engine's solver per step, at least 1. For `rapier_skin_sim`, it is the number of sweeps.
     /// Default: 4.
     #[serde(default = "default_iterations")]
     pub solver_iterations: Axis<usize>,
@@ -96,13 +96,13 @@ impl StabilityScene {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
-    /// Method of this library: massless taxels, solved in closed form. It uses [`balance`](crate::contact::equilibrium) for rest,
-    /// [`Approach::press_to_force`](crate::contact::Approach::press_to_force) for a plunger, and [`DamperState`](crate::contact::DamperState) over time.
+    /// Method of this library: massless taxels, solved in closed form. The equilibrium solver computes a ball at rest, a press to a force computes a plunger,
+    /// and damper states are used over time.
     QuasiStatic,
-    /// Semi-implicit Euler steps ([`SemiImplicit`](crate::dynamics::SemiImplicit)) with the better of two contact stiffnesses. One limits the penetration to
+    /// Semi-implicit Euler steps with the better of two contact stiffnesses. One limits the penetration to
     /// 1/400 of the deflection or stroke; the other is the largest stable stiffness for the time step.
     SemiImplicit,
-    /// Implicit Euler steps with exact contact ([`ImplicitEuler`](crate::dynamics::ImplicitEuler)).
+    /// Implicit Euler steps with exact contact.
     ImplicitEuler,
     /// The engine rapier with default settings except for the unit of length. Requires the feature `rapier`; omitted without it.
     RapierAsItComes,
@@ -111,7 +111,7 @@ pub enum ContactMethod {
     /// The engine rapier with the settings of SkinSim: springs and dampers as forces, taxels on a light base, rigid contacts. Requires the feature `rapier`;
     /// omitted without it.
     RapierSkinSim,
-    /// The engine MuJoCo with default settings: Euler integrator, soft contacts. Results of MuJoCo exist only in the table [`peers`](StabilitySpec::peers).
+    /// The engine MuJoCo with default settings: Euler integrator, soft contacts. Results of MuJoCo exist only in the table `peers`.
     MujocoEuler,
     /// The engine MuJoCo with the integrator `implicitfast` and soft contacts.
     MujocoImplicitfast,

@@ -3,8 +3,8 @@
 //! A file with a `[whole_body]` table is a whole-body study: [`WholeBodyStudySpec`] (as written) → [`WholeBodyPlan`] (checked, SI) →
 //! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).
 //!
-//! 1. **Scenes**: an object moves along a path over a robot that is covered with skin ([`CoveredRobot`](crate::whole_body::CoveredRobot)). In each step, the
-//!    contact is simulated, the readings of touched taxels are compressed ([`Columns`](crate::sensing::Columns)), and a linear SVM recognises the object.
+//! 1. **Scenes**: an object moves along a path over a robot that is covered with skin. In each step, the contact is simulated, the readings of touched taxels
+//!    are compressed, and a linear SVM recognises the object.
 //! 2. **Recognition**: the SVM is trained on simulated touches of some objects, and tested on other touches of the same objects.
 //! 3. **Scaling**: the computing time per step is measured while the skin, the touch, or the object's number of spheres grows. The skin consists of equal
 //!    cylinders under a cushion of spheres.

@@ -4,7 +4,7 @@
 //! the highest mean accuracy along the condition. From there, towards larger or smaller values, the result is the first value at which the accuracy is chance +
 //! (a₀ − chance) / 2. Between two values the accuracy is interpolated linearly over the scale of the condition.
 //!
-//! The interval is simulated: each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the value is computed again. The
+//! The interval is simulated. Each mean accuracy a of n independent test rows is drawn from Beta(a n + ½, (1 − a) n + ½), and the value is computed again. The
 //! interval contains the middle 95 % of the results. The number n is chosen so that a Wilson interval of n rows is as wide as the interval in `summary.csv`.
 //! Folds and held-out groups therefore count as in that table.
 
@@ -143,7 +143,7 @@ impl Curve {
         }
     }
 
-    /// Returns the value at a position along the axis; the inverse of [`place`](Self::place).
+    /// Returns the value at a position along the axis; the inverse of `place`.
     fn value(&self, place: f64) -> f64 {
         match self.scale() {
             (_, false) => place,

@@ -108,7 +108,7 @@ fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> 
 }
 
 /// Returns the charts with a given setting, or the main one, along x. If lines and panels are in use and no setting remains, a second chart exchanges the two.
-/// Both effects can then be read from lines within one panel.
+/// The effects of the two settings can then be read from lines within one panel.
 fn charts_along(
     configurations: &Table,
     chart: &ChartSpec,

@@ -34,7 +34,7 @@ use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Names of the files that [`StudyPart::write_features`] may write.
+/// Names of all files of exported features.
 pub const FEATURE_FILES: [&str; 7] = [
     "features.npy",
     "labels.npy",
@@ -165,7 +165,7 @@ impl StudyPart {
     /// Writes the measurements of one configuration in one trial. The folder must exist and be claimed for [`FEATURE_FILES`].
     ///
     /// # Errors
-    /// If [`features`](Self::features) fails or a file cannot be written.
+    /// If the study does not have the configuration or the trial, or a file cannot be written.
     pub fn write_features(
         &self,
         (folder, claimed): (&Path, &DataFolder),
@@ -204,7 +204,7 @@ impl StudyPart {
     }
 }
 
-/// Reads a feature folder written by [`StudyPart::write_features`] or by another program. Only the four arrays are required, each as `.npy`, `.npz` or `.csv`,
+/// Reads a feature folder written by this or by another program. Only the four arrays are required, each as `.npy`, `.npz` or `.csv`,
 /// or all in `features.npz`. Features may be of any numeric type or bool. Labels are integers, texts, or n × classes of 0 and 1. Rows are integers of any type,
 /// or a mask with a bool for each row of features.
 ///
@@ -251,7 +251,7 @@ impl FeatureSet {
     /// Reads the group of every row from a file: non-negative integers of any type, or texts.
     ///
     /// # Errors
-    /// If the file is missing or has another type, if there is not one group per row, or if a group has rows on both sides of the split.
+    /// If the file is missing or has another type. If there is not one group per row, or a group has rows on both sides of the split.
     pub fn with_groups(self, path: &Path) -> Result<Self> {
         let n_rows = self.data.records.nrows();
         let groups = Array1::from(read_group_keys(path, "groups", n_rows)?);

@@ -13,8 +13,8 @@
 //! | `objects.csv` | one row per object: number, name, spheres (0 for a mesh), touches |
 //!
 //! Deflections are the direct result of the press: without noise, smoothing or any sensor error of `[signal]`. Frames as a configuration reads them
-//! ([`ReadFrames`]) include all of these steps. They are in metres or, with the step `force`, in newtons; only `frames.npy` differs. With `skin.sensed =
-//! "shear"` a configuration reads three forces: `frames.npy` then has 3 × ny × nx newtons per frame, and there is no `shear.npy`.
+//! ([`ReadFrames`]) include all of these steps. These frames are in metres or, with the step `force`, in newtons; only `frames.npy` differs. With `skin.sensed
+//! = "shear"` a configuration reads three forces: `frames.npy` then has 3 × ny × nx newtons per frame, and there is no `shear.npy`.
 
 use crate::engine::axis::Axis;
 use crate::engine::progress::Progress;
@@ -221,7 +221,7 @@ impl FrameFiles {
 /// written instead of the deflections. Returns the number of touches.
 ///
 /// # Errors
-/// If [`TouchSource::new`] fails or a file cannot be written.
+/// If the touches cannot be simulated or a file cannot be written.
 pub fn write_touches(
     folder: &Path,
     objects: &[Object],
@@ -306,7 +306,7 @@ pub fn write_touches(
 /// Simulates all human touches on an array, and writes their frames (n × F × ny × nx) and labels into an existing folder. Returns the number of touches.
 ///
 /// # Errors
-/// If [`HumanTouches::draw`] fails or a file cannot be written.
+/// If a touch is longer than a recording, or a file cannot be written.
 pub fn write_human_touches(
     folder: &Path,
     human: &HumanTouchSpec,

@@ -64,7 +64,7 @@ impl ArrayPress<'_> {
         pose
     }
 
-    /// Returns the readings of the last touch, ordered by channel: [`n_values`](TaxelArray::n_values) deflections in metres, followed by shear forces in
+    /// Returns the readings of the last touch, ordered by channel: deflections in metres, followed by shear forces in
     /// newtons if the array reads shear.
     pub fn values<'w>(&self, workspace: &'w ArrayWorkspace) -> impl Iterator<Item = f64> + 'w {
         let forces = workspace.friction.as_ref();

@@ -24,7 +24,7 @@ fn made_at_once(n_frames: usize) -> usize {
 
 impl Frames {
     /// Simulates the frames of touches, each thread with its own workspace; the result does not depend on the number of threads. `press` writes a touch into F
-    /// frames (F × n_values). It returns whether the touch missed the object, and whether it saturated a taxel at its deepest point.
+    /// frames (F × n_values), and returns whether the touch missed the object and whether it saturated a taxel at its deepest point.
     pub fn make<T: Sync, W>(
         &mut self,
         touches: &[T],

@@ -47,7 +47,7 @@ pub struct TouchToRead {
     pub interval: Option<f64>,
     /// Number of the preceding touch; `None` if no touch precedes it.
     pub before: Option<usize>,
-    /// Index in [`Reading::skins`] of the touched skin.
+    /// Index of the touched skin among the skins of the reading.
     pub skin: usize,
 }
 

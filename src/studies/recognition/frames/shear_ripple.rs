@@ -91,7 +91,7 @@ fn exact_box() -> Result<Model> {
 /// Prints the shear ripple on standard error if a study reads shear of packed objects. Returns whether it printed a note.
 ///
 /// # Errors
-/// If [`ShearRipple::measure`] fails.
+/// If an object cannot be packed.
 pub(crate) fn note_shear_ripple(plan: &Plan, objects: &[Object]) -> Result<bool> {
     let packed = objects
         .iter()

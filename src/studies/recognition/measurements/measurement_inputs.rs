@@ -1,8 +1,7 @@
 //! All inputs that determine the measurements of a group of configurations, apart from the frames of its touches.
 //!
-//! [`measure_group`](crate::studies::recognition::measurements::measurement::measure_group) receives these inputs and no plan, so it cannot depend on any other
-//! value of a study. Groups whose inputs have equal [keys](MeasurementInputs::key) share their measurements. The key is the derived `Debug` form of all fields,
-//! so a new field becomes part of the key.
+//! The function `measure_group` receives these inputs and no plan, so it cannot depend on any other value of a study. Groups whose inputs have equal keys share
+//! their measurements. The key is the derived `Debug` form of all fields, so a new field becomes part of the key.
 
 use crate::inputs::content_hash::Hashed;
 use crate::inputs::sensor_errors::{Strengths, TestSensor, all_strengths};

@@ -1,4 +1,4 @@
-//! Tilted copies of training touches. They show objects in tilts that the training touches do not contain.
+//! Tilted copies of training touches, which show objects in tilts that the training touches do not contain.
 
 use crate::random::Seed;
 use crate::studies::recognition::measurements::measurement_inputs::CopyInputs;

@@ -25,7 +25,7 @@ impl RecordedSpec {
     /// Returns `[touches]` keys that describe the recorded touches: the number of frames, and a speed if time passes between them.
     ///
     /// # Errors
-    /// If [`shape_of`](Self::shape_of) fails.
+    /// If the file of the frames does not exist or has other axes.
     pub(crate) fn as_touches(&self) -> Result<TouchesSpec> {
         let moves =
             self.frame_interval_s.is_some() || self.speed_mm_per_s > 0.0 && self.depths.is_some();

@@ -12,7 +12,7 @@ pub enum Sensed {
     /// Force along the taxel's axis, newtons.
     Force,
     /// Forces along and across the taxel's axis, newtons, with the given shear springs: three channels. The second and third channel are along x and y of the
-    /// taxel's [frame](crate::world::Layout::frame).
+    /// taxel's frame.
     Shear(Shear),
 }
 

@@ -1,7 +1,7 @@
 //! Plan of a recognition study: the keys of its [`StudySpec`], checked and converted to SI units.
 //!
-//! The checks are in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. They convert millimetres,
-//! degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
+//! The checks are in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. These checks convert
+//! millimetres, degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
 
 use crate::engine::axes::AxisValues;
 use crate::error::Result;
@@ -63,7 +63,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Creates the plan like [`new`](Self::new), but accepts keys without effect.
+    /// Creates the plan of a study, and accepts keys without effect.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -134,7 +134,7 @@ impl Plan {
     /// whole study.
     ///
     /// # Errors
-    /// If [`Plan::new`] fails; the error names the axis.
+    /// If a key is out of its range for some combination; the error names the axis.
     pub fn variants(place: &str, spec: StudySpec) -> Result<Vec<(AxisValues, Self)>> {
         if spec.axes.is_empty() {
             return Ok(vec![(AxisValues::default(), Self::new(place, spec)?)]);

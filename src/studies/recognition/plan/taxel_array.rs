@@ -270,7 +270,7 @@ impl TaxelArray {
     /// and noise; the first channel has the seed of the skin.
     ///
     /// # Errors
-    /// If [`Chain::new`] fails.
+    /// If a step is invalid for the array.
     pub fn chains(
         &self,
         skin: &Seed,

@@ -34,7 +34,7 @@ pub struct TrialScore {
     n_correct: usize => Note "test rows recognised": Linear;
     /// Accuracy of the trial, `n_correct / n_test`, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of the 95 % interval of the accuracy: Wilson's interval over test rows, or the interval [over held-out groups](crate::statistics::grouped).
+    /// Lower end of the 95 % interval of the accuracy: Wilson's interval over test rows, or the interval over held-out groups.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
@@ -96,7 +96,7 @@ pub struct CellScore {
     /// Empty with fewer than five trials, splits or projections.
     #[serde(default)]
     bootstrap_low: Option<f64> => Note "mean over trials, lower end": Share;
-    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials; see `bootstrap_low`.
+    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials, with the conditions of `bootstrap_low`.
     #[serde(default)]
     bootstrap_high: Option<f64> => Note "mean over trials, upper end": Share;
     /// Macro-averaged F1 score, averaged over trials, 0 to 1.
@@ -123,8 +123,8 @@ pub struct Confusion {
 row! {
 /// Pair of objects that the best configuration confuses most often: a row of `confused.csv`.
 ///
-/// If the study varies `touches_per_decision`, the best configuration with the fewest touches per decision is listed, and its confusion with the most touches
-/// per decision is given beside it.
+/// If the study varies `touches_per_decision`, the best configuration with the fewest touches per decision is listed. Its confusion with the most touches per
+/// decision is given beside it.
 pub struct Confused {
     /// Number of the best configuration.
     configuration: usize => Subject: Linear;
@@ -196,7 +196,7 @@ pub struct Comparison {
     /// Reason why the row has a p-value, or why it has none.
     #[serde(default)]
     p_status: PStatus => Outcome "test";
-    /// Minimum [number of trials](crate::statistics::comparison::trials_needed) for which a p-value exists; with `projections_per_split`, the number of splits.
+    /// Minimum number of trials for which a p-value exists; with `projections_per_split`, the number of splits.
     /// Empty if no number suffices, because too many rows are tested or further trials repeat the same splits.
     #[serde(default)]
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
@@ -218,7 +218,7 @@ pub struct TrialTime {
 row! {
 /// Mean accuracy and cost of a configuration. A row of `pareto.csv` is a [`Configuration`] followed by a `Pareto`.
 ///
-/// A configuration is on a Pareto front if no other one with the same [condition](crate::table::Role::Condition) dominates it. A configuration dominates
+/// A configuration is on a Pareto front if no other one under the same condition dominates it. A configuration dominates
 /// another one if it is at least as accurate in at most the same time, and better in one of the two.
 pub struct Pareto {
     /// Mean accuracy over trials, 0 to 1.
@@ -315,7 +315,7 @@ pub struct Variance {
     configuration: usize => Subject: Linear;
     /// Source of the variance.
     source: Source => Subject "source of variance";
-    /// Number of random levels of the source; for [`Source::Rest`], the number of trials.
+    /// Number of random levels of the source; for `rest`, the number of trials.
     n_levels: usize => Note "levels": Linear;
     /// Degrees of freedom of the source's mean square.
     degrees_of_freedom: usize => Note: Linear;
@@ -325,12 +325,12 @@ pub struct Variance {
     estimate: f64 => Note "variance": Linear;
     /// Standard deviation of the accuracy due to this source alone: the square root of `estimate`, or 0 if the estimate is negative.
     accuracy_std: f64 => Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
-    /// Lower end of the 95 % interval of `accuracy_std`: method of modified large samples, or χ² for [`Source::Rest`].
+    /// Lower end of the 95 % interval of `accuracy_std`: method of modified large samples, or χ² for `rest`.
     accuracy_std_low: f64 => Note "standard deviation, lower end": Linear;
     /// Upper end of the 95 % interval of `accuracy_std`.
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
     /// Fraction of a trial's variance that is due to the source, with negative estimates counted as zero; empty if nothing varies.
     fraction: Option<f64> => Value(Less) "share of the variance": Share;
-    /// p-value of the F test of the hypothesis that the source contributes nothing; empty for [`Source::Rest`].
+    /// p-value of the F test of the hypothesis that the source contributes nothing; empty for `rest`.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }

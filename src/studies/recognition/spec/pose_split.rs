@@ -1,7 +1,7 @@
 //! Splits by pose: rules that decide which poses are for training and which for testing, if the touches have listed values.
 //!
-//! Values are numbered in ascending order, regardless of their order in the study. Each trial holds out one part. The parts are held out in order; after the
-//! last part, the first one follows again:
+//! Values are numbered in ascending order, regardless of their order in the study. Each trial holds out one part. The parts are held out in order. After the
+//! last part, the first one follows again.
 //!
 //! | `recognition.split` | tested | learned | parts |
 //! |---|---|---|---|
@@ -88,7 +88,7 @@ impl PoseSplit {
     /// Checks that the split rule can divide the given touches.
     ///
     /// # Errors
-    /// If [`sides`](Self::sides) fails.
+    /// If a required axis has drawn values or fewer than two listed values.
     pub(crate) fn check(self, touches: &[&Touch]) -> Result<()> {
         match self {
             Self::Random => Ok(()),
@@ -102,7 +102,7 @@ impl PoseSplit {
     /// If a required axis has drawn values or fewer than two listed values.
     ///
     /// # Panics
-    /// If the split is [`Random`](Self::Random), which does not depend on poses.
+    /// If the split is `random`, which does not depend on poses.
     pub(crate) fn sides(self, touches: &[&Touch], trial: usize) -> Result<Vec<Side>> {
         let number = |axes: &[TouchAxis]| self.numbered(touches, axes);
         let leave_one_out = |(numbers, n): (Vec<usize>, usize)| {

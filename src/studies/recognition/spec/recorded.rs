@@ -27,7 +27,7 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub shear: Option<PathBuf>,
-    /// File of the class of every touch, shape (n,): integers or texts; or shape (n, classes) with entries 0 and 1.
+    /// File of the class of every touch: integers or texts of shape (n,), or entries 0 and 1 of shape (n, classes).
     #[serde(
         default,
         skip_serializing_if = "is_empty",
@@ -37,8 +37,8 @@ pub struct RecordedSpec {
     /// File of the group of every touch, shape (n,), such as its grasp or day. A split never divides a group.
     #[serde(default, deserialize_with = "optional_file_path")]
     pub groups: Option<PathBuf>,
-    /// Letters of the axes of the frames, one per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values of a taxel, or taxels without
-    /// rows and columns. Default: `n y x`, `n t y x` or `n c`.
+    /// Letters of the axes of the frames, one per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels. The axis `c` contains
+    /// the values of a taxel if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<String>,
     /// Numbers of rows and columns into which the taxel axis `c` is divided.
@@ -159,7 +159,7 @@ impl<'de> Deserialize<'de> for ZeroSpec {
     }
 }
 
-/// Choice of the touch that precedes each touch. It matters for sensor errors with memory, such as hysteresis.
+/// Choice of the touch that precedes each touch, for sensor errors with memory, such as hysteresis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PreviousTouch {
@@ -347,8 +347,8 @@ impl RecordedSpec {
     /// Checks that the files form a complete data set.
     ///
     /// # Errors
-    /// If there are no labels, a test set lacks labels or frames, the skin does not read shear although tangential forces are given, or only one of two
-    /// sets has tangential forces.
+    /// If there are no labels, or a test set lacks labels or frames. If tangential forces are given although the skin does not read shear, or for only one of
+    /// two sets.
     pub fn check_files(&self) -> Result<()> {
         if self.file_of("labels").is_none() {
             let allowed = "labels = \"FILE\", the class of every touch (or an array `labels` in the archive of the frames)";

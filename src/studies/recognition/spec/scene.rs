@@ -14,9 +14,9 @@ pub struct SkinSpec {
     /// Axis: side of the square area per taxel, mm, positive. In a grid it is the distance between neighbours. In a hexagonal lattice (`hexagonal`, `disc`) the
     /// distance between neighbours is 1.0746 times as large.
     pub pitch_mm: Axis<f64>,
-    /// Axis: side length of the square array, mm; a multiple of the pitch.
+    /// Axis: side length of the square array, mm, a multiple of the pitch.
     pub size_mm: Option<Axis<f64>>,
-    /// Axis: number of taxels along a side of the square array; replaces `size_mm`.
+    /// Axis: number of taxels along a side of the square array. Replaces `size_mm`.
     pub taxels: Option<Axis<usize>>,
     /// Layout of the taxels: `grid` (default), `hexagonal`, `disc`, `cylinder` or `cap`. All layouts have the same area.
     #[schemars(with = "Option<Names<ArrayLayout>>")]
@@ -25,8 +25,8 @@ pub struct SkinSpec {
     pub curvature_radius_mm: Option<f64>,
     /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and two forces across it).
     pub sensed: Option<SensedSpec>,
-    /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. It acts only if taxels move along the object, in a slide or on a curved
-    /// layout. The taxels of a flat array that is pressed straight on do not slip.
+    /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. Friction acts only if taxels move along the object, in a slide or on a
+    /// curved layout. The taxels of a flat array that is pressed straight on do not slip.
     pub friction: Option<f64>,
     /// Tangential stiffness k_t of a taxel, N/m, with `friction`. Default: the stiffness along the axis.
     pub shear_stiffness_n_per_m: Option<f64>,

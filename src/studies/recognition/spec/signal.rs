@@ -23,7 +23,7 @@ pub struct SignalSpec {
     /// Numeric keys of the steps, such as the standard deviation of the noise and the strengths of sensor errors; each is an axis.
     #[serde(flatten)]
     pub axes: SignalAxes,
-    /// Axis: skin of the test touches: `same_skin` (default, the skin of the training touches) or `another_skin`.
+    /// Axis: skin of the test touches, `same_skin` (default, the skin of the training touches) or `another_skin`.
     pub test_sensor: Option<Axis<TestSensor>>,
     /// Combination of the axes of `[signal]` with each other: `all` (default) or `one_at_a_time`. All combinations with other axes are run.
     #[serde(skip_serializing_if = "is_default")]
@@ -33,7 +33,7 @@ pub struct SignalSpec {
 /// Numeric axes of `[signal]`, each with the step to which it belongs.
 ///
 /// The noise has one axis: its standard deviation as a fraction of the full scale, in millimetres of deflection or in newtons of force. The smoothing has the
-/// standard deviation of its Gaussian, mm. Each sensor error has the strengths named by its [keys](crate::signal::Strength::key).
+/// standard deviation of its Gaussian, mm. Each sensor error has its own strengths.
 ///
 /// **Hysteresis**: each touch follows another touch of the study, drawn at random and released. **Gains, drift and faults** belong to a skin: they depend only
 /// on the seed and the array, and are equal in all touches and trials. **Drift**: a session consists of the study's touches in random order, trial by trial,

@@ -1,6 +1,6 @@
 //! Specification of a recognition study: the keys of its TOML file, in the units of the file.
 //!
-//! Only names and types are checked here; [`Plan`](crate::studies::recognition::plan::study_plan::Plan) checks values. A key that is an axis has one value or a
+//! Only names and types are checked here. The plan of the study checks values. A key that is an axis has one value or a
 //! list of values.
 
 use crate::engine::axes;
@@ -56,9 +56,9 @@ pub struct StudySpec {
     /// Table `[touches]`: poses and depths of the touches.
     #[serde(default, skip_serializing_if = "is_default")]
     pub touches: TouchesSpec,
-    /// Table `[human_touch]`: recognition of kinds of human touch; replaces `[objects]` and `[touches]`.
+    /// Table `[human_touch]`: recognition of kinds of human touch. Replaces `[objects]` and `[touches]`.
     pub human_touch: Option<HumanTouchSpec>,
-    /// Table `[recorded]`: recorded frames; replaces `[objects]` and `[touches]`.
+    /// Table `[recorded]`: recorded frames. Replaces `[objects]` and `[touches]`.
     pub recorded: Option<RecordedSpec>,
     /// Table `[signal]`: noise, sensor errors and processing of frames before compression.
     #[serde(default)]
@@ -74,7 +74,7 @@ pub struct StudySpec {
     /// Table `[report]`: contents of the report.
     #[serde(default)]
     pub report: ReportSpec,
-    /// Table `[axes]`: further axes, each a key with its values; see [`axes`].
+    /// Table `[axes]`: further axes, each a key with its values.
     #[serde(skip)]
     pub axes: StudyAxes,
 }
@@ -128,7 +128,7 @@ pub struct SensingSpec {
     pub ensemble: Axis<Ensemble>,
     /// Axis: compression ratio n / m, taxels per measurement, at least 1.
     pub ratio: Option<Axis<f64>>,
-    /// Axis: number m of measurements per frame; replaces `ratio`.
+    /// Axis: number m of measurements per frame. Replaces `ratio`.
     pub measurements: Option<Axis<usize>>,
 }
 
@@ -172,13 +172,13 @@ pub struct RecognitionSpec {
     pub c: Option<Axis<f64>>,
     /// Candidate values of C; replaces `c`. Each fit chooses one of them by cross-validation within its training rows.
     pub c_grid: Option<Vec<f64>>,
-    /// Kernel parameter γ of the RBF, Laplacian and polynomial kernels. Default: 'scale', 1 / (F · m · variance); for the Laplacian kernel with the standard
-    /// deviation instead of the variance.
+    /// Kernel parameter γ of the RBF, Laplacian and polynomial kernels. Default: 'scale', which is 1 / (F · m · variance). The Laplacian kernel has the
+    /// standard deviation instead of the variance.
     pub gamma: Option<f64>,
     /// Candidate values of γ as multiples of 'scale'; replaces `gamma`. Each fit chooses one of them together with C.
     pub gamma_grid: Option<Vec<f64>>,
-    /// Number of folds of the inner cross-validation. It chooses C and γ, and estimates decisions on unseen touches for `most_informative`. Default: 5. Folds
-    /// do not divide groups that the split does not divide.
+    /// Number of folds of the inner cross-validation, which chooses C and γ, and estimates decisions on unseen touches for `most_informative`. Default: 5.
+    /// Folds do not divide groups that the split does not divide.
     pub cv_folds: Option<usize>,
     /// Maximum number of training touches per object for the choice of C and γ. Default: all. The default γ is computed from all training touches.
     pub cv_touches: Option<usize>,
@@ -195,7 +195,7 @@ pub struct RecognitionSpec {
     pub n_neighbours: Option<usize>,
     /// Number of trees of a random forest, at least 1. Default: 100.
     pub n_trees: Option<usize>,
-    /// Maximum depth of the trees of a random forest, at least 1. Default: unlimited; trees grow until their leaves are pure.
+    /// Maximum depth of the trees of a random forest, at least 1. Default: unlimited. Trees then grow until their leaves are pure.
     pub max_depth: Option<usize>,
     /// Maximum size of the kernel values that an SVM solver keeps in memory, GiB. Default: 2. Above the limit, values are recomputed; this takes longer and may
     /// change the last digits.
@@ -211,9 +211,9 @@ pub struct RecognitionSpec {
     /// touches are grouped at random; a remainder of fewer than k touches is omitted.
     #[serde(default = "one_value")]
     pub touches_per_decision: Axis<usize>,
-    /// Axis: policy that chooses the touches of a decision after the first one. `random` (default); `farthest`: the pose farthest from the previous ones;
-    /// `most_informative`: the pose with the lowest expected entropy of the belief over objects. All test touches of the object are candidates, each at most
-    /// once per decision.
+    /// Axis: policy that chooses the touches of a decision after the first one. Values: `random` (default), `farthest` (the pose farthest from the previous
+    /// ones), or `most_informative` (the pose with the lowest expected entropy of the belief over objects). All test touches of the object are candidates, each
+    /// at most once per decision.
     pub next_touch: Option<Axis<NextTouch>>,
     /// Rule that decides which touches are held out for testing: `random` (default) or a rule of [`PoseSplit`].
     #[serde(default, skip_serializing_if = "is_default")]

@@ -1,4 +1,4 @@
-//! Recognition study as an implementation of [`Study`](crate::studies::study::Study).
+//! Recognition study as a kind of study.
 
 use crate::engine::work_items::{PendingItems, Scale, WorkItem};
 use crate::error::Result;

@@ -60,11 +60,11 @@ pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
 }
 
 impl RecognitionStudy {
-    /// Builds the objects of [plans](Plan::variants) and draws their touches, if they fit into `ceiling` bytes (`None`: no limit). Packed objects are cached in
+    /// Builds the objects of all plans and draws their touches, if they fit into `ceiling` bytes (`None` for no limit). Packed objects are cached in
     /// `packings`.
     ///
     /// # Errors
-    /// If an object cannot be built, there are too many touches, or [`of_variants`](Self::of_variants) fails; the error names `place` (the file).
+    /// If an object cannot be built, or there are too many or too few touches; the error names `place` (the file).
     pub fn load(
         place: &str,
         plans: Vec<(AxisValues, Plan)>,

@@ -62,7 +62,7 @@ pub(crate) struct PlacedGroup {
     pub part: usize,
     /// Index of the group in the sweep of its part.
     place: usize,
-    /// Index of the group's training touches in [`RecognitionStudy::touch_sets`].
+    /// Index of the group's training touches among the touch sets of the study.
     pub touches: usize,
     /// Index of the group's test touches; equal to `touches` unless the study has `[test]`.
     pub tested: usize,
@@ -70,7 +70,7 @@ pub(crate) struct PlacedGroup {
     pub measured_as: usize,
 }
 
-/// [Family](Group::families) of configurations: its group and its range of configurations.
+/// Family of configurations: its group and its range of configurations.
 pub(crate) struct Family {
     pub group: usize,
     pub configurations: Range<usize>,
@@ -98,7 +98,7 @@ impl RecognitionStudy {
     /// Creates a study from all combinations of the values in `[axes]`, each with its training and test touches.
     ///
     /// # Errors
-    /// If [`new`](Self::new) fails.
+    /// If there are too few objects or touches, or a sample object does not exist.
     pub fn of_variants(variants: Vec<StudyVariant>) -> Result<Self> {
         let mut study = Self {
             parts: Vec::with_capacity(variants.len()),
@@ -377,7 +377,7 @@ impl RecognitionStudy {
     /// Returns all result tables as typed rows.
     ///
     /// # Errors
-    /// If [`Study::tables`](crate::studies::study::Study::tables) fails.
+    /// If the trials of a configuration have no rows, or a file cannot be read.
     pub fn outcome(&self, (configurations, touches): RecognitionRows) -> Result<Tables> {
         let mut tables = Tables::default();
         let scored = configurations.into_iter().map(|row| {

@@ -64,7 +64,7 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         },
         n_configurations: study.n_configurations(),
         bytes: frames + CELL_BYTES * (study.n_configurations() * first.plan.spec.trials) as f64,
-        // A thread that waits for other threads starts another group.
+        // While a thread waits for other threads, it computes another group.
         item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
     }
 }

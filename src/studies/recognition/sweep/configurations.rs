@@ -66,7 +66,7 @@ pub struct StudyPart {
     pub plan: Plan,
     /// Training touches; shared by parts with equal touches.
     pub touched: Arc<dyn TouchSet + Send>,
-    /// Test touches, numbered like the training touches; the training touches themselves unless the study has `[test]`.
+    /// Test touches, with the numbers of the training touches; the training touches themselves unless the study has `[test]`.
     pub tested: Arc<dyn TouchSet + Send>,
     /// Splits and configurations of this combination of values.
     pub sweep: Sweep,

@@ -12,7 +12,7 @@ use std::fmt::Display;
 /// Checks that every published claim has a valid accuracy and applies to at least one configuration.
 ///
 /// # Errors
-/// If an accuracy is not between 0 and 1, a key is not a column of [`Configuration`], no configuration has a value, or no configuration has all values of a claim.
+/// If an accuracy is not between 0 and 1, or a key is not a column of [`Configuration`]. If no configuration has a value, or all values of a claim.
 pub fn check_published(
     published: &[PublishedSpec],
     configurations: &[&Configuration],

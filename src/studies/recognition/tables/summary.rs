@@ -174,7 +174,7 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
 /// Maximum number of pairs in the list of confusions.
 const MAX_CONFUSED: usize = 15;
 
-/// Returns the pairs of objects that a configuration confuses most often, by the fraction of the touched object's test rows; pairs with equal fractions keep
+/// Returns the pairs of objects that a configuration confuses most often, by the fraction of the touched object's test rows. Pairs with equal fractions keep
 /// the order of the table. `fused` is the number of the configuration with the most touches per decision, and this number of touches.
 ///
 /// # Errors
@@ -232,7 +232,7 @@ fn rows_of_objects(confusion: &[Confusion], configuration: usize) -> BTreeMap<&s
     n_test
 }
 
-/// Returns the accuracy and the costs of every configuration, and marks the Pareto fronts. Both tables have the same rows.
+/// Returns the accuracy and the costs of every configuration, and marks the Pareto fronts. The two tables have the same rows.
 ///
 /// # Errors
 /// If a configuration cannot be written as a row of a table.
@@ -338,7 +338,7 @@ mod tests {
             ("mug".to_owned(), 4, 10, 0.4),
         ];
         assert_eq!(found(&table), expected);
-        // Of ten decisions on two touches each, one is wrong for the mug and none for the bowl.
+        // For ten decisions on two touches each, one is wrong for the mug and none for the bowl.
         table.extend([row(2, "mug", "mug", 9), row(2, "mug", "bowl", 1)]);
         table.push(row(2, "bowl", "bowl", 5));
         let fused = most_confused(&table, 1, Some((2, 2))).unwrap();

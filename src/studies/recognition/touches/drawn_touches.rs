@@ -21,7 +21,7 @@ pub struct TouchedObject {
 /// Draws the touches of every object from its own random stream.
 ///
 /// # Errors
-/// If [`touches`](crate::world::touches()) fails.
+/// If a placement is invalid or gives too many touches.
 pub fn draw_touches(
     objects: Vec<Object>,
     placement: &Placement,

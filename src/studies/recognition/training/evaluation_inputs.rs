@@ -1,8 +1,7 @@
 //! All inputs that determine the evaluation of a family of configurations in a trial, apart from the measurements.
 //!
-//! [`Trial::evaluate`](crate::studies::recognition::training::trial::Trial::evaluate) receives these inputs and no plan, so it cannot depend on any other value
-//! of a study. The name of a work item is a hash of the `Debug` form of these inputs and of the [inputs of its
-//! measurements](crate::studies::recognition::measurements::measurement_inputs). A new field therefore changes the name.
+//! The method `Trial::evaluate` receives these inputs and no plan, so it cannot depend on any other value of a study. The name of a work item is a hash of the
+//! `Debug` form of these inputs and of the inputs of its measurements. A new field therefore changes the name.
 
 use crate::error::{Error, Result};
 use crate::inputs::content_hash::{Hashed, short_hash};
@@ -154,7 +153,7 @@ impl TrialInputs<'_> {
 }
 
 impl<'a> FamilyInputs<'a> {
-    /// Returns the inputs of a [family](Group::families) that has at least one configuration.
+    /// Returns the inputs of a family that has at least one configuration.
     pub fn new(plan: &Plan, sweep: &'a Sweep, family: &[Configuration]) -> Self {
         let recognition = &plan.spec.recognition;
         let decisions = family.iter().map(|configuration| Decision {
@@ -244,7 +243,7 @@ impl TrainingInputs {
     }
 }
 
-/// Returns the name of a [family](Group::families); different inputs give different names. The name contains the measurements that the family alone would need.
+/// Returns the name of a family of configurations; different inputs give different names. The name contains the measurements that the family alone would need.
 pub fn family_name(
     plan: &Plan,
     (group, touches): (&Group, &str),

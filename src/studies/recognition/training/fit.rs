@@ -125,7 +125,8 @@ impl Training<'_> {
         Ok((chosen.best.c, classifier.with_choice(&chosen)))
     }
 
-    /// Returns the predicted label of each touch (its first reading) by classifiers that were trained like `like` but without the touch's fold.
+    /// Returns the predicted label of each touch (its first reading) by classifiers that were trained with the parameters of `like`, but without the touch's
+    /// fold.
     ///
     /// # Errors
     /// If a fold cannot be drawn or the training fails.

@@ -68,7 +68,7 @@ fn decider<'a>(
 }
 
 impl Trial<'_> {
-    /// Trains and tests the configurations of a [family](crate::studies::recognition::plan::group::Group::families) on the first m measurements, in order.
+    /// Trains and tests the configurations of a family on the first m measurements, in order.
     ///
     /// # Errors
     /// If rows of the family cannot be computed, or the training fails.
