@@ -31,7 +31,7 @@ pub struct ObjectSummary {
     pub held: PoseControl,
     /// Number of frames in which the object was not in equilibrium.
     pub n_unsettled: usize,
-    /// Largest force residual of a free object over all frames, relative to its weight; 0 for other objects.
+    /// Largest residual of force and torque of a free object over all frames, relative to its weight; 0 for other objects.
     pub imbalance: f64,
     /// Number of frames in which the force on a pressed object differed from its target.
     pub n_off: usize,
