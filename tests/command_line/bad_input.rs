@@ -1,4 +1,4 @@
-//! Bad input on the real command: one clear sentence, the right exit code, nothing half-written.
+//! Bad input to the real command gives one clear sentence and the right exit code, and leaves no partial files.
 
 use crate::command::Case;
 use std::fs;
@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// A small study that runs; the tests break one thing in it at a time.
+/// Small valid study; each test changes one thing in it.
 const STUDY: &str = r#"
 question = "Does it work?"
 trials = 2
@@ -34,7 +34,7 @@ classifier = "linear_svm"
 "#;
 
 impl Case {
-    /// Runs the study with `old` replaced by `new`; it must be refused with all of `words` and write nothing.
+    /// Runs the study with `old` replaced by `new`; asserts that the command refuses it with all of `words` and writes nothing.
     fn refuses(&self, old: &str, new: &str, words: &[&str]) {
         assert!(
             STUDY.contains(old),
@@ -45,7 +45,7 @@ impl Case {
         assert!(!self.path("results").exists(), "nothing is written");
     }
 
-    /// Presses with these arguments; it must be refused and write nothing.
+    /// Runs `press` with these arguments; asserts that the command refuses them and writes nothing.
     fn refuses_press(&self, arguments: &[&str], words: &[&str]) {
         let all = [&["press", "--out", "out.csv"], arguments].concat();
         refused(&self.run(&all), 2, words);
@@ -337,7 +337,7 @@ fn numbers_that_no_machine_has_room_for_are_refused_at_once() {
         let arguments: Vec<&str> = arguments.split(' ').collect();
         refused(&case.run(&arguments), 2, words);
     }
-    // What it takes few spheres for is packed, and measured at no more points than there is room for.
+    // A tolerance that needs few spheres is accepted, and the number of measured points is limited by memory.
     case.succeeds(&[
         "objects",
         "pack",
@@ -351,7 +351,7 @@ fn numbers_that_no_machine_has_room_for_are_refused_at_once() {
     assert!(took < 60.0, "{took} s");
 }
 
-/// The corner of a cube of 0.1 m: (3/2 + √3/2) 0.1² = 0.02366 m² of surface.
+/// Corner of a cube of 0.1 m; its surface area is (3/2 + √3/2) 0.1² = 0.02366 m².
 const TETRAHEDRON: &str =
     "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
@@ -444,13 +444,13 @@ fn a_full_disk_is_the_worlds_fault_and_leaves_nothing() {
     }
 }
 
-/// A table ends in a newline, a picture in its end mark, a page in its closing tag.
+/// Returns whether a file is complete: a table ends with a line break, a picture with its end mark, a page with its closing tag.
 fn is_whole(path: &Path) -> bool {
     let bytes = fs::read(path).unwrap();
     match path.extension().and_then(|e| e.to_str()) {
         Some("csv" | "toml") => bytes.ends_with(b"\n"),
         Some("json") => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
-        // It grows; what is torn at its end the next run drops (tests/study_resume.rs).
+        // A journal grows; the next run removes an incomplete last line (tests/study_resume.rs).
         Some("jsonl") => true,
         Some("svg") => bytes.trim_ascii_end().ends_with(b"</svg>"),
         Some("html") => bytes.trim_ascii_end().ends_with(b"</html>"),
@@ -459,7 +459,7 @@ fn is_whole(path: &Path) -> bool {
     }
 }
 
-/// A file system of 16 KiB, gone when dropped.
+/// File system of 16 KiB that is removed when dropped.
 struct SmallDisk(PathBuf);
 
 impl SmallDisk {
@@ -476,7 +476,7 @@ impl SmallDisk {
 
 impl Drop for SmallDisk {
     fn drop(&mut self) {
-        // The folder is in a temporary one; a mount that stays is cleaned up with the machine.
+        // The folder is inside a temporary folder; a mount that remains is cleaned up with the machine.
         let _ = Command::new("umount").arg(&self.0).status();
     }
 }
@@ -503,7 +503,7 @@ fn keys_of_features_frames_and_fused_touches_are_checked() {
         "touches_per_decision = [1, 0]",
         &["recognition.touches_per_decision", "at least 1"],
     );
-    // Two of eight touches are for testing.
+    // Two of eight touches are test touches.
     refuses(
         "[recognition]",
         "touches_per_decision = 3",
@@ -605,7 +605,7 @@ fn a_published_accuracy_is_shown_beside_ours_and_kept_in_a_table() {
         table.lines().count() == 2 && table.contains("98 % at 16:1,[CL],0.98,"),
         "{table}"
     );
-    // What the run says it did, it does again.
+    // The resolved study of the run can be run again.
     let again = fs::read_to_string(case.path("results/study/study.toml")).unwrap();
     case.file("again.toml", again);
     case.succeeds(&["plan", "again.toml"]);

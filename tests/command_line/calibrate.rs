@@ -1,4 +1,4 @@
-//! `bubbletouch calibrate`: a table that studies read, and errors that say what is wrong.
+//! `bubbletouch calibrate` writes a table that studies read, and its errors state what is wrong.
 
 use crate::command::Case;
 use bubbletouch::random::Seed;
@@ -9,7 +9,7 @@ use rand_distr::StandardNormal;
 
 const SIDE: usize = 12;
 
-/// Counts of a skin that rests at 100 with a noise of 4, pressed in every other run of 50 frames by 200 in its middle.
+/// Returns readings of a skin with the zero 100 and noise of 4 counts; in every other run of 50 frames its middle is pressed by 200 counts.
 fn frames() -> Array3<f32> {
     let mut rng = Seed::new(3).rng();
     Array3::from_shape_fn((600, SIDE, SIDE), |(frame, y, x)| {
@@ -59,7 +59,7 @@ fn what_it_writes_is_the_signal_of_a_study() {
     assert!(table.contains("# gain_std: not identifiable: "), "{table}");
     case.file("study.toml", format!("{STUDY}{table}"));
     case.succeeds(&["plan", "study.toml"]);
-    // To a file, the same.
+    // The same output, written to a file.
     let to_file = [&given[..], &["--output", "signal.toml"]].concat();
     let (said, _) = case.succeeds(&to_file);
     assert_eq!(said, "");
@@ -74,7 +74,7 @@ fn forces_tell_how_stiff_taxels_are() {
     let case = Case::new();
     let frames = frames();
     write_npy(&case.path("frames.npy"), &frames).unwrap();
-    // 16 taxels, pushed in by 200 of 400 counts of 2 mm, of 150 N/m.
+    // 16 taxels are deflected by 200 of 400 counts of 2 mm, with 150 N/m.
     let force = |frame: usize| {
         if frame / 50 % 2 == 1 {
             16.0 * 1e-3 * 150.0

@@ -1,4 +1,4 @@
-//! `bubbletouch classify`: any folder of features, checked before anything is learnt from it.
+//! `bubbletouch classify` accepts any folder of features, and checks it before training.
 
 use crate::command::Case;
 use bubbletouch::random::Seed;
@@ -14,7 +14,7 @@ use serde_json::Value;
 
 const N_ROWS: usize = 60;
 
-/// Three overlapping classes of 20 rows, 5 features; every third row is tested.
+/// Returns three overlapping classes of 20 rows with 5 features; every third row is a test row.
 fn features() -> Array2<f64> {
     Array2::from_shape_fn((N_ROWS, 5), |(i, j)| {
         ((i % 3) * (j + 1) % 4) as f64 + 1.5 * ((i * 5 + j) as f64 * 1.7).sin()
@@ -79,7 +79,7 @@ fn it_says_and_writes_what_the_library_predicts() {
     }
 }
 
-/// The dual objective of one-vs-one SVMs from C = 0 on falls as C grows: more is allowed. So do the support vectors' shares.
+/// The dual objective of one-vs-one SVMs decreases from 0 as C grows, because more is allowed. The fraction of support vectors also decreases.
 #[test]
 fn the_dual_objective_falls_as_c_grows() {
     let case = folder();
@@ -89,7 +89,7 @@ fn the_dual_objective_falls_as_c_grows() {
     };
     let duals = ["0.001", "0.1", "10"].map(dual);
     assert!(duals[0] > duals[1] && duals[1] > duals[2], "{duals:?}");
-    // At C = 0.001 every multiplier is at most C: three problems of 26 rows.
+    // At C = 0.001, every multiplier is at most C; there are three problems of 26 rows.
     assert!(
         -duals[0] < 0.001 * 78.0 && -duals[0] > 0.5 * 0.001 * 78.0,
         "{duals:?}"
@@ -144,7 +144,7 @@ fn people_get_lines() {
     }
 }
 
-/// Runs on a folder that must be refused with all of `words`.
+/// Runs the command on a folder; asserts that it is refused with all of `words`.
 fn refused(case: &Case, arguments: &[&str], words: &[&str]) {
     let all = [&["classify", "."], arguments].concat();
     let output = case.run(&[&all[..], &["--predictions", "out.npy"]].concat());
@@ -172,7 +172,7 @@ fn a_feature_that_is_no_number_is_named_by_row_and_column() {
 #[test]
 fn arrays_of_any_type_that_numpy_writes_are_read_as_the_same_numbers() {
     let case = folder();
-    // Halves, so that every type of float holds them, and integers that every type of integer does.
+    // Halves, which every floating-point type represents, and integers, which every integer type represents.
     let halves = features().mapv(|value| (2.0 * value).round() / 2.0);
     let whole = halves.mapv(f64::round);
     let path = |name: &str| case.path(name);
@@ -213,7 +213,7 @@ fn arrays_of_any_type_that_numpy_writes_are_read_as_the_same_numbers() {
     assert_eq!(asked("bool"), expected);
 }
 
-/// One mechanism reads the labels of all commands: texts, numbers from any start, a column for each class, and archives.
+/// All commands read labels in the same way: texts, integers from any start, one column per class, and archives.
 #[test]
 fn labels_of_every_form_are_answered_in_their_own_values() {
     let case = folder();
@@ -321,12 +321,12 @@ fn rows_that_are_not_there_or_named_twice_are_refused() {
     refused(&case, &LINEAR, &["labels.npy, position 4: -2"]);
 }
 
-/// Five groups of 12 rows: each has rows of all classes, and of either side of the split are some whole ones.
+/// Returns five groups of 12 rows; each group has rows of all classes, and both sides of the split contain whole groups.
 fn groups() -> Array1<i64> {
     (0..N_ROWS as i64).map(|row| 7 * (row / 12)).collect()
 }
 
-/// Two of five groups are tested.
+/// Creates a folder in which two of five groups are test groups.
 fn grouped_folder() -> Case {
     let case = folder();
     let side = |is_tested: bool| -> Array1<i64> {
@@ -354,7 +354,7 @@ fn groups_change_the_interval_and_the_folds_and_nothing_else() {
     assert_eq!(by_groups["n_train_groups"], 3);
     assert_eq!(by_groups["n_test_groups"], 2);
     assert_eq!(by_rows["n_correct"], by_groups["n_correct"]);
-    // Of the groups that are tested, out of the predictions.
+    // Groups of the test rows, computed from the predictions.
     case.succeeds(
         &[
             &["classify", "."],

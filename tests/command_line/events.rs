@@ -1,4 +1,4 @@
-//! `--json` and `--quiet`: what programs hear of a run, as the guide says it.
+//! `--json` and `--quiet`: the events of a run have the form that the guide describes.
 
 use crate::command::Case;
 use serde_json::Value;
@@ -27,7 +27,7 @@ ratio = [4, 16]
 classifier = ["linear_svm", "k_nearest"]
 "#;
 
-/// Event → field → type, from the table of the guide.
+/// Returns the types of each event's fields, from the table of the guide.
 fn schema() -> BTreeMap<String, BTreeMap<String, String>> {
     let mut schema: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     for line in GUIDE.lines().filter(|line| line.starts_with("| `")) {
@@ -48,7 +48,7 @@ fn events(text: &str) -> Vec<Value> {
         .collect()
 }
 
-/// Every field of an event is in the guide with its type.
+/// Asserts that every field of an event is in the guide with its type.
 fn check(event: &Value, schema: &BTreeMap<String, BTreeMap<String, String>>) {
     let fields = &schema[event["event"].as_str().unwrap()];
     for (name, value) in event.as_object().unwrap() {
@@ -100,7 +100,7 @@ fn every_line_of_a_run_is_an_event_as_the_guide_has_it() {
         .iter()
         .map(|event| event["run_elapsed_s"].as_f64().unwrap());
     assert!(elapsed.is_sorted());
-    // Once more: all work items are there, and a remark says so.
+    // In a second run all work items are finished, and a message says so.
     let again = self::events(&case.succeeds(&["run", "study.toml", "--json"]).0);
     again.iter().for_each(|event| check(event, &schema));
     assert_eq!(again[0]["event"], "message");

@@ -1,4 +1,4 @@
-//! `bubbletouch features`: the rows that a study's configuration is trained on, and no others.
+//! `bubbletouch features` writes exactly the rows on which a study's configuration is trained and tested.
 
 use crate::command::Case;
 use bubbletouch::random::Seed;
@@ -10,7 +10,7 @@ use ndarray::{Array1, Array2, Axis};
 use ndarray_npy::read_npy;
 use std::fs;
 
-/// Two levels of noise, a nested and another ensemble, two m and two training sizes: 16 configurations, two trials each.
+/// Study with two noise levels, a nested and another ensemble, two m and two training sizes: 16 configurations with two trials each.
 const STUDY: &str = r#"
 question = "What does a configuration learn from?"
 trials = 2

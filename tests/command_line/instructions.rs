@@ -1,5 +1,5 @@
-//! Every set of vector instructions on one machine: the same program on emulated processors, which every kernel asks what they have, those of
-//! `matrixmultiply`, too. Of AVX-512 there is no emulator; it is tested where the machine has it.
+//! All sets of vector instructions on one machine: the program runs on emulated processors, which determine the instructions of all kernels including
+//! `matrixmultiply`. There is no emulator of AVX-512; it is tested if the machine supports it.
 
 use crate::command::Case;
 use crate::reference_data::folder;
@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// SVMs of every kind of kernel, that choose C in folds; and frames that are projected by products of matrices.
+/// Study with SVMs of every kernel that choose C by folds, and with frames that are projected by matrix products.
 const STUDY: &str = r#"
 question = "Do processors agree?"
 trials = 2
@@ -47,7 +47,7 @@ c_grid = [0.1, 1.0, 10.0]
 cv_folds = 3
 "#;
 
-/// The command on this machine, or on a processor that is emulated.
+/// Runs the command on this machine or on an emulated processor, and asserts success.
 fn succeeds(case: &Case, emulated: Option<(&Path, &str)>, arguments: &[&str]) -> String {
     let command = env!("CARGO_BIN_EXE_bubbletouch");
     let mut process = match emulated {
@@ -65,14 +65,14 @@ fn succeeds(case: &Case, emulated: Option<(&Path, &str)>, arguments: &[&str]) ->
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// What a processor finds.
+/// Results on one processor.
 struct Found {
-    /// The instructions that it has.
+    /// Vector instructions that the processor supports.
     instructions: Instructions,
-    /// Rows of a study, and their γ, which is of the scale of its features.
+    /// Scores of the study, with γ, which depends on the scale of the features.
     scores: Vec<TrialScore>,
     gammas: Vec<f64>,
-    /// The dual objectives of SVMs, and their labels of test rows.
+    /// Dual objectives of the SVMs, and their labels of test rows.
     duals: Vec<f64>,
     labels: Vec<Array1<i64>>,
 }
@@ -124,7 +124,7 @@ fn avx2_and_plain_code_find_what_this_machine_finds() {
         let numbers = |found: &Found| [&found.gammas[..], &found.duals].concat();
         assert_eq!(numbers(&ours).len(), numbers(&theirs).len());
         for (ours, theirs) in numbers(&ours).iter().zip(numbers(&theirs)) {
-            // Sums are of some hundred terms, rounded in another order: 1e-16 each, and steps that follow from them.
+            // Sums of some hundred terms are rounded in another order: 1e-16 per term, and the resulting steps.
             let off = (ours / theirs - 1.0).abs();
             assert!(off < 1e-12, "{processor}: {theirs} in place of {ours}");
         }

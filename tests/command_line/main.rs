@@ -1,4 +1,4 @@
-//! The command and what it writes: subcommands, bad input, pages, charts, pictures and recordings.
+//! The command and its outputs: subcommands, bad input, pages, charts, pictures and recordings.
 
 #[path = "../fixtures/browser/mod.rs"]
 mod browser;

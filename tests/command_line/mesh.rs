@@ -1,10 +1,10 @@
-//! Meshes from the command line: what is said about one, and pressing and studying one as it is.
+//! Meshes on the command line: their descriptions, and presses and studies of exact meshes.
 
 use crate::command::Case;
 use bubbletouch::mesh::LengthUnit;
 use bubbletouch::study::{ModelSpec, ObjectsSpec, load_objects};
 
-/// A cube of 40 mm in millimetres, standing on z = 0.
+/// Returns a cube of 40 mm in millimetres that stands on z = 0.
 fn cube() -> String {
     let mut text = String::new();
     for corner in 0..8 {
@@ -19,7 +19,7 @@ fn cube() -> String {
     text
 }
 
-/// Its top lacks a small triangle in the middle, 0.9 mm wide.
+/// Returns the cube with a triangular hole in the middle of its top, 0.9 mm wide.
 fn cube_with_hole() -> String {
     let top = "v 0 0 40\nv 0.6364 0 40\nv 0 0.6364 40\n\
                f 5 6 10 9\nf 6 8 10\nf 8 11 10\nf 8 7 11\nf 7 5 9\nf 7 9 11\n";
@@ -45,7 +45,7 @@ fn a_pressed_cube_is_flat_under_its_face_and_not_inflated() {
     case.file("cube.obj", cube());
     let press = "press --mesh cube.obj --unit mm --model mesh --taxels 32x32 --pitch-mm 2.1 --depth-mm 2 --out frame.csv";
     let (_, error) = case.succeeds(&press.split(' ').collect::<Vec<_>>());
-    // 20 taxels at 2 mm pitch lie under 40 mm; the nearest beside them are 1 mm, one radius, away.
+    // 20 taxels with a pitch of 2 mm are under 40 mm; the nearest taxels beside them are 1 mm (one radius) away.
     assert!(
         error.starts_with("400 of 1024 taxels touched, 0 saturated; deepest 2.000 mm"),
         "{error}"
@@ -59,7 +59,7 @@ fn a_pressed_cube_is_flat_under_its_face_and_not_inflated() {
     assert_eq!(under.count(), 400);
 }
 
-/// The faces of a mesh, each the other way round.
+/// Returns the mesh with all faces reversed.
 fn inside_out(text: &str) -> String {
     let turned = text.lines().map(|line| match line.strip_prefix("f ") {
         None => line.to_owned(),
@@ -101,7 +101,7 @@ fn a_closed_mesh_that_faces_inwards_is_turned_with_a_note() {
     case.succeeds(&words(
         "objects pack turned.obj --unit mm --surface-error-mm 3 --out turned.csv",
     ));
-    // The file itself is described as it is.
+    // The description of the file itself is unchanged.
     let (said, _) = case.succeeds(&words("objects mesh turned.obj --unit mm"));
     assert!(said.contains("faces that face inwards"), "{said}");
 }
@@ -131,7 +131,7 @@ fn skin_over_a_mesh_points_outwards_whichever_way_the_file_faces() {
             has_note,
             "{said}"
         );
-        // Turned triangles draw other places for taxels; where the axes pointed inwards, all taxels touched would be saturated.
+        // Reversed triangles give other taxel positions; if the axes pointed inwards, all touched taxels would be saturated.
         let wrenches = case.path(file).join("wrenches.csv");
         let text = std::fs::read_to_string(wrenches).unwrap();
         let row: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
@@ -357,7 +357,7 @@ fn words_that_no_mesh_has_are_refused() {
     assert!(refused("press --object mug --model mesh").contains("--mesh"));
 }
 
-/// A die of 17 mm, its numbers millimetres.
+/// Returns a die of 17 mm in millimetres.
 fn die() -> String {
     cube().replace("20", "8.5").replace("40", "17")
 }
@@ -446,7 +446,7 @@ fn own_objects_are_named_by_the_same_option_everywhere() {
     let pack = "objects pack nut --objects hardware.toml --surface-error-mm 0.1 --out nut.csv";
     let (said, _) = case.succeeds(&words(pack));
     assert!(said.contains("gap         max 0.0"), "{said}");
-    // A ring of taxels reads the nut; those over its hole read nothing.
+    // A ring of taxels touches the nut; taxels over its hole touch nothing.
     let press = "press --objects hardware.toml --object nut --taxels 17x17 --pitch-mm 1 --depth-mm 1 --out nut.npz";
     let (_, said) = case.succeeds(&words(press));
     assert!(!said.starts_with("0 of"), "{said}");

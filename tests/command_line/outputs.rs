@@ -1,4 +1,4 @@
-//! No command writes over a file that it reads, nor over a file in an output folder that it did not write.
+//! No command overwrites a file that it reads, or a file in an output folder that it did not write.
 
 use crate::command::Case;
 use ndarray::{Array1, Array3};
@@ -69,7 +69,7 @@ object = "tennis"
 at = { position_mm = [1.3, 0.7, 60.0] }
 "#;
 
-/// All files below a folder, with their bytes; links by what they lead to.
+/// Returns all files below a folder with their bytes; links are followed.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -90,7 +90,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     all
 }
 
-/// Runs a command that must be refused, name the file, and change nothing.
+/// Runs a command; asserts that it is refused with the name of the file, and changes nothing.
 fn refused(case: &Case, arguments: &[&str], file: &str) {
     let before = files(case.folder());
     let output = case.run(arguments);
@@ -196,7 +196,7 @@ fn a_run_refuses_each_file_of_somebody_else_that_it_would_write() {
         "journal.jsonl",
     );
     fs::remove_file(case.path("found/journal.jsonl")).unwrap();
-    // Whatever no run writes stays, and disturbs nobody.
+    // Files that no run writes stay and have no effect.
     let own = [("found/notes.txt", "notes"), ("found/paper.csv", "a,b\n")];
     for (name, text) in own {
         case.file(name, text);
@@ -222,7 +222,7 @@ fn a_folder_of_results_takes_its_study_again() {
     let (_, said) = case.succeeds(&["run", "study.toml", "--out", "found", "--fresh"]);
     assert!(said.contains("found.1"), "{said}");
     assert!(fs::read(case.path("found/summary.csv")).unwrap() == first);
-    // A folder as versions before this one wrote it: the manifest lists tables only.
+    // Folder of an earlier version, whose manifest lists only tables.
     let manifest = case.path("found/manifest.json");
     let text = fs::read_to_string(&manifest).unwrap();
     let mut json: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -234,7 +234,7 @@ fn a_folder_of_results_takes_its_study_again() {
     case.succeeds(&["report", "found"]);
     fs::write(&manifest, json.to_string()).unwrap();
     case.succeeds(&run);
-    // Without a manifest nobody knows whose they are, but a page can be made.
+    // Without a manifest, the owner of the files is unknown, but a page can be made.
     fs::remove_file(&manifest).unwrap();
     refused(&case, &run, "study.toml");
     let page = case.path("found/report.html");
@@ -429,7 +429,7 @@ fn a_single_output_is_no_input() {
         "a.npy",
     ];
     case.succeeds(&poses);
-    // A file that is no input is replaced.
+    // A file that is not an input is replaced.
     case.file("b.csv", "old");
     case.succeeds(&["press", "--spheres", "a.csv", "--out", "b.csv"]);
     assert_ne!(fs::read_to_string(case.path("b.csv")).unwrap(), "old");
@@ -542,7 +542,7 @@ fn manual_pages_of_others_stay() {
     refused(&case, &["man", "--out", "man1"], "bubbletouch-run.1");
 }
 
-/// A cube of 20 mm.
+/// Returns a cube of 20 mm.
 fn box_obj() -> String {
     let mut text = String::new();
     for n in 0..8 {

@@ -1,10 +1,10 @@
-//! The guide's page about own objects: its example is built, and it lists every shape and key.
+//! Guide page on own objects: its example can be built, and it lists every shape and key.
 
 use bubbletouch::objects::{Catalogue, surface_error};
 
 const MM: f64 = 1e-3;
 
-/// The page about own objects.
+/// Text of the guide page on own objects.
 const GUIDE: &str = include_str!("../../guide/own_objects.md");
 
 #[test]
@@ -23,7 +23,7 @@ fn the_nut_of_the_guide_is_built() {
             "{error:?}"
         );
     }
-    // A pin along the hole meets nothing.
+    // A pin along the hole touches nothing.
     let model = nut.build(0.1 * MM).unwrap().model;
     let spheres = model.spheres().unwrap().spheres();
     let free = spheres
@@ -45,7 +45,7 @@ fn the_guide_has_every_shape_and_every_key() {
         names.map(str::to_owned).collect()
     };
     let part = "[[object]]\nname = \"a\"\nsource = \"b\"\n[[object.part]]\n";
-    // What the reader says it expects: after the wrong name come all right ones.
+    // The error lists all valid names after the wrong one.
     let shapes = listed(&format!("{part}shape = \"none\"\n"));
     let keys = listed(&format!("{part}shape = \"ball\"\nnone = 1\n"));
     let of_object = listed("[[object]]\nnone = 1\n");

@@ -1,4 +1,4 @@
-//! Paths in a study file are relative to that file; those of a resolved study are absolute.
+//! Paths in a study file are relative to that file; paths in a resolved study are absolute.
 
 use crate::command::Case;
 use ndarray::{Array1, Array3};
@@ -61,7 +61,7 @@ source = "our own"
 
 const MESH: &str = "v 0 0 0\nv .04 0 0\nv 0 .04 0\nv 0 0 .04\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
-/// Writes frames of two classes; with `bias`, others.
+/// Writes frames of two classes; `bias` changes the frames.
 fn write_frames(folder: &Path, bias: usize) {
     fs::create_dir_all(folder).unwrap();
     let frames = Array3::from_shape_fn((40, 4, 4), |(n, y, x)| {
@@ -80,7 +80,7 @@ fn write_objects(folder: &Path) {
     fs::write(folder.join("own/meshes/corner.obj"), MESH).unwrap();
 }
 
-/// Runs a study in a folder below, from elsewhere, and again from its resolved form, from yet elsewhere.
+/// Runs a study in a subfolder from another folder, and its resolved form from a third one.
 fn runs_from_anywhere(case: &Case, keys: &[&str]) {
     let (_, said) = case.succeeds(&["run", "lab/study.toml", "--out", "found"]);
     assert!(!said.contains("relative to the current folder"), "{said}");
@@ -122,7 +122,7 @@ fn recorded_frames_stand_beside_their_study() {
         &case,
         &["data/frames.npy", "data/labels.npy", "data/groups.npy"],
     );
-    // Those beside the study go before those of the current folder.
+    // Files beside the study have priority over files in the current folder.
     write_frames(&case.path("data"), 3);
     case.succeeds(&["run", "lab/study.toml", "--out", "still"]);
     let [first, second] =

@@ -1,11 +1,11 @@
-//! `bubbletouch press`: one reading, as numbers, as arrays, as a picture, and drawn in the terminal.
+//! `bubbletouch press`: one reading as numbers, as arrays, as a picture, and as text in the terminal.
 
 use crate::command::Case;
 use ndarray::{Array1, Array2, Axis, s};
 use ndarray_npy::NpzReader;
 use std::fs::{self, File};
 
-/// A frame from a CSV file, and how many significant digits its numbers have.
+/// Reads a frame from a CSV file; also returns the numbers of significant digits.
 fn read_csv(case: &Case, name: &str) -> (Array2<f64>, Vec<usize>) {
     let text = fs::read_to_string(case.path(name)).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
@@ -19,7 +19,7 @@ fn read_csv(case: &Case, name: &str) -> (Array2<f64>, Vec<usize>) {
     (frame, digits)
 }
 
-/// Presses with these arguments and reads the frame.
+/// Runs `press` with these arguments and reads the frame.
 fn pressed(arguments: &str) -> Array2<f64> {
     let case = Case::new();
     let words = arguments.split(' ');
@@ -39,7 +39,7 @@ fn largest_difference(a: &Array2<f64>, b: &Array2<f64>) -> f64 {
     (a - b).iter().fold(0.0, |largest, d| d.abs().max(largest))
 }
 
-/// A sphere of 30 mm, 29 mm in front of 24 × 10 taxels of 1.5 mm radius at 2.5 mm.
+/// Sphere of 30 mm radius, 29 mm in front of 24 × 10 taxels with 1.5 mm radius and 2.5 mm pitch.
 const SPHERE: &str = "x,y,z,r\n0.004,-0.003,0.029,0.03\n";
 const ARRAY: [&str; 8] = [
     "press",
@@ -52,7 +52,7 @@ const ARRAY: [&str; 8] = [
     "--stroke-mm=2",
 ];
 
-/// δ = min(s, max(0, √(S² − b²) − h)).
+/// Returns the closed form δ = min(s, max(0, √(S² − b²) − h)).
 fn closed_form() -> Array2<f64> {
     Array2::from_shape_fn((10, 24), |(row, column)| {
         let x = (column as f64 - 11.5) * 2.5e-3;
@@ -191,10 +191,10 @@ fn spheres_are_read_where_they_are_unless_a_depth_is_asked_for() {
     assert_eq!(deepest(&read_csv(&case, "clear.csv").0), 0.0);
 }
 
-/// A small object well inside 40 × 40 taxels of 2 mm.
+/// Arguments for a small object well inside 40 × 40 taxels of 2 mm.
 const PADLOCK: &str = "--object padlock --taxels 40x40 --depth-mm 2";
 
-/// Whether a frame is another one moved by whole taxels.
+/// Returns whether a frame equals another one shifted by whole taxels.
 fn is_moved(frame: &Array2<f64>, by: (isize, isize), original: &Array2<f64>) -> bool {
     let (rows, columns) = frame.dim();
     frame.indexed_iter().all(|((row, column), &value)| {
@@ -214,7 +214,7 @@ fn an_offset_moves_the_print_by_whole_taxels_exactly_when_it_is_a_multiple_of_th
     let original = pressed(PADLOCK);
     let n_touched = original.iter().filter(|&&d| d > 0.0).count();
     assert!(n_touched > 20, "{n_touched} taxels");
-    // The patch moves along table x and so the print goes the other way; its y axis points against the table's.
+    // If the patch moves along the table's x axis, the print moves in the opposite direction; the patch's y axis is opposite to the table's.
     for (offset, by) in [
         ("--offset-x-mm 6", (0, -3)),
         ("--offset-x-mm -4", (0, 2)),
@@ -237,7 +237,7 @@ fn an_offset_moves_the_print_by_whole_taxels_exactly_when_it_is_a_multiple_of_th
 fn a_quarter_turn_of_the_object_is_a_quarter_turn_of_the_print() {
     let original = pressed(PADLOCK);
     let turned = pressed(&format!("{PADLOCK} --yaw-deg 90"));
-    // Taxel (x, y) of the original is taxel (y, −x) of the turned one.
+    // Taxel (x, y) of the original is taxel (y, −x) of the rotated frame.
     let expected = Array2::from_shape_fn((40, 40), |(row, column)| original[[column, 39 - row]]);
     assert!(largest_difference(&turned, &expected) < 1e-12);
     assert!(
@@ -258,7 +258,7 @@ fn a_tilted_patch_goes_in_deepest_with_its_lower_side() {
     let level = pressed(box_under);
     assert!(side(&level, Axis(0)).abs() < 1e-9 && side(&level, Axis(1)).abs() < 1e-9);
     for (tilt, axis, sign) in [
-        // A turn about x lowers the side of +y of a patch that faces down; a turn about y, that of −x.
+        // For a patch that faces down, a rotation about x lowers the +y side, and a rotation about y the −x side.
         ("--tilt-x-deg 5", Axis(1), 1.0),
         ("--tilt-x-deg -5", Axis(1), -1.0),
         ("--tilt-y-deg 5", Axis(0), -1.0),

@@ -1,4 +1,4 @@
-//! What the README and the guide tell people to type works; what they link to is there.
+//! Commands in the README and the guide work, and their links lead to existing files.
 #![cfg(unix)]
 
 use crate::command::Case;
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The README, then the chapters of the guide by name: (file, text).
+/// Returns the README and the chapters of the guide by name, as (file, text).
 fn documents() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let guide = fs::read_dir(root.join("guide")).unwrap();
@@ -21,7 +21,7 @@ fn documents() -> Vec<(String, String)> {
     paths.iter().map(read).collect()
 }
 
-/// The text of each block that is fenced as this language.
+/// Returns the text of each code block of a language.
 fn blocks(text: &str, language: &str) -> Vec<String> {
     let fence = format!("```{language}");
     let mut blocks = Vec::new();
@@ -42,7 +42,7 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
     blocks
 }
 
-/// The commands of a shell block that can run here: not the slow ones, nor those on a folder of meshes that people bring.
+/// Returns the commands of a shell block that can run here, without slow ones and without those that need the reader's meshes.
 fn commands(block: &str) -> Vec<String> {
     block
         .replace("\\\n", " ")
@@ -71,8 +71,8 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
-/// A folder with what a reader has who cloned the repository, and the command on the path. Studies have one trial each, and the quickstart
-/// reads no whole frames: the commands are under test, not the results.
+/// Creates a folder with the files of a cloned repository, and puts the command on the path. Studies have one trial each and the quickstart reads no whole
+/// frames, because the commands are tested, not the results.
 fn cloned() -> (Case, String) {
     let case = Case::new();
     for folder in ["experiments", "objects"] {
@@ -97,7 +97,7 @@ fn cloned() -> (Case, String) {
 fn every_command_in_the_readme_and_the_guide_works() {
     let mut n_commands = 0;
     for (document, text) in documents() {
-        // One after the other in one folder, as a reader would: a later one may read what an earlier one wrote.
+        // The commands run one after the other in one folder, because later ones may read the output of earlier ones.
         let (case, path) = cloned();
         for command in blocks(&text, "sh").iter().flat_map(|b| commands(b)) {
             let output = Command::new("sh")
@@ -133,7 +133,7 @@ fn every_study_in_the_readme_and_the_guide_can_be_planned() {
     }
 }
 
-/// The targets of a text's links and pictures that are files.
+/// Iterates over the files to which a text's links and pictures point.
 fn linked_files(text: &str) -> impl Iterator<Item = &str> {
     let targets = text.split("](").skip(1);
     let targets = targets.filter_map(|rest| rest.split_once(')').map(|(target, _)| target));
@@ -153,10 +153,10 @@ fn what_the_readme_and_the_guide_link_to_is_there() {
     }
 }
 
-/// Bytes of the committed results, at most.
+/// Maximum size of the committed results, bytes.
 const MAX_RESULTS_BYTES: u64 = 12_000_000;
 
-/// The folders hold tables, and each chart once: files that a reader makes again by one command are not committed.
+/// The result folders contain tables and each chart once. Files that one command can make again are not committed.
 #[test]
 fn committed_results_are_small_and_every_picture_is_shown() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

@@ -1,4 +1,4 @@
-//! `bubbletouch recording`: what is in a file, as a table, a picture and an animation; and NumPy opens it.
+//! `bubbletouch recording`: the contents of a file as a table, a picture and an animation; NumPy opens the file.
 
 use crate::command::Case;
 use crate::stored::{frame, normal, vectors};
@@ -10,7 +10,7 @@ use std::fs;
 use std::io::Write;
 use std::process::Command;
 
-/// 30 frames of a grid of 4 × 3 taxels and of a ring of 20, with one object.
+/// Writes 30 frames of a grid of 4 × 3 taxels and of a ring of 20 taxels, with one object.
 fn recorded() -> Case {
     let case = Case::new();
     let grid = Grid {

@@ -1,10 +1,10 @@
-//! The command: a folder's page again from its tables, and two folders side by side as a page.
+//! The commands that make a folder's page again from its tables, and compare two folders on a page.
 
 use crate::command::Case;
 use std::fs;
 use std::path::Path;
 
-/// A second of work.
+/// Study that takes a second.
 const STUDY: &str = r#"
 question = "What does the page say?"
 trials = 2
@@ -65,7 +65,7 @@ fn touches_beyond_the_stroke_and_listed_values_that_are_mixed_are_said_once() {
     );
     let page = fs::read_to_string(case.path("listed/report.html")).unwrap();
     assert!(page.contains("<b>12 of 48</b> touches deeper than the stroke"));
-    // Of a study that has neither, nothing is said.
+    // Nothing is printed about a study that has neither.
     case.file("asked.toml", STUDY);
     let (plan, _) = case.succeeds(&["plan", "asked.toml"]);
     let (_, said) = case.succeeds(&["run", "asked.toml", "--out", "asked"]);
@@ -73,13 +73,13 @@ fn touches_beyond_the_stroke_and_listed_values_that_are_mixed_are_said_once() {
     assert!(!plan.contains("mixes") && !said.contains("mixes") && !limits.contains("deeper"));
 }
 
-/// A page without the line that says how long the run took: a manifest knows whole seconds.
+/// Returns a page without the line on the duration of the run, because a manifest contains whole seconds.
 fn but_for_seconds(page: &str) -> String {
     let lines = page.lines().filter(|line| !line.contains("The run took"));
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Files of charts in a folder, sorted.
+/// Returns the chart files in a folder, sorted.
 fn chart_files(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -103,12 +103,12 @@ fn charts_are_svg_files_unless_another_format_is_given() {
         .map(|name| name.replace(".png", ".svg"))
         .collect();
     assert_eq!(as_svg, svg);
-    // Pictures of touches are PNG files in every case.
+    // Pictures of touches are always PNG files.
     assert!(case.path("svg/snapshots.png").exists());
     case.succeeds(&["report", "svg", "--chart-format", "both"]);
     assert_eq!(chart_files(&case.path("svg")).len(), 2 * svg.len());
     case.succeeds(&["verify", "svg", "--configurations", "1"]);
-    // A missing chart is a note, because it is no result; a chart that was edited is an error.
+    // A missing chart causes a note, because it is not a result; an edited chart is an error.
     fs::remove_file(case.path("png").join(&png[0])).unwrap();
     let (said, _) = case.succeeds(&["verify", "png", "--configurations", "1"]);
     let note = "missing charts, pictures or page: 1 files; bubbletouch report png draws them";
@@ -171,10 +171,10 @@ fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are
     };
     let expected: Vec<&str> = all.lines().skip(1).filter(of_kept).collect();
     assert_eq!(best.lines().skip(1).collect::<Vec<_>>(), expected);
-    // The chart shows the same matrix, and the line of chance is drawn.
+    // The chart shows the same matrix, and the line at chance level is drawn.
     let tiles = |folder: &str| {
         let svg = read(folder, "confusion.svg");
-        // The note before the tiles counts the rows of other cells.
+        // The note before the tiles counts the rows of other configurations.
         svg.split_once("settings.").unwrap().1.to_owned()
     };
     assert_eq!(tiles("all"), tiles("best"));
@@ -185,7 +185,7 @@ fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are
     case.succeeds(&["verify", "best", "--configurations", "2"]);
     case.succeeds(&["verify", "best", "--configurations", "1000"]);
     case.succeeds(&["advise", "best", "--accuracy", "0.1"]);
-    // Where the number of objects is an axis, the matrices of all configurations are needed.
+    // If the number of objects is an axis, the matrices of all configurations are needed.
     let axes = "[axes]\n\"objects.names\" = [[\"mug\", \"banana\"], [\"mug\", \"banana\", \"scissors\"]]\n";
     let text = format!("{fused}\n[report]\nconfusion = \"best\"\n{axes}");
     case.file(
@@ -207,7 +207,7 @@ fn confusion_matrices_of_the_best_cells_alone_leave_the_other_tables_as_they_are
     assert!(!case.path("sizes").exists());
 }
 
-/// The columns of groups and of repeated splits exist if any row has them; a few work items may have none of these rows.
+/// The columns of groups and of repeated splits exist if any row has them; the rows of a few work items may lack them.
 #[test]
 fn verify_takes_a_few_work_items_of_a_study_with_groups_and_repeated_splits() {
     let case = Case::new();
@@ -225,7 +225,7 @@ fn verify_takes_a_few_work_items_of_a_study_with_groups_and_repeated_splits() {
         let draw = draw.to_string();
         case.succeeds(&["verify", "found", "--configurations", "1", "--draw", &draw]);
     }
-    // A row that differs is found in a table of fewer columns, too. The manifest is edited with the table, so that its hash is right.
+    // A differing row is also found in a table with fewer columns. The manifest is edited with the table, so that its hash is valid.
     let n_correct = header.split(',').position(|name| name == "n_correct");
     let edited: Vec<String> = accuracy
         .lines()
@@ -275,7 +275,7 @@ fn the_page_comes_again_from_the_tables() {
     assert_eq!((&said[..], &remarks[..]), ("Wrote found/report.html\n", ""));
     let again = fs::read_to_string(&file).unwrap();
     assert_eq!(but_for_seconds(&again), but_for_seconds(&written));
-    // Without a manifest nobody knows whether the tables are those of a run: that is said.
+    // Without a manifest, the origin of the tables is unknown, and a message says so.
     fs::remove_file(case.path("found/manifest.json")).unwrap();
     let (_, remarks) = case.succeeds(&["report", "found"]);
     assert!(
@@ -284,7 +284,7 @@ fn the_page_comes_again_from_the_tables() {
     );
     let page = fs::read_to_string(&file).unwrap();
     assert!(page.contains("<h1>found</h1>"), "{page}");
-    // A table that is missing is named.
+    // The error names a missing table.
     for name in ["limits.csv", "summary.csv"] {
         fs::remove_file(case.path("found").join(name)).unwrap();
         let output = case.run(&["report", "found"]);
@@ -332,7 +332,7 @@ fn the_page_is_not_drawn_over_from_tables_that_were_changed_or_are_gone() {
                 let output = case.run(&[command, "found"]);
                 let error = String::from_utf8(output.stderr).unwrap();
                 let is_named = error.contains(name) && error.contains(said);
-                // Without its study a folder is of no kind that verify knows; it is refused all the same.
+                // Without its study, the kind of a folder is unknown to `verify`; the folder is still refused.
                 assert!(is_named, "{command}, {name}: {error}");
                 assert_eq!(output.status.code(), Some(2), "{command}, {name}: {error}");
             }
@@ -398,7 +398,7 @@ fn two_folders_stand_side_by_side_in_a_page() {
     ] {
         assert!(page.contains(part), "the page has {part}");
     }
-    // Values of both, and costs of both.
+    // Values and costs of both folders.
     assert!(page.matches("<tr").count() > 2 * (1 + 4));
     let refused = case.run(&["compare", "asked", "same", "--html", "moved.txt"]);
     assert_eq!(refused.status.code(), Some(2));
@@ -407,7 +407,7 @@ fn two_folders_stand_side_by_side_in_a_page() {
     assert!(!case.path("apart.html").exists());
 }
 
-/// Edits of outcomes and of numbers are said, and no row is dropped because it has no number.
+/// Edited outcomes and numbers are reported, and no row is dropped because it has no number.
 #[test]
 fn results_of_stability_that_are_edited_differ_from_what_they_were() {
     let case = Case::new();
@@ -452,7 +452,7 @@ fn results_of_stability_that_are_edited_differ_from_what_they_were() {
     let changed =
         "stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).";
     assert!(said.contains(changed), "{said}");
-    // A row loses a number.
+    // A number of one row is deleted.
     let text = fs::read_to_string(&path).unwrap();
     let number = "9.725768772680234e-15";
     assert!(text.contains(number));

@@ -1,4 +1,4 @@
-//! What the shell sees of the command: completions, manual pages, colours.
+//! The command in a shell: completions, manual pages, colours, and closed pipes.
 
 use crate::command::Case;
 use std::fs;
@@ -9,7 +9,7 @@ const SUBCOMMANDS: [&str; 8] = [
     "run", "merge", "slurm", "compare", "verify", "plan", "simulate", "press",
 ];
 
-/// A program's exit status when it is given a file; says so aloud if there is no such program.
+/// Returns whether a program accepts a file; prints a message and returns `None` if the program does not exist.
 fn accepted(program: &str, arguments: &[&str], input: &[u8]) -> Option<(bool, String)> {
     let child = Command::new(program)
         .args(arguments)
@@ -132,7 +132,7 @@ fn a_pipe_gets_no_escape_codes_and_no_color_is_respected() {
 
 #[test]
 fn a_terminal_gets_colours_unless_no_color_is_set() {
-    // `script` gives a program a terminal.
+    // `script` runs a program in a terminal.
     let bubbletouch = env!("CARGO_BIN_EXE_bubbletouch");
     let press = format!("{bubbletouch} press --object mug --taxels 16x16 --pitch-mm 8");
     let help = format!("{bubbletouch} --help");
@@ -169,7 +169,7 @@ fn a_terminal_gets_colours_unless_no_color_is_set() {
     }
 }
 
-/// A study, a scene and a folder for each subcommand that says something on standard output; those first that others read.
+/// Command lines of all subcommands that write to standard output; those whose results others read come first.
 const SPEAKERS: [&str; 24] = [
     "run study.toml --out results/study --threads 2",
     "run study.toml --out results/json --json --threads 2",
@@ -242,7 +242,7 @@ fn speaking() -> Case {
     case
 }
 
-/// The end of a pipe that nobody reads.
+/// Returns the writing end of a pipe that has no reader.
 fn closed_pipe() -> std::io::PipeWriter {
     std::io::pipe().unwrap().1
 }
@@ -320,7 +320,7 @@ fn a_standard_output_that_is_full_is_an_error_after_the_work_is_done() {
             .stderr(Stdio::piped())
             .spawn()
             .and_then(std::process::Child::wait_with_output);
-        // Says nothing there: its words are progress.
+        // This command prints only progress, so a closed standard output has no effect.
         let code = i32::from(!arguments.starts_with("features"));
         let said = ended(&output.unwrap(), code, arguments);
         let sentence = "error: standard output: write failed: No space left on device";

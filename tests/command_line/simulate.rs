@@ -1,4 +1,4 @@
-//! `bubbletouch simulate`, from the shipped scenes to the files.
+//! `bubbletouch simulate`: from the shipped scenes to the output files.
 #![cfg(unix)]
 
 use crate::command::Case;
@@ -92,7 +92,7 @@ fn the_files_hold_what_the_library_computes() {
         assert_eq!(cells[6].parse(), Ok(reading.wrench.force.z));
     }
     assert_eq!(lines.count(), 3 * frames.len());
-    // The resolved scene is the scene, from any folder.
+    // The resolved scene equals the original scene from any folder.
     let resolved = ScenePlan::read(&case.path("o/scene.toml")).unwrap();
     let mut again: Vec<Frame> = Vec::new();
     let mut simulation = Simulation::new(&resolved, Stepping::AsNeeded);

@@ -1,4 +1,4 @@
-//! What the command says when it is asked what it can do and what it would do.
+//! Output of the command on its own abilities and on planned work.
 
 use crate::command::Case;
 
@@ -27,7 +27,7 @@ ratio = [4, 16, 64]
 classifier = ["linear_svm", "rbf_svm"]
 "#;
 
-/// The words of the line that starts with this one.
+/// Returns the words of the line that starts with `first`.
 fn line<'a>(said: &'a str, first: &str) -> Vec<&'a str> {
     said.lines()
         .map(|line| line.split_whitespace().collect::<Vec<_>>())
@@ -46,7 +46,7 @@ fn a_plan_prints_items_touches_and_memory_and_writes_nothing() {
         line(&said, "touches")[..6],
         ["touches", "60", "on", "each", "of", "2"]
     );
-    // The touches of either array; of either array, three ratios and two classifiers three trials each.
+    // Touches of two arrays; for each array three ratios, two classifiers and three trials.
     assert_eq!(
         line(&said, "items"),
         ["items", "38,", "of", "12", "configurations"]
@@ -223,7 +223,7 @@ fn an_option_that_has_another_name_now_says_which() {
 
 #[test]
 fn without_a_subcommand_the_quickstart_is_what_would_run() {
-    // It takes half a minute, so it is only planned here, in a folder that has no experiments.
+    // The study takes half a minute, so it is only planned here, in a folder without experiments.
     let case = Case::new();
     let (said, _) = case.succeeds(&["plan", "experiments/quickstart.toml"]);
     assert!(said.starts_with("quickstart: "), "{said}");

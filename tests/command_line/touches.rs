@@ -1,4 +1,4 @@
-//! `bubbletouch touches`: a data set in files that agree with each other, with the library, and with a small memory.
+//! `bubbletouch touches`: the files of a data set agree with each other and with the library, and are written with little memory.
 
 use crate::command::Case;
 use crate::study::Study;
@@ -13,7 +13,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
 
-/// Two arrays; some touches are beside them, some saturate a taxel.
+/// Study with two arrays; some touches miss the object, some saturate a taxel.
 const STUDY: &str = r#"
 question = "What is in the files?"
 
@@ -44,7 +44,7 @@ ratio = 4
 classifier = "linear_svm"
 "#;
 
-/// A row of `touches.csv`.
+/// Row of `touches.csv`.
 #[derive(serde::Deserialize)]
 struct TouchRow {
     touch: usize,
@@ -61,7 +61,7 @@ struct TouchRow {
     n_saturated: usize,
 }
 
-/// A row of `objects.csv`.
+/// Row of `objects.csv`.
 #[derive(serde::Deserialize)]
 struct ObjectRow {
     label: usize,
@@ -70,7 +70,7 @@ struct ObjectRow {
     n_touches: usize,
 }
 
-/// The files of one array.
+/// Files of one array.
 struct Files {
     frames: Array3<f32>,
     labels: Array1<i64>,
@@ -106,7 +106,7 @@ fn written() -> Case {
     case
 }
 
-/// The folders of the study's arrays, in its order.
+/// Folders of the study's arrays, in order.
 const FOLDERS: [&str; 2] = ["data/12x12_at_4_mm", "data/24x24_at_2_mm"];
 
 #[test]
@@ -128,7 +128,7 @@ fn the_frames_are_the_librarys_one_folder_an_array() {
             (expected.facts.n_missed, expected.facts.n_saturated)
         );
     }
-    // And the manifest.
+    // Plus the manifest.
     assert_eq!(std::fs::read_dir(case.path("data")).unwrap().count(), 2 + 1);
 }
 
@@ -262,7 +262,7 @@ fn pressing_at_the_recorded_pose_reproduces_the_frame() {
                 // Half a unit in the last place of f32 at the stroke of 3 mm is 1.2e-10.
                 assert!((f64::from(written) - pressed).abs() < 2e-10);
             }
-            // A taxel that is touched by less than the rounding of a pose may be counted either way.
+            // A taxel that is deflected by less than the rounding error of a pose may be counted or not.
             assert!(contact.n_touched.abs_diff(row.n_touched) <= 1);
             assert_eq!(contact.n_saturated, row.n_saturated);
         }
@@ -276,7 +276,7 @@ fn the_types_are_as_documented() {
     }
     let case = written();
     let folder = case.path(FOLDERS[0]);
-    // Reading as the documented type works above; no other type is taken for it.
+    // Reading as the documented type works above; reading as another type fails.
     refuses::<f64>(&folder.join("frames.npy"));
     refuses::<i32>(&folder.join("labels.npy"));
     refuses::<f32>(&folder.join("poses.npy"));
@@ -321,7 +321,7 @@ fn one_array_needs_no_folder_of_its_own_and_threads_change_no_byte() {
     );
 }
 
-/// Touches of two balls on 16 × 16 taxels.
+/// Returns a study of touches of two balls on 16 × 16 taxels.
 fn balls(per_object: usize) -> String {
     format!(
         r#"
@@ -345,7 +345,7 @@ classifier = "linear_svm"
     )
 }
 
-/// The most memory that the command had while it wrote the touches of a study, KiB; `None` where the system does not tell.
+/// Returns the peak memory of the command while it writes the touches of a study, KiB; `None` if the system does not report it.
 fn peak_memory(text: &str) -> Option<u64> {
     let case = Case::new();
     case.file("study.toml", text);
@@ -357,7 +357,7 @@ fn peak_memory(text: &str) -> Option<u64> {
     let status = format!("/proc/{}/status", child.id());
     let mut peak = None;
     loop {
-        // The high-water mark only rises; the last one seen is that of the end, but for a millisecond.
+        // The peak only increases; the last value is the final one, up to a millisecond.
         peak = high_water_mark(&status).max(peak);
         if let Some(status) = child.try_wait().unwrap() {
             assert!(status.success());
@@ -389,11 +389,11 @@ fn fifty_thousand_touches_need_no_more_memory_than_five_hundred() {
         "{small} KiB for 500 touches, {large} KiB for 50,000: {} bytes a touch",
         grown * 1024 / 49_500
     );
-    // Their frames are 50,000 KiB, a list of them would be 8,000; buffers and a peak seen a millisecond late, a few hundred.
+    // The frames take 50,000 KiB and a list of them would take 8,000. Buffers and the late reading of the peak take a few hundred.
     assert!(grown < 4 * 1024, "{grown} KiB more");
 }
 
-/// Small frames for studies with axes of their own.
+/// Study of small frames with axes of its own.
 const AXES: &str = r#"
 question = "Is every array written?"
 trials = 2
@@ -448,7 +448,7 @@ fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
     }
     let names = std::fs::read_dir(case.path("data")).unwrap().count();
     assert_eq!(names, 3, "two arrays and the manifest");
-    // An axis that changes no touch makes no more folders.
+    // An axis that changes no touch gives no further folders.
     let same = AXES.replace(
         "\"touches.depth_mm\" = [1.0, 4.0]",
         "\"signal.noise_std_full_scale\" = [0.0, 0.1]",
@@ -459,7 +459,7 @@ fn a_study_with_axes_of_its_own_writes_one_folder_for_each_touched_array() {
     );
     case.succeeds(&["touches", "same.toml", "--out", "same"]);
     assert_eq!(Files::read(&case.path("same")).frames.dim(), (40, 8, 8));
-    // Arrays and axes.
+    // Several arrays together with an axis.
     let both = AXES.replace("pitch_mm = 4.0", "pitch_mm = [4.0, 8.0]");
     case.file("both.toml", both);
     case.succeeds(&["touches", "both.toml", "--out", "both"]);
@@ -490,7 +490,7 @@ fn the_manifest_has_the_units_of_all_channels() {
     let frames: Array3<f32> = read_npy(case.path("shear/frames.npy")).unwrap();
     let across: Array4<f32> = read_npy(case.path("shear/shear.npy")).unwrap();
     assert_eq!((frames.dim(), across.dim()), ((40, 8, 8), (40, 2, 8, 8)));
-    // Metres within the stroke; more newtons than that.
+    // Values in metres are within the stroke; values in newtons exceed it.
     assert!(frames.iter().all(|&d| (0.0..=5e-3).contains(&d)));
     assert!(across.iter().any(|&force| force.abs() > 5e-3));
     case.succeeds(&[

@@ -1,9 +1,9 @@
-//! An option or a key that cannot act is an error that names what would use it.
+//! An option or key without effect is an error that names what would use it.
 
 use crate::bad_input::refused;
 use crate::command::Case;
 
-/// Four triangles over a right-angled corner of 20 mm.
+/// Four triangles of a right-angled corner of 20 mm.
 const TETRAHEDRON: &str =
     "v 0 0 0\nv 0.02 0 0\nv 0 0.02 0\nv 0 0 0.02\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
@@ -56,7 +56,7 @@ fn an_option_that_cannot_act_is_refused_and_names_what_would_use_it() {
     assert_eq!(case.names(), before, "nothing is written");
 }
 
-/// A study of reconstruction; the tests add keys to its tables.
+/// Reconstruction study; the tests add keys to its tables.
 const RECONSTRUCTION: &str = r#"
 question = "What comes back?"
 [objects]
@@ -78,7 +78,7 @@ solver = "lmmse"
 dictionary = "dct"
 "#;
 
-/// A study of recognition, with each classifier that a test asks for.
+/// Returns a recognition study with the given classifiers.
 fn recognition(classifier: &str, more: &str) -> String {
     format!(
         "question = \"q\"\n[objects]\nsets = [\"cans\"]\n[skin]\npitch_mm = 8.0\ntaxels = 8\nstroke_mm = 5.0\n\
@@ -170,7 +170,7 @@ fn a_key_that_cannot_act_is_refused_with_its_line_by_plan_and_by_run() {
             refused(&case.run(&[command, "x.toml"]), 2, &words);
         }
     }
-    // One of the classifiers uses it.
+    // One of the classifiers uses the parameter.
     let all = "[\"linear_svm\", \"polynomial_svm\", \"k_nearest\"]";
     case.file(
         "x.toml",

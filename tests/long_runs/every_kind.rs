@@ -1,4 +1,4 @@
-//! The laws of every kind of study, each checked on the results of one small study of the kind.
+//! Laws of every kind of study, checked on the results of one small study per kind.
 
 use crate::browser::Browser;
 use crate::command::Case;
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-/// A table with choices, and its columns of a value and of a cost.
+/// Table with choices, with its value column and its cost column.
 type Choices = (&'static str, &'static str, &'static str);
 
 /// Checks all laws; `choices` is `None` for a kind without choices that have a cost.
@@ -85,7 +85,7 @@ impl Faults {
         assert_eq!(planned(&said, "items")[0], n_items, "{said}");
     }
 
-    /// Three shards at 1, 2 and 7 threads, merged, against one run at as many threads as the machine has.
+    /// Compares three shards at 1, 2 and 7 threads, merged, with one run at all threads.
     fn has_the_same_tables_in_shards_at_any_number_of_threads(&self) {
         for (shard, threads) in [("2/3", "1"), ("1/3", "2"), ("3/3", "7")] {
             refused(&self.case, &["merge", "study.toml", "--out", "parts"]);
@@ -98,10 +98,10 @@ impl Faults {
         self.assert_same_tables("parts");
     }
 
-    /// A folder beside itself, and beside that of a changed study.
+    /// Compares a folder with itself, and with the folder of a changed study.
     fn is_compared_with_a_changed_study(&self) {
         let (old, new) = match self.kind.change {
-            // As many touches, since their number is a setting.
+            // The number of touches stays the same, because it is a setting.
             ("per_object = 24", ..) => ("[0.0, 360.0]", "[0.0, 90.0]"),
             (old, new, _) => (old, new),
         };
@@ -131,7 +131,7 @@ impl Faults {
                 columns.push(column);
             }
         }
-        // Values, and costs apart from them.
+        // Values and costs are compared separately.
         assert!(columns.len() > 1, "{columns:?}");
         assert!(said.contains("times that of the first run"), "{said}");
         let page = fs::read_to_string(case.path("moved.html")).unwrap();
@@ -153,7 +153,7 @@ impl Faults {
         let all = ["verify", "whole", "--configurations", &n.to_string()];
         let error = refused(&self.case, &all);
         assert!(error.contains("was changed after its run"), "{error}");
-        // If the manifest was changed as well, only running the work items again shows it.
+        // If the manifest was changed too, only a second computation of the work items detects the edit.
         let written = fs::read_to_string(&manifest).unwrap();
         let [before, after] = [&text, &changed].map(|text| sha256(text.as_bytes()));
         fs::write(&manifest, written.replace(&before, &after)).unwrap();
@@ -167,7 +167,7 @@ fn advice(case: &Case, arguments: &[&str]) -> Value {
     serde_json::from_str(&said).unwrap()
 }
 
-/// The advisor finds the choices by the roles of the columns, and gives the best of each condition.
+/// Asserts that `advise` finds the choices by the roles of the columns, and returns the best of each condition.
 fn is_advised(case: &Case, (file, value, cost): Choices) {
     let columns = ["--value", value, "--cost", cost];
     let all = advice(case, &[&columns[..], &["--budget", "1e12"]].concat());
@@ -185,7 +185,7 @@ fn is_advised(case: &Case, (file, value, cost): Choices) {
         let choice = &answer["choice"];
         assert_eq!(choice[value].as_f64(), Some(*best), "{file}");
         assert!(answer["next_up"].is_null(), "{file}");
-        // The requirement of the best value leads to a choice as good that costs no more.
+        // A requirement of the best value leads to an equally good choice that costs no more.
         let reach = best.to_string();
         let again = advice(case, &[&columns[..], &["--reach", &reach]].concat());
         let again = &again["answers"][place]["choice"];
@@ -202,7 +202,7 @@ fn is_advised(case: &Case, (file, value, cost): Choices) {
     }
 }
 
-/// In the order in which conditions first come.
+/// Returns the best values in the order in which conditions first occur.
 fn best_of_each_condition(table: &Table, value: &str) -> Vec<f64> {
     let (column, _) = table.column(value).unwrap();
     let wants_less = column.role == Role::Value(Better::Less);
@@ -216,7 +216,7 @@ fn best_of_each_condition(table: &Table, value: &str) -> Vec<f64> {
     conditions.iter().filter_map(best).collect()
 }
 
-/// What `compare` writes.
+/// Row of the table that `compare` writes.
 #[derive(serde::Deserialize)]
 struct DifferenceRow {
     table: String,
@@ -235,7 +235,7 @@ fn compared(case: &Case, [first, second]: [&str; 2]) -> (String, Vec<DifferenceR
     (said, rows.deserialize().map(|row| row.unwrap()).collect())
 }
 
-/// Sorts a table by each of its columns, twice, and searches it for its first cell; returns the rows that are shown each time.
+/// Script that sorts a table by each of its columns, twice, and searches it for its first cell; returns the shown rows each time.
 const TRIED: &str = r#"
     const tried = (table) => {
         const shown = () => [...table.tBodies[0].rows].filter((row) => !row.hidden).map((row) => Number(row.dataset.row));
@@ -257,7 +257,7 @@ const TRIED: &str = r#"
     return [...document.querySelectorAll("table[data-table]")].map(tried);
 "#;
 
-/// In a browser; not checked without one.
+/// Sorts and searches tables in a browser; skipped without a browser.
 fn has_tables_that_sort_and_can_be_searched(case: &Case) {
     let Some(browser) = Browser::start() else {
         return;
@@ -267,7 +267,7 @@ fn has_tables_that_sort_and_can_be_searched(case: &Case) {
     let mut n_sorted = 0;
     for table in tried.as_array().unwrap() {
         let file = table["file"].as_str().unwrap();
-        // A table that is made of others has no file.
+        // A table derived from others has no file.
         let path = case.path(&format!("whole/{file}"));
         let rows = path.exists().then(|| csv_rows(&path));
         for sort in table["sorts"].as_array().unwrap() {
@@ -284,13 +284,13 @@ fn has_tables_that_sort_and_can_be_searched(case: &Case) {
     browser.check_quiet();
 }
 
-/// Rows by the names of their columns.
+/// Returns the rows of a CSV file by column names.
 fn csv_rows(path: &Path) -> Vec<HashMap<String, String>> {
     let rows = csv::Reader::from_path(path).unwrap().into_deserialize();
     rows.map(Result::unwrap).collect()
 }
 
-/// Up in one turn and down in the other, and rows without a number last in both.
+/// Asserts ascending order in one case and descending order in the other, with rows without a number last in both.
 fn check_sorted(file: &str, sort: &Value, rows: Option<&[HashMap<String, String>]>) {
     let column = sort["column"].as_str().unwrap();
     let turns = sort["turns"].as_array().unwrap();

@@ -1,4 +1,4 @@
-//! No file makes a reader panic, hang or fill the memory, whatever is in it.
+//! No file content makes a reader panic, hang or exhaust the memory.
 
 use crate::fuzzing::{SOON, Target};
 use bubbletouch::geometry::Pose;
@@ -26,18 +26,18 @@ use std::path::{Path, PathBuf};
 
 const PLACE: &str = "input";
 
-/// TOML and XML are read as trees. A node takes up to 1.1 kB (a table of TOML has room for eleven entries from its first on),
-/// and two letters of text: `a.a.a.a = 1`, which is 550 bytes for one.
+/// TOML and XML are read as trees. A node takes up to 1.1 kB (a TOML table has space for eleven entries from its first one) and two characters of text:
+/// `a.a.a.a = 1`, which is 550 bytes per character.
 const TREE: usize = 600;
 
-/// The end of each field of a CSV row takes eight bytes, twice while their list grows, and one letter of text: `,,,,,`.
+/// The end of each field of a CSV row takes eight bytes, twice while the list grows, and one character of text: `,,,,,`.
 const FIELDS: usize = 64;
 
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The files of a folder with an ending, not longer than so many bytes.
+/// Returns the files of a folder with an extension and a maximum length.
 fn files(name: &str, ending: &str, longest: usize) -> Vec<Vec<u8>> {
     let entries = fs::read_dir(folder(name)).unwrap();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -102,7 +102,7 @@ fn studies() {
             "\"\"\"",
         ],
         n_inputs: 2000,
-        // A plan lists its values: { grid = [-10, 10, 1000] } in a few letters.
+        // A plan lists its values, such as { grid = [-10, 10, 1000] }, which is a short text.
         most_bytes: (TREE, 8 << 20),
         least_s: SOON,
         read: &read_study,
@@ -158,9 +158,9 @@ fn scenes() {
             "true",
         ],
         n_inputs: 300,
-        // What a scene names is read with it: a robot, packed objects, and the taxels of its skin, at most four million of 200 bytes.
+        // Files named in a scene are also read: a robot, packed objects, and the taxels of its skin (at most four million of 200 bytes).
         most_bytes: (TREE, 900 << 20),
-        // A patch may ask for four million taxels, about a microsecond each.
+        // A patch may have four million taxels, which take about a microsecond each.
         least_s: 10.0,
         read: &|input| {
             ScenePlan::new(PLACE, &scenes, SceneSpec::parse(PLACE, text_of(input)?)?).map(drop)
@@ -220,7 +220,7 @@ source = "measured with a ruler"
     .run();
 }
 
-/// A tetrahedron; with the others, what the three formats can say.
+/// Tetrahedron; the three samples together use all features of the three formats.
 const PLY: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty float x\nproperty float y\n\
     property double z\nproperty uchar red\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n\
     0 0 0 255\n1 0 0 0\n0 1 0 7\n0 0 1 9\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
@@ -285,7 +285,7 @@ fn mesh(
         seeds,
         words,
         n_inputs: 3000,
-        // A PLY header may claim any number of elements, and the reader makes room for the first 65,536 at once.
+        // A PLY header may claim any number of elements; the reader allocates memory for the first 65,536.
         most_bytes: (20, 4 << 20),
         least_s: SOON,
         read: &|input| {
@@ -435,7 +435,7 @@ fn way_points() {
     .run();
 }
 
-/// Tables of a study of two small cells.
+/// Returns the tables of a study of two small configurations.
 fn study_tables() -> Vec<Table> {
     const TEXT: &str = r#"
 question = "What do tables look like?"
@@ -468,7 +468,7 @@ fn tables_of_results() {
     let tables = study_tables();
     let at = folder_in_memory();
     write_files(at.path(), table_files(&tables)).unwrap();
-    // The first byte of an input says which of the tables it stands for.
+    // The first byte of an input selects the table.
     let files = tables.iter().filter(|table| !table.csv.is_empty());
     let names: Vec<&str> = files.map(|table| table.file).collect();
     let seeds = names.iter().enumerate().map(|(number, name)| {
@@ -541,7 +541,7 @@ fn journals() {
             "00000000 {}\n",
         ],
         n_inputs: 1200,
-        // The study within a journal is TOML.
+        // The study inside a journal is TOML.
         most_bytes: (TREE, 1 << 18),
         least_s: SOON,
         read: &|input| {
@@ -553,7 +553,7 @@ fn journals() {
                 }
                 Journal::open(&path, &identity).map(drop)
             };
-            // A checksum that is right lets the rest of a line through.
+            // A correct checksum makes the rest of a line reachable.
             let as_it_is = read(input);
             read(&with_checksums(input)).and(as_it_is)
         },
@@ -561,7 +561,7 @@ fn journals() {
     .run();
 }
 
-/// Every line with the checksum of what follows its first space; those behind the first line go on from its checksum.
+/// Replaces the checksum of every line by the correct one; later lines continue the checksum of the first line.
 fn with_checksums(input: &[u8]) -> Vec<u8> {
     let mut first = None;
     let line = |line: &[u8]| -> Vec<u8> {
@@ -580,7 +580,7 @@ fn with_checksums(input: &[u8]) -> Vec<u8> {
         .collect()
 }
 
-/// CRC-32 as in zip, bit by bit, of bytes that follow those of another sum; that of none is 0.
+/// Returns the CRC-32 as in zip, computed bit by bit, of bytes that follow the bytes of another checksum; the checksum of no bytes is 0.
 fn crc32(before: u32, bytes: &[u8]) -> u32 {
     let mut sum = !before;
     for byte in bytes {
@@ -592,7 +592,7 @@ fn crc32(before: u32, bytes: &[u8]) -> u32 {
     !sum
 }
 
-/// A folder that no disk has to keep, where there is one.
+/// Creates a folder in memory if the system has one.
 fn folder_in_memory() -> tempfile::TempDir {
     let memory = Path::new("/dev/shm");
     match memory.is_dir() {

@@ -1,8 +1,8 @@
-//! Hostile input, generated: every key of every kind of file with values that it cannot have, and every file that a command reads, broken.
+//! Generated hostile input: every key of every kind of file with invalid values, and every file that a command reads in broken forms.
 //!
-//! Keys come from the readers themselves: an unknown key makes a reader list those that it knows. `cargo test --test long_runs -- hostile` tries a
-//! part of the inputs; with BUBBLETOUCH_LONG=1 all are tried, and studies that `plan` accepts are run, too. An input is accepted, or refused within two seconds with
-//! exit code 2 and one sentence, and nothing is written.
+//! Keys come from the readers: an unknown key makes a reader list its known keys. `cargo test --test long_runs -- hostile` tries a part of the inputs. With
+//! BUBBLETOUCH_LONG=1, all are tried, and studies that `plan` accepts are also run. An input is accepted, or refused within two seconds with exit code 2 and
+//! one sentence, and nothing is written.
 
 use crate::command::Case;
 use crate::kinds::Kind;
@@ -20,22 +20,22 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 use toml::{Table, Value};
 
-/// A file of TOML, and the command that reads it.
+/// TOML file, and the command that reads it.
 struct File {
     name: &'static str,
     text: String,
-    /// What the reader of a text says of it.
+    /// Function that parses a text and returns the reader's error.
     read: fn(&str) -> Result<(), toml::de::Error>,
-    /// The command line, with the file in the place of `FILE`.
+    /// Command line, with `FILE` in the place of the file.
     command: &'static str,
 }
 
-/// Reads a text as a type, and forgets it.
+/// Parses a text as a type, and drops the value.
 fn reader<T: serde::de::DeserializeOwned>(text: &str) -> Result<(), toml::de::Error> {
     toml::from_str::<T>(text).map(drop)
 }
 
-/// Keys that many studies leave out, each in a study where it can act.
+/// Keys that many studies omit, each in a study where it has an effect.
 const SVM: &str = "classifier = [\"rbf_svm\", \"polynomial_svm\", \"k_nearest\", \"random_forest\"]\nc = 1.0\ngamma = 0.1\ndegree = 2\ncoef0 = 1.0\n\
      n_neighbours = 3\nn_trees = 5\nmax_depth = 3\ntest_fraction = 0.25\ntouches_per_decision = 1\nmulticlass = \"one_vs_one\"";
 const CHOSEN: &str = "classifier = \"rbf_svm\"\nc_grid = [1.0, 10.0]\ngamma_grid = [1.0]\ncv_folds = 2\ncv_touches = 4\n\
@@ -127,7 +127,7 @@ fn files() -> Vec<File> {
     ]
 }
 
-/// A folder with the file and all that any of them needs.
+/// Creates a folder with the file and all files that it needs.
 fn case() -> Case {
     let case = Kind::RECOGNITION.case();
     let touch = |n: usize, row: usize| ((n * 7 + row * 3) % 11) as f32 / 10.0;
@@ -151,7 +151,7 @@ const ARM: &str = "<robot name=\"post\"><link name=\"base\"/><joint name=\"turn\
      <axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" effort=\"1\" velocity=\"1\"/></joint>\
      <link name=\"upper\"><collision><geometry><cylinder radius=\"0.05\" length=\"0.1\"/></geometry></collision></link></robot>";
 
-/// Values that most keys cannot have.
+/// Returns values that are invalid for most keys.
 fn values() -> Vec<Value> {
     let mut values = [f64::NAN, f64::INFINITY, -1.0, 1e308, 1e-308]
         .map(Value::Float)
@@ -166,7 +166,7 @@ fn values() -> Vec<Value> {
     values
 }
 
-/// Each place in a text with another value: every key that is there, and every key that the reader knows beside it.
+/// Returns the text with another value at each place: every key of the text, and every other key that the reader knows.
 fn mutations(file: &File) -> Vec<(String, String)> {
     let table: Table = file.text.parse().unwrap();
     let mut found = Vec::new();
@@ -174,7 +174,7 @@ fn mutations(file: &File) -> Vec<(String, String)> {
     found
 }
 
-/// A step of a path into a file.
+/// Step of a path into a TOML file.
 #[derive(Clone)]
 enum Step {
     Key(String),
@@ -226,7 +226,7 @@ fn shown(path: &[Step]) -> String {
     steps.collect::<Vec<_>>().join(".")
 }
 
-/// A file with a value at a path.
+/// Returns a file with a value at a path.
 fn replaced(table: &Table, path: &[Step], value: &Value) -> String {
     let mut whole = Value::Table(table.clone());
     let mut place = &mut whole;
@@ -249,7 +249,7 @@ fn replaced(table: &Table, path: &[Step], value: &Value) -> String {
     toml::to_string(&whole).unwrap()
 }
 
-/// The keys that an error about an unknown one lists: those in backticks after `expected`.
+/// Returns the keys that an error about an unknown key lists, in backticks after `expected`.
 fn listed(message: &str) -> Vec<String> {
     let expected = match message.split_once("unknown field") {
         Some((_, rest)) => rest.split_once("expected").map_or("", |(_, rest)| rest),
@@ -259,7 +259,7 @@ fn listed(message: &str) -> Vec<String> {
     words.map(str::to_owned).collect()
 }
 
-/// What a command did.
+/// Result of a command.
 struct Answer {
     code: Option<i32>,
     said: String,
@@ -270,7 +270,7 @@ fn is_long() -> bool {
     std::env::var_os("BUBBLETOUCH_LONG").is_some()
 }
 
-/// Runs a command, for at most a minute.
+/// Runs a command for at most a minute.
 fn answer(case: &Case, arguments: &[&str]) -> Answer {
     let start = Instant::now();
     let mut command = case.command(arguments);
@@ -298,14 +298,14 @@ fn answer(case: &Case, arguments: &[&str]) -> Answer {
     Answer { code, said, took }
 }
 
-/// What is wrong with an answer; `None` if the input was accepted, or refused as it should be.
+/// Returns what is wrong with a result; `None` if the input was accepted, or refused correctly.
 fn wrong(answer: &Answer, is_unchanged: bool) -> Option<String> {
     let n_sentences = answer
         .said
         .lines()
         .filter(|l| l.starts_with("error:"))
         .count();
-    // Other tests run at the same time; alone it is two seconds.
+    // Other tests run at the same time; alone, the limit is two seconds.
     let most = Duration::from_secs(if is_long() { 2 } else { 10 });
     let said = answer.said.trim();
     match answer.code {
@@ -319,7 +319,7 @@ fn wrong(answer: &Answer, is_unchanged: bool) -> Option<String> {
     }
 }
 
-/// Every file and folder below a folder.
+/// Returns every file and folder below a folder.
 fn all_names(folder: &Path) -> Vec<String> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -333,7 +333,7 @@ fn all_names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Removes what an accepted input made.
+/// Removes the output of an accepted input.
 fn clear(case: &Case) {
     let _ = fs::remove_dir_all(case.path("out"));
     let _ = fs::remove_file(case.path("out.csv"));
@@ -361,7 +361,7 @@ fn every_key_is_accepted_or_refused_in_one_sentence() {
         clear(&case);
         let all = mutations(&file);
         assert!(all.len() > 100, "{}: {} inputs", file.name, all.len());
-        // A run of the tests takes some of each file, of all keys and values in turn: the step is prime.
+        // A test run takes a sample of each file that covers all keys and values: the step is prime.
         let step = if is_long() { 1 } else { 389 };
         for (what, text) in all.iter().step_by(step) {
             case.file(&name, text);
@@ -371,7 +371,7 @@ fn every_key_is_accepted_or_refused_in_one_sentence() {
             if is_long() && is_study && found.is_none() {
                 let accepted = answer(&case, &["plan", &name]).code == Some(0);
                 let run = format!("run {name} --out out --quiet");
-                // What `plan` accepts runs; a study may take longer than the test waits.
+                // An input that `plan` accepts also runs; a study may take longer than the test waits.
                 let answer = answer(&case, &run.split(' ').collect::<Vec<_>>());
                 clear(&case);
                 if accepted && !matches!(answer.code, Some(0) | None) {
@@ -393,7 +393,7 @@ fn every_key_is_accepted_or_refused_in_one_sentence() {
     );
 }
 
-/// What commands read, and the commands.
+/// Files that commands read, with the commands.
 const READ: &[(&str, &[&str])] = &[
     (
         "study.toml",
@@ -567,7 +567,7 @@ fn every_file_that_is_broken_is_refused_in_one_sentence_or_read() {
     );
 }
 
-/// A file that nobody but root may read.
+/// Makes a file unreadable for all users except root.
 fn make_unreadable(path: &Path, whole: &[u8]) {
     fs::write(path, whole).unwrap();
     #[cfg(unix)]

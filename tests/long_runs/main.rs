@@ -1,4 +1,4 @@
-//! Every kind of study; long runs: kill and resume, shards, merge, job arrays; and readers of files that meet hostile bytes.
+//! Every kind of study, and long runs: kill and resume, shards, merge, job arrays, and readers of corrupted files.
 
 #[path = "../fixtures/browser/mod.rs"]
 mod browser;

@@ -1,4 +1,4 @@
-//! Runs that are killed, interrupted, extended or short of memory give the tables of an undisturbed run.
+//! Runs that are killed, interrupted, extended or limited in memory give the tables of an undisturbed run.
 #![cfg(unix)]
 
 use crate::command::Case;
@@ -13,13 +13,13 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-/// A study that has run once, in the folder `whole`.
+/// Study that has run once, in the folder `whole`.
 pub struct Faults {
     pub kind: Kind,
     pub case: Case,
 }
 
-/// Asserts that no stage goes beyond its total, and that no time is left at the end.
+/// Asserts that no stage exceeds its total, and that no time remains at the end.
 fn assert_progress_ends(said: &str) {
     let events = said.lines().map(|line| serde_json::from_str(line).unwrap());
     let progress = events.filter(|event: &serde_json::Value| event["event"] == "progress");
@@ -34,7 +34,7 @@ fn assert_progress_ends(said: &str) {
     assert_eq!(left.last(), Some(&0.0), "{left:?}");
 }
 
-/// What a plan says after a word, as numbers and words.
+/// Returns the numbers and words after a word in the output of `plan`.
 pub fn planned(said: &str, word: &str) -> Vec<String> {
     let line = said
         .lines()
@@ -69,7 +69,7 @@ impl Faults {
         pieces(&self.case.path("whole/journal.jsonl")).len()
     }
 
-    /// The tables without times, of which none is empty.
+    /// Asserts that the tables without times equal those of the whole run, and that none is empty.
     pub fn assert_same_tables(&self, folder: &str) {
         for name in self.kind.repeatable.iter().chain(&["study.toml"]) {
             let read = |folder: &str| fs::read(self.case.path(folder).join(name)).unwrap();
@@ -78,7 +78,7 @@ impl Faults {
         }
     }
 
-    /// Kills runs after some work items until there were enough kills; each run goes on from the last.
+    /// Kills runs after some work items until there were enough kills; each run continues the previous one.
     fn is_killed_at_work_items_and_does_none_twice(&self) {
         let mut rng = ChaCha8Rng::seed_from_u64(8);
         let n_pieces = self.n_pieces();
@@ -127,7 +127,7 @@ impl Faults {
             assert_eq!(pieces(&journal)[..kept.len()], kept);
             self.assert_same_tables("torn");
         }
-        // Times that were measured stay as they were.
+        // Measured times are unchanged.
         let times = |folder: &str| fs::read(self.case.path(folder).join(self.kind.times)).unwrap();
         fs::write(&journal, &whole).unwrap();
         self.case.succeeds(&["run", "study.toml", "--out", "torn"]);
@@ -154,7 +154,7 @@ impl Faults {
         assert_eq!(second.status.code(), Some(2));
         let error = said(&second);
         assert!(error.contains("another run is writing to it"), "{error}");
-        // Once a piece is done, a signal ends it with nothing lost.
+        // After the first finished work item, a signal ends the run without loss.
         while pieces(&self.case.path("shared/journal.jsonl")).is_empty() {
             sleep(Duration::from_millis(1));
         }
@@ -217,7 +217,7 @@ impl Faults {
         }
     }
 
-    /// Refused below what it takes, with how much that is; the same tables from there on.
+    /// Asserts that a run is refused below its memory requirement, with the required amount, and gives the same tables from there on.
     fn is_the_same_within_a_ceiling_of_memory(&self) {
         let run = |gib: &str| {
             let run = ["run", "study.toml", "--out", "below", "--memory-gib", gib];
@@ -228,7 +228,7 @@ impl Faults {
         let error = said(&refused);
         let (_, after) = error.split_once("at least ").expect("how much it takes");
         let (least, _) = after.split_once(" GiB").expect("a unit");
-        // It is rounded to hundredths.
+        // The number is rounded to hundredths.
         let least = format!("{:.2}", least.parse::<f64>().unwrap() + 0.01);
         let plan = ["plan", "study.toml", "--memory-gib", &least];
         assert!(!planned(&self.case.succeeds(&plan).0, "memory").is_empty());
@@ -237,7 +237,7 @@ impl Faults {
         self.assert_same_tables("below");
     }
 
-    /// Charts and page come out of the files of a folder as they came out of the run.
+    /// Asserts that charts and page made from a folder's files equal those of the run.
     fn is_reported_again_from_its_tables(&self) {
         let drawn = || -> BTreeMap<String, Vec<u8>> {
             let files = fs::read_dir(self.case.path("whole")).unwrap();
@@ -259,7 +259,7 @@ impl Faults {
     }
 }
 
-/// Kills of each kind: on every change, and where there is time.
+/// Returns the number of kills of each kind: few on every change, more in long runs.
 fn n_kills_wanted() -> usize {
     match std::env::var_os("BUBBLETOUCH_LONG") {
         None => 3,
@@ -309,7 +309,7 @@ fn what_a_whole_group_needs_and_cannot_be_had_fails_its_pieces_and_no_others() {
     let output = case.run(&["run", "study.toml", "--out", "open"]);
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
     let failures = fs::read_to_string(case.path("open/failures.csv")).unwrap();
-    // Its models, their times, and all that learns from every object.
+    // The object's models, their times, and all classifiers that need every object.
     assert_eq!(failures.lines().count(), 1 + 2 + 3, "{failures}");
     assert!(
         failures
@@ -320,7 +320,7 @@ fn what_a_whole_group_needs_and_cannot_be_had_fails_its_pieces_and_no_others() {
     );
     let detail = fs::read_to_string(case.path("open/object_detail.csv")).unwrap();
     assert_eq!(detail.lines().count(), 1 + 2 * 3, "{detail}");
-    // Mended, the study goes on with what is left.
+    // After the mesh is repaired, the study continues with the pending items.
     case.file("meshes/open.obj", plate.replace("0.02", "0.018"));
     let output = case.run(&["run", "study.toml", "--out", "open"]);
     assert_eq!(

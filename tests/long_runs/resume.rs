@@ -1,4 +1,4 @@
-//! A run that is interrupted goes on: whatever ended it, the tables come out as if nothing had.
+//! An interrupted run can be continued: for any interruption, the tables equal those of an undisturbed run.
 #![cfg(unix)]
 
 use crate::command::Case;
@@ -10,10 +10,10 @@ use std::fs;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Two arrays, 64 fits; less than a second of work.
+/// Study with two arrays and 64 fits; less than a second of work.
 const STUDY: &str = Kind::RECOGNITION.study;
 
-/// The tables that hold no times.
+/// Tables without times.
 const REPEATABLE: [&str; 7] = [
     "accuracy.csv",
     "summary.csv",
@@ -64,7 +64,7 @@ fn a_journal_whose_tail_is_torn_loses_its_last_line_and_nothing_else() {
         assert_eq!(error.contains("going on"), !kept.is_empty(), "{error}");
         assert_eq!(pieces(&journal)[..kept.len()], kept);
     }
-    // A line that is wrong though others follow was not torn by an interrupted run.
+    // A wrong line that is followed by others was not caused by an interrupted run.
     let mut wrong = bytes.clone();
     wrong[bytes.len() / 2] ^= 1;
     fs::write(&journal, &wrong).unwrap();
@@ -173,13 +173,13 @@ fn a_changed_study_is_refused_with_what_changed_and_fresh_keeps_the_old_beside_t
     assert!(case.path("whole.2/journal.jsonl").exists());
 }
 
-/// A study that has run in `whole`, and its journal's lines.
+/// Runs a study in `folder`; returns the lines of its journal.
 fn lines_of(case: &Case, folder: &str) -> Vec<String> {
     let text = fs::read_to_string(case.path(folder).join("journal.jsonl")).unwrap();
     text.split_inclusive('\n').map(str::to_owned).collect()
 }
 
-/// A journal's line with something replaced, and the checksum that then is right.
+/// Returns a journal line with a replacement and the correct checksum.
 fn forged(line: &str, old: &str, new: &str) -> String {
     let json = line.trim_end().split_once(' ').unwrap().1;
     assert!(json.contains(old), "{json}");
@@ -227,18 +227,18 @@ fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_i
     for (content, expected) in &journals {
         refused("study.toml", content, expected);
     }
-    // A first line that was made to fit another study does not fit what follows it.
+    // A first line that was forged for another study does not fit the lines after it.
     let [forged, honest] = [&header, &ours[0]].map(|first| first.clone() + &ours[1..].concat());
     refused("other.toml", &forged, "line 2: does not match its checksum");
     refused("other.toml", &honest, "skin.stroke_mm: was 5.0, is 4.0");
-    // Shards are asked the same.
+    // Shards are checked in the same way.
     fs::create_dir(case.path("parts")).unwrap();
     case.file("parts/journal.1-of-1.jsonl", ours[1..].concat());
     let merge = case.run(&["merge", "study.toml", "--out", "parts"]);
     assert_eq!(merge.status.code(), Some(2));
     let error = said(&merge);
     assert!(error.contains("line 1: is no record of a study"), "{error}");
-    // What stands there twice counts once.
+    // A repeated line counts once.
     let twice = [&ours[..], &ours[1..]].concat().concat();
     case.file("whole/journal.jsonl", twice);
     case.succeeds(&["run", "study.toml", "--out", "whole"]);
@@ -246,7 +246,7 @@ fn a_journal_whose_lines_are_of_no_study_or_of_another_is_refused_and_stays_as_i
     assert!(said_of.contains("3 of 66 work items"), "{said_of}");
 }
 
-/// Runs a longer study in a copy of what the study left, and from nothing: the same tables, and so much was finished before.
+/// Runs a longer study in a copy of the folder, and from nothing; asserts equal tables and the given number of finished items.
 fn assert_grows(case: &Case, (more, n_before, n_all): (&str, usize, usize)) {
     case.file("more.toml", more);
     case.succeeds(&[
@@ -284,7 +284,7 @@ fn a_study_that_has_more_trials_and_values_keeps_its_cells_and_comes_out_as_if_r
             "[0.05, 0.1, 0.2]\nsteps = [\"crosstalk\", \"noise\"]\ncrosstalk = [0.1, 0.0]",
         );
     assert_grows(&case, (&more, 66, 3 * 2 * 3 * 2 * 2 * 2 * 2 + 2));
-    // Fewer are no less the same.
+    // A study with fewer values also gives the same tables.
     let fewer = STUDY.replace("[0.05, 0.2]", "0.2");
     assert_grows(&case, (&fewer, 34, 34));
 }
@@ -292,7 +292,7 @@ fn a_study_that_has_more_trials_and_values_keeps_its_cells_and_comes_out_as_if_r
 #[test]
 fn keys_that_a_cell_does_not_use_keep_its_work_and_others_are_refused() {
     let case = case();
-    // Trees of another classifier, and an array whose finer pitch changes what is noted of objects, not the objects.
+    // Trees of another classifier, and an array whose finer pitch changes the notes on objects but not the objects.
     let more = STUDY
         .replace("[\"linear_svm\",", "[\"random_forest\", \"linear_svm\",")
         .replace("[4.0, 8.0]", "[2.0, 4.0, 8.0]")
@@ -335,7 +335,7 @@ fn other_words_refuse_nothing_and_train_nothing() {
     assert!(page.contains("Expected or not"));
 }
 
-/// Five training touches an object are too few for 25 neighbours, twenty are not.
+/// Study in which five training touches per object are too few for 25 neighbours, and twenty are enough.
 const FAILING: &str = r#"
 question = "What if some cells cannot be?"
 trials = 2
@@ -386,7 +386,7 @@ fn a_cell_that_fails_is_recorded_and_the_others_are_done() {
             .skip(1)
             .all(|line| line.contains("k_nearest") && line.contains("neighbours"))
     );
-    // They are tried again, the others are not.
+    // Failed items are tried again, the others are not.
     let again = case.run(&["run", "failing.toml", "--out", "failing"]);
     assert_eq!(again.status.code(), Some(1));
     let done = pieces(&case.path("failing/journal.jsonl"));
@@ -463,7 +463,7 @@ fn two_runs_side_by_side_say_what_moved() {
     );
     case.file("other.toml", STUDY.replace("[0.05, 0.2]", "0.7"));
     case.succeeds(&["run", "other.toml", "--out", "other"]);
-    // No row is in both: what moved cannot be written, but both rank the same designs.
+    // No row is in both folders: differences cannot be written, but both rank the same designs.
     let output = case.run(&["compare", "whole", "other", "--out", "none.csv"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(said(&output).contains("no row"), "{}", said(&output));

@@ -1,4 +1,4 @@
-//! A study as an array of jobs on a real Slurm of one node, which the test starts: one shard is killed, the same command goes on.
+//! A study as a job array on a real Slurm cluster of one node, which the test starts. One shard is killed, and the same command continues it.
 #![cfg(target_os = "linux")]
 
 use crate::command::Case;
@@ -42,14 +42,14 @@ classifier = ["linear_svm", "rbf_svm"]
 c_grid = [0.1, 1.0, 10.0]
 "#;
 
-/// Daemons of a cluster of one node, ended with the test.
+/// Daemons of a cluster of one node; they end with the test.
 struct Cluster {
     folder: PathBuf,
     daemons: Vec<Child>,
 }
 
 impl Cluster {
-    /// Starts one in a folder; the error says why there is none.
+    /// Starts a cluster in a folder; the error states why there is none.
     fn start(folder: &Path) -> Result<Self, String> {
         let sbin = |name: &str| {
             let found = ["/usr/sbin", "/usr/bin", "/sbin", "/usr/local/sbin"]
@@ -123,7 +123,7 @@ impl Cluster {
         String::from_utf8(output).unwrap()
     }
 
-    /// Runs the command, which must succeed.
+    /// Runs the submit command and asserts success.
     fn submit(&self, case: &Case) -> String {
         let arguments = [
             "slurm",
@@ -169,7 +169,7 @@ impl Drop for Cluster {
 fn configuration(folder: &Path) -> String {
     let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
     let host = host.trim().split('.').next().unwrap();
-    // Both held at once, lest they be the same.
+    // Both ports are held at the same time, so that they differ.
     let free = [(); 2].map(|()| TcpListener::bind("127.0.0.1:0").unwrap());
     let [ctld, d] = free.map(|listener| listener.local_addr().unwrap().port());
     let cpus = std::thread::available_parallelism().unwrap();
@@ -211,7 +211,7 @@ fn eight_jobs_of_which_one_is_killed_make_the_tables_of_a_single_run() {
     case.file("study.toml", STUDY);
     let said = cluster.submit(&case);
     assert!(said.contains("submitted 8 of 8 shards"), "{said}");
-    // While they are in the queue, nobody submits them again.
+    // While the jobs are in the queue, they are not submitted again.
     let said = cluster.submit(&case);
     assert!(
         said.contains("are in the queue") && !said.contains("submitted"),
@@ -269,7 +269,7 @@ fn without_slurm_the_command_says_so() {
     );
 }
 
-/// Small, and in two shards of two work items or more.
+/// Small study of two shards with at least two work items each.
 const SMALL: &str = r#"
 question = "Which work items are done?"
 trials = 2
@@ -299,7 +299,7 @@ ratio = 4
 classifier = "linear_svm"
 "#;
 
-/// A queue in which jobs stay until the test takes them out: `squeue` and `sbatch` that keep names in a file.
+/// Creates a queue in which jobs stay until the test removes them: `squeue` and `sbatch` scripts that keep names in a file.
 fn fake_slurm(case: &Case) {
     let bin = case.path("bin");
     fs::create_dir(&bin).unwrap();
@@ -346,7 +346,7 @@ fn runs_into_other_folders_or_with_other_seeds_are_other_jobs() {
         let said = submit_two(&case, run);
         assert!(said.contains("submitted 2 of 2 shards"), "{run:?}: {said}");
     }
-    // The same run is in the queue, by whatever path.
+    // The same run is in the queue, for any form of its path.
     for run in [&["--out", "a"], &["--out", "./a"], &["--out", "sub/../a"]] {
         let said = submit_two(&case, run);
         assert!(
@@ -356,7 +356,7 @@ fn runs_into_other_folders_or_with_other_seeds_are_other_jobs() {
     }
 }
 
-/// Lines of a journal, without the first.
+/// Returns the lines of a journal without the first one.
 fn records(journal: &Path) -> Vec<(String, serde_json::Value)> {
     let text = fs::read_to_string(journal).unwrap();
     let lines = text.lines().skip(1).map(|line| {
@@ -370,7 +370,7 @@ fn records(journal: &Path) -> Vec<(String, serde_json::Value)> {
     lines.collect()
 }
 
-/// Writes journals of shards: of each record of a whole run, whether each of two shards has it and whether it failed there.
+/// Writes journals of shards: for each record of a whole run, whether each of two shards has it and whether it failed there.
 fn write_shards(case: &Case, folder: &str, shards: impl Fn(usize) -> [Option<bool>; 2]) {
     let whole = case.path("whole/journal.jsonl");
     let (identity, _) = Journal::read(&whole).unwrap().unwrap();

@@ -1,4 +1,4 @@
-//! The page of a study of recognition in a browser: what it answers to the mouse and to the keyboard.
+//! The page of a recognition study in a browser: its reactions to mouse and keyboard.
 
 use crate::browser::{ARROW_RIGHT, Browser};
 use crate::report_synthetic::{about, noise_cells, quickstart_cells, tables};
@@ -12,7 +12,7 @@ const TIP: &str =
     "return document.querySelector('.tip').hidden ? '' : document.querySelector('.tip').innerText";
 const SPOKEN: &str = "return document.querySelector('[aria-live]').textContent";
 
-/// Where the point of a row stands in the window, after scrolling there.
+/// Scrolls to the point of a row and returns its position in the window.
 fn point(browser: &Browser, chart: &str, row: usize) -> (f64, f64) {
     let place = browser.run(&format!(
         "document.querySelector('{chart}').scrollIntoView({{ block: 'center', behavior: 'instant' }});
@@ -22,7 +22,7 @@ fn point(browser: &Browser, chart: &str, row: usize) -> (f64, f64) {
     (place[0].as_f64().unwrap(), place[1].as_f64().unwrap())
 }
 
-/// What a point tells the mouse. (A browser beside many others may still lay out its page when the mouse first comes.)
+/// Returns the tooltip of a point under the mouse. (On a busy machine, a browser may still lay out its page when the mouse arrives.)
 fn told(browser: &Browser, chart: &str, row: usize) -> String {
     for _ in 0..20 {
         let (x, y) = point(browser, chart, row);

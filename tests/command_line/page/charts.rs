@@ -1,4 +1,4 @@
-//! The renderer of charts: laws that hold for every chart.
+//! Laws of the chart renderer that hold for every chart.
 
 use crate::chart_tables::{charts, tables};
 use bubbletouch::report::chart::{draw, places};
@@ -129,7 +129,7 @@ fn the_legend_stands_above_all_data() {
     let tables = tables();
     for spec in charts() {
         let svg = draw(&spec, &tables).unwrap().svg("");
-        // The grid's first line is the panel's; every marker of the legend lies above it.
+        // The first grid line belongs to the panel; every marker of the legend is above it.
         let height = |text: &str| -> Option<f64> {
             let at = svg.find(&format!(">{text}<"))?;
             let tag = &svg[svg[..at].rfind('<')?..at];
@@ -150,7 +150,7 @@ fn the_legend_stands_above_all_data() {
     }
 }
 
-/// Where the highest label of a vertical axis stands.
+/// Returns the position of the highest label of a vertical axis.
 fn charts_top(svg: &str) -> f64 {
     let labels = svg
         .split("<text ")

@@ -1,4 +1,4 @@
-//! The page in a browser: on a phone, in the dark, on paper, for those who listen, without script, with ten thousand cells.
+//! The page in a browser: on a phone, in dark mode, on paper, with a screen reader, without script, and with ten thousand configurations.
 
 use crate::browser::Browser;
 use crate::report_synthetic::{
@@ -23,7 +23,7 @@ fn a_phone_needs_no_sideways_scrolling_and_the_dark_is_dark() {
         let wide = "return document.documentElement.scrollWidth";
         assert_eq!(browser.count(wide), width as u64);
     }
-    // Relative luminance of the ground and of the letters: their contrast is that of WCAG's level AAA.
+    // Relative luminance of background and text: their contrast satisfies level AAA of WCAG.
     let contrast = "const light = (colour) => { const [r, g, b] = colour.match(/[0-9.]+/g).slice(0, 3).map((c) => { const s = c / 255; return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4 }); return 0.2126 * r + 0.7152 * g + 0.0722 * b };
          const style = getComputedStyle(document.querySelector('section'));
          const [ink, ground] = [light(style.color), light(style.backgroundColor)];
@@ -68,7 +68,7 @@ fn the_page_prints_and_is_named_for_those_who_listen() {
     let pdf = printed["data"].as_str().unwrap();
     assert!(pdf.starts_with("JVBERi0"), "a PDF");
     assert!(pdf.len() > 40_000, "{}", pdf.len());
-    // Nothing that takes the focus is without a name, every section is a region with a heading, the page has its landmarks.
+    // Every focusable element has a name, every section is a region with a heading, and the page has its landmarks.
     let tree = browser.devtools("Accessibility.getFullAXTree", json!({}));
     let nodes = tree["nodes"].as_array().unwrap();
     let role = |node: &serde_json::Value| node["role"]["value"].as_str().unwrap_or("").to_owned();
@@ -84,7 +84,7 @@ fn the_page_prints_and_is_named_for_those_who_listen() {
             let has_name = node["name"]["value"]
                 .as_str()
                 .is_some_and(|name| !name.trim().is_empty());
-            // An empty field of the matrix is read with its row and column.
+            // An empty field of the matrix is read aloud with its row and column.
             takes_focus
                 && !has_name
                 && !["gridcell", "cell", "RootWebArea"].contains(&&role(node)[..])
@@ -143,7 +143,7 @@ fn ten_thousand_cells_are_a_light_page() {
         return;
     };
     browser.resize(1200, 900);
-    // The shortest of three: other tests want the processor, too.
+    // The shortest of three times, because other tests also use the processor.
     let opened = (0..3).map(|_| browser.open(&folder.path().join("report.html")));
     let ms = opened.fold(f64::INFINITY, f64::min);
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Files for people: page, charts, pictures and recordings.
+//! Output files for readers: page, charts, pictures and recordings.
 
 mod asked;
 mod charts;

@@ -1,4 +1,4 @@
-//! Charts of accuracy against time: when they are drawn, and what stands on them.
+//! Charts of accuracy against time: when they are drawn, and what they show.
 
 use crate::report_synthetic::{configuration, noise_cells, tables};
 use bubbletouch::recognition::ClassifierKind;

@@ -1,4 +1,4 @@
-//! Pictures: every configuration is drawn, every frame is readable, names are only names.
+//! Pictures: every configuration is drawn, every frame is readable, and names are only text.
 
 use crate::report_synthetic::{configuration, many_cells, noise_cells, quickstart_cells, tables};
 use bubbletouch::report::chart::{draw, places};
@@ -27,7 +27,7 @@ fn pixels(bytes: &[u8]) -> (u32, u32, Vec<[u8; 3]>) {
     (info.width, info.height, data.as_chunks().0.to_vec())
 }
 
-/// Charts of accuracy but for those that exchange lines and panels.
+/// Returns the charts of accuracy except those that exchange lines and panels.
 fn main_charts(made: &[Table]) -> Vec<ChartSpec> {
     let mut specs = charts(made, Some(false));
     specs.retain(|spec| spec.y == "accuracy" && !spec.name.contains("_per_"));
@@ -168,7 +168,7 @@ fn snapshots_show_every_frame_on_one_scale() {
         .map(|n| (format!("object {n}"), touched(n)))
         .collect();
     let picture = snapshots(&set_of(frames)).unwrap();
-    // Nothing touches the border of a frame, 8 taxels of 24 pixels of two elements: rows of the picture cross four maps, or one.
+    // Nothing touches the border of a frame (8 taxels of 24 pixels); rows of the picture cross four maps or one.
     let bare = heat(0.0);
     let is_bare = |pixel: &[u8]| pixel == bare;
     let n_maps = |row: &[u8]| {
@@ -333,7 +333,7 @@ fn between_words_nothing_is_drawn_and_many_lines_have_whiskers() {
     assert_eq!(name, "accuracy_by_ensemble");
     assert_eq!(count(&svg, r#"stroke-width="1.5""#), 5 + 1);
     assert!(!svg.contains("fill-opacity"));
-    // Five lines over ratios: five polylines, a whisker a point, one in the legend.
+    // Five lines over ratios: five polylines, one error bar per point, and one in the legend.
     let over_ratios = many_cells().into_iter().filter(|configuration| {
         configuration.pitch_mm == 2.0
             && configuration.size_mm == 64.0

@@ -1,4 +1,4 @@
-//! Recordings as files: what is read back is what was written, in bounded memory, whole or not at all.
+//! Recording files: what is read equals what was written, memory is bounded, and a file is complete or missing.
 
 use crate::stored::{frame, normal, read_recording, vectors};
 use bubbletouch::geometry::Pose;
@@ -23,7 +23,7 @@ const GRID: Grid = Grid {
     pitch: 2e-3,
 };
 
-/// A grid with normal forces, five taxels on a finger tip with vectors, two objects.
+/// Returns a header with a grid with normal forces, five taxels on a fingertip with force vectors, and two objects.
 fn header() -> RecordingHeader {
     let axes: Vec<DVec3> = (0..5)
         .map(|i| DVec3::new(0.2 * f64::from(i), 0.1, 1.0).normalize())
@@ -43,7 +43,7 @@ fn header() -> RecordingHeader {
     }
 }
 
-/// What is pushed in one frame, with room of its own.
+/// Contents of one frame, with buffers of its own.
 struct Pushed {
     time: f64,
     palm: Vec<f64>,
@@ -193,7 +193,7 @@ fn single_rows_are_those_of_the_whole_and_vectors_have_lengths() {
     assert!(said.ends_with("touch.npz: frame 40; 0 to 39"), "{said}");
 }
 
-/// ndarray-npy knows nothing of our reader.
+/// ndarray-npy is independent of our reader.
 #[test]
 fn another_reader_of_npz_reads_the_same_arrays() {
     let folder = tempfile::tempdir().unwrap();
@@ -378,7 +378,7 @@ fn a_changed_byte_is_an_error_or_changes_nothing() {
     let (good, expected) = (fs::read(&path).unwrap(), read_recording(&path).unwrap());
     let broken = folder.path().join("broken.npz");
     let mut n_errors = 0;
-    // Every fifth place, with every bit in turn: 5 and 8 have no common divisor.
+    // Every fifth byte, with all bits in turn: 5 and 8 have no common divisor.
     for place in (0..good.len()).step_by(5) {
         let mut bytes = good.clone();
         bytes[place] ^= 1 << (place % 8);
@@ -391,7 +391,7 @@ fn a_changed_byte_is_an_error_or_changes_nothing() {
             }
         }
     }
-    // Time stamps, attributes and what padding there is may change; data may not.
+    // Time stamps, attributes and padding may change without an error; data may not.
     assert!(10 * n_errors > good.len(), "{n_errors} of {}", good.len());
     for length in (0..good.len()).step_by(101) {
         fs::write(&broken, &good[..length]).unwrap();
@@ -399,7 +399,7 @@ fn a_changed_byte_is_an_error_or_changes_nothing() {
     }
 }
 
-/// Of a 64 × 64 patch.
+/// Returns the header of a 64 × 64 patch.
 fn array() -> RecordingHeader {
     let grid = Grid {
         nx: 64,
@@ -412,7 +412,7 @@ fn array() -> RecordingHeader {
     }
 }
 
-/// Streams frames of a 64 × 64 patch, writing the same two buffers.
+/// Writes frames of a 64 × 64 patch, alternating between two buffers.
 fn stream(mut writer: RecordingWriter, n_frames: usize) {
     let mut deflection = vec![1e-3; 4096];
     let force = vec![0.1; 4096];

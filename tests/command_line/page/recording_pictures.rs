@@ -1,4 +1,4 @@
-//! Recordings as pictures: every taxel is drawn once, in its colour and at its place, still and moving.
+//! Pictures of recordings: every taxel is drawn once, in its colour and at its position, in still and moving pictures.
 
 use crate::stored::{frame, normal};
 use bubbletouch::geometry::Pose;
@@ -31,7 +31,7 @@ fn grid() -> RecordedPatch {
     RecordedPatch::of_grid("palm", grid, ForceKind::Normal)
 }
 
-/// A third of a tube, 8 × 12 taxels.
+/// Returns a third of a tube with 8 × 12 taxels.
 fn tube() -> RecordedPatch {
     let taxels = (0..96).map(|taxel| {
         let angle = 0.2 * f64::from(taxel % 12);
@@ -49,11 +49,11 @@ fn tube() -> RecordedPatch {
     }
 }
 
-/// Where the pixels of a colour are on the whole, and how many.
+/// Returns the mean position of the pixels of a colour, and their number.
 fn blob(picture: &Picture, colour: [u8; 3]) -> ([f64; 2], usize) {
     let (mut sum, mut n) = ([0.0; 2], 0);
     for (index, pixel) in picture.rgb.as_chunks::<3>().0.iter().enumerate() {
-        // Left of the colour bar, which has all colours.
+        // Only the area left of the colour bar, which contains all colours.
         if *pixel == colour && index % picture.width < 920 {
             sum[0] += (index % picture.width) as f64;
             sum[1] += (index / picture.width) as f64;
@@ -77,7 +77,7 @@ fn a_touched_taxel_is_one_spot_of_its_colour_and_neighbours_stand_side_by_side()
         let (right, n_correct) = spot(1);
         let (above, n_above) = spot(across);
         assert!(n_first > 100 && n_first.abs_diff(n_correct) < 9 && n_first.abs_diff(n_above) < 9);
-        // The distance of neighbours in pixels: 2 mm each way on the grid, an arc and a step of 6 mm on the tube.
+        // Distances of neighbours in pixels: 2 mm in both directions on the grid, an arc and a step of 6 mm on the tube.
         let (dx, dy) = (right[0] - first[0], first[1] - above[1]);
         assert!((right[1] - first[1]).abs() < 0.6 && (above[0] - first[0]).abs() < 0.6);
         assert!(
@@ -103,7 +103,7 @@ fn values_that_cannot_be_drawn_are_errors() {
     assert_eq!(said, "frame, taxel 7: NaN; a finite number");
 }
 
-/// 40 frames of a spot that walks and deepens.
+/// Writes 40 frames of a spot that moves and becomes deeper.
 fn write(path: &Path) {
     let patches = vec![grid(), tube()];
     let header = RecordingHeader {
@@ -126,7 +126,7 @@ fn write(path: &Path) {
     writer.finish().unwrap();
 }
 
-/// The frames of an APNG as a viewer shows them, and the sum of their delays in seconds.
+/// Returns the frames of an APNG as a viewer shows them, and the sum of their delays in seconds.
 fn played(path: &Path) -> (Vec<Vec<u8>>, f64) {
     let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap()))
         .read_info()
@@ -172,7 +172,7 @@ fn an_animation_shows_the_pictures_of_its_frames_on_one_scale() {
         let frames: Vec<usize> = shown.iter().map(|shown| shown.frame).collect();
         assert_eq!(frames, [0, 5, 10, 15, 20, 25, 30, 35, 39]);
         let (pictures, seconds) = played(&out);
-        // 0.39 s at half the speed, and the last stands as long as the one before it.
+        // 0.39 s at half the speed; the last frame is shown as long as the previous one.
         assert!((seconds - 0.78 - 0.08).abs() < 1e-9, "{seconds}");
         let scale = ColourScale {
             quantity: Quantity::Deflection,

@@ -1,4 +1,4 @@
-//! Every row of a table is a point of its charts, or it is counted on them.
+//! Every row of a table is a point of its charts, or is counted on them.
 
 use crate::chart_tables;
 use crate::report_synthetic::{
@@ -11,7 +11,7 @@ use bubbletouch::studies::recognition::charts::{answers, charts, read_tables, ta
 use bubbletouch::study::table::{Configuration, Limit};
 use bubbletouch::table::{ChartSpec, Mark, Table};
 
-/// A linear SVM at three C, and a k-NN, which has none.
+/// Returns configurations of a linear SVM with three values of C, and of a k-NN classifier without C.
 fn with_k_nearest() -> Vec<Configuration> {
     let of_svm = [0.1, 1.0, 10.0].map(|c| Configuration {
         c: Some(c),
@@ -50,7 +50,7 @@ fn a_classifier_without_c_has_its_point_beside_an_svm_over_c() {
     );
 }
 
-/// Points, or tiles that are not hidden.
+/// Returns the number of points, or of tiles that are not hidden.
 fn n_seen(spec: &ChartSpec, tables: &[Table]) -> usize {
     let mut places = places(spec, tables).unwrap();
     if let Mark::Tiles { fill, .. } = &spec.mark {
@@ -100,7 +100,7 @@ fn every_row_is_a_point_or_is_counted_on_the_chart() {
                 spec.name
             );
             let svg = draw(&spec, &made).unwrap().svg("");
-            // Lines break.
+            // Line breaks are replaced by spaces.
             let first = counted.split(' ').next().unwrap_or_default();
             assert!(said.is_empty() || svg.contains(first), "{}", spec.name);
         }
@@ -217,7 +217,7 @@ fn an_edit_of_any_entry_of_any_table_is_found_by_comparing() {
         let head = reader.headers().unwrap().clone();
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         for (place, column) in table.columns.iter().enumerate() {
-            // The numbers of configurations are names: other numbers of all rows are no difference.
+            // The numbers of configurations are names, so other numbers in all rows are no difference.
             if column.name == "configuration" {
                 continue;
             }

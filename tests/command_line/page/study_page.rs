@@ -1,4 +1,4 @@
-//! The page of a study of any kind: its charts are the renderer's, its marks and tables are the rows of the files.
+//! The page of a study of any kind: its charts come from the renderer, its marks and tables are the rows of the files.
 
 use crate::browser::{ARROW_DOWN, ARROW_RIGHT, Browser, ENTER};
 use crate::chart_tables::{charts, tables};
@@ -54,7 +54,7 @@ fn scores(tables: &[Table]) -> &Table {
         .unwrap()
 }
 
-/// Returns the values of an attribute in the order in which the text has them.
+/// Returns the values of an attribute in the order of the text.
 fn attributes<'t>(text: &'t str, name: &str) -> Vec<&'t str> {
     let start = format!(" {name}=\"");
     let parts = text.split(&start[..]).skip(1);
@@ -70,7 +70,7 @@ fn every_mark_of_a_chart_in_the_page_holds_its_row_and_values() {
         let drawing = draw(&spec, &tables).unwrap();
         let svg = drawing.svg_with_data(&spec.title);
         assert!(page.contains(svg.trim()), "{} is in the page", spec.name);
-        // The file has the same elements without groups.
+        // The file contains the same elements without groups.
         let file = std::fs::read_to_string(folder.path().join(format!("{}.svg", spec.name)));
         let plain = without_groups(&svg);
         assert_eq!(file.unwrap(), plain, "{}", spec.name);
@@ -126,7 +126,7 @@ fn series_are_hidden_by_mouse_and_keyboard_and_marks_are_read_by_arrow_keys() {
             "return [...{chart}.querySelectorAll('[data-row]')].filter((mark) => !mark.closest('[display=none]')).length"
         ))
     };
-    // Three noises, three classifiers, four ratios but for one that has no value.
+    // Three noises, three classifiers and four ratios, except one without a value.
     assert_eq!(n_shown(), 33);
     browser.click(".chart [data-toggle='RBF SVM']");
     assert_eq!(n_shown(), 24);
@@ -158,7 +158,7 @@ fn every_table_sorts_is_searched_and_is_saved_with_the_bytes_of_its_file() {
     let Some((_folder, browser)) = opened(&tables, &charts()) else {
         return;
     };
-    // Takes what is saved; a click on a link would start a download.
+    // Receives the saved content; a click on a link would start a download.
     browser.run("URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = text }); return 'blob:x' }; HTMLAnchorElement.prototype.click = () => {}");
     let saved = |host: &str| {
         browser.run("window.saved = null");

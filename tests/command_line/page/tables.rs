@@ -1,4 +1,4 @@
-//! The tables as files: what goes out comes back, equal tables are equal bytes, and nothing is half-written.
+//! Table files: what is read equals what was written, equal tables give equal bytes, and no file is incomplete.
 
 use crate::report_synthetic::{
     ReportPage, about, add_headlines, configuration, noise_cells, quickstart_cells, tables,
@@ -23,7 +23,7 @@ fn contents(dir: &Path) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
-/// The files of a study of recognition without limits of the model, in their order.
+/// Files of a recognition study without limits of the model, in order.
 const TABLE_FILES: [&str; 9] = [
     "accuracy.csv",
     "summary.csv",
@@ -36,7 +36,7 @@ const TABLE_FILES: [&str; 9] = [
     "published.csv",
 ];
 
-/// What a folder's tables hold is what they were made of: columns and bytes.
+/// Asserts that a folder's tables have the columns and bytes from which they were made.
 fn assert_reads_as(folder: &Path, made: &Tables) {
     let (read, made) = (read_tables(folder).unwrap(), tables_of(made).unwrap());
     for (read, made) in read.iter().zip(&made) {
@@ -50,7 +50,7 @@ fn assert_reads_as(folder: &Path, made: &Tables) {
 fn tables_read_back_as_they_were_written() {
     let dir = tempfile::tempdir().unwrap();
     let mut written = tables(quickstart_cells(), 3, 24);
-    // C chosen on a validation split, and floats that only the shortest round-trip form keeps.
+    // C chosen by validation, and numbers that only the shortest round-trip form preserves.
     written.accuracy[0].0.c = None;
     written.accuracy[1].1.accuracy = 0.1 + 0.2;
     written.accuracy[2].1.c_used = Some(f64::MIN_POSITIVE);
@@ -68,7 +68,7 @@ fn tables_read_back_as_they_were_written() {
     assert_reads_as(dir.path(), &Tables::default());
 }
 
-/// The content of a file.
+/// Returns the content of a file.
 fn csv_of(tables: &Tables, file: &str) -> String {
     let made = tables_of(tables).unwrap();
     let table = made.into_iter().find(|table| table.file == file).unwrap();
@@ -133,7 +133,7 @@ fn a_table_without_rows_has_the_header_of_one_with_rows_and_reads_as_none() {
 
 #[test]
 fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
-    // Along x the ratio, ensembles as lines, pitches in panels: what is left makes 27 charts.
+    // The ratio is along x, ensembles are lines and pitches are panels; the remaining settings give 27 charts.
     let mut configurations = Vec::new();
     for ratio in [4.0, 16.0, 64.0, 256.0] {
         for ensemble in [Ensemble::Gaussian, Ensemble::Sbhe, Ensemble::Sparse] {
@@ -174,7 +174,7 @@ fn the_first_charts_are_drawn_and_the_page_says_which_are_left_out() {
         (of_ending(".svg"), of_ending(".png"), html)
     };
     let (first, png, html) = drawn("first", false, ChartFormat::Svg);
-    // One of them shows what was taken for what.
+    // One of the charts shows the confusions.
     let most = MAX_CHARTS - 1;
     assert_eq!((first.len(), png.len()), (most, 0));
     let (all, _, all_html) = drawn("all", true, ChartFormat::Svg);
@@ -226,7 +226,7 @@ fn equal_tables_give_equal_bytes_in_every_file() {
     let made = tables(noise_cells(), 3, 24);
     let (first, second) = (dir.path().join("a"), dir.path().join("b/deeper"));
     let paths = write_all(&first, &made, &about()).unwrap();
-    // Something else drawn in between must not change a byte.
+    // Other charts drawn in between must not change a byte.
     write_all(
         &dir.path().join("c"),
         &tables(quickstart_cells(), 1, 3),
@@ -282,7 +282,7 @@ fn a_table_that_cannot_be_read_is_named_with_its_line() {
     let said = read_tables(dir.path()).unwrap_err();
     assert_eq!(said.exit_code(), 2);
     assert!(said.to_string().contains("summary.csv: line 3"), "{said}");
-    // A line that broke off.
+    // Incomplete line.
     fs::write(&path, &whole[..whole.len() - 30]).unwrap();
     let said = read_tables(dir.path()).unwrap_err();
     assert!(said.to_string().contains("summary.csv: line 3"), "{said}");
@@ -305,7 +305,7 @@ fn a_folder_that_cannot_be_written_stays_as_it_was() {
     assert_eq!(said.exit_code(), 2);
     assert!(said.to_string().contains("is not a folder"), "{said}");
     assert_eq!(fs::read_to_string(&taken).unwrap(), "mine");
-    // A folder where the page should go: what is there is whole, and no partial file is left.
+    // A folder is in the place of the page: existing files are complete, and no partial file remains.
     let blocked = dir.path().join("blocked");
     fs::create_dir_all(blocked.join("report.html/inside")).unwrap();
     assert!(write_all(&blocked, &made, &ReportPage::default()).is_err());

@@ -1,4 +1,4 @@
-//! Two folders of results: entries that differ, and how alike both rank their designs.
+//! Comparison of two result folders: differing entries, and the agreement of their rankings of designs.
 
 use bubbletouch::report::entries::entries;
 use bubbletouch::report::rank_agreement::rank_agreement;
@@ -6,29 +6,29 @@ use bubbletouch::row;
 use bubbletouch::table::{File, Table};
 
 row! {
-/// A configuration.
+/// Row with the score of a configuration.
 pub struct Scored {
-    /// Its number.
+    /// Number of the configuration.
     configuration: usize => Note: Linear;
-    /// A choice that not every design has.
+    /// Choice that not every design has.
     c: Option<f64> => Choice "C": Log;
-    /// A trial.
+    /// Number of the trial.
     trial: usize => Subject: Linear;
-    /// How it ended.
+    /// Outcome of the row.
     outcome: String => Outcome;
-    /// What was found.
+    /// Measured error.
     error: Option<f64> => Value(Less): Log;
-    /// A note.
+    /// Auxiliary count.
     n_capped: usize => Note: Linear;
 } }
 row! {
-/// A pair of objects.
+/// Row with a count of an object.
 pub struct Counted {
-    /// The number of its configuration.
+    /// Number of the configuration.
     configuration: usize => Subject: Linear;
-    /// What was touched.
+    /// Name of the touched object.
     object: String => Subject;
-    /// How often.
+    /// Number of cases.
     count: usize => Value(Neither): Linear;
 } }
 
@@ -62,7 +62,7 @@ fn tables(numbers: [usize; 2], edit: impl Fn(usize, &mut Scored), count: usize) 
 #[test]
 fn an_edit_of_any_entry_is_found_whatever_configurations_are_numbered() {
     let first = tables([0, 1], |_, _| {}, 9);
-    // Other numbers alone are no difference.
+    // Other configuration numbers alone are no difference.
     for table in entries(&first, &tables([5, 3], |_, _| {}, 9)) {
         assert!(table.columns.is_empty() && table.one_sided.is_empty());
         assert_eq!((table.n_first_only, table.n_second_only), (0, 0));
@@ -86,13 +86,13 @@ fn an_edit_of_any_entry_is_found_whatever_configurations_are_numbered() {
     );
     let found = of_scores(&|row, scored| scored.n_capped = usize::from(row == 2));
     assert_eq!(found.columns[0].n_changed(), 1);
-    // A setting that does not apply is another setting.
+    // A setting that does not apply is a different setting.
     let found = of_scores(&|row, scored| scored.c = (row < 2).then_some(1.0));
     assert_eq!(
         (found.n_both, found.n_first_only, found.n_second_only),
         (5, 1, 1)
     );
-    // A configuration of a table that has its number alone.
+    // A configuration of a table that contains only its number.
     let counts = &entries(&first, &tables([1, 0], |_, _| {}, 8))[1];
     assert_eq!(
         counts.columns[0].changes,
@@ -101,19 +101,19 @@ fn an_edit_of_any_entry_is_found_whatever_configurations_are_numbered() {
 }
 
 row! {
-/// A configuration of a classifier.
+/// Row with the accuracy of a classifier.
 pub struct Classified {
-    /// Which.
+    /// Name of the classifier.
     classifier: String => Choice;
-    /// What only an SVM has.
+    /// Penalty C of an SVM.
     c: Option<f64> => Choice "C": Log;
-    /// About.
+    /// Compression ratio.
     ratio: f64 => Choice in ":1": Log;
-    /// What is ranked.
+    /// Accuracy, the ranked value.
     accuracy: f64 => Value(More): Share;
 } }
 
-/// An SVM at two C and a k-NN, at three ratios.
+/// Returns a table of an SVM with two C and a k-NN classifier, at three ratios.
 fn classified(invert: &str) -> Vec<Table> {
     let mut rows = Vec::new();
     let designs = [
@@ -152,13 +152,13 @@ fn settings_that_do_not_apply_are_values_and_numbers_are_the_same_if_they_are_eq
 }
 
 row! {
-/// A configuration in a world.
+/// Row with the accuracy under a noise level.
 pub struct InNoise {
-    /// About.
+    /// Compression ratio.
     ratio: f64 => Choice in ":1": Log;
-    /// In.
+    /// Noise standard deviation.
     noise_std: f64 => Condition: Linear;
-    /// What is ranked.
+    /// Accuracy, the ranked value.
     accuracy: f64 => Value(More): Share;
 } }
 
@@ -177,7 +177,7 @@ fn noise_in_millimetres_is_no_noise_of_full_scale() {
     let mut second = first.clone();
     let column = second[0].place("noise_std").unwrap();
     second[0].columns[column].unit = "mm".into();
-    // The mean over the noises of both is what is left to rank.
+    // The mean over the common noise levels is ranked.
     assert_eq!(rank_agreement(&first, &second).unwrap().n_designs, 5);
     assert_eq!(rank_agreement(&first, &first).unwrap().n_designs, 10);
 }

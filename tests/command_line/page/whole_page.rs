@@ -1,4 +1,4 @@
-//! What people read of a study of recognition: the terminal table, the answer and the page.
+//! Texts of a recognition study for readers: the terminal table, the answers and the page.
 
 use crate::report_synthetic::{
     ReportPage, about, add_headlines, configuration, many_cells, noise_cells, quickstart_cells,
@@ -92,7 +92,7 @@ fn many_cells_stand_compactly_and_what_is_left_out_is_said() {
 #[test]
 fn the_answer_names_the_best_the_frugal_and_each_effect() {
     let mut made = tables(quickstart_cells(), 3, 24);
-    // Configuration 4 is the best (0.76); let 16:1 there come within its interval.
+    // Configuration 4 is the best (0.76); the configuration at 16:1 is within its interval.
     made.summary[5].1.accuracy = 0.74;
     let sentences = answers_of(&made);
     assert!(
@@ -114,7 +114,7 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
     ] {
         assert!(sentences[1].contains(part), "{sentences:?}");
     }
-    // Each effect's means are those of a plain average over the other settings.
+    // The means of each effect equal plain averages over the other settings.
     let mean = |ratio: f64| {
         let rows = made
             .summary
@@ -148,7 +148,7 @@ fn the_answer_names_the_best_the_frugal_and_each_effect() {
 
 #[test]
 fn each_condition_has_a_best_of_its_own_and_one_answer_to_fewest_measurements() {
-    // Two noises; in each the most accurate has most measurements, and half as many are as good.
+    // For each of two noises, the most accurate configuration has the most measurements, and half as many are as good.
     let mut configurations = Vec::new();
     for noise_std in [0.0, 0.1] {
         for measurements in [512, 256, 128] {
@@ -199,7 +199,7 @@ fn too_few_trials_for_a_p_value_are_said() {
 #[test]
 fn an_effect_leaves_out_settings_that_lack_a_value() {
     let mut made = tables(quickstart_cells(), 1, 24);
-    // Without the finest array's 256:1, that array must not lift the other ratios' means.
+    // The finest array has no 256:1, so it must not raise the means of the other ratios.
     made.summary
         .retain(|(configuration, _)| !(configuration.nx == 64 && configuration.ratio == 256.0));
     let mean = |ratio: f64| {
