@@ -1,4 +1,4 @@
-//! Human touches: what each kind does, and that a study can tell them apart by time.
+//! Human touches: the motion of each kind, and a study that distinguishes the kinds by their course over time.
 
 use crate::command::Case;
 use bubbletouch::contact::{Workspace, press_with_contacts, spring_load};
@@ -14,11 +14,11 @@ use bubbletouch::world::{
 use ndarray::Array2;
 use std::fs;
 
-/// From the arm's axis to the outside of its skin, metres.
+/// Distance from the arm's axis to the outside of its skin, metres.
 const SURFACE: f64 = 0.043;
-/// Between two looks at a touch, seconds.
+/// Time between two samples of a touch, seconds.
 const STEP: f64 = 5e-3;
-/// Nothing of a hand is faster, m/s.
+/// Maximum speed of any part of a hand, m/s.
 const FASTEST: f64 = 2.0;
 
 fn forearm(pitch: f64) -> Patch {
@@ -37,13 +37,13 @@ fn touch(kind: TouchKind, number: u64) -> HumanTouch {
     HumanTouch::draw(kind, &TouchRanges::usual(kind), SURFACE, &seed).unwrap()
 }
 
-/// A touch at many instants, its beginning and its end among them.
+/// Returns a touch at many times, including its start and end.
 fn film(touch: &HumanTouch) -> Vec<HandState> {
     let n = (touch.duration() / STEP).ceil() as usize;
     (0..=n).map(|k| touch.at(k as f64 * STEP)).collect()
 }
 
-/// Σ k δ in newtons, and the place of the centre of pressure: metres along the arm, radians around it.
+/// Returns the spring force Σ k δ in newtons, and the position of the centre of pressure: metres along the arm, radians around it.
 fn felt(skin: &Patch, state: &HandState) -> (f64, Option<(f64, f64)>) {
     let mut workspace = Workspace::new();
     let hand: [Model; 1] = [state.spheres().into()];
@@ -123,14 +123,14 @@ fn a_hand_starts_and_ends_in_the_air_and_touches_in_between() {
             }
             n_missed += usize::from(felt(&skin, &deepest(&touch)).0 == 0.0);
         }
-        // A light fingertip between taxels is not felt, nor a hand beyond the end of the skin.
+        // A light fingertip between taxels deflects none, and neither does a hand beyond the end of the skin.
         assert!(n_missed <= 2, "{n_missed} of 40: {kind:?}");
     }
 }
 
 #[test]
 fn a_hand_goes_exactly_as_deep_as_it_says() {
-    // Where taxels are dense, the deepest one is as deep as the hand.
+    // For dense taxels, the deepest one is as deep as the hand.
     let skin = forearm(1.5e-3);
     let mut workspace = Workspace::new();
     for number in 0..10 {
@@ -399,12 +399,12 @@ fn touches_are_balanced_and_alone_the_same() {
         };
         assert!(of_kind.clone().all(fits));
     }
-    // Fewer kinds and fewer touches are the same ones.
+    // A study with fewer kinds and fewer touches has the same touches.
     let fewer = STUDY.replace("KINDS", "kinds = [\"pat\", \"tap\"]");
     let (_, fewer, _) = laid_out(&fewer.replace("per_kind = 40", "per_kind = 12")).unwrap();
     assert_eq!(fewer.with_label(0), &touches.with_label(4)[..12]);
     assert_eq!(fewer.with_label(1), &touches.with_label(0)[..12]);
-    // Frame by frame as pressed by hand, with new spheres each time.
+    // Frame by frame, as with manual presses, with new spheres each time.
     let human = plan.spec.human_touch.as_ref().unwrap();
     let array = &plan.arrays[0];
     let skin = human.skin(array).unwrap();
@@ -468,7 +468,7 @@ fn tables_name_frames_and_temporal_features_and_the_written_study_runs_again() {
     );
     let picture = String::from_utf8(read("confusion.svg")).unwrap();
     assert!(picture.contains("What was taken for what"));
-    // What was resolved can run again.
+    // The resolved study can be run again.
     let again = String::from_utf8(read("study.toml")).unwrap();
     assert!(!again.contains("[objects]") && !again.contains("[touches]"));
     laid_out(&again).unwrap();

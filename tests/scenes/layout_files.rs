@@ -1,4 +1,4 @@
-//! Layouts from files: each format reads as the taxels that its file describes, and a wrong file is refused with its row.
+//! Layouts from files: each format gives the taxels that its file describes, and an invalid file is refused with the number of its row.
 
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutOptions};
 use bubbletouch::mesh::TriangleMesh;

@@ -1,4 +1,4 @@
-//! Scenes by hand: the same steps as the time loop's, whoever says where things go; what cannot be set is refused.
+//! Manual control of scenes: manual steps equal the steps of the time loop, and invalid settings are refused.
 
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::{Catalogue, Model};
@@ -21,8 +21,8 @@ fn frames(plan: &ScenePlan) -> Vec<Frame> {
     frames
 }
 
-/// Frames of a scene whose things a program puts where `set` says that they are at a time. Steps are as long as the loop's: numbers of
-/// seconds that add up without rounding.
+/// Returns the frames of a scene whose bodies are placed by `set` at each time. The steps are as long as the loop's, in numbers of seconds that add up without
+/// rounding.
 fn by_hand(plan: &ScenePlan, set: impl Fn(&mut Simulation, f64)) -> Vec<Frame> {
     let mut simulation = Simulation::new(plan, Stepping::AsNeeded);
     let dt = 1.0 / (plan.output_rate * plan.n_substeps as f64);
@@ -39,7 +39,7 @@ fn by_hand(plan: &ScenePlan, set: impl Fn(&mut Simulation, f64)) -> Vec<Frame> {
     frames
 }
 
-/// 64 frames a second, four steps each.
+/// Keys for 64 frames per second with four steps each.
 const CLOCK: &str = "title = \"By hand\"\noutput_hz = 64.0\ndt_ms = 3.90625\nduration_s = 0.75";
 
 const MOTION: &str = "motion = { phases = [
@@ -47,7 +47,7 @@ const MOTION: &str = "motion = { phases = [
     { duration_s = 0.5, linear_mm_per_s = [60.0, 0.0, 0.0], angular_deg_per_s = [0.0, 10.0, 70.0] },
 ] }";
 
-/// A pear slides over a damped skin with friction and noise, and a ball is pushed onto another.
+/// Returns a scene in which a pear slides over a damped skin with friction and noise, and a ball is pushed onto another skin.
 fn sliding(motion: &str) -> String {
     format!(
         r#"{CLOCK}
@@ -100,7 +100,7 @@ fn a_step_by_hand_is_the_time_loops() {
     let slipping = |frame: &Frame| frame.patches[0].friction.as_ref().unwrap().n_slipping;
     assert!(frames.iter().any(|frame| slipping(frame) > 0));
     assert!(frames == by_hand(&still, set));
-    // What nobody sets goes on as the scene says.
+    // Bodies that are not set manually follow the scene.
     assert!(frames == by_hand(&looped, |_, _| {}));
 }
 

@@ -1,4 +1,4 @@
-//! A scene that ends early makes the first frames of the whole scene, whatever its skin and its objects remember.
+//! A scene that ends early gives the first frames of the whole scene, for any memory of its skin and its objects.
 
 use bubbletouch::scene::{Frame, ScenePlan, SceneSpec, Simulation, Stepping};
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What cannot be a scene is refused in one sentence: file, key, what was given, what is allowed.
+//! An invalid scene is refused in one sentence: file, key, given value, allowed values.
 
 use bubbletouch::Error;
 use bubbletouch::scene::{ScenePlan, SceneSpec};
@@ -37,7 +37,7 @@ fn good() -> String {
     format!("title = \"A scene\"\n{ROBOT}{PATCH}{OBJECT}")
 }
 
-/// The sentence about the good scene with `from` written as `to`.
+/// Returns the error for the valid scene after replacing `from` by `to`.
 #[track_caller]
 fn refused(from: &str, to: &str) -> String {
     let text = good();

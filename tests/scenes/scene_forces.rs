@@ -1,4 +1,4 @@
-//! Laws of scenes with friction, with taxels that differ, and with objects that are pushed for a force.
+//! Laws of scenes with friction, with different taxels, and with objects that are pressed to a force.
 
 use bubbletouch::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
 use bubbletouch::geometry::Pose;
@@ -26,7 +26,7 @@ fn frames(plan: &ScenePlan) -> Vec<Frame> {
     frames
 }
 
-/// A pear that is pressed into a palm, drawn along and turned; `palm`: more keys of the patch.
+/// Returns a scene in which a pear is pressed into a palm, moved along it and turned; `palm` contains more keys of the patch.
 fn drawn(palm: &str) -> String {
     format!(
         r#"
@@ -90,7 +90,7 @@ fn tips_are_dragged_from_step_to_step_as_by_hand() {
     };
     let (mut n_sticking, mut n_slipping) = (0, 0);
     for (number, frame) in frames(&plan).iter().enumerate() {
-        // Ten steps a frame; the first frame is one.
+        // Each frame has ten steps; the first frame has one.
         let before = plan.time(number.saturating_sub(1));
         let n_steps = if number == 0 { 1 } else { plan.n_substeps };
         let mut counts = Default::default();
@@ -224,7 +224,7 @@ fn a_recording_of_a_patch_with_friction_has_forces_in_three_dimensions() {
     assert!(slipping.eq(expected));
 }
 
-/// A plate of spheres lies on a tray, which goes sideways and then tilts by 12 degrees.
+/// Returns the frames of a plate of spheres on a tray that moves sideways and then tilts by 12 degrees.
 fn on_a_tray(folder: &Path, friction: f64) -> Vec<Frame> {
     let places = (0..25).map(|k| (4 * (k % 5) - 8, 4 * (k / 5) - 8));
     let rows = places.map(|(x, y)| format!("{x},{y},0,4\n"));
@@ -268,7 +268,7 @@ fn a_skin_with_friction_carries_a_free_object_along_and_on_a_slope() {
     for frame in &frames {
         assert_eq!(frame.objects[0].held, PoseControl::AtRest, "{}", frame.time);
         let patch = &frame.patches[0];
-        // What it feels is the weight, in its own frame.
+        // The patch carries the weight, expressed in its own frame.
         let down = patch.pose.rotation.conjugate() * DVec3::new(0.0, 0.0, -weight);
         assert!((patch.wrench.force - down).length() < 1e-6 * weight);
         let friction = patch.friction.as_ref().unwrap();
@@ -313,11 +313,11 @@ fn taxels_that_differ_are_the_same_from_a_list_from_a_file_and_alone() {
     let text = drawn("taxels_csv = \"taxels.csv\"");
     let from_file = try_plan(&text, folder.path()).unwrap();
     assert_eq!(frames(&from_file), from_list);
-    // What was resolved says the same from any folder.
+    // The resolved scene is valid in any folder.
     let resolved = SceneSpec::parse("r.toml", &from_file.spec.to_toml()).unwrap();
     let resolved = ScenePlan::new("r.toml", Path::new("/"), resolved).unwrap();
     assert_eq!(frames(&resolved), from_list);
-    // Each as in a patch of its kind.
+    // Each taxel behaves as in a patch of equal taxels.
     for (taxel, damped) in [(147, "0.0"), (148, "1.5")] {
         let alone = format!(
             "stiffness_n_per_m = {}\ndamping_n_s_per_m = {damped}",
@@ -328,7 +328,7 @@ fn taxels_that_differ_are_the_same_from_a_list_from_a_file_and_alone() {
         let mut felt: f64 = 0.0;
         for (mixed, alone) in from_list.iter().zip(&alone) {
             let [mixed, alone] = [mixed, alone].map(|frame| &frame.patches[0]);
-            // An undamped patch has no steps, and is at rest at its frames: only it may differ, by rounding of times.
+            // An undamped patch makes no steps and is at rest at its frames; only its values may differ, by the rounding of times.
             assert!((mixed.deflection[taxel] - alone.deflection[taxel]).abs() < 1e-12);
             felt = felt.max(mixed.force[taxel]);
         }
@@ -416,7 +416,7 @@ fn bad_numbers_of_taxels_are_refused_with_key_file_line_and_column() {
     );
 }
 
-/// A ball over a palm that moves aside; `press`: its wish, `palm`: more keys of the patch.
+/// Returns a scene with a ball over a palm that moves aside. `press` contains the keys of its force control, `palm` more keys of the patch.
 fn pushed(press: &str, palm: &str) -> String {
     format!(
         r#"
@@ -468,7 +468,7 @@ fn the_force_that_is_recorded_is_the_one_that_is_wanted() {
         };
         assert_eq!(wanted, press.force_at(frame.time));
         assert!((force - total(&frame.patches[0])).abs() < 1e-9);
-        // Two millimetres above the palm it takes some hundredths of a second to get there.
+        // From two millimetres above the palm, the ball takes some hundredths of a second to arrive.
         if frame.time > 0.15 {
             assert!((force - wanted).abs() < 1e-9, "{force} of {wanted}");
             assert!(travel > 2e-3 && travel < 20e-3);
@@ -506,7 +506,7 @@ fn a_damped_skin_feels_more_on_the_way_in_and_the_force_at_rest() {
 #[test]
 fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() {
     let text = pushed("force_n = 50.0, speed_mm_per_s = 20.0, travel_mm = 6.0", "");
-    // As if it had stood so for long: all the way at the start.
+    // At the start, the ball has travelled completely, as if it had been there for a long time.
     let PoseControl::Pressed { travel, force, .. } = frames(&plan(&text))[0].objects[0].held else {
         panic!("the ball is pressed")
     };
@@ -533,7 +533,7 @@ fn a_pushed_object_keeps_to_its_speed_and_its_travel_and_says_what_it_reached() 
 
 #[test]
 fn an_object_that_is_pushed_too_hard_stays_felt_however_far_it_goes() {
-    // Straight down, up to 120 mm, though the ball has 65.
+    // Straight down, up to 120 mm, although the ball has a diameter of 65 mm.
     let press =
         "time_s = [0.0, 0.001], force_n = [0.0, 500.0], speed_mm_per_s = 200.0, travel_mm = 120.0";
     let text = pushed(press, "").replace("[30.0, 0.0, 2.0]", "[0.0, 0.0, 0.0]");
@@ -699,7 +699,7 @@ fn forces_of_a_frame_sum_to_the_wrench_on_every_layout_for_every_kind_of_object(
             let sum: DVec3 = reading.force3.iter().sum();
             let off = (sum - reading.wrench.force).length();
             assert!(off <= 1e-9 * (1.0 + sum.length()), "{off} N\n{text}");
-            // Along its axis a taxel feels its axial force, but for flanks as good as parallel to the axis.
+            // The force along a taxel's axis equals its axial force, except on flanks that are nearly parallel to the axis.
             let axes = plan.patches[0].skin.layout().axes();
             for ((force3, force), &axis) in reading.force3.iter().zip(&reading.force).zip(axes) {
                 let axial = -force3.dot(axis);

@@ -1,4 +1,4 @@
-//! Laws of scenes: steps, frames of reference, shortcuts, free objects; each against a slower or simpler way.
+//! Laws of scenes: time steps, frames of reference, shortcuts and free objects, each compared with a slower or simpler computation.
 
 use bubbletouch::contact::equilibrium::{
     EquilibriumSolver, FreeObject, Ground, Obstacle, PlacedSkin, Touched,
@@ -34,7 +34,7 @@ fn frames(plan: &ScenePlan, stepping: Stepping) -> Vec<Frame> {
     frames
 }
 
-/// Two patches under a ball that comes down, slides and turns, one of them damped if `damping` says so.
+/// Returns a scene in which a ball is lowered onto two patches, slides and turns. `damping` applies to one of the patches.
 fn sliding(dt_ms: f64, damping: f64) -> ScenePlan {
     parse(&format!(
         r#"
@@ -94,7 +94,7 @@ fn half_the_step_changes_nothing_without_dampers_and_little_with_them() {
             .any(|frame| frame.patches.iter().all(|patch| patch.n_touched > 20))
     );
     assert_eq!(coarse, always(1.0, 0.0));
-    // A damped taxel that is left between two steps is late by what the object goes in one: 120 mm/s on flanks of 45° and less.
+    // A damped taxel that loses contact between two steps is late by the object's travel in one step: 120 mm/s on flanks of up to 45°.
     let off = farthest(&always(2.0, 3.0), &always(1.0, 3.0), deflections);
     let finer = farthest(&always(1.0, 3.0), &always(0.5, 3.0), deflections);
     assert!(off > 0.0 && off < 240e-6, "{off}");
@@ -120,7 +120,7 @@ fn what_remembers_nothing_is_the_same_with_and_without_steps() {
 
 #[test]
 fn a_damped_patch_is_the_same_beside_one_that_is_not() {
-    // As needed, the undamped patch is not stepped; and damped grids go through another kernel between frames.
+    // As needed, the undamped patch makes no steps, and damped grids use another kernel between frames.
     let plan = sliding(1.0, 3.0);
     let both = |mut plan: ScenePlan, is_damped: [bool; 2]| {
         for (patch, is_damped) in plan.patches.iter_mut().zip(is_damped) {
@@ -214,7 +214,7 @@ fn the_drill_scene_is_what_the_time_loop_of_one_patch_computes() {
             assert!((a - b).abs() < 1e-14, "frame {number}: {a} and {b}");
         }
         for (a, b) in forces {
-            // A rate is a difference of deflections over a millisecond.
+            // A deflection rate is a difference of deflections over a millisecond.
             assert!((a - b).abs() < 1e-10, "frame {number}: {a} N and {b} N");
         }
     }
@@ -276,7 +276,7 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
     assert_eq!(first.objects[0].pose, settled.unwrap().pose);
     for frame in &frames {
         assert_eq!(frame.objects[0].held, PoseControl::AtRest);
-        // On upright springs the weight is the sum of their forces.
+        // On vertical springs, the weight is the sum of their forces.
         let force = frame.patches[0].wrench.force.z;
         assert!((force + mass * 9.81).abs() < 1e-5, "{force} N");
     }
@@ -284,9 +284,9 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
     assert!((rise - 0.02).abs() < 1e-6, "{rise}");
 }
 
-/// A tennis ball at x = ±`apart` on a bed, each with a line of its own.
+/// Returns a scene with a tennis ball at x = ±`apart` on a bed, each with keys of its own.
 fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
-    // A scene that is read has free objects that start apart; they are moved together afterwards.
+    // A scene that is read must have free objects apart; they are moved together afterwards.
     let read = apart.max(33.0);
     let mut plan = parse(&format!(
         r#"
@@ -360,7 +360,7 @@ fn balls_on_stops_of_one_skin_are_carried_side_by_side() {
     assert!((on_patch.torque - torque).length() < 1e-6 * 490.0 * 0.04);
 }
 
-/// Of the one sphere of the first object, in the world.
+/// Returns the centre of the first object's single sphere in the world.
 fn middle_of_ball(plan: &ScenePlan, frame: &Frame) -> DVec3 {
     let [ball] = plan.models[0].spheres().unwrap().spheres() else {
         panic!("a ball is one sphere")
@@ -368,8 +368,8 @@ fn middle_of_ball(plan: &ScenePlan, frame: &Frame) -> DVec3 {
     frame.objects[0].pose.transform_point(ball.center)
 }
 
-/// What the forces of all patches put on a ball, by geometry alone: Σ f n / (n·axis), n from the ball's middle to the taxel's; and
-/// how many taxels are at their stroke.
+/// Returns the force of all patches on a ball, by geometry alone: Σ f n / (n·axis), with n from the centre of the ball to the centre of the taxel. Also returns
+/// the number of taxels at their stroke.
 fn carried(plan: &ScenePlan, frame: &Frame) -> (DVec3, usize) {
     let middle = middle_of_ball(plan, frame);
     let (mut force, mut n_stopped) = (DVec3::ZERO, 0);
@@ -421,7 +421,7 @@ fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curv
             let n_saturated: usize = frame.patches.iter().map(|patch| patch.n_saturated).sum();
             assert_eq!(n_saturated, n_stopped, "{case}");
             most_stopped = most_stopped.max(n_stopped);
-            // Together the wrenches of the patches are the weight, at the middle of the ball.
+            // The wrenches of all patches together equal the weight at the centre of the ball.
             let (mut together, mut torque) = (DVec3::ZERO, DVec3::ZERO);
             for patch in &frame.patches {
                 let force = patch.pose.rotation * patch.wrench.force;
@@ -449,7 +449,7 @@ fn what_rests_on_stops_is_carried_by_the_forces_of_the_frame_on_flat_and_on_curv
 fn two_free_balls_that_come_to_rest_on_the_same_taxels_are_carried_together_and_touch() {
     for masses in [[0.2, 0.2], [0.2, 0.1], [50.0, 0.2]] {
         let [one, other] = masses.map(|mass| format!("free = {{ mass_kg = {mass} }}"));
-        // Inside of one another at the start: they come apart.
+        // Balls that overlap at the start move apart.
         let plan = two_balls(5.0, &one, &other);
         let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
         let frame = simulation.next_frame().unwrap().unwrap();
@@ -478,7 +478,7 @@ fn two_free_balls_that_come_to_rest_on_the_same_taxels_are_carried_together_and_
 #[test]
 fn a_free_ball_comes_to_rest_in_the_hollow_that_an_imposed_one_makes_and_on_it() {
     let mut plan = two_balls(32.0, "", "free = { mass_kg = 0.058 }");
-    // Towards the other, so little that it does not slip past it.
+    // The acceleration towards the other ball is so small that the ball does not slip past it.
     plan.gravity = DVec3::new(-0.5, 0.0, -9.8);
     let mut simulation = Simulation::new(&plan, Stepping::AsNeeded);
     let frame = simulation.next_frame().unwrap().unwrap().clone();
@@ -581,7 +581,7 @@ fn a_damped_bed_carries_the_whole_weight_while_a_ball_sinks_and_after() {
             deepest.push(all.copied().fold(0.0, f64::max));
         }
     }
-    // For a while both carry it; then it sinks more and more slowly.
+    // At first both patches carry the ball; then it sinks more and more slowly.
     assert!(n_both > 0 && n_carried > 20, "{n_both} {n_carried}");
     let n = deepest.len();
     assert!(deepest[n - 1] > deepest[n - 20] + 1e-6, "{deepest:?}");
@@ -595,7 +595,7 @@ fn what_has_rolled_off_is_reported_once_and_touches_nothing_any_more() {
         panic!("the ball escapes")
     };
     assert!(time > 0.5 && time < 1.2, "{time} s");
-    // Over the lowered arm, which is at negative y.
+    // The ball escapes over the lowered arm, which is at negative y.
     assert!(direction.y < -0.9, "{direction}");
     for frame in &frames {
         let n_touched: usize = frame.patches.iter().map(|patch| patch.n_touched).sum();

@@ -1,4 +1,4 @@
-//! What rides along: skin on an object, and objects on a robot's links, against the same things that move by themselves.
+//! Mounted bodies: skin on an object, and objects on a robot's links, compared with equal bodies that move on their own.
 
 use bubbletouch::scene::{Frame, PoseControl, ScenePlan, SceneSpec, Simulation, Stepping};
 use std::path::Path;
@@ -21,7 +21,7 @@ fn frames(text: &str) -> Vec<Frame> {
     frames
 }
 
-/// The same deflections of the first patch, and not none.
+/// Asserts that the first patch has equal deflections in both scenes, and that some are not zero.
 fn assert_same(a: &[Frame], b: &[Frame]) {
     assert_eq!(a.len(), b.len());
     let mut n_touched = 0;
@@ -35,7 +35,7 @@ fn assert_same(a: &[Frame], b: &[Frame]) {
     assert!(n_touched > 100, "{n_touched}");
 }
 
-/// An object above a skin that lies in the world.
+/// Returns a scene with an object above a skin that is fixed in the world.
 fn over_skin(carrier: &str, object: &str) -> String {
     format!(
         "title = \"over skin\"
@@ -62,7 +62,7 @@ fn an_object_on_a_link_goes_where_the_link_goes() {
     assert_same(&frames(&alone), &frames(&carried));
 }
 
-/// Skin around a can that comes down on a pear.
+/// Returns a scene with skin around a can that is lowered onto a pear.
 fn skinned_can(carrier: &str, patch: &str, can: &str) -> String {
     format!(
         "title = \"a can with skin\"
@@ -98,7 +98,7 @@ fn skin_on_an_object_goes_with_it_and_does_not_feel_it() {
         "",
     );
     assert_same(&frames(&on_object), &frames(&on_robot));
-    // Skin of the world feels the can that comes into it.
+    // Skin that is fixed in the world touches the can that moves into it.
     let beside = skinned_can("", "at = { position_mm = [0.0, 40.0, 50.0] }", &can);
     assert!(
         frames(&beside)

@@ -1,4 +1,4 @@
-//! Robots of scenes: joints that nothing moves, what is said of their files, and where files are.
+//! Robots of scenes: joints without motion, notes on robot files, and locations of files.
 
 use bubbletouch::scene::{ScenePlan, SceneSpec, Simulation, Stepping};
 use glam::DVec3;
@@ -10,7 +10,7 @@ const URDF: &str = r#"<robot name="r"><link name="a"/><link name="b"/><link name
 <joint name="stuck" type="revolute"><parent link="c"/><child link="d"/><axis xyz="0 0 0"/></joint><link name="d"/>
 <sensor name="skin"><parent link="c"/><tactile/></sensor></robot>"#;
 
-/// A scene in a new folder with a patch on link c, and the folder.
+/// Creates a scene in a new folder with a patch on link c; returns the folder and the plan.
 fn scene(robot: &str, more: &str) -> (tempfile::TempDir, bubbletouch::Result<ScenePlan>) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("r.urdf"), URDF).unwrap();
@@ -138,7 +138,7 @@ fn an_error_of_the_surface_is_given_only_where_spheres_are_made() {
     plan.unwrap();
 }
 
-/// A hand whose palm is a box, whose tip is a ball to touch and a cube of centimetres to see, whose wrist is a capsule, and whose base is bare.
+/// Hand whose palm is a box, whose tip is a collision ball and a visual cube in centimetres, whose wrist is a capsule, and whose base has no shape.
 const HAND: &str = r#"<robot name="hand"><link name="base"/>
 <link name="palm"><collision><origin xyz="0 0 0.01"/><geometry><box size="0.04 0.03 0.02"/></geometry></collision></link>
 <link name="tip"><visual><geometry><mesh filename="package://hand_description/meshes/cube.obj" scale="0.01 -0.01 0.01"/></geometry></visual>
@@ -151,11 +151,11 @@ const HAND: &str = r#"<robot name="hand"><link name="base"/>
 <joint name="c" type="fixed"><parent link="palm"/><child link="wrist"/></joint>
 <joint name="d" type="fixed"><parent link="palm"/><child link="lost"/></joint></robot>"#;
 
-/// A unit cube about the origin, edges of 2.
+/// Cube about the origin with edges of 2.
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
-/// A scene with skin draped over the hand: keys of the layout, and other keys of the patch.
+/// Returns a scene with skin draped over the hand, with keys of the layout and other keys of the patch.
 fn hand(draped: &str, more: &str) -> bubbletouch::Result<ScenePlan> {
     let folder = tempfile::tempdir().unwrap();
     let robots = folder.path().join("hand_description/urdf");
@@ -169,7 +169,7 @@ fn hand(draped: &str, more: &str) -> bubbletouch::Result<ScenePlan> {
          [[patches]]\nname = \"skin\"\nstroke_mm = 2.0\n{more}\nlayout = {{ draped = {{ pitch_mm = 2.0, {draped} }} }}\n"
     );
     let plan = ScenePlan::new("s.toml", folder.path(), SceneSpec::parse("s.toml", &text)?)?;
-    // The resolved scene is the same from any folder.
+    // The resolved scene is the same in any folder.
     let resolved = SceneSpec::parse("r.toml", &plan.spec.to_toml()).unwrap();
     let again = ScenePlan::new("r.toml", Path::new("/"), resolved).unwrap();
     assert_eq!(
@@ -191,17 +191,17 @@ fn skin_is_draped_over_the_shapes_of_a_named_link_which_carries_it() {
         assert!(out.max_element().abs() < 1e-12, "{center}");
         assert!((center - DVec3::new(0.0, 0.0, 0.01)).dot(axis) > 0.0);
     }
-    // As many as a grid of 2 mm has on 52 cm².
+    // The number of taxels equals that of a 2 mm grid on 52 cm².
     let area = 8.0 * (half.x * half.y + half.y * half.z + half.z * half.x);
     let share = layout.n_taxels() as f64 * 4e-6 / area;
     assert!((0.9..1.15).contains(&share), "{share}");
-    // Beside a plane, in the link's frame; the link may be named twice.
+    // Region beside a plane, in the link's frame; the link may be named twice.
     let twice = format!("{ROBOT}\nlink = \"palm\"");
     let top = "region = { link = \"palm\", plane_point_mm = [0.0, 0.0, 20.0], plane_normal = [0.0, 0.0, 1.0] }";
     let plan = hand(top, &twice).unwrap();
     let mut centers = plan.patches[0].skin.layout().centers().iter();
     assert!(centers.all(|center| (center.z - 0.02).abs() < 1e-12));
-    // Collision shapes if there are any: a ball, whose facets lie at most 2 % of a pitch inside.
+    // Collision shapes are used if there are any: here a ball, whose facets are at most 2 % of a pitch inside.
     let plan = hand("region = { link = \"tip\" }", ROBOT).unwrap();
     let layout = plan.patches[0].skin.layout();
     for (center, axis) in layout.centers().iter().zip(layout.axes()) {
@@ -217,7 +217,7 @@ fn skin_is_draped_over_the_shapes_of_a_named_link_which_carries_it() {
         assert!((center.abs().max_element() - 0.01).abs() < 1e-12);
         assert!(center.dot(axis) > 0.0);
     }
-    // Shapes that overlap have one outer surface: nothing of the capsule is left within the disc.
+    // Shapes that overlap have one outer surface, so no taxel of the capsule is within the disc.
     let plan = hand("region = { link = \"wrist\" }", ROBOT).unwrap();
     let mut centers = plan.patches[0].skin.layout().centers().iter();
     assert!(

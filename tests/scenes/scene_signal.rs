@@ -1,4 +1,4 @@
-//! Signals of skins in scenes: a chain by hand, frame by frame; what cannot be one is refused by its key.
+//! Signals of skins in scenes: they equal a signal chain that is applied frame by frame, and an invalid chain is refused by its key.
 
 use bubbletouch::random::Seed;
 use bubbletouch::report::scene_files::SceneFiles;
@@ -90,7 +90,7 @@ fn zeros_drift_from_frame_to_frame_and_the_skin_has_the_same_faults_in_all() {
     let signal = |frame: usize| frames[frame].patches[0].signal.as_ref().unwrap();
     let n = signal(0).len();
     let stuck: Vec<usize> = (0..n).filter(|&k| signal(0)[k] != 0.0).collect();
-    // Of a session that begins, no zero has wandered yet.
+    // At the start of a session, no zero has drifted.
     assert_eq!(stuck.len(), (0.1 * n as f64).round() as usize);
     let last = frames.len() - 1;
     assert!(stuck.iter().all(|&k| signal(last)[k] == signal(0)[k]));

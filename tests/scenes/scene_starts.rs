@@ -1,4 +1,4 @@
-//! Where objects start: free objects apart from all others; and which part of a mesh carries taxels.
+//! Initial poses of objects: free objects must not overlap others. Also the part of a mesh that carries taxels.
 
 use bubbletouch::report::scene_summary::scene_table;
 use bubbletouch::scene::{PoseControl, ScenePlan, SceneSpec, Simulation, Stepping, Summary};
@@ -9,7 +9,7 @@ fn plan_in(folder: &Path, text: &str) -> bubbletouch::Result<ScenePlan> {
     ScenePlan::new("s.toml", folder, SceneSpec::parse("s.toml", text)?)
 }
 
-/// A bed of taxels with objects, each with a name, a shape, a position (mm) and how it moves.
+/// Returns a scene with a bed of taxels and objects, each given by a name, a shape, a position (mm) and its motion keys.
 fn bed(objects: &[(&str, &str, [f64; 3], &str)]) -> String {
     let objects = objects.iter().map(|(name, shape, position, movement)| {
         format!("[[objects]]\nname = \"{name}\"\n{shape}\nat = {{ position_mm = {position:?} }}\n{movement}\n")
@@ -42,7 +42,7 @@ fn a_free_object_that_starts_inside_another_is_refused_with_both_and_the_overlap
             "s.toml, key objects.second.at: free object `second` starts 65.4 mm inside `first`; {allowed}"
         )
     );
-    // Only the third overlaps, by 30 of 65.4 mm.
+    // Only the third object overlaps, by 30 of 65.4 mm.
     let apart = ("second", TENNIS, [80.0, 0.7, 5.0], FREE);
     let third = ("third", TENNIS, [80.0, 36.11, 5.0], FREE);
     assert_eq!(
@@ -51,7 +51,8 @@ fn a_free_object_that_starts_inside_another_is_refused_with_both_and_the_overlap
             "s.toml, key objects.third.at: free object `third` starts 30.0 mm inside `second`; {allowed}"
         )
     );
-    // The origin of the ball is its lowest point. In an object that stands, before or after it in the file, or is moved: the free one is named first.
+    // The origin of the ball is its lowest point. If it overlaps a fixed or moved object, before or after it in the file, the error names the free object
+    // first.
     let stands = ("stands", TENNIS, place, "");
     let moves = (
         "moves",
@@ -69,7 +70,7 @@ fn a_free_object_that_starts_inside_another_is_refused_with_both_and_the_overlap
             assert!(said(&objects).starts_with(&expected), "{}", said(&objects));
         }
     }
-    // Two that are where they are told may overlap.
+    // Two objects with imposed poses may overlap.
     assert!(plan_in(folder.path(), &bed(&[stands, moves])).is_ok());
 }
 
@@ -81,7 +82,7 @@ fn objects_that_touch_within_what_their_spheres_stand_out_are_read_and_so_are_th
         f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     fs::write(folder.path().join("cube.obj"), cube).unwrap();
     let cube = "mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"packed\"\nsurface_error_mm = 2.0";
-    // One cube upon the other, and balls in a cup-like ring, apart by rounding.
+    // One cube on the other, and balls in a cup-like ring, which are apart by rounding errors.
     let stack = [
         ("low", cube, [0.0, 0.0, 9.0], FREE),
         ("high", cube, [0.0, 0.0, 29.0], FREE),
@@ -92,7 +93,7 @@ fn objects_that_touch_within_what_their_spheres_stand_out_are_read_and_so_are_th
         ("b", TENNIS, [65.4, 0.0, 30.0], FREE),
     ];
     assert!(plan_in(folder.path(), &bed(&balls)).is_ok());
-    // Deeper in the bed than its stroke: the stops carry it.
+    // The object is deeper in the bed than the stroke, so the stops carry it.
     let heavy = [(
         "heavy",
         TENNIS,
@@ -105,7 +106,7 @@ fn objects_that_touch_within_what_their_spheres_stand_out_are_read_and_so_are_th
         .run(&mut [&mut frames])
         .unwrap();
     assert_eq!(frames[0].objects[0].held, PoseControl::AtRest);
-    // A cube in a cube is inside, though only spheres overlap.
+    // A cube inside a cube overlaps, although only spheres are compared.
     let inside = [
         ("low", cube, [0.0, 0.0, 9.0], FREE),
         ("high", cube, [1.0, 0.0, 12.0], FREE),
@@ -119,7 +120,7 @@ fn objects_that_touch_within_what_their_spheres_stand_out_are_read_and_so_are_th
     );
 }
 
-/// A tube with a square hole along z, outside in one group and inside in another; centimetres.
+/// Tube with a square hole along z, outside in one group and inside in another; centimetres.
 const TUBE: &str = "v -2 -2 -2\nv 2 -2 -2\nv 2 2 -2\nv -2 2 -2\nv -2 -2 2\nv 2 -2 2\nv 2 2 2\nv -2 2 2\n\
     v -1 -1 -2\nv 1 -1 -2\nv 1 1 -2\nv -1 1 -2\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\n\
     g outside\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n\
@@ -145,7 +146,7 @@ fn a_draped_patch_covers_a_region_of_the_outer_surface_and_says_how_many_taxels_
         (layout, scene_table(&plan, &Summary::default()))
     };
     let (whole, table) = layout("");
-    // The walls of the hole face one another: four of 20 × 40 mm.
+    // The walls of the hole face each other: four walls of 20 × 40 mm.
     let n_left_out = whole.n_left_out();
     assert!((150..250).contains(&n_left_out), "{n_left_out}");
     let line =

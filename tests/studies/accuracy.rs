@@ -1,6 +1,6 @@
-//! Laws of accuracy on a small real study: chance, more measurements, less noise, no compression.
+//! Laws of accuracy on a small real study: chance level, more measurements, less noise, no compression.
 //!
-//! A run is the same on one machine; processors round differently, so every margin is several test rows wide.
+//! A run is reproducible on one machine, but processors round differently, so every margin is several test rows.
 
 use crate::study::Study;
 use bubbletouch::sensing::Ensemble;
@@ -37,7 +37,7 @@ measurements = [1, 4, 16, 64, 256]
 classifier = "linear_svm"
 "#;
 
-/// One in this many guesses is right.
+/// Number of objects; one guess in this number is correct.
 const N_OBJECTS: f64 = 8.0;
 
 fn score(outcome: &Tables, is_wanted: impl Fn(&Configuration) -> bool) -> &CellScore {
@@ -67,7 +67,7 @@ fn accuracy_obeys_chance_compression_and_noise() {
         deaf.accuracy_low < 1.0 / N_OBJECTS && 1.0 / N_OBJECTS < deaf.accuracy_high,
         "one measurement of noise guesses: {deaf:?}"
     );
-    // Four test rows of 120.
+    // Four of 120 test rows.
     let margin = 4.0 / deaf.n_test as f64;
     for accuracies in &table[..3] {
         for pair in accuracies.windows(2) {

@@ -1,4 +1,4 @@
-//! Studies with axes of their own: each combination is the study that has its values, and what is the same is made once.
+//! Studies with axes of their own: each combination equals the study with its values, and common parts are computed once.
 
 use crate::command::Case;
 use crate::study::{self, Study};
@@ -97,10 +97,10 @@ fn what_does_not_change_is_made_once() {
     };
     let alone = "touches.depth_mm = [1.0]\nskin.stroke_mm = [5.0]\nrecognition.classifier = [\"linear_svm\"]\n";
     let once = [("simulate".to_owned(), 36), ("measure".to_owned(), 2 * 36)];
-    // Only fits differ.
+    // Only the fits differ.
     let learning = format!("{alone}recognition.scaling = [\"standard\", \"none\"]");
     assert_eq!(stages(&learning), once);
-    // Touches are the same, and measured for each value.
+    // The touches are the same, and are measured for each value.
     let signal =
         format!("{alone}skin.damping_n_s_per_m = [0.1]\ntouches.speed_mm_per_s = [0.0, 5.0]");
     assert_eq!(

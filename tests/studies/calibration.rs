@@ -1,4 +1,4 @@
-//! Simulated skins of known settings, taken for real ones: each setting is recovered within a tenth, or said to be not identifiable.
+//! Calibration of simulated skins with known settings: each setting is recovered within 10 %, or reported as not identifiable.
 
 use crate::study::Study;
 use bubbletouch::calibration::{Calibration, Estimate, RecordedSkin, calibrate};
@@ -39,7 +39,7 @@ yaw_deg = { uniform = [0.0, 360.0] }
 depth_mm = { uniform = [1.0, 4.5] }
 "#;
 
-/// Deflections, n × 1,024, metres, in random order.
+/// Deflections of touches in random order, n × 1,024, metres.
 static TOUCHED: LazyLock<Array2<f64>> = LazyLock::new(|| {
     let study = Study::new(STUDY);
     let frames = simulate_array(&study.touched, &study.plan.arrays[0], 1, &Silent);
@@ -50,14 +50,14 @@ static TOUCHED: LazyLock<Array2<f64>> = LazyLock::new(|| {
     frames.select(Axis(0), &order).mapv(f64::from)
 });
 
-/// What a skin has.
+/// Settings of a simulated skin.
 #[derive(Clone, Copy, Debug, Default)]
 struct Settings {
     crosstalk: f64,
     gain: f64,
     drift: f64,
     noise: f64,
-    /// Pitches.
+    /// Standard deviation of the smoothing, in pitches.
     smoothing: f64,
     dead: f64,
     stuck: f64,
@@ -83,7 +83,7 @@ impl Settings {
         ]
     }
 
-    /// What such a skin reads, of the full scale, over a session.
+    /// Returns the readings of such a skin over a session, as fractions of the full scale.
     fn read(&self, deflections: &Array2<f64>, name: &str) -> Array2<f64> {
         let seed = Seed::new(7);
         let grid = Grid {
@@ -113,7 +113,7 @@ impl Settings {
             let touch = seed.named(name).numbered(k as u64);
             chain.apply_recording(recording, &touch, &mut scratch);
         }
-        // As a file of single precision has it.
+        // Rounded as in a file of single precision.
         read.mapv(|metres| f64::from((metres / STROKE) as f32))
     }
 
@@ -135,7 +135,7 @@ impl Settings {
     }
 }
 
-/// What is found of a skin is within a tenth of its settings (of those it does not have, next to nothing); what is not identifiable is just this.
+/// Asserts that the estimates are within 10 % of the settings (near zero for absent ones), and that exactly the expected settings are not identifiable.
 fn is_recovered(settings: Settings, n_untouched: usize, unknown: &[&str]) {
     let found = settings.calibrated(n_untouched);
     let all = [

@@ -1,4 +1,4 @@
-//! The experiments that come with the crate: they say what they ask, and they can run.
+//! The experiments of the repository: each states its question and can run.
 
 use bubbletouch::kinds;
 use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
@@ -15,7 +15,7 @@ use ndarray::Array3;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a header tells, in this order.
+/// Required parts of a header, in this order.
 const HEADER: [&str; 4] = ["# Question", "# Source", "# Expected", "# Run time"];
 
 fn experiments() -> Vec<PathBuf> {
@@ -122,7 +122,7 @@ fn every_experiment_can_run() {
     }
 }
 
-/// What `bubbletouch compare` says of the committed results of a simulated skin and of the real one that it was calibrated to.
+/// Checks the output of `bubbletouch compare` for the committed results of a simulated skin and of the real skin to which it was calibrated.
 #[test]
 fn the_simulated_skin_ranks_designs_as_the_real_one_does() {
     let tables = ["simulated_skin", "real_skin"].map(|name| {
@@ -134,7 +134,7 @@ fn the_simulated_skin_ranks_designs_as_the_real_one_does() {
     assert!(ranks.tau >= 0.8, "{ranks:?}");
 }
 
-/// Ten frames of each class, in the place of recordings that are not part of the crate.
+/// Writes ten frames per class in the place of recordings that are not part of the repository.
 fn put_a_recording(folder: &Path, recorded: &mut RecordedSpec) {
     let n_classes = recorded.names.as_ref().map_or(2, Vec::len);
     let labels = (0..10 * n_classes).map(|touch| touch % n_classes);

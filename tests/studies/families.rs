@@ -1,5 +1,5 @@
-//! What a touch can be read and recognised by: features, frames a touch, fused touches, and the choice of C and γ; against
-//! a slow pipeline written out, touch by touch, and by laws.
+//! Features, frames per touch, decisions on several touches, and the choice of C and γ: compared with a slow pipeline that processes one touch after the other,
+//! and with laws.
 
 use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};
@@ -48,7 +48,7 @@ classifier = "linear_svm"
 test_fraction = 0.375
 "#;
 
-/// The study with some lines put into its sections.
+/// Returns the study with additional lines in its tables.
 fn with(touches: &str, recognition: &str) -> String {
     STUDY
         .replace("[touches]", &format!("[touches]\n{touches}"))
@@ -57,7 +57,7 @@ fn with(touches: &str, recognition: &str) -> String {
 
 const ALL_FEATURES: &str = r#"features = ["raw", "centred", "unit_norm", "centred_unit_norm"]"#;
 
-/// The rows of a configuration in a trial, one touch, one frame, one number after the other.
+/// Computes the feature rows of a configuration in a trial, one touch, one frame and one number after the other.
 fn slow_rows(study: &Study, configuration: &Configuration, trial: u64) -> Array2<f64> {
     let array = &study.plan.arrays[0];
     let seed = Seed::new(study.plan.spec.seed);
@@ -121,7 +121,7 @@ fn slow_rows(study: &Study, configuration: &Configuration, trial: u64) -> Array2
     rows
 }
 
-/// A classifier of the slow rows, and the test rows with their labels.
+/// Trains a classifier on the slow rows; also returns the test rows with their labels.
 fn slow_fit(
     study: &Study,
     configuration: &Configuration,
@@ -152,7 +152,7 @@ fn frames_and_features_are_what_a_slow_pipeline_makes_of_each_touch() {
     for (configuration, score) in &outcome.accuracy {
         let (trained, test, truth) = slow_fit(&study, configuration, score.trial);
         let n_correct = n_equal(&trained.labels(test.view()).unwrap(), &truth);
-        // Sums in another order can turn a row that is close to two objects.
+        // Sums in another order can change the label of a row that is close to two objects.
         assert!(
             n_correct.abs_diff(score.n_correct) <= 1,
             "{configuration:?}: {n_correct}, not {}",
@@ -187,7 +187,7 @@ fn fused_touches_are_decided_on_by_the_sum_of_their_scores() {
             n_correct.abs_diff(score.n_correct) <= 1,
             "{configuration:?}"
         );
-        // Twelve test touches of each of six objects.
+        // Twelve test touches for each of six objects.
         let (n_groups, n_left) = [(72, 0), (36, 0), (12, 12)][[1, 2, 5]
             .iter()
             .position(|&k| k == configuration.touches_per_decision)
@@ -212,7 +212,7 @@ fn cells_that_differ_in_fused_touches_share_one_fit_and_all_c_are_trained_togeth
         fits.entry(key).or_default().push(time.fit_s.to_bits());
     }
     assert_eq!(fits.len(), 4);
-    // A clock that ran twice would not show the same nanosecond.
+    // Two separate measurements would not give the same nanosecond.
     let mut distinct = Vec::new();
     for times in fits.values() {
         assert!(times.len() == 3 && times.iter().all(|t| *t == times[0]));
@@ -282,7 +282,7 @@ fn the_only_candidate_is_what_is_given_and_a_useless_one_is_not_chosen() {
         assert_eq!(given, only);
         assert_eq!(configuration.c, None);
         let gamma = given.gamma_used.unwrap();
-        // Standardised features: γ 'scale' is 1 / m.
+        // For standardised features, γ 'scale' is 1 / m.
         assert!((gamma - 1.0 / 16.0).abs() < 1e-12);
         let multiple = with("c_grid = [10.0]\ngamma_grid = [1.0, 1e6]\ncv_folds = 3");
         for (_, chosen) in multiple {
@@ -306,7 +306,7 @@ fn a_choice_by_some_of_the_touches_does_not_see_the_others() {
             .map(|(_, score)| score.c_used)
             .collect()
     };
-    // The five touches of a smaller training set are the first of a larger one's.
+    // The five touches of a smaller training set are the first of a larger one.
     assert_eq!(chosen(&few, 5), chosen(&many, 5));
     assert_eq!(chosen(&many, 20), chosen(&many, 5));
 }
@@ -332,11 +332,11 @@ fn keys_of_trees_and_neighbours_reach_them() {
         let shares = rows.iter().map(|(_, score)| score.accuracy);
         shares.sum::<f64>() / rows.len() as f64
     };
-    // One split parts the six objects in two: no more than two of them are ever named.
+    // One split divides the six objects into two groups, so at most two objects are ever predicted.
     assert!(accuracy("random_forest", "n_trees = 1\nmax_depth = 1") <= 2.0 / 6.0);
     assert!(accuracy("random_forest", "n_trees = 1") > 2.0 / 6.0);
     assert!(accuracy("random_forest", "n_trees = 1") < accuracy("random_forest", "n_trees = 50"));
-    // All rows vote: every touch gets the same label.
+    // All rows vote, so every touch has the same label.
     let all = accuracy("k_nearest", "n_neighbours = 120");
     assert!((all - 1.0 / 6.0).abs() < 1e-12, "{all}");
     assert!(accuracy("k_nearest", "") > 2.0 / 6.0);

@@ -1,4 +1,4 @@
-//! Frames and splits of a study, against touches pressed one by one and rows counted by hand.
+//! Frames and splits of a study, compared with touches that are pressed one by one and rows that are counted individually.
 
 use crate::study::Study;
 use bubbletouch::contact::{Workspace, press_to_depth};
@@ -9,7 +9,7 @@ use bubbletouch::study::{TouchedObject, sample_frames, simulate_array};
 use bubbletouch::world::{Touch, TouchAxis};
 use std::collections::BTreeSet;
 
-/// Some touches are beside the array, some deeper than its stroke.
+/// Study in which some touches miss the array and some exceed its stroke.
 const STUDY: &str = r#"
 question = "What happens to every touch?"
 trials = 6
@@ -71,7 +71,7 @@ fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
     let depths = |depths: &str| {
         let text = STUDY.replace("depth_mm = [2.0, 4.0]", depths);
         let mut study = Study::new(&text.replace(", 400.0]", "]"));
-        // A study has no depth so small that rounding makes it none.
+        // Depths of a study are large enough not to vanish by rounding.
         let touches = study
             .touched
             .iter_mut()
@@ -94,7 +94,7 @@ fn frames_without_a_deflection_are_counted_and_none_is_of_a_deep_touch() {
     assert_eq!((n_empty, n_saturated), (0, n_touches));
 }
 
-/// What the equations of contact give, taxel by taxel and sphere by sphere; `None` if no travel meets the object.
+/// Evaluates the contact equations for each taxel and sphere; returns `None` if no travel reaches the object.
 fn by_the_equations(array: &TaxelArray, object: &TouchedObject, touch: &Touch) -> Option<Vec<f64>> {
     let pose = touch.patch_from_object(&object.rests[touch.rest]);
     let grid = array.grid();
@@ -158,7 +158,7 @@ fn with_recognition(keys: &str) -> Study {
     Study::new(&format!("{STUDY}{keys}\n"))
 }
 
-/// Every row is on one side, once.
+/// Asserts that every row is on one side exactly once.
 fn assert_is_a_division(split: &Split, n_rows: usize) {
     let mut rows = [split.train.clone(), split.test.clone()].concat();
     rows.sort_unstable();
@@ -199,7 +199,7 @@ fn what_is_kept_together_is_never_on_both_sides() {
     }
 }
 
-/// Poses that are drawn, but for two resting values of a tilt.
+/// Returns a study with drawn poses, except for two listed values of a tilt.
 fn with_drawn_poses(keys: &str) -> String {
     let study = STUDY
         .replace(
@@ -263,7 +263,7 @@ fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together
                 assert_eq!(near, None, "{kind}: touch {test}");
             }
         }
-        // Not every touch is alone: neighbours there are.
+        // Some groups contain several touches, so neighbours exist.
         let keys = study.sweep.group_keys.as_ref().unwrap();
         let groups: BTreeSet<usize> = keys.iter().copied().collect();
         assert!(
@@ -272,7 +272,7 @@ fn no_test_touch_has_a_training_touch_of_its_object_nearer_than_is_kept_together
             groups.len()
         );
     }
-    // A random split has such neighbours, so that the law says something.
+    // A random split separates neighbours, so the law is not trivial.
     let study = Study::new(&with_drawn_poses(""));
     let offsets: Vec<[f64; 2]> = study
         .touched

@@ -1,4 +1,4 @@
-//! Studies of what real skins do to a signal: one imperfection at a time, against all of them and against touches read by hand.
+//! Studies of sensor errors: one error at a time, compared with all errors together and with touches that are read individually.
 
 use crate::command::Case;
 use crate::study::{Study, trials_of};
@@ -145,7 +145,7 @@ fn another_skin_reads_test_touches_and_nothing_else() {
     };
     let (train, test) = (&same.split.train, &same.split.test);
     assert_eq!(rows(train, &same), rows(train, &other));
-    // Where the gains of one skin are g and those of another h, the same press reads g x and h x.
+    // If the gains of one skin are g and those of another h, the same press gives g x and h x.
     let (one, another) = (rows(test, &same), rows(test, &other));
     let mut ratios = vec![None; one.ncols()];
     for ((place, a), b) in one.indexed_iter().zip(&another) {
@@ -157,7 +157,7 @@ fn another_skin_reads_test_touches_and_nothing_else() {
     }
     let known: Vec<f64> = ratios.into_iter().flatten().collect();
     assert!(known.len() > 100 && known.iter().all(|&ratio| (ratio - 1.0).abs() > 1e-6));
-    // Each trial has a skin of its own to test on.
+    // Each trial has another test skin.
     let (a, b) = (&other.data.records, &read(1, 1).data.records);
     let both = other
         .split
@@ -193,7 +193,7 @@ fn a_touch_is_read_as_a_press_that_goes_on_after_another_touch() {
             &mut workspace,
         );
         let pressed = workspace.deflections();
-        // Frames are kept in f32.
+        // Frames are stored in f32.
         pressed.iter().map(|&d| f64::from(d as f32)).collect()
     };
     let steps = [

@@ -1,4 +1,4 @@
-//! Features of images in a study: what they bring, what they are learned from, and what they refuse.
+//! Image features in a study: their effect, their training data, and the inputs that they refuse.
 
 use crate::study::{Study, laid_out};
 use bubbletouch::recognition::features::{Cut, Features, ImageFeatures, Workspace};
@@ -36,7 +36,7 @@ features = ["raw", "fourier_mellin+polar_harmonics+descriptors"]
 classifier = "linear_svm"
 "#;
 
-/// Accuracies of raw measurements and of joined invariants.
+/// Returns the accuracies of raw measurements and of joined invariant features.
 fn accuracies(text: &str) -> [f64; 2] {
     let tables = Study::new(text).run();
     let accuracies: Vec<f64> = tables
@@ -59,7 +59,7 @@ fn invariants_recognise_what_is_turned_any_way_and_so_do_estimated_images() {
     assert!(invariant > raw + 0.1, "{raw} {invariant}");
 }
 
-/// What a configuration learns from and is tested on in a trial.
+/// Returns the training and test features of a configuration in a trial.
 fn features(text: &str, configuration: usize, trial: usize) -> FeatureSet {
     let study = laid_out(text).unwrap();
     study
@@ -85,7 +85,7 @@ fn features_of_a_whole_frame_are_those_of_the_frame() {
     }
 }
 
-/// Test touches that were learned from would be told apart by what else is tested.
+/// Image estimators fitted to test touches would depend on the other test touches.
 #[test]
 fn what_is_learned_for_images_does_not_know_test_touches() {
     let sensed = "ensemble = \"principal_components\"\nmeasurements = 8";
@@ -93,7 +93,7 @@ fn what_is_learned_for_images_does_not_know_test_touches() {
     let text = text.replace("trials = 1", "trials = 2");
     let text = text.replace("per_object = 40", "per_object = 8");
     let [set, other] = [0, 1].map(|trial| features(&text, 1, trial));
-    // Another split: the same touches measure otherwise, by what was learned from others.
+    // With another split, the same touches have other features, because other touches were used for fitting.
     assert_ne!(set.split.test, other.split.test);
     assert_ne!(set.data.records.row(0), other.data.records.row(0));
 }
@@ -111,7 +111,7 @@ fn a_depth_changes_no_feature_of_what_is_behind_the_foremost_point() {
     };
     let [shallow, deep] = ["2.0", "4.0"].map(at);
     let size = shallow.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-    // Frames are kept in f32; an area may count a taxel more for it.
+    // Frames are stored in f32, so an area may differ by one taxel.
     let is_near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-3 * size;
     let n_near = shallow
         .iter()
@@ -150,7 +150,7 @@ fn shear_has_no_image() {
     }
 }
 
-/// Flat layouts, as dense: what differs is where taxels are. Bent so little, so are the others.
+/// Flat layouts have equal density; only the positions of the taxels differ. Slightly curved layouts are equivalent.
 #[test]
 fn every_layout_has_images_and_their_invariants_recognise_as_those_of_the_grid() {
     let skin = "stroke_mm = 5.0\ncurvature_radius_mm = 2000.0";
@@ -191,7 +191,7 @@ fn what_has_no_image_stands_in_the_same_tables_as_what_is_behind_the_foremost_po
     assert!(summary.is_some());
 }
 
-/// Listed poses, so that a tilt can be left out.
+/// Returns a study with listed poses, so that one tilt can be held out.
 fn with_copies(keys: &str) -> String {
     let poses = "offset_x_mm = [-4.0, 0.0, 5.0]\nyaw_deg = [0.0, 40.0, 100.0, 200.0, 300.0]\n\
                  tilt_x_deg = [0.0, 5.0]\ntilt_y_deg = [0.0, 5.0]\n";
@@ -235,7 +235,7 @@ fn copies_follow_all_touches_are_as_deep_as_those_that_they_are_of_and_change_no
     }
     // A single taxel has no tilt.
     assert!(n_changed > 200, "{n_changed} of 240");
-    // Each copy has a tilt of its own.
+    // Each copy has a different tilt.
     assert_ne!(records.row(n_touches), records.row(n_touches + n_train));
 }
 

@@ -1,4 +1,4 @@
-//! Intervals of accuracies over trials come from the counts of the trials.
+//! Intervals of accuracies over trials are computed from the counts of the trials.
 
 use crate::study::Study;
 use bubbletouch::recognition::statistics::interval::Interval;
@@ -31,7 +31,7 @@ fn run(keys: &str) -> Tables {
     Study::new(&format!("{head}\n{STUDY}{recognition}")).run()
 }
 
-/// Of each configuration its summary, the numbers of test rows and of right answers of all trials.
+/// Returns the summary of each configuration, with the numbers of test rows and of correct rows over all trials.
 fn configurations(tables: &Tables) -> Vec<(CellScore, usize, usize)> {
     let found = tables.summary.iter().map(|(configuration, score)| {
         let trials = tables
@@ -76,7 +76,7 @@ fn cells_with_other_counts_over_their_trials_have_other_intervals() {
         let [(less, _, fewer), (more, _, n)] = pair else {
             continue;
         };
-        // Rounding to the rows of one trial hides differences of fewer than seven answers.
+        // Rounding to the rows of one trial hides differences of fewer than seven rows.
         assert_eq!(fewer < n, less.accuracy_low < more.accuracy_low);
         assert_eq!(fewer < n, less.accuracy_high < more.accuracy_high);
     }

@@ -1,4 +1,4 @@
-//! Packings that a folder keeps: read again if they are whole, made again if they are not.
+//! Cached packings in a folder: complete ones are read again, others are computed again.
 
 use crate::mesh_shapes::cuboid;
 use bubbletouch::Result;

@@ -1,4 +1,4 @@
-//! Laws of studies that recognise: each configuration stands alone, exports are the run's, repetition makes no claim stronger.
+//! Laws of recognition studies: configurations are independent, exports equal the run, and repetition does not increase significance.
 
 use crate::study::{Study, laid_out};
 use bubbletouch::random::Seed;
@@ -62,7 +62,7 @@ fn scores(tables: &Tables) -> Vec<TrialScore> {
         .collect()
 }
 
-/// Test sensors shared the measurements of the first where something was learned for measurements.
+/// Regression test: configurations of other test sensors shared the measurements of the first one if something was fitted before measuring.
 #[test]
 fn every_configuration_alone_scores_what_it_scores_in_its_sweep() {
     const SKINS: [&str; 2] = ["\"same_skin\"", "\"another_skin\""];
@@ -110,7 +110,7 @@ fn n_correct(set: &FeatureSet) -> usize {
         .count()
 }
 
-/// What is learned for measurements is learned from the whole split, however few touches a configuration learns from.
+/// Projections are fitted to the whole split, even if a configuration trains on fewer touches.
 #[test]
 fn exported_rows_classified_elsewhere_give_the_answers_of_the_run() {
     let signal = "noise_std_full_scale = 0.1";
@@ -146,7 +146,7 @@ fn exported_rows_classified_elsewhere_give_the_answers_of_the_run() {
     }
 }
 
-/// Splits by pose come again and again; without noise their trials are the same.
+/// Splits by pose repeat; without noise, their trials are equal.
 #[test]
 fn trials_that_repeat_splits_make_no_claim_stronger() {
     let text = |trials: usize, split: &str| {
@@ -170,7 +170,7 @@ fn trials_that_repeat_splits_make_no_claim_stronger() {
     for (_, score) in &often.summary {
         assert_eq!(score.bootstrap_low, None);
     }
-    // Splits that are drawn are each another one, and the table has no such column.
+    // Drawn splits are all different, so the table has no such column.
     let drawn = run(&text(6, "random"));
     assert!(
         scores(&drawn)
@@ -236,7 +236,7 @@ fn a_choice_among_one_value_is_that_value() {
             assert_eq!(scaled(keys), given, "{scaling}: {keys}");
         }
     }
-    // γ of a choice among several is a multiple of that of all training rows, too.
+    // If γ is chosen among several values, it is also a multiple of the default γ of all training rows.
     let rows = |keys: &str| fits(&format!("scaling = \"none\"\n{keys}"));
     let gammas = |scores: &[TrialScore]| -> Vec<f64> {
         scores.iter().filter_map(|score| score.gamma_used).collect()
@@ -297,7 +297,7 @@ fn chance_is_that_of_each_configuration() {
     assert_eq!(column, Some(vec![0.5, 0.5, 0.25, 0.25]));
 }
 
-/// A strength at which an error shows.
+/// Returns a strength at which a sensor error has a visible effect.
 fn strong(strength: &Strength) -> f64 {
     match (strength.is_whole, strength.unit) {
         (true, _) => 5.0,

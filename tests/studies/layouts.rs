@@ -1,4 +1,5 @@
-//! Layouts of taxels as an axis: the grid is what it is without one, others are touched, read and measured as their taxels lie.
+//! Layouts of taxels as an axis: the grid gives the results of a study without the axis; other layouts are pressed, read and measured at their taxels'
+//! positions.
 
 use crate::command::Case;
 use crate::study::laid_out;

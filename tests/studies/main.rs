@@ -1,4 +1,4 @@
-//! Studies of every kind end to end, and the classifiers that they train.
+//! Studies of every kind from file to results, and the classifiers that they train.
 
 #[path = "../fixtures/command/mod.rs"]
 mod command;

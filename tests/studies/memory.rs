@@ -1,4 +1,4 @@
-//! A study within a ceiling of memory.
+//! Studies within a memory limit.
 
 use crate::command::Case;
 use crate::study::Study;
@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Touches that remember the one before, so that frames are read out of their order too.
+/// Study whose touches depend on the preceding touch, so that frames are not read in order.
 const SMALL: &str = r#"
 question = "?"
 trials = 2
@@ -42,7 +42,7 @@ classifier = ["linear_svm", "k_nearest"]
 c = [0.1, 1.0]
 "#;
 
-/// 3,200 touches of 16,384 taxels, which would take 210 MB if all taxels were kept.
+/// Study of 3,200 touches with 16,384 taxels; all taxels together would take 210 MB.
 const LARGE: &str = r#"
 question = "?"
 trials = 1
@@ -71,14 +71,14 @@ train_touches = 30
 solver_memory_gib = 0.01
 "#;
 
-/// The least ceiling of a study, as its refusal says it.
+/// Returns the minimum memory limit of a study, as stated in its refusal.
 fn least_gib(case: &Case, study: &str) -> String {
     let output = case.run(&["plan", study, "--memory-gib", "0.01"]);
     assert_eq!(output.status.code(), Some(2));
     let said = String::from_utf8(output.stderr).unwrap();
     let (_, after) = said.split_once("at least ").expect("how much it takes");
     let (least, _) = after.split_once(" GiB").expect("a unit");
-    // It is rounded to hundredths.
+    // The number is rounded to hundredths.
     format!("{:.2}", least.parse::<f64>().unwrap() + 0.01)
 }
 
@@ -125,7 +125,7 @@ fn a_ceiling_too_low_is_refused_with_what_it_takes() {
     while free.n_at_once(most) != Some(n_threads) {
         most *= 1.01;
     }
-    // The lower the ceiling, the less is done at once.
+    // The lower the limit, the fewer work items are computed together.
     for share in [0.99, 0.97, 0.95] {
         let n = free.n_at_once(share * most).unwrap_or(0);
         assert!(n <= n_before, "{n} items at once at {share}");
@@ -145,7 +145,7 @@ fn a_ceiling_too_low_is_refused_with_what_it_takes() {
     assert!(!case.path("results").exists());
 }
 
-/// Which kind of touch is it? In few frames on few taxels.
+/// Study of kinds of human touch, with few frames and few taxels.
 const HUMAN: &str = r#"
 question = "?"
 
@@ -166,7 +166,7 @@ ratio = 4
 classifier = "k_nearest"
 "#;
 
-/// Refused within the time that a plan takes, with exit code 2 and this.
+/// Asserts that the command is refused as fast as a plan, with exit code 2 and this text.
 fn assert_refused_at_once(case: &Case, arguments: &[&str], said: &[&str]) {
     let start = Instant::now();
     let output = case.run(arguments);
@@ -205,7 +205,7 @@ fn touches_that_memory_cannot_hold_are_refused_before_any_is_drawn() {
     }
 }
 
-/// Cells of so many values on each of three axes, in as many groups as configurations of two of them.
+/// Returns a study with this many values on each of three axes; the groups are the combinations of two of them.
 fn configurations(values: [usize; 3]) -> String {
     let [noise, smoothing, ratio] = values.map(|n| {
         let values: Vec<String> = (1..=n)
@@ -223,12 +223,12 @@ fn configurations(values: [usize; 3]) -> String {
 #[test]
 fn a_study_is_planned_in_time_that_grows_as_its_cells_do_and_more_than_a_million_are_refused() {
     let case = Case::new();
-    // Ratios near 1 name few different m of 64 taxels.
+    // Ratios near 1 give few different m for 64 taxels.
     case.file("large.toml", configurations([250, 200, 1]));
     let start = Instant::now();
     let (said, _) = case.succeeds(&["plan", "large.toml"]);
     assert!(said.contains("50001, of 50000 configurations"), "{said}");
-    // With every group counting all configurations before it, minutes.
+    // If every group counted all configurations before it, this would take minutes.
     assert!(start.elapsed() < Duration::from_secs(20));
     case.file("huge.toml", configurations([1000, 1001, 1]));
     case.file("endless.toml", configurations([10_000, 10_000, 30]));

@@ -1,4 +1,4 @@
-//! The next touch as an axis of a study: against choosing by hand, touch by touch.
+//! The choice of the next touch as an axis of a study, compared with a choice touch by touch.
 
 use crate::study::{Study, laid_out, trials_of};
 use bubbletouch::random::Seed;
@@ -74,7 +74,7 @@ fn with(keys: &str) -> String {
     format!("{STUDY}{keys}\n")
 }
 
-/// Decisions of a configuration, each after one touch after the other.
+/// Counts the correct decisions of a configuration, computed touch by touch.
 fn n_correct_by_hand(
     study: &Study,
     set: &FeatureSet,
@@ -89,7 +89,7 @@ fn n_correct_by_hand(
     let trained = classifier.train(&training, &seed).unwrap();
     let scores = trained.scores(test.records.view()).unwrap();
     let answers = trained.labels_of_scores(scores.view()).to_vec();
-    // What is answered to training touches that are not learned.
+    // Predicted labels of training touches by classifiers that were not trained on them.
     let mut told = Vec::new();
     for fold in stratified_k_fold(training.targets.view(), 5, &seed).unwrap() {
         let of_fold = classifier.train(&rows(&training, &fold.train).unwrap(), &seed);
@@ -161,7 +161,7 @@ fn each_choice_scores_what_a_robot_that_makes_it_touch_by_touch_does() {
                 .unwrap()
         })
         .collect();
-    // One touch has no next.
+    // With one touch per decision, there is no next touch.
     assert_eq!(tables.accuracy.len(), 2 * (1 + 3 + 3));
     let mut found = Vec::new();
     for (configuration, score) in &tables.accuracy {

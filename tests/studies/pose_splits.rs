@@ -1,4 +1,4 @@
-//! Splits by pose: no test touch has a neighbour of the held-out kind among what is learned.
+//! Splits by pose: no test touch has a neighbour of the held-out kind among the training touches.
 
 use crate::study::Study;
 use bubbletouch::recognition::data::split::Split;
@@ -7,7 +7,7 @@ use bubbletouch::recognition::statistics::interval::Interval;
 use bubbletouch::study::table::Tables;
 use bubbletouch::world::Touch;
 
-/// Values that are out of order, so that halves are of sizes and not of places in a list.
+/// Study with unordered values, so that halves depend on the sizes of values and not on their positions.
 const STUDY: &str = r#"
 question = "Which poses are held out?"
 trials = 8
@@ -53,7 +53,7 @@ fn tenths_of_mm(metres: f64) -> usize {
     (1e4 * metres).round() as usize
 }
 
-/// The touches of each side of each trial's split; every object has as many of each.
+/// Checks the touches of both sides in each trial; every object has equally many of each.
 fn sides(split: &str, check: impl Fn(usize, &[&Touch], &[&Touch])) {
     let study = Study::new(&with_split(split));
     let touches: Vec<&Touch> = study.touched.iter().flat_map(|t| &t.touches).collect();
@@ -68,7 +68,7 @@ fn sides(split: &str, check: impl Fn(usize, &[&Touch], &[&Touch])) {
     }
 }
 
-/// Values of a side, each once, rising.
+/// Returns the distinct values of one side, ascending.
 fn values<T: Ord>(side: &[&Touch], value: impl Fn(&Touch) -> T) -> Vec<T> {
     let mut all: Vec<T> = side.iter().map(|touch| value(touch)).collect();
     all.sort_unstable();
@@ -117,7 +117,7 @@ fn opposite_blocks_share_no_offset_and_no_yaw_and_each_is_tested_in_turn() {
             assert!(is_above || tested[tested.len() - 1] < learned[0]);
             is_above
         });
-        // Of all tilts and depths on both sides.
+        // Both sides contain all tilts and depths.
         for side in [train, test] {
             assert_eq!(values(side, tilt).len(), 4);
             assert_eq!(values(side, |touch| tenths_of_mm(touch.depth)).len(), 3);
@@ -199,7 +199,7 @@ fn a_split_is_an_axis_beside_which_the_random_one_has_its_fraction() {
     let rows: Vec<_> = rows
         .map(|(_, score)| (score.n_test, score.n_groups))
         .collect();
-    // Each row is a group where none are held out, so that the column is of all rows.
+    // Each row counts as a group if none are held out, so that all rows have the column.
     let random = (360, Some(360));
     assert_eq!(rows, [random, random, (180, Some(1)), (180, Some(1))]);
     let (random, tilted) = (&tables.summary[0].1, &tables.summary[1].1);
@@ -216,7 +216,7 @@ fn run(text: &str) -> Tables {
     Study::new(text).run()
 }
 
-/// The groups of trials that each test one whole group, by its number.
+/// Returns the groups of trials that each test one whole group, by its number.
 fn tests_of(tables: &Tables, group: impl Fn(usize) -> usize) -> Vec<[GroupCount; 1]> {
     let scores = tables.accuracy.iter().map(|(_, score)| score);
     let counts = scores.map(|score| {
@@ -238,7 +238,7 @@ fn the_interval_of_poses_held_out_comes_from_them_and_not_from_touches() {
         ("unseen_depth", 3),
     ] {
         let tables = run(&with_split(split));
-        // Nothing is known of other yaws from one yaw.
+        // A classifier trained on one yaw cannot recognise other yaws.
         for (_, score) in &tables.accuracy {
             let interval = (score.accuracy_low, score.accuracy_high);
             assert_eq!((score.n_groups, interval), (Some(1), (0.0, 1.0)), "{split}");
@@ -256,7 +256,7 @@ fn the_interval_of_poses_held_out_comes_from_them_and_not_from_touches() {
             (found.accuracy_low, found.accuracy_high),
             (expected.low, expected.high)
         );
-        // All touches that were tested, each as if it were for itself.
+        // All tested touches, each as a group of its own.
         let tested = &counts[..n_groups];
         let sum = |of: fn(&GroupCount) -> usize| tested.iter().map(|[group]| of(group)).sum();
         let (n_correct, n_rows) = (sum(|group| group.n_correct), sum(|group| group.n_rows));

@@ -32,7 +32,7 @@ fn the_quickstart_still_gives_its_committed_results() {
             (score.trial, score.n_train, score.n_test),
             (old.trial, old.n_train, old.n_test)
         );
-        // Processors round differently, which can turn a row that is close to two objects.
+        // Processors round differently, which can change the label of a row that is close to two objects.
         assert!(
             score.n_correct.abs_diff(old.n_correct) <= 1,
             "configuration {} trial {}: {} of {} are correct, {} were",

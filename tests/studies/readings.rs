@@ -50,7 +50,7 @@ fn features(text: &str) -> FeatureSet {
     study.first().features((0, 0), &Silent).unwrap()
 }
 
-/// Of every trial.
+/// Returns the number of correct rows for every trial.
 fn n_correct(text: &str) -> Vec<usize> {
     let tables = laid_out(text).unwrap().run(&Silent).unwrap();
     let scores = tables.accuracy.iter().map(|(_, score)| score.n_correct);
@@ -76,7 +76,7 @@ fn readings_differ_by_their_noise_alone_and_only_training_learns_of_them() {
     for (row, label) in thrice.data.targets.iter().enumerate() {
         assert_eq!(*label, once.data.targets[row % n]);
     }
-    // Independent noise of 0.1 of 5 mm: differences of two readings have √2 times its standard deviation.
+    // With independent noise of 0.1 of 5 mm, differences of two readings have √2 times its standard deviation.
     for (a, b) in [(0, 1), (0, 2), (1, 2)] {
         let difference = reading(a) - reading(b);
         let std = (difference.mapv(|d| d * d).mean().unwrap() / 2.0).sqrt();
@@ -85,7 +85,7 @@ fn readings_differ_by_their_noise_alone_and_only_training_learns_of_them() {
     }
 }
 
-/// The run against training by hand on every reading.
+/// Compares the run with separate training on every reading.
 #[test]
 fn a_run_learns_all_readings_and_is_tested_on_one() {
     let trials = |text: &str| text.replace("trials = 1", "trials = 5");
@@ -116,7 +116,7 @@ fn without_noise_a_touch_is_learned_once() {
     assert_eq!(features(&once).data.records.len_of(Axis(0)), 120);
 }
 
-/// Another reading of a touch that a fold holds out would make any C look good.
+/// With another reading of a held-out touch in training, any C would seem good.
 #[test]
 fn tilted_copies_come_after_all_readings_and_are_of_the_first() {
     let tilted = "features = \"descriptors\"\ntilt_augmentation = 2";

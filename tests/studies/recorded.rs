@@ -1,4 +1,4 @@
-//! Studies of recorded frames: what our own skins read, taken for recordings, gives what the study of those skins gives.
+//! Studies of recorded frames: readings of simulated skins, used as recordings, give the results of the simulated study.
 
 use crate::command::Case;
 use crate::study::{Study, laid_out};
@@ -55,7 +55,7 @@ fn scores(study: &RecognitionStudy) -> Vec<TrialScore> {
         .collect()
 }
 
-/// What the study above reads without noise: labels, and frames as n × 2 × 8 × 8, metres.
+/// Returns the readings of the study above without noise: labels, and frames of n × 2 × 8 × 8, metres.
 fn simulated() -> (Study, Vec<usize>, Array4<f32>) {
     let study = Study::new(&format!("{HEAD}{SKIN}taxels = 8\n{OBJECTS}{REST}"));
     let frames = simulate_array(&study.touched, &study.plan.arrays[0], 2, &Silent);
@@ -81,12 +81,12 @@ fn frames_of_our_own_skin_are_recognised_as_that_study_recognises_them_to_the_bi
     let replayed = laid_out(&recorded(case.folder(), names, REST)).unwrap();
     let expected = scores(&study.of_items());
     assert_eq!(scores(&replayed), expected);
-    // Some are wrong, or anything would do.
+    // Some predictions are wrong; otherwise, the comparison would be trivial.
     assert!(
         expected.iter().any(|score| score.n_correct < score.n_test),
         "{expected:?}"
     );
-    // In counts of a converter that rests at 100 it is the same skin, but for the last digits.
+    // In counts of a converter with the zero 100, the skin is the same up to the last digits.
     let counts = frames.mapv(|metres| 100.0 + 65536.0 * metres);
     write(case.folder(), &counts, &labels);
     let counted = "zero = 100.0\nfull_scale = 427.68\nnames = [\"golf\", \"tennis\", \"baseball\"]";
@@ -103,7 +103,7 @@ fn touches_may_come_in_any_order_and_groups_are_held_out_whole() {
     let frames = frames.select(ndarray::Axis(0), &order);
     let labels: Vec<usize> = order.iter().map(|&touch| labels[touch]).collect();
     write(case.folder(), &frames, &labels);
-    // Touches of a group carry their number, as a reading of the first taxel.
+    // The first taxel of each touch contains the number of its group.
     let groups: Vec<usize> = (0..n).map(|touch| 7 + touch % 6).collect();
     write_integers(&case.folder().join("groups.npy"), groups.clone()).unwrap();
     let path = case.folder().join("groups.npy").display().to_string();
@@ -155,7 +155,7 @@ fn an_array_of_any_sides_is_measured_by_every_ensemble() {
             summary.accuracy
         );
     }
-    // The largest reading is the full scale: one touch, at least, is at it, none beyond.
+    // The largest reading is the full scale: at least one touch reaches it, and none exceeds it.
     let missed = tables
         .limits
         .iter()

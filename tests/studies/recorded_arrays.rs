@@ -1,4 +1,4 @@
-//! Recorded frames in every form that NumPy and spreadsheets write: the same study of the same touches, or one sentence that says what is wrong.
+//! Recorded frames in every format that NumPy and spreadsheets write: each gives the same study, and an invalid file gives one clear sentence.
 
 use crate::command::Case;
 use crate::study::laid_out;
@@ -14,13 +14,13 @@ use std::path::Path;
 const N: usize = 60;
 const NAMES: [&str; 3] = ["cup", "ball", "pen"];
 
-/// Frames of three classes, 8 × 8, of which a linear SVM gets some wrong.
+/// Returns frames of three classes, 8 × 8, of which a linear SVM misclassifies some.
 fn frames() -> Array3<f64> {
     Array3::from_shape_fn((N, 8, 8), |(touch, row, column)| {
         let (class, k) = (label(touch), touch * 64 + row * 8 + column);
         let noise = ((k * k * 31 + k * 17) % 997) as f64 / 997.0;
         let away = (row as f64 - 3.5).powi(2) + (column as f64 - 2.0 - 0.5 * class as f64).powi(2);
-        // Halves of 1/64, which float16 holds, too.
+        // Multiples of 1/128, which float16 also represents.
         (64.0 * ((-away / 4.0).exp() + 0.9 * noise)).round() / 128.0
     })
 }
@@ -51,7 +51,7 @@ fn error(keys: &str) -> String {
     study(keys).err().expect(keys).to_string()
 }
 
-/// `key = "file"` in a folder.
+/// Returns the line `key = "file"` for a file in a folder.
 fn key(folder: &Path, key: &str, name: &str) -> String {
     format!("{key} = {:?}\n", folder.join(name).display().to_string())
 }
@@ -60,7 +60,7 @@ fn keys(folder: &Path, frames: &str, labels: &str) -> String {
     key(folder, "frames", frames) + &key(folder, "labels", labels)
 }
 
-/// A `.npy` file of elements that are given as bytes.
+/// Returns the bytes of a `.npy` file with the given elements.
 fn npy(descr: &str, is_fortran: bool, shape: &[usize], bytes: &[u8]) -> Vec<u8> {
     let order = if is_fortran { "True" } else { "False" };
     let shape: String = shape.iter().fold(String::new(), |mut text, n| {
@@ -88,7 +88,7 @@ fn texts(texts: &[&str]) -> Vec<u8> {
 }
 
 fn half(number: f64) -> u16 {
-    // Positive multiples of 1/128 below 2: a fraction of ten bits after the leading one.
+    // Positive multiples of 1/128 below 2: the fraction has ten bits after the leading one.
     if number == 0.0 {
         return 0;
     }
@@ -248,7 +248,7 @@ fn labels_of_every_form_are_the_same_classes() {
     );
 }
 
-/// A `.npz` archive of `.npy` files, stored or compressed.
+/// Writes a `.npz` archive of `.npy` files, stored or compressed.
 fn archive(case: &Case, name: &str, members: &[(&str, &str)], is_compressed: bool) {
     let mut archive = zip::ZipWriter::new(std::fs::File::create(case.path(name)).unwrap());
     let method = match is_compressed {
@@ -328,7 +328,7 @@ fn each_taxel_may_rest_at_a_reading_of_its_own() {
     let case = written();
     let folder = case.folder();
     let usual = scores(&(keys(folder, "frames.npy", "labels.npy") + "full_scale = 2.0"));
-    // Taxels rest at 62, 60, 56, 48, 32 and read 64 at the full scale: the same shares of the full scale, to the bit.
+    // The taxels have the zeros 62, 60, 56, 48, 32 and read 64 at full scale: the fractions of full scale are bitwise equal.
     let range = |row: usize, column: usize| 2f64.powi(1 + ((row * 3 + column) % 5) as i32);
     let zeros = Array::from_shape_fn((8, 8), |(row, column)| 64.0 - range(row, column));
     let own = Array3::from_shape_fn((N, 8, 8), |(touch, row, column)| {
@@ -340,9 +340,9 @@ fn each_taxel_may_rest_at_a_reading_of_its_own() {
     let own_keys = keys(folder, "own.npy", "labels.npy") + "full_scale = 64.0\n";
     let with = |zero: &str| own_keys.clone() + &key(folder, "zero", zero);
     assert_eq!(scores(&with("zero.npy")), usual);
-    // One for all is wrong here.
+    // A single zero for all taxels is wrong here.
     assert_ne!(scores(&(own_keys.clone() + "zero = 32.0")), usual);
-    // As a list, and as a table of rows and columns.
+    // The zeros as a list, and as a table of rows and columns.
     let list = zeros.iter().copied().collect::<ndarray::Array1<f64>>();
     write_npy(&case.path("list.npy"), &list).unwrap();
     let rows = zeros.outer_iter().map(|row| {
@@ -352,7 +352,7 @@ fn each_taxel_may_rest_at_a_reading_of_its_own() {
     std::fs::write(case.path("zero.csv"), rows.collect::<String>()).unwrap();
     assert_eq!(scores(&with("list.npy")), usual);
     assert_eq!(scores(&with("zero.csv")), usual);
-    // Axes in another order are those of the frames.
+    // Axes in another order are the axes of the frames.
     let turned = own
         .permuted_axes([0, 2, 1])
         .as_standard_layout()
@@ -366,7 +366,7 @@ fn each_taxel_may_rest_at_a_reading_of_its_own() {
         scores(&(keys_turned + &key(folder, "zero", "turned_zero.npy"))),
         usual
     );
-    // What is wrong is said in one sentence.
+    // Each invalid file gives one sentence.
     let refused = |name: &str, zeros: &ArrayD<f64>, expected: &str| {
         write_npy(&case.path(name), zeros).unwrap();
         let said = error(&with(name));
@@ -437,7 +437,7 @@ fn clipped_readings_are_saturated_and_others_are_not() {
     let single = frames().mapv(|reading| reading.min(0.7) as f32);
     write_npy(&case.path("single.npy"), &single).unwrap();
     assert_eq!(saturated("single.npy", "full_scale = 0.7").0, reaches(0.7));
-    // A single taxel at one level is stuck, and no plateau of the skin.
+    // A single taxel with a constant value is stuck; this is not a saturation level of the skin.
     let mut stuck = frames();
     stuck.slice_mut(ndarray::s![.., 2, 5]).fill(3.0);
     write_npy(&case.path("stuck.npy"), &stuck).unwrap();
@@ -466,7 +466,7 @@ fn a_taxel_that_is_often_nan_is_masked_and_another_is_refused_with_the_rule() {
             (&last.limit[..], last.count, last.total),
             ("taxels that are masked", 1, 64)
         );
-        // Zeros there give the same touches.
+        // With zeros at these taxels, the touches are the same.
         frames.slice_mut(ndarray::s![.., 3, 4]).fill(0.0);
         write_npy(&case.path("zero.npy"), &frames).unwrap();
         assert_eq!(
@@ -671,7 +671,7 @@ fn a_given_test_set_is_the_split_of_every_trial() {
     let found = study(&both).unwrap();
     let sweep = &found.first().sweep;
     assert_eq!(sweep.splits[0], sweep.splits[1]);
-    // Class by class, those that train first.
+    // Class by class, training touches first.
     let expected: Vec<usize> = (0..N).filter(|touch| touch % 20 >= 14).collect();
     assert_eq!(sweep.splits[0].test, expected);
     let rows = scores(&both);
@@ -720,7 +720,7 @@ fn a_given_test_set_is_the_split_of_every_trial() {
         said.contains("key recognition.folds: given; no such key"),
         "{said}"
     );
-    // The page names the split.
+    // The page states the split.
     case.file(
         "study.toml",
         format!("question = \"?\"\n[recorded]\n{both}\n{REST}"),

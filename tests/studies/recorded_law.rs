@@ -1,4 +1,4 @@
-//! A law: a study of recorded frames of simulated touches gives the results of the simulated study, whatever its signal.
+//! Law: a study of recorded frames of simulated touches gives the results of the simulated study, for any signal.
 
 use crate::command::Case;
 use bubbletouch::signal::SENSOR_ERRORS;
@@ -35,7 +35,7 @@ const TABLES: [&str; 4] = [
     "comparison.csv",
 ];
 
-/// Runs a study, exports its touches, and runs the study of these.
+/// Runs a study, exports its touches, and runs the study of the exported touches.
 fn is_the_same(touched: &str, skin: &str, rest: &str) {
     let case = Case::new();
     let head = "question = \"?\"\ntrials = 2\n";
@@ -76,7 +76,7 @@ fn is_the_same(touched: &str, skin: &str, rest: &str) {
 
 const SKIN: &str = "[skin]\npitch_mm = 4.0\ntaxels = 8\nstroke_mm = 5.0\n";
 
-/// Every sensor error, alone and after noise, of one frame and of several.
+/// Every sensor error is tested alone and after noise, with one frame and with several.
 #[test]
 fn recorded_touches_give_the_results_of_the_simulated_ones_for_every_sensor_error() {
     let mut steps = Vec::new();
@@ -107,7 +107,7 @@ fn recorded_touches_give_the_results_of_the_simulated_ones_for_every_sensor_erro
         steps.push(format!("{step:?}"));
         keys += &own;
     }
-    // All of them together on touches that go on while they are read, with a damper.
+    // All sensor errors together, on touches that continue while they are read, with a damper.
     let signal = format!(
         "[signal]\nsteps = [\"force\", {}]\n{keys}",
         steps.join(", ")
@@ -146,7 +146,7 @@ fn recorded_touches_of_skins_that_read_shear_and_of_other_layouts_give_the_resul
     is_the_same(PRESSED, &format!("{SKIN}layout = \"hexagonal\"\n"), &rest);
 }
 
-/// The simplest recording of the same touches, written by hand, has the history of the simulated ones.
+/// A minimal recording of the same touches has the history of the simulated touches.
 #[test]
 fn recorded_touches_come_after_others_as_simulated_ones_do() {
     let case = Case::new();
@@ -171,7 +171,7 @@ fn recorded_touches_come_after_others_as_simulated_ones_do() {
     let read =
         |folder: &str| std::fs::read_to_string(case.path(folder).join("accuracy.csv")).unwrap();
     assert_eq!(read("recorded"), read("simulated"));
-    // The history counts.
+    // The history has an effect.
     case.file(
         "fresh.toml",
         format!("{head}{recorded}previous_touch = \"none\"\n{skin}{rest}"),
@@ -187,7 +187,7 @@ fn recorded_touches_come_after_others_as_simulated_ones_do() {
     assert_ne!(read("fresh"), read("simulated"));
 }
 
-/// Forces across in a file of their own are the same frames as all values in one; what does not fit is refused.
+/// Tangential forces in a separate file give the same frames as all values in one file; files that do not match are refused.
 #[test]
 fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
     let case = Case::new();
@@ -200,7 +200,7 @@ fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
     let shear: Array5<f32> = read_npy(case.path("touches/shear.npy")).unwrap();
     let all = concatenate![Axis(2), frames.clone().insert_axis(Axis(2)), shear];
     write_npy(&case.path("touches/all.npy"), &all).unwrap();
-    // The first four touches of each class train.
+    // The first four touches of each class are training touches.
     let part = |is_test: bool| -> Vec<usize> {
         (0..18)
             .filter(|touch| (touch % 6 >= 4) == is_test)
@@ -226,7 +226,7 @@ fn shear_in_a_file_of_its_own_is_joined_to_the_frames() {
         format!("{head}[recorded]\n{keys}full_scale = 5e-3\n{skin}{LEARNED}")
     };
     let run = |name: &str, keys: &str, skin: &str| {
-        // Beside its files: paths are those of the folder of the study.
+        // The study is beside its files, so paths are relative to the folder of the study.
         case.file(&format!("touches/{name}.toml"), study(keys, skin));
         let study = format!("touches/{name}.toml");
         case.run(&["run", &study, "--out", name])

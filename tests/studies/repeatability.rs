@@ -1,4 +1,4 @@
-//! What a study's tables depend on: its text and its seed; not other configurations, not other objects.
+//! The tables of a study depend on its text and its seed, but not on other configurations or other objects.
 
 use crate::command::Case;
 use crate::kinds::Kind;
@@ -6,7 +6,7 @@ use crate::study::{Study, trials_of};
 use bubbletouch::study::{sample_frames, simulate_array};
 use std::fs;
 
-/// The tables that hold no times, and the study as it was run.
+/// Tables without times, and the resolved study.
 const REPEATABLE: [&str; 5] = [
     "accuracy.csv",
     "summary.csv",
@@ -29,7 +29,7 @@ fn another_seed_is_another_experiment_and_the_study_that_it_wrote_down_repeats_i
     }
 }
 
-/// One configuration an ensemble; the axes of `ENSEMBLE` and below are then widened.
+/// Study with one configuration per ensemble; the tests add values to its axes.
 const NARROW: &str = r#"
 question = "What does a configuration depend on?"
 trials = 2

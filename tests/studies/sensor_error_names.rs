@@ -1,10 +1,10 @@
-//! One place per rule: what a sensor error is stands in its descriptor, so that code outside `signal/` works with errors that are added later.
+//! Each sensor error is described in one descriptor, so that code outside `signal/` also works with errors that are added later.
 
 use bubbletouch::signal::SENSOR_ERRORS;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Folders whose files may name single errors: their home, and the estimators, one for each kind of error.
+/// Folders whose files may name single errors: the errors themselves, and the estimators, one per kind of error.
 const MAY_NAME: [&str; 2] = [
     "bubbletouch-sim/src/signal",
     "bubbletouch-sim/src/calibration",
@@ -21,7 +21,7 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The names of single errors in a line of code: their variants, and the words and keys of study files as literals.
+/// Returns the names of single errors in a line of code: enum variants, and words and keys of study files as literals.
 fn names_in(line: &str) -> Vec<String> {
     let abouts = SENSOR_ERRORS.iter().map(|error| (error, error.about()));
     let names = abouts.flat_map(|(error, about)| {

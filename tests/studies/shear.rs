@@ -1,4 +1,4 @@
-//! What taxels read: forces along and across their axes, of touches that slide.
+//! Readings of taxels that measure forces along and across their axes, for touches that slide.
 
 use crate::command::Case;
 use crate::study::{Study, laid_out};
@@ -52,7 +52,7 @@ fn with(old: &str, new: &str) -> String {
     text
 }
 
-/// What a study of one configuration gives its classifier: touches × numbers of a frame.
+/// Returns the features that a study of one configuration gives its classifier: touches × values of a frame.
 fn read(text: &str) -> Array2<f64> {
     let study = laid_out(text).unwrap();
     let features = study.first().features((0, 0), &Silent).unwrap();
@@ -115,7 +115,7 @@ fn each_channel_has_noise_of_its_own_and_the_first_is_the_force() {
     for (force, deflection) in normal.iter().zip(&deflection) {
         assert!((force - 200.0 * deflection).abs() < 1e-12);
     }
-    // σ is 5 % of 5 mm · 200 N/m, as much on each channel.
+    // σ is 5 % of 5 mm · 200 N/m, equal on each channel.
     let noise = (&noisy - &felt) / 0.05;
     let channels = [0, 1, 2].map(|c| noise.slice(s![.., c * N_TAXELS..(c + 1) * N_TAXELS]));
     let n = channels[0].len() as f64;
@@ -127,12 +127,12 @@ fn each_channel_has_noise_of_its_own_and_the_first_is_the_force() {
             } else {
                 (0.0, 1.0)
             };
-            // Five standard errors of as many independent draws.
+            // Five standard errors of this number of independent draws.
             let off = (product - expected).abs();
             assert!(off < 5.0 * error / n.sqrt(), "{a} {b}: {product}");
         }
     }
-    // Shear has both signs, and more than a rounding of either.
+    // Shear has both signs, and is larger than rounding errors.
     let shear = felt.slice(s![.., N_TAXELS..]);
     assert!(shear.iter().any(|&f| f > 0.05) && shear.iter().any(|&f| f < -0.05));
 }
@@ -179,7 +179,7 @@ fn what_is_sensed_is_an_axis() {
         let rows = rows.filter(|(configuration, _)| configuration.variant.number == number);
         rows.map(|(_, score)| score.n_correct).collect::<Vec<_>>()
     };
-    // A force is the deflection in another unit.
+    // A force is a deflection in another unit.
     assert_eq!(scores(0), scores(1));
 }
 

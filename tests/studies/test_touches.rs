@@ -1,4 +1,4 @@
-//! Studies in which test touches are made in another way than training touches: `[test]`, and axes one at a time.
+//! Studies whose test touches differ from the training touches: `[test]`, and axes one at a time.
 
 use crate::study::{self, Study};
 use bubbletouch::Result;
@@ -10,7 +10,7 @@ use bubbletouch::study::progress::Silent;
 use bubbletouch::study::table::Tables;
 use bubbletouch::table::{Role, Table};
 
-/// Three objects on a skin that is learned without faults. `touches` and `signal` are more keys of these tables.
+/// Returns a study of three objects on a training skin without faults. `touches` and `signal` are additional keys of these tables.
 fn text(touches: &str, signal: &str, more: &str) -> String {
     format!(
         r#"
@@ -64,7 +64,7 @@ fn accuracies(tables: &Tables) -> Vec<f64> {
     rows.map(|(_, score)| score.accuracy).collect()
 }
 
-/// Rows of features that a configuration's classifier trains on and is tested with.
+/// Returns the feature rows on which a configuration's classifier is trained and tested.
 fn rows(text: &str) -> [Vec<f64>; 2] {
     let study = study::laid_out(text).unwrap();
     let set = study.first().features((0, 1), &Silent).unwrap();
@@ -103,7 +103,7 @@ fn test_rows_are_those_of_the_study_with_the_keys_in_place_and_training_rows_are
             "noise_std_full_scale = 0.2".to_owned(),
             ("", ""),
         ),
-        // Another unit takes the place of the study's.
+        // Another unit replaces the unit of the study.
         (
             "signal.noise_std_mm = 0.3",
             TOUCHES.to_owned(),
@@ -147,7 +147,7 @@ fn a_test_table_with_the_studys_own_values_changes_no_score() {
     let same = base("[test]\ntouches.depth_mm = 2.0\nsignal.noise_std_full_scale = 0.01");
     let (same, plain) = (run(&same), run(&base("")));
     assert_eq!(accuracies(&same), accuracies(&plain));
-    // The same touches are made once.
+    // Equal touches are simulated once.
     let made =
         |tables: &Tables| -> Vec<usize> { tables.stages.iter().map(|row| row.n_touches).collect() };
     assert_eq!(made(&same), made(&plain));
@@ -158,7 +158,7 @@ fn a_test_table_with_the_studys_own_values_changes_no_score() {
 
 #[test]
 fn what_is_learned_for_features_is_learned_from_training_touches() {
-    // Principal components of training touches: those of other test touches are the same.
+    // Principal components are fitted to training touches, so other test touches do not change them.
     let learned = |test: &str| {
         base(test).replace(
             "[sensing]",
@@ -220,7 +220,7 @@ fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
     let settings = study.all_cells().map(|configuration| {
         let values = configuration.variant.values.iter();
         let names: Vec<&str> = values.clone().map(|v| v.column.name.as_ref()).collect();
-        // The noise has a column of its own already.
+        // The noise already has a column of its own.
         assert_eq!(names, ["test_offset_xy_mm", "depth_mm"]);
         let number = |value: &Option<toml::Value>| {
             let value = value.as_ref()?;
@@ -230,7 +230,7 @@ fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
         (configuration.noise_std, values[0], values[1])
     });
     let settings: Vec<_> = settings.collect();
-    // A value that the study has already is not run twice.
+    // A value that the study already has is not run twice.
     let (noise, depth) = (0.01, Some(2.0));
     let expected = [
         (noise, None, depth),
@@ -245,7 +245,7 @@ fn one_at_a_time_each_axis_leaves_the_study_as_it_is_written() {
     assert_eq!(settings, expected);
     let tables = study.run(&Silent).unwrap();
     let scores = accuracies(&tables);
-    // Offsets within 6 mm are the study's own, drawn from the same streams.
+    // Offsets within 6 mm are the offsets of the study, drawn from the same streams.
     assert_eq!(scores[0..2], scores[4..6]);
     let noisy = text(TOUCHES, "noise_std_full_scale = 2.0", "");
     assert_eq!(scores[10..12], accuracies(&run(&noisy))[..]);
@@ -344,7 +344,7 @@ fn what_test_touches_cannot_have_is_refused_by_its_key() {
         let said = refused(&base(&format!("[axes]\n{axes}")));
         assert!(said.contains(wanted), "{said}\nis not\n{wanted}");
     }
-    // Whoever has drawn the touches has drawn those that are learned.
+    // A plan with test touches also contains the training touches.
     let test = base("[test]\ntouches.depth_mm = 1.0");
     assert!(std::panic::catch_unwind(|| Study::new(&test).of_items()).is_err());
 }

@@ -1,4 +1,4 @@
-//! What a split does to the accuracy, told from what the projection does.
+//! Variance of the accuracy due to splits, separated from the variance due to projections.
 
 use crate::study::Study;
 use bubbletouch::report::folder::{table_files, write_files};
@@ -7,7 +7,7 @@ use bubbletouch::study::table::{Configuration, PStatus, Source, Tables, TrialSco
 use bubbletouch::study::{Plan, StudySpec};
 use std::path::Path;
 
-/// Three objects that are hard to tell apart, with few measurements.
+/// Returns a study of three objects that are hard to distinguish, with few measurements.
 fn text(repeats: &str, ensemble: &str, noise: f64) -> String {
     format!(
         r#"
@@ -70,7 +70,7 @@ fn without_noise_all_that_varies_is_the_split_unless_a_projection_is_drawn() {
     ] {
         assert_eq!(row(&outcome, 0, source).n_levels, n_levels);
     }
-    // Every taxel is measured: four projections are the same one.
+    // Every taxel is measured, so the four projections are equivalent.
     let (split, rest) = (
         row(&outcome, 0, Source::Split),
         row(&outcome, 0, Source::Rest),
@@ -81,7 +81,7 @@ fn without_noise_all_that_varies_is_the_split_unless_a_projection_is_drawn() {
     );
     assert!(rest.accuracy_std < 1e-9, "{rest:?}");
     assert!(row(&outcome, 0, Source::Projection).accuracy_std < 1e-9);
-    // Eight random measurements: which ones matters.
+    // With eight random measurements, their choice matters.
     let shares: f64 = [Source::Split, Source::Projection, Source::Rest]
         .map(|source| row(&outcome, 1, source).fraction.unwrap())
         .iter()
@@ -119,7 +119,7 @@ fn crossed_trials_share_splits_and_projections_and_the_first_is_that_of_trials_o
             "split, projection and noise 0"
         );
     }
-    // Two splits and three projections are few: an interval, but no p-value below four splits.
+    // Two splits and three projections are few: there is an interval, but no p-value below four splits.
     let compared = crossed.comparison.iter();
     let compared: Vec<_> = compared
         .filter(|row| row.configuration != row.best_configuration)

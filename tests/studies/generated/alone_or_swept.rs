@@ -41,7 +41,7 @@ const AXES: &[&str] = &[
     "recognition.gamma",
 ];
 
-/// Keys that exist in an `[axes]` study only through its own column, whose name the table of the study alone does not have.
+/// Removes the columns that exist only because of an axis, and that the table of a single study does not have.
 fn common(rows: Vec<Row>, columns: &BTreeSet<String>) -> Vec<Row> {
     let other: Vec<String> = rows
         .iter()
@@ -57,7 +57,7 @@ fn accuracy_rows(study: &GeneratedStudy) -> bubbletouch::Result<Vec<Row>> {
     Ok(rows(&run(&study.load()?)?["accuracy.csv"]))
 }
 
-/// Checks one study, swept over two keys; returns the number of configurations that were compared.
+/// Checks one study, swept over two keys; returns the number of compared configurations.
 fn check(
     generator: &mut Generator,
     first_axis: Option<(&str, Vec<Value>)>,
@@ -68,7 +68,7 @@ fn check(
     if let Some((key, values)) = first_axis {
         axes.push((key.to_owned(), values));
     }
-    // Kernel SVMs are solved along C from one solution to the next, to the same tolerance: decisions whose exact value is 0 may differ.
+    // Kernel SVMs are solved along C from the previous solution, to an equal tolerance; decisions with an exact value of 0 may differ.
     let classifier = study.get("recognition.classifier").and_then(Value::as_str);
     let is_path = classifier.is_some_and(|name| name.ends_with("_svm"));
     let given = AXES.iter().filter(|key| study.get(key).is_some());
@@ -137,7 +137,7 @@ fn a_configuration_alone_gives_the_rows_that_it_gives_in_a_sweep() {
     assert!(n_compared as u64 >= 2 * n_studies(), "{n_compared}");
 }
 
-/// Whether the ensemble of a study is learned from training frames.
+/// Returns whether the ensemble of a study is fitted to training frames.
 fn learns(study: &GeneratedStudy) -> bool {
     let name = study.get("sensing.ensemble").and_then(Value::as_str);
     let all = Ensemble::NAMES.iter().zip(Ensemble::ALL);

@@ -8,20 +8,20 @@ use bubbletouch::study::table::TrialScore;
 use bubbletouch::table::Columns;
 use toml::Value;
 
-/// Studies in which a key is tried before it counts as one without effect: a small study may give the same answers by chance.
+/// Number of studies in which a key is tried before it counts as having no effect; a small study may give the same results by chance.
 const MAX_STUDIES: u64 = 12;
 
-/// What a study found: scores and answers, without the columns that repeat settings.
+/// Results of a study: scores and predictions, without the columns that repeat settings.
 #[derive(PartialEq)]
 struct Results {
     scores: Vec<Row>,
-    /// `confusion.csv`
+    /// Content of `confusion.csv`.
     answers: Vec<u8>,
-    /// Bits of the numbers that the classifier of the first configuration learns from, and the rows that train it.
+    /// Bits of the features of the first configuration, and the training rows.
     learned: Vec<u64>,
 }
 
-/// Returns what a study found; `None` if it is refused.
+/// Returns the results of a study; `None` if it is refused.
 fn results(study: &GeneratedStudy) -> Option<Results> {
     let loaded = study.load().ok()?;
     let tables = run(&loaded).ok()?;
@@ -41,7 +41,7 @@ fn results(study: &GeneratedStudy) -> Option<Results> {
     })
 }
 
-/// Whether another value of `key` is refused or changes results in one of several studies, which have these steps of the signal and keys.
+/// Returns whether another value of `key` is refused or changes the results of one of several studies with these signal steps and keys.
 fn has_effect(key: &str, steps: &[&str], beside: &[(&str, Value)]) -> bool {
     let mut is_refused = true;
     let has_changed = (0..MAX_STUDIES).any(|number| {
@@ -54,7 +54,7 @@ fn has_effect(key: &str, steps: &[&str], beside: &[(&str, Value)]) -> bool {
             if !steps.is_empty() {
                 study.table.remove("signal");
                 let steps: Vec<Value> = steps.iter().map(|&step| step.into()).collect();
-                // A grid and several frames, which some sensor errors need.
+                // A grid and several frames, which some sensor errors require.
                 study = study
                     .without("skin.layout")
                     .without("skin.damping_n_s_per_m")

@@ -1,4 +1,4 @@
-//! Law: every point of a chart is a row of its table and stands where the row's entries are, and every row is a point or is counted on the chart.
+//! Law: every point of a chart is a row of its table at the position of the row's entries; every row is a point or is counted on the chart.
 
 use super::generator::{Generator, is_sample, n_studies};
 use bubbletouch::report::chart::{Place, draw, omitted, places};
@@ -10,7 +10,7 @@ use rand::seq::SliceRandom;
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
-/// Axes of a study whose charts are drawn: numbers, words, and what some configurations do not have.
+/// Axes of the charted studies: numbers, words, and settings that some configurations do not have.
 const AXES: &[&str] = &[
     "signal.noise_std_full_scale",
     "signal.smoothing_mm",
@@ -27,7 +27,7 @@ const AXES: &[&str] = &[
     "recognition.touches_per_decision",
 ];
 
-/// The text of a picture: that of all its elements, one after the other.
+/// Returns the text of all elements of a picture, in order.
 fn words_of(svg: &str) -> String {
     let mut said = String::new();
     for part in svg.split('<').skip(1) {
@@ -39,12 +39,12 @@ fn words_of(svg: &str) -> String {
     plain(&said.replace("&quot;", "\"").replace("&amp;", "&"))
 }
 
-/// Words with one space between them.
+/// Replaces white space by single spaces.
 fn plain(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The rows that can be seen: of tiles in one place the last, and none without a fill.
+/// Returns the visible rows: of tiles at one position only the last, and none without a fill value.
 fn seen(spec: &ChartSpec, table: &Table, places: &[Place]) -> usize {
     let Mark::Tiles { fill, .. } = &spec.mark else {
         return places.len();
@@ -64,7 +64,7 @@ fn seen(spec: &ChartSpec, table: &Table, places: &[Place]) -> usize {
     filled.map(at).collect::<BTreeSet<_>>().len()
 }
 
-/// The numbers of rows that a sentence about omitted rows counts: drawn, all, and those that are left out for each reason.
+/// Returns the numbers of rows in a sentence about omitted rows: drawn, all, and omitted for each reason.
 fn counted(said: &str) -> (usize, usize, usize) {
     let number = |text: &str| {
         text.split_whitespace()
@@ -79,8 +79,8 @@ fn counted(said: &str) -> (usize, usize, usize) {
     (number(n), number(of), left_out)
 }
 
-/// Checks that places along an axis are in the order of the entries of their rows, or all in the reverse order, and that equal entries have equal
-/// places. Lines that stand beside each other at a word are compared one by one.
+/// Checks that positions along an axis have the order of the rows' entries or the reverse order, and that equal entries have equal positions. Lines that are
+/// side by side at a word are compared one by one.
 fn check_axis(table: &Table, column: &str, places: &[&Place], at: fn(&Place) -> f64, what: &str) {
     let (_, data) = table.column(column).unwrap();
     let mut orders = BTreeSet::new();
@@ -90,7 +90,7 @@ fn check_axis(table: &Table, column: &str, places: &[&Place], at: fn(&Place) -> 
             match (data.value(first.row), data.value(second.row)) {
                 (Some(Value::Number(a)), Some(Value::Number(b))) => match a.total_cmp(&b) {
                     Ordering::Equal => assert_eq!(place, Ordering::Equal, "{what}"),
-                    // Numbers that differ in their last digits may have one place.
+                    // Numbers that differ in their last digits may have one position.
                     order if place != Ordering::Equal => {
                         orders.insert(order == place);
                     }
@@ -135,7 +135,7 @@ fn check(spec: &ChartSpec, tables: &[Table], text: &str) {
         |place| place.y,
         &format!("y of {what}"),
     );
-    // A line and a panel are those of the values of their columns.
+    // The line and the panel of a point correspond to the values of their columns.
     for place in &places {
         for other in &places {
             let same = |columns: &[String]| {

@@ -1,4 +1,4 @@
-//! Law: results that were edited are noticed by `verify` and by `compare`, wherever the edit is.
+//! Law: `verify` and `compare` notice any edit of the results.
 
 use super::folders::{n_folders, swept, tables};
 use super::generator::Generator;
@@ -7,11 +7,10 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use std::fs;
 
-/// Edits of each study.
+/// Number of edits per study.
 const N_EDITS: usize = 8;
 
-/// Edits a table: an entry becomes another value or is deleted, or a row is deleted or repeated. Returns what was done, or `None` if the table has no
-/// row.
+/// Edits a table: an entry is changed or deleted, or a row is deleted or repeated. Returns a description of the edit, or `None` if the table has no row.
 fn edited(csv: &[u8], generator: &mut Generator) -> Option<(String, Vec<u8>)> {
     let mut reader = csv::Reader::from_reader(csv);
     let head = reader.headers().unwrap().clone();
@@ -42,7 +41,7 @@ fn edited(csv: &[u8], generator: &mut Generator) -> Option<(String, Vec<u8>)> {
                 (_, Ok(number), _) => (number + 1).to_string(),
                 (4 | 5, _, Ok(number)) => (number + 1e-9 * number.abs().max(1.0)).to_string(),
                 (.., Ok(number)) => (number + 1.0).to_string(),
-                // Of a column of numbers a number, of one of words one of them.
+                // A number replaces a number, and a word replaces a word.
                 _ => match other {
                     Some(other) => other,
                     None => "7".to_owned(),
@@ -61,7 +60,8 @@ fn edited(csv: &[u8], generator: &mut Generator) -> Option<(String, Vec<u8>)> {
     Some((what, writer.into_inner().unwrap()))
 }
 
-/// Runs studies, edits a table of each several times, and checks that a command says so of each: `is_noticed` runs it on the edited folder `results`.
+/// Runs studies, edits a table of each several times, and checks that a command reports each edit. `is_noticed` runs the command on the edited folder
+/// `results`.
 fn check(law: &str, with_times: bool, is_noticed: impl Fn(&Case, &str) -> Result<(), String>) {
     for number in 0..n_folders() {
         let case = Case::new();
@@ -73,7 +73,7 @@ fn check(law: &str, with_times: bool, is_noticed: impl Fn(&Case, &str) -> Result
         if with_times {
             for name in ["timing.csv", "pareto.csv", "stages.csv"] {
                 let content = fs::read(case.path("results").join(name)).unwrap();
-                // Compared with itself: times differ from run to run.
+                // The folder is compared with itself, because times differ between runs.
                 fs::write(case.path("other").join(name), &content).unwrap();
                 files.insert(name.to_owned(), content);
             }
@@ -123,7 +123,7 @@ fn an_edited_table_is_noticed_by_compare() {
         for (first, second) in [("other", "results"), ("results", "other")] {
             let (is_read, said) = compared(first, second);
             let names = said.replace(first, "other").replace(second, "other");
-            // A table that has become unreadable is refused by its name.
+            // An unreadable table is refused by its name.
             if !said.contains(name) || is_read && names == same {
                 return Err(said);
             }

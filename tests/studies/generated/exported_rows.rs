@@ -1,4 +1,4 @@
-//! Law: rows that are exported, classified elsewhere, give the answers of the run.
+//! Law: exported rows that are classified elsewhere give the predictions of the run.
 
 use super::generator::{Generator, n_studies};
 use super::outcome::{rows, run};
@@ -6,7 +6,7 @@ use bubbletouch::study::FeatureSet;
 use bubbletouch::study::progress::Silent;
 use ndarray::{Array1, Array2, ArrayView1, Axis};
 
-/// Number of test rows that the nearest centroid of standardised rows answers correctly, by its definition.
+/// Returns the number of test rows that a nearest-centroid classifier on standardised rows predicts correctly, by definition.
 fn n_correct_of_nearest_centroid(set: &FeatureSet) -> usize {
     let (x, y) = (&set.data.records, &set.data.targets);
     let train = x.select(Axis(0), &set.split.train);
@@ -49,7 +49,7 @@ fn exported_rows_give_the_answers_of_the_run() {
     for number in 0..n_studies() {
         let mut generator = Generator::new("exported rows", number);
         let study = generator.study(|study| {
-            // Decisions on several touches together are no answers to rows.
+            // Decisions on several touches are not predictions of single rows.
             study.get("recognition.touches_per_decision").is_none()
         });
         let train_touches = generator.values("recognition.train_touches");

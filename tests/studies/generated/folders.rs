@@ -1,5 +1,4 @@
-//! Laws of folders of results: a run that was extended, cut into shards or killed gives what a fresh run gives, as does one of a study that was changed,
-//! unless the folder refuses it.
+//! Laws of result folders: an extended, sharded or killed run gives the results of a fresh run. So does a run of a changed study, unless the folder refuses it.
 
 use super::generator::{GeneratedStudy, Generator, is_sample, n_studies};
 use super::outcome::{Tables, without_times};
@@ -11,12 +10,12 @@ use std::fs;
 use std::path::Path;
 use toml::Value;
 
-/// Studies for each law of folders: each takes several runs of the command.
+/// Returns the number of studies for each law of folders; each study needs several runs of the command.
 pub fn n_folders() -> u64 {
     n_studies().div_ceil(3)
 }
 
-/// Tables of a folder without times.
+/// Returns the tables of a folder without times.
 pub fn tables(folder: &Path) -> Tables {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
     let files = entries.filter_map(|entry| {
@@ -27,7 +26,7 @@ pub fn tables(folder: &Path) -> Tables {
     without_times(files.collect())
 }
 
-/// A study with an axis of three values, which the command runs into the folder `fresh`.
+/// Returns a study with an axis of three values, which the command runs into the folder `fresh`.
 pub fn swept(case: &Case, generator: &mut Generator) -> (GeneratedStudy, &'static str, Vec<Value>) {
     let axes = [
         "signal.noise_std_full_scale",
@@ -37,7 +36,7 @@ pub fn swept(case: &Case, generator: &mut Generator) -> (GeneratedStudy, &'stati
     ];
     loop {
         let axis = axes.choose(&mut generator.rng).copied().unwrap();
-        // Each run of the command packs household objects again.
+        // Each run of the command packs household objects again, which takes long.
         let is_quick = |study: &GeneratedStudy| study.get("objects.surface_error_mm").is_none();
         let study = generator.study(|study| study.get(axis).is_some() && is_quick(study));
         let mut values = generator.values(axis);
@@ -60,7 +59,7 @@ fn an_extended_run_gives_the_tables_of_a_fresh_one() {
         let n_first = generator.rng.gen_range(1..values.len());
         let first = values[values.len() - n_first..].to_vec();
         if study.swept(axis, first.clone()).load().is_err() {
-            // Without the other values a key of the study cannot act.
+            // Without the other values, a key of the study would have no effect.
             continue;
         }
         for values in [first, values] {
@@ -104,7 +103,7 @@ fn a_run_that_lost_the_end_of_its_journal_gives_the_tables_of_a_fresh_one() {
     }
 }
 
-/// Keys that are changed between two runs, beside those of the signal.
+/// Keys that change between two runs, in addition to keys of the signal.
 const CHANGED: &[&str] = &[
     "seed",
     "trials",
@@ -139,7 +138,7 @@ const CHANGED: &[&str] = &[
     "recognition.test_fraction",
 ];
 
-/// The study with another value of a key, or with another signal; it may be the same study, or be refused.
+/// Returns the study with another value of a key, or with another signal; it may be the same study, or be refused.
 fn changed(study: &GeneratedStudy, generator: &mut Generator) -> GeneratedStudy {
     let steps = study.get("signal.steps").and_then(Value::as_array);
     let mut steps = steps.cloned().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Random small studies: keys and values from the descriptors of sensor errors, ensembles, features and classifiers.
+//! Generator of random small studies: keys and values come from the descriptors of sensor errors, ensembles, features and classifiers.
 
 use crate::study::laid_out;
 use bubbletouch::kinds::recognition::RecognitionStudy;
@@ -11,31 +11,31 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use toml::{Table, Value};
 
-/// Attempts to draw a study that the program accepts. Most draws are accepted; a bound keeps a broken generator from running for ever.
+/// Maximum number of attempts to draw a study that the program accepts; the limit ends a broken generator.
 const MAX_DRAWS: usize = 200;
 
-/// Number of studies that each law is checked on: `BUBBLETOUCH_GENERATED_STUDIES`, or as many as take a few seconds.
+/// Returns the number of studies for each law: `BUBBLETOUCH_GENERATED_STUDIES`, or a number that takes a few seconds.
 pub fn n_studies() -> u64 {
     let given = std::env::var("BUBBLETOUCH_GENERATED_STUDIES");
     given.map_or(SAMPLE, |n| n.parse().expect("a number of studies"))
 }
 
-/// Whether laws are checked on a small sample, in which not every kind of study needs to occur.
+/// Returns whether laws are checked on a small sample, in which not every kind of study needs to occur.
 pub fn is_sample() -> bool {
     n_studies() <= SAMPLE
 }
 
-/// Studies of a law in `cargo test`. More: the whole takes longer than a few seconds.
+/// Number of studies per law in `cargo test`. If larger, the tests take longer than a few seconds.
 const SAMPLE: u64 = 3;
 
-/// A study as the text of its file, by the path of each key.
+/// Generated study: the text of its file by the path of each key.
 #[derive(Clone, Debug)]
 pub struct GeneratedStudy {
     pub table: Table,
 }
 
 impl GeneratedStudy {
-    /// The value of a key, `None` if the study does not have it.
+    /// Returns the value of a key; `None` if the study does not have it.
     pub fn get(&self, key: &str) -> Option<&Value> {
         let (table, key) = key.split_once('.').unwrap_or(("", key));
         match table {
@@ -44,7 +44,7 @@ impl GeneratedStudy {
         }
     }
 
-    /// The study with this value of a key.
+    /// Returns the study with this value of a key.
     pub fn with(&self, key: &str, value: impl Into<Value>) -> Self {
         let mut changed = self.clone();
         let (table, key) = key.split_once('.').unwrap_or(("", key));
@@ -60,7 +60,7 @@ impl GeneratedStudy {
         changed
     }
 
-    /// The study without this key.
+    /// Returns the study without this key.
     pub fn without(&self, key: &str) -> Self {
         let mut changed = self.clone();
         let (table, key) = key.split_once('.').unwrap_or(("", key));
@@ -74,7 +74,7 @@ impl GeneratedStudy {
         changed
     }
 
-    /// The study with `values` of `key` as an axis.
+    /// Returns the study with `values` of `key` as an axis.
     pub fn swept(&self, key: &str, values: Vec<Value>) -> Self {
         let mut changed = self.without(key);
         let axes = changed.table.entry("axes");
@@ -84,7 +84,7 @@ impl GeneratedStudy {
         changed
     }
 
-    /// The study with another classifier, without the keys of its own.
+    /// Returns the study with another classifier, without the keys of the previous classifier.
     pub fn classified_by(&self, classifier: impl Into<Value>) -> Self {
         let keys = [
             "c",
@@ -104,13 +104,13 @@ impl GeneratedStudy {
         toml::to_string(&self.table).expect("a table has a TOML form")
     }
 
-    /// The study laid out as the command lays it out; an error if it is refused.
+    /// Plans the study as the command does; returns an error if it is refused.
     pub fn load(&self) -> bubbletouch::Result<RecognitionStudy> {
         laid_out(&self.text())
     }
 }
 
-/// Draws studies. The same law and number give the same study.
+/// Generator of studies; equal laws and numbers give equal studies.
 pub struct Generator {
     pub rng: ChaCha8Rng,
 }
@@ -125,7 +125,7 @@ impl Generator {
         }
     }
 
-    /// A study that the program accepts and `is_wanted` allows.
+    /// Returns a study that the program accepts and `is_wanted` allows.
     pub fn study(&mut self, is_wanted: impl Fn(&GeneratedStudy) -> bool) -> GeneratedStudy {
         let mut refused = Vec::new();
         for _ in 0..MAX_DRAWS {
@@ -149,7 +149,7 @@ impl Generator {
         self.rng.gen_bool(chance)
     }
 
-    /// Values of a key that a study may take, in random order; none of a key that this generator does not know.
+    /// Returns values of a key that a study may have, in random order; none for a key that this generator does not support.
     pub fn values(&mut self, key: &str) -> Vec<Value> {
         let mut values: Vec<Value> = match key {
             "seed" => vec![1.into(), 2.into(), 3.into()],
@@ -266,7 +266,7 @@ impl Generator {
         self.with_classifier_options(study)
     }
 
-    /// Adds keys that have an effect only beside others.
+    /// Adds keys that have an effect only together with other keys.
     fn with_dependent_keys(&mut self, mut study: GeneratedStudy) -> GeneratedStudy {
         let n_frames = study.get("touches.frames").and_then(Value::as_integer);
         if n_frames.is_some_and(|n| n > 1) {
@@ -297,7 +297,7 @@ impl Generator {
                 }
             }
         }
-        // A fold for each trial.
+        // One fold per trial.
         if study.get("recognition.test_fraction").is_none() && self.happens(0.15) {
             study = study.with("recognition.folds", 2);
         }
@@ -309,7 +309,7 @@ impl Generator {
         study.with(key, value)
     }
 
-    /// Adds the steps of a signal chain in the order of the chain's documentation.
+    /// Adds the steps of a signal chain in their documented order.
     fn with_signal(&mut self, mut study: GeneratedStudy) -> GeneratedStudy {
         let mut steps = Vec::new();
         if self.happens(0.2) || study.get("skin.damping_n_s_per_m").is_some() {
@@ -341,7 +341,7 @@ impl Generator {
                 study = self.with_any(study, key);
             }
         }
-        // A scan shows only where the press goes on.
+        // Scan order has an effect only if the press continues during the reading.
         if steps.contains(&"scan") {
             study = self.with_any(study.with("touches.frames", 3), "touches.speed_mm_per_s");
         }
@@ -375,13 +375,13 @@ fn words(words: &[&str]) -> Vec<Value> {
     words.iter().map(|&word| word.into()).collect()
 }
 
-/// `{ uniform = [low, high] }`
+/// Returns the value `{ uniform = [low, high] }`.
 pub fn uniform(low: f64, high: f64) -> Value {
     let range: Vec<Value> = vec![low.into(), high.into()];
     Table::from_iter([("uniform".to_owned(), range.into())]).into()
 }
 
-/// Values above zero that a strength of a sensor error may take, of any unit.
+/// Returns positive values that the strength of a sensor error may have, in any unit.
 fn strength_values(key: &str) -> Vec<Value> {
     let found = all_strengths().find(|(_, strength)| strength.key == key);
     let Some((_, strength)) = found else {
@@ -391,7 +391,7 @@ fn strength_values(key: &str) -> Vec<Value> {
     let allowed = all.into_iter().filter(|&value| {
         (strength.is_allowed)(value) && (!strength.is_whole || f64::fract(value) == 0.0)
     });
-    // Shares of one whole are at most 1 together, and large ones leave no signal.
+    // Fractions of one whole sum to at most 1, and large fractions leave no signal.
     let is_share = strength.unit == "%";
     let allowed = allowed.filter(|&value| !is_share || value < 0.4);
     allowed.map(Value::from).collect()

@@ -1,4 +1,4 @@
-//! Law: test rows leave all that was learned unchanged. Where the test rows of one class are replaced by other numbers, the answers to the test rows of
+//! Law: test rows have no effect on anything that is fitted. If the test rows of one class are replaced by other numbers, the predictions for the test rows of
 //! every other class stay the same.
 
 use super::generator::{GeneratedStudy, Generator, n_studies};
@@ -14,9 +14,9 @@ const N_CLASSES: usize = 3;
 const N_TOUCHES: usize = 48;
 const SIDE: usize = 6;
 
-/// Frames of blobs at a place of each class, shape (n, 6, 6), and the class of each.
+/// Returns frames of blobs at a position of each class, shape (n, 6, 6), and the class of each frame.
 fn recording(generator: &mut Generator) -> (Array3<f64>, Vec<usize>) {
-    // Class by class, which is the order of exported rows.
+    // Class by class, the order of exported rows.
     let labels: Vec<usize> = (0..N_TOUCHES)
         .map(|touch| touch * N_CLASSES / N_TOUCHES)
         .collect();
@@ -32,7 +32,7 @@ fn recording(generator: &mut Generator) -> (Array3<f64>, Vec<usize>) {
     (frames, labels)
 }
 
-/// The study on the recording in `folder`, in place of objects and touches.
+/// Returns the study on the recording in `folder`, which replaces objects and touches.
 fn recorded(study: &GeneratedStudy, folder: &Path) -> GeneratedStudy {
     let path = |name: &str| Value::from(folder.join(name).display().to_string());
     let mut study = study.clone();
@@ -53,7 +53,7 @@ fn recorded(study: &GeneratedStudy, folder: &Path) -> GeneratedStudy {
     study.with("recorded", recorded)
 }
 
-/// The rows of `confusion.csv` of the objects that are not `changed`.
+/// Returns the rows of `confusion.csv` for all objects except `changed`.
 fn answers_to_others(csv: &[u8], changed: &str) -> Vec<Row> {
     let rows = rows(csv).into_iter();
     rows.filter(|row| row["object"] != changed).collect()
@@ -75,7 +75,7 @@ fn changed_test_rows_change_no_answer_to_other_rows() {
         // One trial has one set of test rows.
         let mut drawn = generator.study(|study| {
             let study = recorded(study, folder.path()).with("trials", 1);
-            // A touch that comes after another has a trace of it in its own reading, whichever is learned.
+            // A touch that follows another contains a trace of it, whichever of the two is a training touch.
             let remembers = study.get("signal.hysteresis_full_scale").is_some();
             let is_fused = study.get("recognition.touches_per_decision").is_some();
             !remembers && !is_fused && study.load().is_ok()

@@ -1,4 +1,4 @@
-//! Laws of recognition studies, checked on generated studies. `BUBBLETOUCH_GENERATED_STUDIES` sets the number of studies of each law.
+//! Laws of recognition studies, checked on generated studies. `BUBBLETOUCH_GENERATED_STUDIES` sets the number of studies per law.
 
 mod alone_or_swept;
 mod changed_keys;

@@ -1,4 +1,4 @@
-//! Law: the order of configurations and objects, and the names of objects, change nothing but the order of rows and names.
+//! Law: the order of configurations and objects, and the names of objects, change only the order of rows and names.
 
 use super::generator::{GeneratedStudy, Generator, n_studies};
 use super::outcome::{rows, run, sorted_without};
@@ -35,7 +35,7 @@ fn the_order_of_configurations_changes_nothing_but_their_numbers() {
     }
 }
 
-/// The frames of each object's touches, before the signal chain, sorted by the object's name.
+/// Returns the frames of each object's touches before the signal chain, sorted by the object's name.
 fn frames_by_object(study: &GeneratedStudy) -> Vec<(String, Vec<f64>)> {
     let loaded = study.load().unwrap();
     let part = loaded.first();
@@ -71,7 +71,7 @@ fn the_order_of_objects_changes_no_touch() {
     }
 }
 
-/// The study of three balls with these names and listed poses: nothing is drawn by an object's name.
+/// Returns the study of three balls with these names and listed poses, so that nothing is drawn by an object's name.
 fn of_own_balls(case: &Case, study: &GeneratedStudy, names: [&str; 3]) -> GeneratedStudy {
     let balls = names.iter().zip([40.0, 44.0, 60.0]).map(|(name, diameter)| {
         format!(

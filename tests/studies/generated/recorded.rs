@@ -1,5 +1,5 @@
-//! Law: recorded frames of simulated touches give the tables of the simulated study, whatever its skin, its signal and what is learned; the names of the
-//! files do not matter.
+//! Law: recorded frames of simulated touches give the tables of the simulated study, for any skin, signal and learning method. The names of the files do not
+//! matter.
 
 use super::generator::{GeneratedStudy, Generator, n_studies};
 use super::outcome::{Tables, rows, run, without_times};
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Axes that may stand in their own tables, where a study of recorded frames has them, too.
+/// Axes that a study of recorded frames also accepts in their own tables.
 const AXES: &[&str] = &[
     "signal.noise_std_full_scale",
     "sensing.ratio",
@@ -20,7 +20,7 @@ const AXES: &[&str] = &[
     "recognition.train_touches",
 ];
 
-/// The study with human touches in place of touches of objects.
+/// Returns the study with human touches instead of touches of objects.
 fn of_human_touches(study: &GeneratedStudy) -> GeneratedStudy {
     let mut study = study.clone();
     study.table.remove("objects");
@@ -38,7 +38,7 @@ fn of_human_touches(study: &GeneratedStudy) -> GeneratedStudy {
         .with("human_touch.duration_s", 2.5)
 }
 
-/// The study with touches that move while a frame of theirs is read.
+/// Returns the study with touches that move while a frame is read.
 fn scanned(study: &GeneratedStudy, scan_time: Value) -> GeneratedStudy {
     let steps = study.get("signal.steps").and_then(Value::as_array);
     let mut steps = steps.cloned().unwrap_or_default();
@@ -53,7 +53,7 @@ fn scanned(study: &GeneratedStudy, scan_time: Value) -> GeneratedStudy {
         .with("touches.depth_mm", 1.5)
 }
 
-/// The study of the touches in a folder, by the tables that were written beside them.
+/// Returns the study of the touches in a folder, with the tables that were written beside them.
 fn of_folder(study: &GeneratedStudy, folder: &Path) -> GeneratedStudy {
     let mut study = study.clone();
     for table in ["objects", "touches", "human_touch"] {
@@ -71,7 +71,7 @@ fn of_folder(study: &GeneratedStudy, folder: &Path) -> GeneratedStudy {
     study
 }
 
-/// The tables without times; of limits the counts, which are of what was recorded or of what was simulated.
+/// Returns the tables without times; of limits only the counts that recorded and simulated touches have in common.
 fn found(study: &GeneratedStudy) -> Option<Tables> {
     let mut tables = without_times(run(&study.load().ok()?).ok()?);
     let limits = rows(&tables["limits.csv"]).into_iter();
@@ -81,7 +81,7 @@ fn found(study: &GeneratedStudy) -> Option<Tables> {
     Some(tables)
 }
 
-/// Moves files of a folder to other names, also in `recorded.toml`.
+/// Renames the files of a folder, also in `recorded.toml`.
 fn rename(folder: &Path) {
     let tables = folder.join("recorded.toml");
     let mut text = fs::read_to_string(&tables).unwrap();
@@ -104,8 +104,8 @@ fn recorded_touches_give_the_tables_of_the_simulated_ones() {
         let scan_time = generator.values("signal.scan_time_ms").swap_remove(0);
         let touched = |study: &GeneratedStudy| match is_human {
             true => of_human_touches(study),
-            // A taxel that is pushed by exactly its stroke is not saturated, which its reading does not tell from one that is pushed further.
-            // The press goes on while a frame is read.
+            // A taxel that is pushed by exactly its stroke is not saturated, but its reading equals the reading of a taxel that is pushed further. The press
+            // continues while a frame is read.
             false if number % 5 == 3 => scanned(study, scan_time.clone()),
             false if study.get("touches.depth_mm") == study.get("skin.stroke_mm") => {
                 study.with("touches.depth_mm", 1.5)

@@ -1,11 +1,11 @@
-//! Law: repeating a trial never makes a claim stronger.
+//! Law: repeating a trial never increases significance.
 
 use super::generator::{GeneratedStudy, Generator, n_studies};
 use super::outcome::{Row, Tables, rows, run};
 use toml::Value;
 
-/// Smallest ratio of the widths of two intervals that counts as the same width. Each trial orders the training rows anew, which moves single answers; ten
-/// times as many independent trials would give a ratio of 0.32.
+/// Minimum ratio of the widths of two intervals that count as equal. Each trial reorders the training rows, which changes single predictions; ten times as many
+/// independent trials would give a ratio of 0.32.
 const SAME: f64 = 0.97;
 
 fn number(row: &Row, column: &str) -> Option<f64> {
@@ -16,7 +16,7 @@ fn number(row: &Row, column: &str) -> Option<f64> {
 fn trials_that_are_the_same_make_no_claim_stronger() {
     for number_of_study in 0..n_studies() {
         let mut generator = Generator::new("repeated trials", number_of_study);
-        // Two fixed splits and nothing drawn by trial: every second trial is the same.
+        // Two fixed splits and nothing drawn by trial, so every second trial is the same.
         let fixed = |study: &GeneratedStudy| {
             let yaws: Vec<Value> = [0.0, 20.0, 40.0, 60.0].map(Value::from).to_vec();
             let classifiers = ["linear_svm", "nearest_centroid"].map(Value::from);
@@ -43,7 +43,7 @@ fn trials_that_are_the_same_make_no_claim_stronger() {
     }
 }
 
-/// Asserts that no p-value is smaller and no interval narrower with more repetitions of the same.
+/// Asserts that with more repetitions of the same trials, no p-value is smaller and no interval is narrower.
 fn assert_no_stronger(few: &Tables, many: &Tables, study: &GeneratedStudy) {
     let of = |name: &str| rows(&few[name]).into_iter().zip(rows(&many[name]));
     for (few, many) in of("comparison.csv") {

@@ -1,4 +1,4 @@
-//! What studies of every kind are asked: which choice to take, and what moved between two of them.
+//! Advice and comparison for studies of every kind: which choice to take, and which differences exist between two folders.
 
 use crate::command::Case;
 use crate::kinds::Kind;
@@ -156,7 +156,7 @@ fn conditions_of_the_world_are_given_and_never_advised() {
         let head = format!("With noise {noise}:\n");
         assert_eq!(said.matches(&head).count(), 1, "{said}");
     }
-    // Nothing else speaks of noise: it is no part of a setting, and no step up.
+    // Noise occurs only here: it is neither part of a setting nor a next choice.
     assert_eq!(said.matches("noise").count(), 3, "{said}");
     assert!(said.contains("smoothing") && said.contains("compression"));
     for key in ["noise=0.05", "noise_std=0.05"] {
@@ -173,7 +173,7 @@ fn conditions_of_the_world_are_given_and_never_advised() {
         worst.starts_with("With the worst of 3 conditions:\n"),
         "{worst}"
     );
-    // The fewest measurements, and the fewest taxels: one array has them all.
+    // The fewest measurements, and the fewest taxels; all belong to one array.
     let few = advise(&["--cost", "measurements", "--given", "noise=0"]);
     assert!(
         few.contains("measurements a decision 8") && few.contains("m = 8"),

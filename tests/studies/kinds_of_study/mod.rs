@@ -1,4 +1,4 @@
-//! The kinds of study other than recognition.
+//! Kinds of studies other than recognition.
 
 mod asked;
 mod object_detail;

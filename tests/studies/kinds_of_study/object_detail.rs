@@ -1,4 +1,4 @@
-//! Packed meshes in studies, and the study of how detailed objects are.
+//! Packed meshes in studies, and object-detail studies.
 
 use crate::command::Case;
 use crate::mesh_shapes::{cuboid, icosphere};
@@ -86,7 +86,7 @@ fn ply(mesh: &TriangleMesh) -> String {
     text
 }
 
-/// A ball and a box, and a study of them.
+/// Creates a ball and a box, and a study of them.
 fn case(study: &str) -> Case {
     let case = Case::new();
     fs::create_dir(case.path("meshes")).unwrap();
@@ -109,7 +109,7 @@ fn a_study_of_packed_meshes_packs_once() {
     };
     let kept = packings();
     assert_eq!(kept.len(), 2, "a packing each");
-    // A packing that is made again would be written again.
+    // A packing that is computed again would be written again.
     let written = || {
         packings()
             .iter()
@@ -119,7 +119,7 @@ fn a_study_of_packed_meshes_packs_once() {
     let before = written();
     case.succeeds(&["run", "study.toml", "--out", "2"]);
     assert!(packings() == kept && written() == before);
-    // Without what was kept, packings are the same.
+    // Without the cache, the packings are the same.
     fs::create_dir(case.path("elsewhere")).unwrap();
     case.succeeds(&["run", "study.toml", "--out", "elsewhere/3"]);
     let read = |folder: &str, name: &str| fs::read(case.path(folder).join(name)).unwrap();
@@ -250,7 +250,7 @@ fn detail_tables_obey_their_laws() {
         let svg = fs::read_to_string(case.path(&format!("1/{chart}.svg"))).unwrap();
         assert!(svg.contains("spheres an object") && svg.contains("(mm)"));
     }
-    // Classifiers that learned from models are tested on the meshes.
+    // Classifiers that were trained on models are tested on the meshes.
     assert!(said.contains("by its own test"), "{said}");
     let path = case.path("1/object_detail_recognition.csv");
     let rows: Vec<DetailRecognition> = read_rows(&path).unwrap();
@@ -263,7 +263,7 @@ fn detail_tables_obey_their_laws() {
         assert_eq!((row.n_objects, row.n_training, row.n_test), (2, 24, 16));
         assert!(row.accuracy_on_mesh_low <= row.accuracy_on_mesh);
         assert!(row.accuracy_on_mesh <= row.accuracy_on_mesh_high);
-        // A ball and a box feel different however coarse they are, to whoever has learned from the same.
+        // A classifier trained on coarse models distinguishes a ball and a box of the same coarseness.
         assert!(row.accuracy_on_itself >= 0.9, "{row:?}");
         if row.method == DetailMethod::Mesh {
             assert_eq!(row.accuracy_on_mesh, row.accuracy_on_itself);

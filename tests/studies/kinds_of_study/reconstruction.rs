@@ -1,4 +1,4 @@
-//! A study that reconstructs frames: from its file to its tables and pictures.
+//! Reconstruction study: from its file to its tables and pictures.
 
 use crate::command::Case;
 use bubbletouch::kinds;
@@ -61,7 +61,7 @@ fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
 
     let configurations: Vec<ReconstructionCell> = rows(&case, "1/reconstruction.csv");
     let scores: Vec<ReconstructionScore> = rows(&case, "1/reconstruction.csv");
-    // Two ensembles at two m and identity at one; two levels of noise, three dictionaries, three solvers.
+    // Two ensembles at two m and the identity at one m; two noise levels, three dictionaries, three solvers.
     assert_eq!(configurations.len(), 5 * 2 * 3 * 3);
     for (configuration, score) in configurations.iter().zip(&scores) {
         assert!(score.error_low <= score.error && score.error <= score.error_high);
@@ -71,7 +71,7 @@ fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
             configuration.noise_std == 0.0
         );
         assert_eq!(score.n_frames, 32, "a quarter of 30 each, rounded");
-        // The linear estimate beats the noisy frame even from a quarter of the measurements; in the coarse steps of Haar it hardly does.
+        // The linear estimate is better than the noisy frame even at a quarter of the measurements; with the coarse Haar dictionary hardly.
         let is_smooth = configuration.dictionary != Basis::Haar;
         if configuration.solver == Solver::Lmmse
             && is_smooth

@@ -1,4 +1,4 @@
-//! The study of where contact methods break.
+//! Stability study: the limits of contact simulation methods.
 
 use crate::command::Case;
 use bubbletouch::kinds;
@@ -103,7 +103,7 @@ fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
     assert!(svg.contains("limit of an explicit spring") && svg.contains("taxel mass"));
 }
 
-/// Balls one upon the other.
+/// Parts with stacked balls.
 const STACKS: &str = r#"
 question = "Do stacks come to rest?"
 
@@ -143,7 +143,7 @@ fn stacked_balls_come_to_rest_with_the_weight_of_all_on_the_skin() {
         assert!(!is_exact || score.outcome == Outcome::Right, "{about}");
         if configuration.method == ContactMethod::QuasiStatic {
             assert!(score.force_imbalance.unwrap() <= 1e-6, "{about}");
-            // The lightest balls push the stiffest taxels in by 1e-8 m, and lean on the walls by 1e-13 m.
+            // The lightest balls deflect the stiffest taxels by 1e-8 m, and touch the walls by 1e-13 m.
             assert!(score.deflection_error.unwrap() <= 1e-4, "{about}");
         }
     }
@@ -163,7 +163,7 @@ fn stacked_balls_come_to_rest_with_the_weight_of_all_on_the_skin() {
     assert!(svg.contains("Four balls, one upon the other"));
 }
 
-/// Plungers whose taxels carry the same on all arrays.
+/// Parts with plungers whose taxels carry equal loads on all arrays.
 const JOINTS: &str = r#"
 question = "How many joints?"
 
@@ -196,7 +196,7 @@ fn a_ladder_of_joints_carries_the_same_on_each_and_is_charted() {
             ContactMethod::QuasiStatic | ContactMethod::ImplicitEuler => {
                 assert!(is_right, "{about}");
             }
-            // Dampers as forces gain energy beyond Δt = 2 m / c = 0.15 ms of the lighter taxels, whatever the solver.
+            // Dampers as forces gain energy beyond Δt = 2 m / c = 0.15 ms of the lighter taxels, for any solver.
             ContactMethod::RapierSkinSim if configuration.taxel_mass_kg == 1e-5 => {
                 assert!(!is_right, "{about}");
             }

@@ -1,4 +1,4 @@
-//! Studies of a whole body, small and quick.
+//! Small and fast whole-body studies.
 
 use crate::command::Case;
 use bubbletouch::kinds;
@@ -103,7 +103,7 @@ fn tables_obey_their_laws() {
     let read = |name: &str| fs::read_to_string(case.path("1").join(name)).unwrap();
     let cases: Vec<BodyCase> = read_rows(&case.path("1/whole_body.csv")).unwrap();
     let counts: Vec<BodyCount> = read_rows(&case.path("1/whole_body.csv")).unwrap();
-    // 900 of 2,000 taxels are too many for a sheet.
+    // 900 of 2,000 taxels are too many for a cushion.
     assert_eq!(cases.len(), 3 + 3 + 2 + 2);
     for (case, count) in cases.iter().zip(&counts) {
         assert_eq!(count.n_steps, 20);

@@ -1,4 +1,4 @@
-//! The classifier of a study: scaling and C see training rows only, and linfa's classifiers join in.
+//! The classifier of a study: scaling and C depend only on training rows, and classifiers of linfa can be used.
 
 use bubbletouch::Error;
 use bubbletouch::random::Seed;
@@ -13,7 +13,7 @@ use linfa::traits::{Fit, Predict, PredictInplace};
 use ndarray::{Array1, Array2, Axis};
 use rand::Rng;
 
-/// Three overlapping clusters in four features of very different units.
+/// Returns three overlapping clusters in four features of very different units.
 fn clusters() -> Dataset {
     let mut rng = Seed::new(11).rng();
     let features = Array2::from_shape_fn((150, 4), |(i, j)| {
@@ -102,7 +102,7 @@ fn a_chosen_c_is_the_most_accurate_and_the_smaller_on_a_tie() {
     let best = tried.iter().map(|tried| tried.accuracy).fold(0.0, f64::max);
     let smallest = tried.iter().find(|tried| tried.accuracy == best).unwrap().c;
     assert_eq!(model.c(), Some(smallest));
-    // The model is the one of that C on all training rows.
+    // The final model is trained with the chosen C on all training rows.
     let fixed = Classifier {
         c: Cost::Fixed(smallest),
         ..classifier
@@ -154,7 +154,7 @@ fn the_classifier_is_its_svm_on_scaled_features() {
     }
 }
 
-/// A classifier that knows nothing of this crate but linfa's traits: the nearest class mean.
+/// Classifier that implements only linfa's traits: the nearest class mean.
 struct NearestMean;
 
 struct Means(Array2<f64>);
@@ -215,7 +215,7 @@ fn whatever_implements_linfas_traits_plugs_in() {
     let svm = accuracy(predict_split(&SvmParams::default(), &data, &split).unwrap());
     let choice = Classifier::new(ClassifierKind::LinearSvm);
     let choice = accuracy(predict_split(&choice, &data, &split).unwrap());
-    // A third would be chance.
+    // Chance level is one third.
     assert!(
         foreign > 0.8 && svm > 0.8 && choice > 0.8,
         "{foreign} {svm} {choice}"

@@ -1,6 +1,6 @@
-//! Every kind of classifier, asked the same way; and naive Bayes, neighbours and forest against their definitions.
+//! All kinds of classifiers with one interface; naive Bayes, nearest neighbours and random forests compared with their definitions.
 //!
-//! Goldens: scikit-learn 1.9.1, `GaussianNB()`, `KNeighborsClassifier(5)` trained on the first 40 rows of [`waves`].
+//! Expected numbers: scikit-learn 1.9.1, `GaussianNB()`, `KNeighborsClassifier(5)`, trained on the first 40 rows of [`waves`].
 
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
@@ -27,7 +27,7 @@ const KINDS: [ClassifierKind; 8] = [
     ClassifierKind::RandomForest,
 ];
 
-/// 60 rows of 5 features, 4 classes in turn.
+/// Returns 60 rows of 5 features in 4 alternating classes.
 fn waves() -> Dataset {
     let value = |(i, j): (usize, usize)| {
         let wave = (1.7 * (i * 5 + j) as f64 + 0.3 * (j * j) as f64).sin();
@@ -37,7 +37,7 @@ fn waves() -> Dataset {
     dataset(features, Array1::from_iter((0..60).map(|i| i % 4))).unwrap()
 }
 
-/// Touches in miniature: a bump of its class's width and height, at a random place on 6 × 6 taxels.
+/// Returns miniature touches: a bump with the width and height of its class, at a random position on 6 × 6 taxels.
 fn bumps(n_classes: usize, n_per_class: usize) -> Dataset {
     let n_rows = n_classes * n_per_class;
     let mut rng = Seed::new(4).rng();
@@ -58,7 +58,7 @@ fn bumps(n_classes: usize, n_per_class: usize) -> Dataset {
     .unwrap()
 }
 
-/// Splits rows into the first `n` and the rest.
+/// Splits the rows into the first `n` and the rest.
 fn at(data: &Dataset, n: usize) -> (Dataset, Dataset) {
     let indices: Vec<usize> = (0..data.records.nrows()).collect();
     (
@@ -81,7 +81,7 @@ fn every_kind_recognises_small_touches_and_repeats_itself() {
         let classifier = Classifier::new(kind);
         let predicted = predict_split(&classifier, &data, &split).unwrap();
         let accuracy = accuracy(&predicted, &truth);
-        // A sixth is chance.
+        // Chance level is one sixth.
         assert!(accuracy > 0.8, "{kind:?}: {accuracy}");
         assert_eq!(
             predicted,
@@ -112,7 +112,7 @@ fn labels_are_those_of_the_scores_and_sums_of_scores_fuse_touches() {
 
 #[test]
 fn a_prior_counts_once_however_many_touches_are_summed() {
-    // A feature that says nothing: one touch or a hundred, the more frequent class keeps its posterior.
+    // A feature without information: for one touch or a hundred, the more frequent class keeps its posterior.
     let features = Array2::from_shape_fn((40, 1), |(i, _)| ((i / 4) % 2) as f64);
     let labels = Array1::from_iter((0..40).map(|i| usize::from(i % 4 == 0)));
     let data = dataset(features, labels).unwrap();
@@ -224,7 +224,7 @@ fn naive_bayes_likelihoods_are_scikit_learns() {
     }
 }
 
-/// The labels that k nearest neighbours are defined by: one distance at a time, ties to the lower index and label.
+/// Returns the labels of k nearest neighbours by definition: one distance at a time, ties to the lower index and label.
 fn by_brute_force(training: &Dataset, row: ArrayView1<f64>, k: usize) -> (Vec<usize>, usize) {
     let distance = |other: usize| {
         let other = training.records.row(other);
@@ -249,7 +249,7 @@ fn by_brute_force(training: &Dataset, row: ArrayView1<f64>, k: usize) -> (Vec<us
 #[test]
 fn neighbours_are_those_of_a_search_one_pair_at_a_time() {
     let mut rng = Seed::new(8).rng();
-    // Coarse values make ties of distance and copies of rows; an offset takes the digits from the products.
+    // Coarse values cause equal distances and equal rows; an offset removes digits from the products.
     for offset in [0.0, 1e7] {
         let features =
             Array2::from_shape_fn((160, 12), |_| offset + f64::from(rng.gen_range(0..3)) * 0.1);

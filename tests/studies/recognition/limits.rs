@@ -1,5 +1,4 @@
-//! Where learning could break: wrong labels, classes of two rows and of one in a hundred. Each case has the
-//! behaviour that `guide::limits` states.
+//! Difficult training data: wrong labels, classes of two rows, and a class of one row in a hundred. Each case has the behaviour that `guide::limits` states.
 
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
@@ -22,7 +21,7 @@ const KINDS: [ClassifierKind; 7] = [
     ClassifierKind::RandomForest,
 ];
 
-/// Clusters around the corners of a simplex, `apart` standard deviations from the middle: so many rows of each class.
+/// Returns Gaussian clusters around the corners of a simplex, `apart` standard deviations from its middle, with the given number of rows per class.
 fn clusters(counts: &[usize], apart: f64, seed: u64) -> Dataset {
     let mut rng = Seed::new(seed).named("clusters").rng();
     let labels: Vec<usize> = (0..*counts.iter().max().unwrap())
@@ -51,7 +50,7 @@ fn primal_linear_svms_close_their_gap_or_are_counted_as_capped_at_any_c() {
             let open = svm.convergence().iter().filter(|end| {
                 let gap = end.primal - end.dual;
                 assert!(gap >= -1e-9 * end.primal.abs(), "{case}: {gap}");
-                // Each row's margin is right to the tolerance, and costs up to C a unit.
+                // Each row's margin is correct to the tolerance, and costs up to C per unit.
                 gap > 2.0 * params.tolerance * params.c * data.targets.len() as f64
             });
             assert!(open.count() <= svm.n_capped(), "{case}");
@@ -78,7 +77,7 @@ fn every_classifier_learns_from_two_rows_a_class_and_from_a_hundred_to_one() {
             let right = labels.iter().zip(&test.targets).filter(|(a, b)| a == b);
             let share = right.count() as f64 / labels.len() as f64;
             println!("{name}, {kind:?}: {share}");
-            // A tree has one split to place, and Gaussians of one row no width of their own.
+            // A tree has to place one split, and Gaussians of one row have no width of their own.
             let least = match kind {
                 ClassifierKind::NaiveBayes | ClassifierKind::RandomForest => 0.4,
                 _ => 0.85,
@@ -90,7 +89,7 @@ fn every_classifier_learns_from_two_rows_a_class_and_from_a_hundred_to_one() {
 
 #[test]
 fn wrong_labels_cost_a_wide_margin_nothing_until_they_are_the_majority() {
-    // Two classes far apart. Up to four in ten wrong labels, a soft margin holds; past half, it is turned round.
+    // Two classes far apart. A soft margin tolerates up to four of ten wrong labels; beyond half, it is reversed.
     let right = clusters(&[200, 200], 8.0, 14);
     let test = clusters(&[200, 200], 8.0, 15);
     for kind in [ClassifierKind::LinearSvm, ClassifierKind::RbfSvm] {

@@ -1,4 +1,4 @@
-//! The choice of the next touch: by the definition of expected entropy, by brute force, and in cases that can be solved by hand.
+//! Choice of the next touch: compared with the definition of expected entropy, with brute force, and with cases that have an analytical solution.
 
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::evaluation::next_touch::{
@@ -19,7 +19,7 @@ fn random_answers(rng: &mut ChaCha8Rng) -> Array2<f64> {
     given
 }
 
-/// Σ_a P(a) H(O | a) after some touches, from the joint probabilities of an object and all answers.
+/// Returns Σ_a P(a) H(O | a) after some touches, from the joint probabilities of an object and all labels.
 fn expected_entropy(tables: &[Array2<f64>], answers: &[usize], made: &[usize], next: usize) -> f64 {
     let so_far = |object: usize| -> f64 {
         let told = made
@@ -52,7 +52,7 @@ fn each_touch_has_the_least_expected_entropy_of_those_that_are_left() {
             let of = |&touch: &usize| expected_entropy(&tables, &answers, made, touch);
             let least = left.iter().map(of).fold(f64::INFINITY, f64::min);
             assert!((of(&left[place]) - least).abs() < 1e-12);
-            // What is left has no answer yet: none that were looked at could be this.
+            // Remaining touches have no label yet; using this value would cause an error.
             let mut unknown = vec![usize::MAX; N_POSES];
             made.iter()
                 .for_each(|&touch| unknown[touch] = answers[touch]);
@@ -72,7 +72,7 @@ fn a_pose_that_parts_two_objects_tells_one_bit_and_one_that_does_not_nothing() {
     assert!(useless.information(&even).abs() < 1e-15);
     for error in [1e-12, 0.1, 0.25] {
         let telling = PoseAnswers::new(array![[1.0 - error, error], [error, 1.0 - error]]);
-        // The capacity of a binary symmetric channel.
+        // Capacity of a binary symmetric channel.
         let capacity = LN_2 + error * f64::ln(error) + (1.0 - error) * f64::ln(1.0 - error);
         assert!((telling.information(&even) - capacity).abs() < 1e-15);
         let poses = [useless.clone(), useless.clone(), telling.clone()];
@@ -81,7 +81,8 @@ fn a_pose_that_parts_two_objects_tells_one_bit_and_one_that_does_not_nothing() {
         telling.believe(&mut belief, 1);
         assert!((belief[1] - (1.0 - error)).abs() < 1e-15);
     }
-    // Three objects: a pose that parts the first from both others, and one that parts the second. Whom an answer leaves in doubt says which is worth more.
+    // Three objects: one pose separates the first from both others, another one separates the second. The current belief determines which pose is more
+    // informative.
     let part = |object: usize| {
         let row = |o: usize| {
             if o == object {
@@ -105,7 +106,7 @@ fn a_pose_that_parts_two_objects_tells_one_bit_and_one_that_does_not_nothing() {
 fn random_poses(n: usize, rng: &mut ChaCha8Rng) -> Poses {
     Poses {
         coordinates: Array2::from_shape_simple_fn((n, 2), || rng.gen_range(-1.0..1.0)),
-        // An angle over half a turn, in units of that.
+        // An angle of up to half a turn, in units of half a turn.
         turns: vec![None, Some(2.0)],
     }
 }
@@ -116,7 +117,7 @@ fn the_farthest_touch_has_the_largest_distance_to_the_nearest_one_made() {
     let poses = random_poses(30, &mut rng);
     let distance = |a: usize, b: usize| {
         let apart = &poses.coordinates.row(a) - &poses.coordinates.row(b);
-        // The angle between two directions.
+        // Angle between two directions.
         let angle = (apart[1] / 2.0 * TAU).cos().acos();
         apart[0].hypot(angle / TAU * 2.0)
     };
@@ -135,12 +136,12 @@ fn the_farthest_touch_has_the_largest_distance_to_the_nearest_one_made() {
         coordinates: array![[0.0], [0.3], [0.9]],
         turns: vec![Some(1.0)],
     };
-    // 0.9 of a turn is a tenth away from none.
+    // 0.9 of a turn is a tenth of a turn away from zero.
     assert_eq!(line.farthest(&[0], &[1, 2]), 0);
     assert_eq!(line.select(&[1, 0, 2]).farthest(&[1], &[0, 2]), 0);
 }
 
-/// Two objects that are taken for each other where the first coordinate is below 0 and never elsewhere, whatever the second one.
+/// Two objects that are confused if the first coordinate is below 0 and never otherwise, for any second coordinate.
 #[test]
 fn a_model_of_answers_knows_where_objects_are_confused() {
     let mut rng = Seed::new(32).rng();
@@ -162,7 +163,7 @@ fn a_model_of_answers_knows_where_objects_are_confused() {
     let [none, all] = mean.map(|told| Array1::from(told).mean().unwrap());
     println!("{none:.3} and {all:.3} of {LN_2:.3}");
     assert!(none < 0.1 && all > 0.5, "{none} {all}");
-    // Of an object without touches nothing is known but that its answers add up to 1.
+    // For an object without touches, only the sum of its label probabilities is known: 1.
     let unknown = AnswerModel::new(&poses, &touches[..0], 2).at(401);
     assert!(unknown.information(&even).abs() < 1e-15);
 }

@@ -1,4 +1,4 @@
-//! Laws of the splits: who trains, who tests, and what must never meet.
+//! Laws of splits: which rows train, which test, and which must be separated.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use bubbletouch::recognition::data::split::{
 };
 use ndarray::Array1;
 
-/// Class sizes 40, 17, 9 and 4, interleaved in no simple order.
+/// Returns labels with class sizes 40, 17, 9 and 4, interleaved irregularly.
 fn labels() -> Array1<usize> {
     let mut labels = Vec::new();
     for (class, n) in [(2, 40), (0, 17), (5, 9), (1, 4)] {
@@ -81,7 +81,7 @@ fn another_class_does_not_change_a_class_split() {
 
 #[test]
 fn no_group_is_both_trained_on_and_tested() {
-    // 12 poses, each holding every one of 5 objects twice.
+    // 12 poses; each contains each of 5 objects twice.
     let labels = Array1::from_iter((0..120).map(|row| row % 5));
     let groups = Array1::from_iter((0..120).map(|row| 100 + row / 10));
     let seed = Seed::new(4);
@@ -177,7 +177,7 @@ fn a_given_hold_out_has_each_row_where_it_was_put_and_draws_the_order_alone() {
     let mut train = split.train.clone();
     train.sort_unstable();
     assert_eq!((train, split.test), (vec![0, 2, 4, 7], vec![1, 5]));
-    // One of each class in turn.
+    // One row of each class, alternating.
     let classes: Vec<usize> = split.train.iter().map(|&row| labels[row]).collect();
     assert_eq!(classes, [0, 1, 0, 1]);
     assert!(given_hold_out(labels.view(), &sides[1..], &Seed::new(1)).is_err());
