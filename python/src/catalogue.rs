@@ -27,7 +27,7 @@ impl Catalogue {
         })
     }
 
-    /// Reads objects from a TOML file. Raises OSError, or ValueError with the line of the file.
+    /// Reads objects from a TOML file. Raises OSError if the file cannot be read, and ValueError, with the line number, if it is invalid.
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<Self> {
         guarded(|| {
@@ -44,23 +44,25 @@ impl Catalogue {
         entries.map(|entry| entry.name.as_str()).collect()
     }
 
+    /// Names of all sets.
     #[getter]
     fn sets(&self) -> Vec<&str> {
         self.entries.sets()
     }
 
-    /// Returns the object with this name. If there is none, raises ValueError with similar names.
+    /// Returns the object with this name. If there is none, raises ValueError, which lists similar names.
     fn object(&self, name: &str) -> PyResult<Solid> {
         let entry = self.entries.object(name).map_err(exception)?;
         Ok(Solid(entry.clone()))
     }
 
-    /// Returns all objects of a set. If there is no such set, raises ValueError with the names of the sets.
+    /// Returns all objects of a set. If there is no such set, raises ValueError, which lists the sets.
     fn set(&self, name: &str) -> PyResult<Vec<Solid>> {
         let entries = self.entries.set(name).map_err(exception)?;
         Ok(entries.into_iter().cloned().map(Solid).collect())
     }
 
+    /// Number of objects.
     fn __len__(&self) -> usize {
         self.entries.entries().len()
     }
@@ -77,6 +79,7 @@ pub struct Solid(Entry);
 
 #[pymethods]
 impl Solid {
+    /// Name of the object.
     #[getter]
     fn name(&self) -> &str {
         &self.0.name

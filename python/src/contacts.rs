@@ -7,7 +7,7 @@ use glam::DVec3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-/// Contacts of n presses: m pairs of a taxel and the part of the object that touches it, in the order of poses and taxels.
+/// Contacts of n presses: m pairs of a taxel and the part of the object that touches the taxel, ordered by pose and taxel.
 #[pyclass(frozen, get_all, module = "bubbletouch")]
 pub struct Contacts {
     /// Number of the pose (m,), from 0.
@@ -16,7 +16,7 @@ pub struct Contacts {
     taxel: Py<PyArray1<i64>>,
     /// Number of the sphere or triangle (m,) that determines the taxel's deflection.
     part: Py<PyArray1<i64>>,
-    /// Deflection of the taxel (m,), metres; equals the frame up to rounding.
+    /// Deflection of the taxel (m,), metres; equals the deflection in the frame up to rounding.
     deflection: Py<PyArray1<f64>>,
     /// Contact normal (m, 3): unit vector from the object's surface to the taxel, in the patch frame.
     normal: Py<PyArray2<f64>>,
@@ -24,13 +24,14 @@ pub struct Contacts {
     point: Py<PyArray2<f64>>,
     /// Frictionless force of the taxel's spring on the object (m, 3), newtons, in the patch frame.
     force: Py<PyArray2<f64>>,
-    /// Gradient ∂δ/∂x (m, 3) for a motion x of the part in the patch frame, without the taxel's stop. Its length is ∂δ/∂R for a sphere's radius R.
+    /// Gradient ∂δ/∂x (m, 3) for a motion x of the part in the patch frame, without the limit of the stroke. For a sphere of radius R, the length of
+    /// the gradient is ∂δ/∂R.
     gradient: Py<PyArray2<f64>>,
-    /// Travel of the patch along its z axis (n,), metres; NaN if no taxel met the object.
+    /// Travel of the patch along its z axis (n,), metres; NaN if no taxel touched the object.
     travel: Py<PyArray1<f64>>,
     /// Number of deflected taxels (n,).
     n_touched: Py<PyArray1<i64>>,
-    /// Number of saturated taxels (n,): at their stroke, and pushed further by the object.
+    /// Number of saturated taxels (n,): their deflection equals the stroke, and the object pushes further.
     n_saturated: Py<PyArray1<i64>>,
 }
 
@@ -113,6 +114,7 @@ impl Contacts {
 
 #[pymethods]
 impl Contacts {
+    /// Number m of contacts.
     fn __len__(&self, py: Python) -> PyResult<usize> {
         self.taxel.bind(py).len()
     }

@@ -5,7 +5,7 @@
 //! | [`Error::Input`] | `ValueError` with the library's message |
 //! | [`Error::Io`] | `OSError`, or its subclass for the system's number, with the file's name |
 //! | [`Error::WorkItems`] | `RuntimeError` with the library's message |
-//! | a panic | `InternalError`, which requests a report |
+//! | a panic | `InternalError`; the message asks the user to report the bug |
 
 use bubbletouch::Error;
 use pyo3::create_exception;

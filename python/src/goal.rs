@@ -11,7 +11,7 @@ use glam::DVec3;
 use pyo3::prelude::*;
 use std::slice::from_ref;
 
-/// Goal of presses: its kind, and one amount for all poses or one amount per pose.
+/// Goal of presses: a kind, and one amount for all poses or one amount per pose.
 pub struct Goal {
     kind: fn(f64) -> contact::Goal,
     amounts: Vec<f64>,

@@ -1,11 +1,11 @@
 //! Derivatives of deflections with respect to the object's pose, computed from the contact normals.
 //!
 //! A motion of the object in the patch frame consists of a translation dx of its origin o and a rotation dω about o. The motion changes the deflection of
-//! contact i by `g·dx + ((p − o) × g)·dω`, where p is the contact point and g = −n_c / (n_c·n). The travel of the patch to its goal also changes:
+//! contact i by `g·dx + ((p − o) × g)·dω`, where p is the contact point and g = −n_c / (n_c·n). The change of the travel of the patch depends on the goal:
 //!
-//! - to a pose or a travel, the travel is constant;
-//! - to a depth past first contact, on a flat patch, the deepest taxel d keeps its deflection, so its derivative is subtracted: `J_i − J_d`;
-//! - to a force Σ k δ, the travel changes by `dT = −Σ k J / Σ k r`, where r = −g_z is the change of a deflection per travel: `J_i + r_i dT`.
+//! - pose or travel: the travel is constant;
+//! - depth past first contact, on a flat patch: the deepest taxel d keeps its deflection, so its derivative is subtracted, `J_i − J_d`;
+//! - force Σ k δ: the travel changes by `dT = −Σ k J / Σ k r`, where r = −g_z is the change of a deflection per travel; the derivative is `J_i + r_i dT`.
 //!
 //! The derivative of a saturated or untouched taxel is 0.
 

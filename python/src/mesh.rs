@@ -22,8 +22,8 @@ const ADVICE: &str = "Mesh.read(…, close_holes=WIDTH) closes holes up to that 
 
 /// Triangle mesh with exact contact: taxels touch its faces, edges and corners, from both sides.
 ///
-/// `Mesh(vertices, triangles)`: vertices (n, 3), metres; triangles (m, 3), numbers of vertices from 0, counter-clockwise seen from outside.
-/// Raises ValueError for numbers that are not finite and for vertices that do not exist.
+/// `Mesh(vertices, triangles)`: vertices (n, 3), metres; triangles (m, 3), vertex indices from 0, counter-clockwise seen from outside. Raises
+/// ValueError if a number is not finite or a vertex index does not exist.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Mesh {
     /// Source of the mesh, for error messages.
@@ -81,11 +81,11 @@ impl Mesh {
 
     /// Reads a mesh from a PLY, OBJ or STL file.
     ///
-    /// unit: unit of the file's numbers. None: metres, for objects of 0.1 mm to 10 m.
-    /// close_holes: largest width of holes that are closed by a cone, metres.
+    /// unit: unit of the coordinates in the file. None: metres; the object must then be 0.1 mm to 10 m in size.
+    /// close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. None: no hole is closed.
     ///
-    /// Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it
-    /// contains no such mesh.
+    /// Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it contains
+    /// no valid mesh.
     #[staticmethod]
     #[pyo3(signature = (path, *, unit=None, close_holes=None))]
     fn read(
@@ -120,9 +120,9 @@ impl Mesh {
 
     /// Packs the solid enclosed by the mesh with few spheres, on all cores.
     ///
-    /// No sphere extends more than tolerance / 2 (metres, positive) beyond the surface. No point of the surface is more than the tolerance outside
-    /// the spheres. If a bound cannot be reached, ValueError is raised. The mesh must be closed. Parts that face inwards are turned
-    /// outwards, with a UserWarning. With sheet=True, the surface is packed as a sheet without thickness. A scan of 16,000 triangles takes
+    /// No sphere extends more than tolerance / 2 (metres, positive) beyond the surface. No point of the surface is more than the tolerance outside the
+    /// spheres. If these bounds cannot be reached, ValueError is raised. The mesh must be closed. Parts that face inwards are turned outwards, with a
+    /// UserWarning. With sheet=True, the surface is packed as a sheet without thickness; the mesh may then be open. A scan of 16,000 triangles takes
     /// seconds. Ctrl-C ends the call.
     #[pyo3(signature = (tolerance, *, sheet=false))]
     fn pack(&self, py: Python, tolerance: f64, sheet: bool) -> PyResult<SphereUnion> {
@@ -148,7 +148,8 @@ impl Mesh {
         })
     }
 
-    /// Returns one sphere per vertex, as in the original BubbleTouch. Its radius is twice the mean distance to the nearest other vertex.
+    /// Returns one sphere per distinct vertex, as in the original BubbleTouch. All radii equal twice the mean distance from a vertex to its nearest
+    /// neighbour.
     fn vertex_spheres(&self) -> PyResult<SphereUnion> {
         guarded(|| {
             let vertices = self.triangle_mesh().vertices();
@@ -163,7 +164,7 @@ impl Mesh {
         to_rows(py, self.triangle_mesh().vertices().iter().copied())
     }
 
-    /// Triangles of the mesh (m, 3) as vertex numbers; a copy.
+    /// Triangles of the mesh (m, 3) as vertex indices; a copy.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
         let triangles = self.triangle_mesh().triangles();

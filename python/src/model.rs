@@ -1,4 +1,4 @@
-//! Models of objects that patches can press: a [`Mesh`] or a [`SphereUnion`].
+//! Contact models of objects: a [`Mesh`] or a [`SphereUnion`].
 
 use crate::mesh::Mesh;
 use crate::sphere_union::SphereUnion;

@@ -23,9 +23,9 @@ const STIFFNESS: f64 = 100.0;
 
 /// Taxels on a rigid substrate. A patch is created by one of the static methods.
 ///
-/// A taxel is a sphere of `taxel_radius` (metres, positive; half the pitch if None) on a spring of `stiffness` (N/m, positive). Its `damping` (N·s/m, zero or
-/// more) is used by signal chains and scenes. Its deflection is at most its `stroke` (metres, positive). The methods raise ValueError for values out of range,
-/// and for more than 4,194,304 taxels.
+/// A taxel is a sphere of `taxel_radius` (metres, positive; half the pitch if None) on a spring of `stiffness` (N/m, positive). Its `damping`
+/// (N·s/m, zero or more) is used by signal chains and scenes. Its deflection is at most its `stroke` (metres, positive). The methods raise
+/// ValueError for values out of range, and for more than 4,194,304 taxels.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Patch {
     patch: world::Patch,
@@ -89,8 +89,8 @@ fn taxel(pitch: f64, stroke: f64, (radius, stiffness, damping): (Option<f64>, f6
 
 #[pymethods]
 impl Patch {
-    /// Returns a grid of ny rows (along y, ascending) of nx taxels in the plane z = 0. The taxels are `pitch` metres apart; the grid is centred on the origin.
-    /// Frames have the shape (ny, nx).
+    /// Returns a grid of ny rows (along y, ascending) of nx taxels in the plane z = 0. The taxels are `pitch` metres apart; the grid is centred on the
+    /// origin. Frames have the shape (ny, nx).
     #[staticmethod]
     #[pyo3(signature = (ny, nx, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn grid(
@@ -113,7 +113,8 @@ impl Patch {
         })
     }
 
-    /// Returns a hexagonal lattice of ny staggered rows of nx taxels. Each inner taxel has six neighbours `pitch` metres away. The order is row by row.
+    /// Returns a patch of ny staggered rows of nx taxels on a hexagonal lattice. Each inner taxel has six neighbours `pitch` metres away. The taxels
+    /// are numbered row by row.
     #[staticmethod]
     #[pyo3(signature = (ny, nx, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn hexagonal(
@@ -133,7 +134,7 @@ impl Patch {
         })
     }
 
-    /// Returns a patch of all taxels of a hexagonal lattice within `radius` metres of the origin, row by row.
+    /// Returns a patch of all taxels of a hexagonal lattice within `radius` metres of the origin. The taxels are numbered row by row.
     #[staticmethod]
     #[pyo3(signature = (radius, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn disc(
@@ -151,10 +152,14 @@ impl Patch {
         })
     }
 
-    /// Returns rings of taxels around the z axis that face away from it, as on a forearm or a finger.
+    /// Returns a patch of rings of taxels around the z axis that face away from the axis, as on a forearm or a finger.
     ///
-    /// radius: of the rest centres; length: between the first and the last ring, zero or more; arc: above 0 to 2π, centred at +x; pitch: along the surface,
-    /// approximated by a whole number of taxels. Presses move along z: use move() to turn the middle of the patch to z.
+    /// radius: distance of the rest centres from the axis, metres.
+    /// length: distance between the first and the last ring, metres, zero or more.
+    /// arc: angle covered by a ring, radians, above 0 to 2π, centred at +x.
+    /// pitch: distance between taxels along the surface, metres; rounded so that a whole number of taxels fits.
+    ///
+    /// Presses move along z: use moved() to turn the middle of the patch to z.
     #[staticmethod]
     #[pyo3(signature = (radius, length, arc, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -175,7 +180,8 @@ impl Patch {
         })
     }
 
-    /// Returns rings of taxels on a sphere about the origin, from its pole at +z to `half_angle` (above 0 to π), as on a fingertip or an elbow.
+    /// Returns a patch of rings of taxels on a sphere about the origin, as on a fingertip or an elbow. radius: of the sphere, metres. half_angle: angle
+    /// from the pole at +z to the edge, radians, above 0 to π.
     #[staticmethod]
     #[pyo3(signature = (radius, half_angle, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn sphere_cap(
@@ -196,10 +202,15 @@ impl Patch {
 
     /// Returns a patch of taxels that are distributed over the outer surface of a mesh.
     ///
-    /// The number of taxels equals the number in a grid with this pitch. The taxels are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A taxel
-    /// whose axis would meet the mesh again is omitted (n_left_out). The region is the intersection of the given conditions: bounds (2, 3), its smallest and
-    /// largest coordinates; plane (2, 3), a point and the direction to the covered side; triangles, their numbers. Closed parts of the mesh that face inwards
-    /// are turned outwards, with a UserWarning.
+    /// The number of taxels equals the number in a grid with this pitch. The taxels are at least 0.83 pitches apart. The call takes 0.3 ms per taxel. A
+    /// taxel whose axis would meet the mesh again is omitted; n_left_out counts these taxels. Closed parts of the mesh that face inwards are turned
+    /// outwards, with a UserWarning.
+    ///
+    /// The region is the intersection of the given conditions:
+    ///
+    /// - bounds (2, 3): smallest and largest coordinates, metres;
+    /// - plane (2, 3): a point, metres, and the direction to the covered side;
+    /// - triangles: triangle indices.
     #[staticmethod]
     #[pyo3(signature = (mesh, pitch, stroke, *, seed=0, bounds=None, plane=None, triangles=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -247,8 +258,9 @@ impl Patch {
         })
     }
 
-    /// Returns a patch of given taxels: centers (n, 3) and unit axes (n, 3) that point away from the substrate. Axes may differ from unit length by 1 %; they
-    /// are normalised. The other arguments are arrays (n,) or one number for all taxels.
+    /// Returns a patch of given taxels: centers (n, 3), metres, and unit axes (n, 3) that point away from the substrate. The lengths of the axes may
+    /// differ from 1 by 1 %; the axes are normalised. The other arguments are arrays (n,), or one number for all taxels. Defaults: stiffness 100 N/m,
+    /// damping 0.
     #[staticmethod]
     #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None))]
     fn from_arrays(
@@ -287,11 +299,18 @@ impl Patch {
         })
     }
 
-    /// Returns the taxels of a layout file.
+    /// Returns a patch with the taxels of a layout file.
     ///
-    /// path: .csv (x_mm, y_mm, z_mm, nx, ny, nz, optional radius_mm, row, column); .npz (positions and normals, or poses and taxel2pixel as for
-    /// DEX-01); .txt or .ini (iCub); .json (PaXini, with `mesh` for the normals); .urdf (<tactile> of urdf_tactile, or XELA's prismatic joints, with
-    /// `sensor` if there are several). Default radius: the file's, or half the median distance of neighbours. Notes of the reader are UserWarnings.
+    /// The extension of `path` selects the format:
+    ///
+    /// - .csv: columns x_mm, y_mm, z_mm, nx, ny, nz, and optionally radius_mm, row and column;
+    /// - .npz: positions and normals, or poses and taxel2pixel as for DEX-01;
+    /// - .txt or .ini: iCub;
+    /// - .json: PaXini; the normals are taken from `mesh`;
+    /// - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
+    ///
+    /// taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours. Notes of the reader are issued as
+    /// UserWarnings.
     #[staticmethod]
     #[pyo3(signature = (path, stroke, *, mesh=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "a signature of Python")]
@@ -338,7 +357,8 @@ impl Patch {
         })
     }
 
-    /// Writes the layout as a CSV file that `read` reads: x_mm, y_mm, z_mm, nx, ny, nz, radius_mm, and row and column if the patch has pixels.
+    /// Writes the layout to a CSV file that Patch.read can read. The columns are x_mm, y_mm, z_mm, nx, ny, nz and radius_mm; if the patch has pixels,
+    /// also row and column.
     fn write(&self, path: PathBuf) -> PyResult<()> {
         guarded(|| {
             let file = LayoutFile {
@@ -356,7 +376,7 @@ impl Patch {
         })
     }
 
-    /// Row and column of each taxel in the sensor's image, (n_taxels, 2) integers; None if the layout file has no image.
+    /// Row and column of each taxel in the sensor's image, (n_taxels, 2) integers; None if the layout file contains no image.
     #[getter]
     fn pixels<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray2<i64>>> {
         let pixels = self.pixels.as_ref()?;
@@ -365,7 +385,7 @@ impl Patch {
         Some(array.expect("two numbers for each taxel").into_pyarray(py))
     }
 
-    /// Returns a copy of the patch that is moved in the patch frame; the copy is not a grid. pose: (7,) or (4, 4).
+    /// Returns a copy of the patch, moved by a pose in the patch frame; the copy is not a grid. pose: (7,) or (4, 4).
     fn moved(&self, pose: &Bound<PyAny>) -> PyResult<Self> {
         guarded(|| {
             let poses = Poses::from_argument("pose", pose)?;
@@ -384,6 +404,7 @@ impl Patch {
         PyTuple::new(py, &self.shape)
     }
 
+    /// Number of taxels.
     #[getter]
     fn n_taxels(&self) -> usize {
         self.patch.n_taxels()
@@ -437,6 +458,7 @@ impl Patch {
         self.property(py, |taxel| taxel.damping)
     }
 
+    /// Number of taxels.
     fn __len__(&self) -> usize {
         self.patch.n_taxels()
     }
@@ -480,24 +502,25 @@ impl Patch {
 
     /// Presses the patch on an object at n poses; returns the deflections of the taxels, metres, from 0 to the stroke.
     ///
-    /// poses: the object in the frame of the patch, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose.
+    /// poses: the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose.
     ///
-    /// The patch approaches along its z. At most one of the following goals is given, as one number for all poses or (n,):
+    /// The patch approaches along its z axis. At most one of the following goals is given, as one number for all poses or (n,):
     ///
     /// - depth: metres past first contact, zero or more;
     /// - travel: metres from the given pose;
-    /// - force: newtons, the sum Σ k δ of all springs.
+    /// - force: newtons, positive, the sum Σ k δ of all springs.
     ///
-    /// Without a goal, the patch is read at the pose. If the patch meets nothing, the deflections are zero.
+    /// Without a goal, the deflections are computed at the given pose. If the patch does not touch the object, the deflections are zero.
     ///
-    /// out: C-contiguous array of float32 or float64 for the frames; it is returned. dtype: of a new array, float64 or float32.
-    /// threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends it.
+    /// out: C-contiguous array of float32 or float64 that receives the frames and is returned. dtype: type of a new array, float64 (default) or
+    /// float32.
+    /// threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends the call.
     ///
-    /// Returns (n, ny, nx) for a grid, and (n, n_taxels) for another patch; without n for a single pose. The result is bitwise equal for any number
-    /// of threads. With contacts=True, the Contacts are returned too; the frames are unchanged. With jacobian=True, the derivatives (…, 6) of the
-    /// deflections are returned too: per metre along x, y, z, and per radian about x, y, z through the object's origin, in the axes of the patch.
-    /// The derivatives are zero for free and saturated taxels. With a depth or a force, the derivatives include the change of the travel; a depth then needs a
-    /// flat patch.
+    /// Returns an array (n, ny, nx) for a grid, and (n, n_taxels) for another patch; for a single pose, without the axis n. The result is bitwise equal
+    /// for any number of threads. With contacts=True, the Contacts are also returned; the frames are unchanged. With jacobian=True, the derivatives
+    /// (…, 6) of the deflections are also returned: per metre along x, y, z, and per radian about x, y, z through the object's origin, in the axes of
+    /// the patch. The derivatives are zero for free and saturated taxels. With a depth or a force, the derivatives include the change of the travel; a
+    /// depth then needs a flat patch.
     ///
     /// Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
     #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, out=None, dtype=None, threads=None, contacts=false, jacobian=false))]

@@ -8,8 +8,8 @@ use ndarray::Ix2;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Writes the deflections (ny, nx; metres) of a grid with this pitch (metres) to a file. The extension selects a picture (.png), a table (.csv) or arrays
-/// (.npz). Raises OSError or ValueError.
+/// Writes the deflections (ny, nx; metres) of a grid with this pitch (metres) to a file. The extension selects a picture (.png), a table (.csv) or
+/// arrays (.npz). Raises OSError if the file cannot be written, and ValueError if an argument is invalid.
 #[pyfunction]
 pub fn write_frame(path: PathBuf, frame: &Bound<PyAny>, pitch: f64) -> PyResult<()> {
     guarded(|| {

@@ -8,7 +8,7 @@ use ndarray::{Array1, Array2};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Argument of groups of `width` numbers: one group for all touches, or one per touch.
+/// Argument that contains groups of `width` numbers: one group for all touches, or one group per touch.
 struct Groups {
     values: Vec<f64>,
     width: usize,
@@ -56,11 +56,12 @@ impl Groups {
 
 /// Returns object poses for Patch.press: the object lies on a table under a patch that faces down.
 ///
-/// The object stands with its own z axis up or, with `rest`, in the stable pose of that number (0: the most probable). Its bounding box is centred at x = y = 0
-/// and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y; metres) at the height of the object's top. The axis is tilted by
-/// `tilt` about the patch's x axis, then about its y axis.
+/// The object stands with its own z axis up or, with `rest`, in the stable pose of that number (0: the most probable). Its bounding box is centred
+/// at x = y = 0 and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y) at the height of the object's top. The
+/// axis is tilted by `tilt` about the patch's x axis, then about its y axis.
 ///
-/// offset, tilt: (2,) or (n, 2); yaw: a number or (n,). Returns (7,) if all arguments are single values, otherwise (n, 7). Raises ValueError.
+/// offset: metres, (2,) or (n, 2); tilt: radians, (2,) or (n, 2); yaw: radians, one number or (n,). Returns (7,) if all arguments are single
+/// values, otherwise (n, 7). Raises ValueError if an argument is invalid.
 #[pyfunction]
 #[pyo3(signature = (object, *, offset=None, yaw=None, tilt=None, rest=None))]
 pub fn touch_poses<'py>(

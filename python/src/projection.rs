@@ -8,10 +8,14 @@ use bubbletouch::sensing::{self, Ensemble};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 
-/// Random projection y = Φx of frames with ny × nx taxels to m measurements, drawn once.
+/// Random projection y = Φx of frames with ny × nx taxels to m measurements; Φ is drawn once.
 ///
-/// Example: Projection("sbhe", patch.shape, 64, seed=7). ensemble: gaussian, bernoulli, circulant, sparse, sbhe, block_average, subsample,
-/// fourier, or identity (all taxels, for any m). n_measurements: 1 to the number of taxels. Raises ValueError.
+/// Example: Projection("sbhe", patch.shape, 64, seed=7).
+///
+/// ensemble: gaussian, bernoulli, circulant, sparse, sbhe, block_average, subsample, fourier, or identity (all taxels, for any m).
+/// n_measurements: 1 to the number of taxels.
+///
+/// Raises ValueError if an argument is invalid.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Projection {
     projection: sensing::Projection,
@@ -62,7 +66,8 @@ impl Projection {
         })
     }
 
-    /// Returns the measurements (n, m) of frames (n, …) of n_taxels each; (1, m) for one frame. A row is bitwise equal in any batch.
+    /// Returns the measurements (n, m) of frames (n, …) with n_taxels numbers per frame; (1, m) for one frame. The measurements of a frame are bitwise
+    /// equal in any batch.
     fn __call__<'py>(
         &self,
         py: Python<'py>,

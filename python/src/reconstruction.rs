@@ -34,10 +34,15 @@ self_cell!(
 
 /// Reconstructor of frames from the measurements of one projection, with a basis fitted to training frames.
 ///
-/// Example: Reconstructor(projection, training, basis="pca", solver="lmmse", noise=1e-4). training: (n, ny, nx), metres. basis: dct, haar, daubechies4 (both
-/// for sides that are powers of two) or pca. n_atoms: number of atoms, for pca the components of largest variance; None: all atoms, or 256 of pca.
-/// solver: omp (orthogonal matching pursuit), l1 (basis pursuit by FISTA) or lmmse (linear minimum mean square error estimate). noise: standard deviation on
-/// each taxel, in the unit of the frames. Raises ValueError.
+/// Example: Reconstructor(projection, training, basis="pca", solver="lmmse", noise=1e-4).
+///
+/// training: frames (n, ny, nx), metres.
+/// basis: dct, haar, daubechies4 (both for sides that are powers of two) or pca.
+/// n_atoms: number of atoms, for pca the components of largest variance; None: all atoms, or 256 of pca.
+/// solver: omp (orthogonal matching pursuit), l1 (basis pursuit by FISTA) or lmmse (linear minimum mean square error estimate).
+/// noise: standard deviation on each taxel, in the unit of the frames.
+///
+/// Raises ValueError if an argument is invalid.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Reconstructor {
     solving: Solving,
@@ -116,8 +121,8 @@ impl Reconstructor {
         })
     }
 
-    /// Reconstructs frames from measurements (n, m). Returns the frames (n, ny, nx), the numbers of atoms used, n_atoms (n,), and is_capped (n,): whether the
-    /// solver stopped at a limit.
+    /// Reconstructs frames from measurements (n, m). Returns a dict: frames (n, ny, nx); n_atoms (n,), the number of atoms used; is_capped (n,),
+    /// whether the solver stopped at a limit.
     fn __call__<'py>(
         &self,
         py: Python<'py>,

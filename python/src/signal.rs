@@ -58,8 +58,8 @@ impl Step {
         }
     }
 
-    /// Returns a step that adds Gaussian noise to every taxel. unit: fraction of full scale (of a taxel at its stroke), millimetres, or newtons. std: zero or
-    /// more.
+    /// Returns a step that adds Gaussian noise to every taxel. std: standard deviation, zero or more. unit: unit of std, full_scale (fraction of the
+    /// signal of a taxel at its stroke), mm (millimetres) or n (newtons).
     #[staticmethod]
     #[pyo3(signature = (std, unit="full_scale"))]
     fn noise(std: f64, unit: &str) -> PyResult<Self> {
@@ -87,9 +87,10 @@ impl Step {
         }
     }
 
-    /// Returns a step with a sensor error, such as Step.error("gain", gain_std=0.07). An invalid name or strength raises ValueError with the allowed ones.
+    /// Returns a step with a sensor error, such as Step.error("gain", gain_std=0.07). If a name or a strength is invalid, raises ValueError, which
+    /// lists the allowed ones.
     ///
-    /// errors() lists all errors. Errors of an individual sensor (gain, drift, faults) are drawn from the chain's skin_seed.
+    /// errors() returns all errors. Errors of an individual sensor (gain, drift, faults) are drawn from the chain's skin_seed.
     #[staticmethod]
     #[pyo3(signature = (name, **strengths))]
     fn error(name: &str, strengths: Option<&Bound<PyDict>>) -> PyResult<Self> {
@@ -116,7 +117,8 @@ impl Step {
         })
     }
 
-    /// Returns the strengths of each sensor error, with the allowed values of each strength.
+    /// Returns all sensor errors, as a dict from the name of an error to its strengths. The strengths are a dict from the name of a strength to its
+    /// allowed values, as text.
     #[staticmethod]
     fn errors(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let all = PyDict::new(py);
@@ -137,10 +139,12 @@ impl Step {
 
 /// Signal chain: a sequence of steps from deflections to sensor signals, prepared for a patch.
 ///
-/// Chain([Step.error("gain", gain_std=0.05), Step.noise(0.02), Step.smoothing(4e-3)], patch, skin_seed=7)
+/// Example: Chain([Step.error("gain", gain_std=0.05), Step.noise(0.02), Step.smoothing(4e-3)], patch, skin_seed=7)
 ///
-/// skin_seed: number of the individual sensor, which has its own gains, drift and faults; 0 and above. of_force: whether input frames are in
-/// newtons. Raises ValueError if the patch, or the order of the steps, does not allow a step.
+/// skin_seed: seed of the individual sensor's gains, drift and faults, 0 or above.
+/// of_force: whether input frames are in newtons.
+///
+/// Raises ValueError if the patch, or the order of the steps, does not allow a step.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Chain {
     chain: signal::Chain,
@@ -183,9 +187,13 @@ impl Chain {
 
     /// Returns the sensor signals of frames; each frame is treated as a separate touch at rest.
     ///
-    /// frames: deflections (n, …) of n_taxels each, (n, ny, nx) of a grid, metres, or one frame; they are not changed. seed: of random values that
-    /// change from touch to touch. Frame i uses the random numbers of touch `first` + i, independently of other frames. rates: δ̇, m/s, in the
-    /// shape of the frames. Returns a float64 array of the shape of the frames, in the unit of `quantity`. Raises ValueError.
+    /// frames: deflections, metres, shape (n, …) with n_taxels numbers per frame, (n, ny, nx) for a grid, or one frame. The array is not changed.
+    /// seed: seed of the random values that change from touch to touch. Frame i uses the random numbers of touch `first` + i, independently of other
+    /// frames.
+    /// rates: deflection rates δ̇, m/s, in the shape of the frames; None: 0.
+    /// threads: maximum number of threads; all cores if None.
+    ///
+    /// Returns a float64 array of the shape of the frames, in the unit of `quantity`. Raises ValueError if an argument is invalid.
     #[pyo3(signature = (frames, *, seed=0, first=0, rates=None, threads=None))]
     fn __call__<'py>(
         &self,
@@ -224,8 +232,11 @@ impl Chain {
 
     /// Returns the sensor signals of the frames of one touch, in order of time; hysteresis and scan order connect the frames.
     ///
-    /// n_before: number of leading frames that affect later frames, but are not returned. interval: seconds between frames; None: the press waits
-    /// at each frame. time: elapsed fraction of the session, 0 to 1, for drift. Returns (n − n_before, …). Raises ValueError.
+    /// n_before: number of leading frames that affect later frames, but are not returned.
+    /// interval: time between frames, seconds; None: the press stops at each frame until all taxels are read.
+    /// time: elapsed fraction of the session, 0 to 1, for drift; None: random, from the seed.
+    ///
+    /// Returns (n − n_before, …). Raises ValueError if an argument is invalid.
     #[pyo3(signature = (frames, *, seed=0, n_before=0, interval=None, time=None, rates=None))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn read_touch<'py>(

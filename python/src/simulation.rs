@@ -37,13 +37,20 @@ fn begin(plan: &Arc<ScenePlan>) -> OnItsWay {
 /// Simulation of a scene, created from the scene's text; use bubbletouch.simulate for a file or a dict.
 ///
 /// The simulation is an iterator over the frames of the scene. Alternatively, a program moves objects and robots step by step with set_…(),
-/// step(dt) and observe(). Frames are dicts:
+/// step(dt) and observe(). A frame is a dict:
 ///
 /// - time: seconds;
-/// - patches: for each patch, by name: pose (7,) in the world, deflection (ny, nx) or (n_taxels,) in metres, force in newtons of equal shape,
-///   force3 (n_taxels, 3) of the objects on each taxel in newtons in the frame of the patch (its sum is the wrench's force), signal (or None),
-///   wrench (6,) of force and torque on the patch in its frame, n_touched, n_saturated;
-/// - objects: for each object, by name: pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
+/// - patches: dict from the name of a patch to its reading, see below;
+/// - objects: dict from the name of an object to a dict: pose (7,) in the world, and held: imposed, pressed, at rest, unsettled or escaped.
+///
+/// The reading of a patch is a dict:
+///
+/// - pose: (7,) in the world;
+/// - deflection and force: metres and newtons, (ny, nx) for a grid, otherwise (n_taxels,);
+/// - force3: force of the objects on each taxel, newtons, (n_taxels, 3), in the patch frame; the sum equals the force of the wrench;
+/// - signal: sensor signals in the shape of the deflections, or None;
+/// - wrench: force and torque on the patch, newtons and newton metres, (6,), in the patch frame;
+/// - n_touched and n_saturated: numbers of taxels.
 #[pyclass(module = "bubbletouch")]
 pub struct Simulation {
     plan: Arc<ScenePlan>,
@@ -84,8 +91,8 @@ impl Simulation {
         })
     }
 
-    /// Resets the simulation to the state before the first frame, and removes all manual settings. The sensor is unchanged. The noise of its readings is drawn
-    /// from `seed` (None: the scene's seed). Raises ValueError.
+    /// Resets the simulation to the state before the first frame, and removes all manual settings. The sensor is unchanged. The noise of the readings
+    /// is drawn from `seed` (None: the scene's seed). Raises ValueError if the seed is invalid.
     #[pyo3(signature = (seed=None))]
     fn reset(&mut self, seed: Option<i128>) -> PyResult<()> {
         let seed = match seed {
@@ -98,13 +105,14 @@ impl Simulation {
         })
     }
 
-    /// Advances the simulation by `dt` seconds. Manually set poses are reached; all other motions follow the scene. Raises ValueError.
+    /// Advances the simulation by `dt` seconds. Manually set poses are reached; all other motions follow the scene. Raises ValueError if `dt` is not
+    /// positive, or a pose overflows.
     fn step(&mut self, py: Python, dt: f64) -> PyResult<()> {
         let going = &mut self.going;
         guarded(|| py.detach(|| on(going, |simulation| simulation.step(dt))))
     }
 
-    /// Returns the current state as a frame. Before any step, it is the first frame of the scene. Raises ValueError.
+    /// Returns the current state as a frame. Before any step, the state is the first frame of the scene. Raises ValueError if a pose overflows.
     fn observe<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let going = &mut self.going;
         guarded(|| {
@@ -113,20 +121,21 @@ impl Simulation {
         })
     }
 
-    /// Sets the pose of an object in the world from the next step on: (7,) or (4, 4). A free object comes to rest from this pose. Raises
-    /// ValueError.
+    /// Sets the pose of an object in the world from the next step on: (7,) or (4, 4). A free object comes to rest from this pose. Raises ValueError if
+    /// an argument is invalid.
     fn set_object_pose(&mut self, object: &str, pose: &Bound<PyAny>) -> PyResult<()> {
         let pose = one_pose(pose)?;
         self.change(|simulation| simulation.set_object_pose(object, pose))
     }
 
-    /// Sets the pose of a robot's base in the world from the next step on: (7,) or (4, 4). Raises ValueError.
+    /// Sets the pose of a robot's base in the world from the next step on: (7,) or (4, 4). Raises ValueError if an argument is invalid.
     fn set_robot_pose(&mut self, robot: &str, pose: &Bound<PyAny>) -> PyResult<()> {
         let pose = one_pose(pose)?;
         self.change(|simulation| simulation.set_robot_pose(robot, pose))
     }
 
-    /// Sets the joint positions of a robot from the next step on: (n_joints,) in the order of `robots`, radians and metres. Raises ValueError.
+    /// Sets the joint positions of a robot from the next step on: (n_joints,) in the order of `robots`, radians and metres. Raises ValueError if an
+    /// argument is invalid.
     fn set_joint_positions(&mut self, robot: &str, positions: &Bound<PyAny>) -> PyResult<()> {
         let is_shape = |shape: &[usize]| shape.len() == 1;
         view("positions", positions, "(n_joints,)", is_shape, |array| {
@@ -135,7 +144,7 @@ impl Simulation {
         })
     }
 
-    /// Returns the patch with this name, in the patch's own frame. Raises ValueError.
+    /// Returns the patch with this name, in the patch frame. If there is none, raises ValueError.
     fn patch(&self, name: &str) -> PyResult<Patch> {
         let patches = self.plan.patches.iter();
         let mut patches = patches.filter(|patch| patch.skin.name() == name);
@@ -152,7 +161,7 @@ impl Simulation {
             .with_dependent_mut(|_, simulation| simulation.time())
     }
 
-    /// Names of the movable joints of each robot, by the robot's name.
+    /// Dict from the name of each robot to the names of its movable joints.
     #[getter]
     fn robots<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let robots = PyDict::new(py);

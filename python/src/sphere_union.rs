@@ -13,8 +13,8 @@ use std::path::PathBuf;
 
 /// Union of rigid spheres.
 ///
-/// `SphereUnion(centers, radii)`: centers (n, 3), metres; radii (n,) or one number, metres, positive. Raises ValueError with the number of the
-/// first invalid sphere, from 1.
+/// `SphereUnion(centers, radii)`: centers (n, 3), metres; radii (n,) or one number, metres, positive. Raises ValueError if a sphere is invalid; the
+/// message contains its number, from 1.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct SphereUnion {
     model: Model,
@@ -56,9 +56,9 @@ impl SphereUnion {
         })
     }
 
-    /// Reads spheres from a CSV file with columns x, y, z, r in metres, or in another unit.
+    /// Reads spheres from a CSV file with columns x, y, z, r, in metres or in another unit.
     ///
-    /// Raises OSError if the file cannot be read, and ValueError if it contains no such spheres.
+    /// Raises OSError if the file cannot be read, and ValueError if it contains no valid spheres.
     #[staticmethod]
     #[pyo3(signature = (path, *, unit=None))]
     fn read(path: PathBuf, unit: Option<&str>) -> PyResult<Self> {
@@ -70,7 +70,8 @@ impl SphereUnion {
         })
     }
 
-    /// Writes the spheres to a CSV file, from which read() returns bitwise equal spheres. Raises OSError; an existing file is then kept.
+    /// Writes the spheres to a CSV file, from which read() returns bitwise equal spheres. Raises OSError if writing fails; an existing file is then
+    /// kept.
     fn write(&self, path: PathBuf) -> PyResult<()> {
         guarded(|| {
             check_folder(&path)?;

@@ -222,7 +222,8 @@ pub fn toml_of(json: &str) -> PyResult<String> {
     })
 }
 
-/// Returns advice from the results in a folder, as JSON: the cheapest configuration with a minimum quality, or the best one within a cost. Raises ValueError.
+/// Returns advice from the results in a folder, as JSON: the cheapest configuration with a minimum quality, or the best one within a cost. Raises
+/// ValueError if there is no such configuration, or an argument is invalid.
 #[pyfunction]
 #[pyo3(signature = (results, reach, budget, value, cost, table, given, worst, limits))]
 #[expect(clippy::too_many_arguments, reason = "named in Python")]

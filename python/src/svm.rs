@@ -34,11 +34,11 @@ fn rows_of(given: &Bound<PyAny>) -> PyResult<Array2<f64>> {
     )
 }
 
-/// Number of rows that the library predicts together.
+/// Block size of predictions in the library, rows.
 const BLOCK_ROWS: usize = 256;
 
-/// Predicts parts of the rows on the threads of the pool. Each part is a multiple of the library's block size, so the results are bitwise equal to a single
-/// call.
+/// Predicts parts of the rows on the threads of the pool. The number of rows of a part is a multiple of the library's block size, so the results are bitwise
+/// equal to a single call.
 ///
 /// # Errors
 /// Returns the error of predicting all rows together, which names the correct row.
@@ -159,7 +159,7 @@ pub struct KernelSvm {
 
 #[pymethods]
 impl KernelSvm {
-    /// Trains an SVM on features (n, m) and labels (n,). Raises ValueError.
+    /// Trains an SVM on features (n, m) and labels (n,). Raises ValueError if an argument is invalid.
     #[staticmethod]
     fn train(
         features: &Bound<PyAny>,
@@ -174,7 +174,7 @@ impl KernelSvm {
         })
     }
 
-    /// Returns the predicted labels (n,) of features (n, m); if votes are equal, the lowest label.
+    /// Returns the predicted labels (n,) of features (n, m). If several classes have the most votes, the lowest label is returned.
     fn labels<'py>(
         &self,
         py: Python<'py>,
@@ -202,7 +202,8 @@ impl KernelSvm {
         })
     }
 
-    /// Binary problems of the SVM: for each, its classes, training rows, signed multipliers, ρ, objective, number of iterations, and whether it was capped.
+    /// Binary problems of the SVM, one dict each: classes, training rows, signed multipliers, ρ, objective, number of iterations, and whether the
+    /// solver stopped at the iteration cap.
     #[getter]
     fn problems<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let problem = |problem: &bubbletouch::recognition::svm::BinaryProblem| {
@@ -243,8 +244,8 @@ impl KernelSvm {
     }
 }
 
-/// Trained linear SVM without a kernel matrix for labels 0, 1, …, used by bubbletouch.learning.LinearSVC. Pickling stores its training rows; unpickling trains
-/// it again.
+/// Trained linear SVM without a kernel matrix for labels 0, 1, …, used by bubbletouch.learning.LinearSVC. Pickling stores its training rows;
+/// unpickling trains it again.
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct LinearModel {
     svm: LinearSvm,
@@ -254,7 +255,7 @@ pub struct LinearModel {
 
 #[pymethods]
 impl LinearModel {
-    /// Trains a linear SVM on features (n, m) and labels (n,). Raises ValueError.
+    /// Trains a linear SVM on features (n, m) and labels (n,). Raises ValueError if an argument is invalid.
     #[staticmethod]
     fn train(
         features: &Bound<PyAny>,
@@ -342,8 +343,8 @@ impl LinearModel {
     }
 }
 
-/// Evaluates all values of γ and C by cross-validation, on one matrix of products. γ values are multiples of 'scale'; without any, γ is unchanged. Returns the
-/// best C, the best γ, and tuples of C, γ and accuracy.
+/// Evaluates all pairs of C and γ by cross-validation; all pairs share one matrix of inner products. gamma_scales: values of γ as multiples of
+/// 'scale'; if empty, γ is unchanged. Returns a dict: the best C, gamma and accuracy; tried, tuples of C, γ and accuracy; n_capped.
 #[pyfunction]
 pub fn choose_svm<'py>(
     py: Python<'py>,
