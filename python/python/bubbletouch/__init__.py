@@ -1,10 +1,10 @@
 """Simulated touch for robot skin, in NumPy arrays.
 
-All lengths are metres, forces newtons, angles radians. A pose is the object in the frame of the patch (`patch_from_object`): seven numbers
-x, y, z, qw, qx, qy, qz, or a 4 × 4 matrix. Taxels of a flat patch rest in its plane z = 0 and point along +z.
+Lengths are in metres, forces in newtons, angles in radians. A pose is the pose of the object in the patch frame (`patch_from_object`): seven
+numbers x, y, z, qw, qx, qy, qz, or a 4 × 4 matrix. The taxels of a flat patch rest in the plane z = 0 of the patch and point along +z.
 
-Bad input raises ValueError as `<where>: <what was given>; <what is allowed>`, a file that cannot be read or written OSError, and a bug of
-this package InternalError, whose text asks for a report.
+Invalid input raises ValueError with the message `<where>: <what was given>; <what is allowed>`. A file that cannot be read or written raises
+OSError. A bug of this package raises InternalError; its message asks the user to report the bug.
 """
 
 from bubbletouch._core import (

@@ -1,4 +1,4 @@
-"""Checks of numbers that are given as arguments: each error has the name, what was given and what is allowed."""
+"""Checks of numeric arguments. Each error message contains the name of the argument, the given value and the allowed values."""
 
 from __future__ import annotations
 
@@ -7,12 +7,16 @@ from numbers import Integral, Real
 from typing import Any
 
 
-# The largest seed of the library; a range that ends here is written without its end.
+# Largest seed of the library. Error messages omit the upper bound of a range that ends here.
 _MOST = 2**64 - 1
 
 
 def real(name: str, value: Any, *, above: float = -math.inf, least: float = -math.inf) -> float:
-    """A finite number above `above` and at least `least`. Raises TypeError for what is no number, ValueError for one out of range."""
+    """Returns the value as a float.
+
+    The number must be finite, above `above` and at least `least`. Raises TypeError if the value is not a number, and ValueError if the number is
+    out of range.
+    """
     allowed = _range("a finite number", above, least)
     if isinstance(value, bool) or not isinstance(value, Real):
         raise TypeError(f"{name}: {value!r}; {allowed}")
@@ -24,7 +28,10 @@ def real(name: str, value: Any, *, above: float = -math.inf, least: float = -mat
 
 
 def whole(name: str, value: Any, *, least: int, most: int = _MOST) -> int:
-    """A whole number from `least` to `most`; a float without a fraction is one. Raises TypeError and ValueError as real() does."""
+    """Returns the value as an integer from `least` to `most`; a float without a fractional part is accepted.
+
+    Raises TypeError if the value is not a number, and ValueError if the number has a fractional part or is out of range.
+    """
     allowed = f"at least {least}" if most == _MOST else f"a whole number from {least} to {most}"
     is_number = isinstance(value, Real) and not isinstance(value, bool)
     if not is_number:
@@ -39,6 +46,7 @@ def whole(name: str, value: Any, *, least: int, most: int = _MOST) -> int:
 
 
 def _range(kind: str, above: float, least: float) -> str:
+    """Returns the allowed range as text, for error messages."""
     if above > -math.inf:
         return f"{kind} above {above:g}"
     return f"{kind}, at least {least:g}" if least > -math.inf else kind

@@ -1,4 +1,4 @@
-"""What bubbletouch.learning takes from scikit-learn, where that is not installed: as little as fitting and predicting need."""
+"""Replacements for the parts of scikit-learn that bubbletouch.learning uses, for installations without scikit-learn."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from numpy.typing import ArrayLike, NDArray
 
 
 class NotFittedError(ValueError, AttributeError):
-    """Asked of an estimator before fit."""
+    """Error raised if an estimator is used before fit()."""
 
 
 class ConvergenceWarning(UserWarning):
-    """A solver stopped at its limit."""
+    """Warning that a solver stopped at a limit before it converged."""
 
 
 class BaseEstimator:
-    """Parameters are what __init__ takes."""
+    """Base class of estimators. The parameters of an estimator are the arguments of its __init__."""
 
     def get_params(self, deep: bool = True) -> dict[str, Any]:
-        """All parameters by name."""
+        """Returns all parameters as a dict by name; `deep` is ignored."""
         return {name: getattr(self, name) for name in inspect.signature(type(self)).parameters}
 
     def set_params(self, **params: Any) -> BaseEstimator:
-        """Sets some of them. Raises ValueError for a name that there is not."""
+        """Sets parameters by name, and returns the estimator. Raises ValueError if a parameter does not exist."""
         known = self.get_params()
         for name, value in params.items():
             if name not in known:
@@ -36,17 +36,21 @@ class BaseEstimator:
 
 
 class ClassifierMixin:
-    """Accuracy as score."""
+    """Mixin class for classifiers; score() returns the accuracy."""
 
     def score(self, X: ArrayLike, y: ArrayLike) -> float:
-        """The share of rows whose class is right."""
+        """Returns the accuracy on features X (n, m) and labels y (n,): the fraction of rows whose class is predicted correctly, 0 to 1."""
         return float(np.mean(self.predict(X) == np.asarray(y)))  # type: ignore[attr-defined]
 
 
 def validate_data(
     estimator: Any, X: ArrayLike, y: ArrayLike | None = None, *, reset: bool = True, **of_array: Any
 ) -> Any:
-    """Features (n, m) as finite float64, and labels (n,)."""
+    """Returns the features (n, m) as an array of finite numbers; if labels y are given, returns the features and the labels (n,).
+
+    If `reset` is true, sets estimator.n_features_in_ to m; otherwise m must equal n_features_in_. `of_array` is passed to numpy.asarray. Raises
+    ValueError for a wrong shape and for numbers that are not finite.
+    """
     features = np.asarray(X, **of_array)
     if features.ndim != 2 or features.size == 0:
         raise ValueError(f"features: shape {features.shape}; (n_rows, n_features)")
@@ -66,19 +70,19 @@ def validate_data(
 
 
 def check_classification_targets(labels: NDArray[Any]) -> None:
-    """Refuses numbers that are no names."""
+    """Raises ValueError if the labels are numbers with fractional parts."""
     if labels.dtype.kind == "f" and (labels != np.round(labels)).any():
         raise ValueError("labels: numbers with fractions; names or whole numbers")
 
 
 def check_is_fitted(estimator: Any) -> None:
-    """Refuses what has no classes yet."""
+    """Raises NotFittedError if the estimator is not fitted."""
     if not hasattr(estimator, "classes_"):
         raise NotFittedError(f"this {type(estimator).__name__} is not fitted yet: call fit first")
 
 
 class _Folds:
-    """Each class in turn over the folds; or folds that are given."""
+    """Cross-validation folds: stratified folds if `cv` is a number of folds, otherwise the given pairs of training and test rows."""
 
     def __init__(self, cv: Any) -> None:
         self.cv = cv
@@ -86,6 +90,7 @@ class _Folds:
     def split(
         self, features: NDArray[Any], labels: NDArray[Any], groups: ArrayLike | None = None
     ) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
+        """Yields the row indices (training, test) of each fold. The rows of each class are distributed evenly over the folds."""
         if not isinstance(self.cv, int):
             yield from self.cv
             return
@@ -101,7 +106,7 @@ class _Folds:
 
 
 def check_cv(cv: int | Iterable[Any], labels: NDArray[Any], *, classifier: bool) -> _Folds:
-    """Folds of a number, or as they are given."""
+    """Returns the folds for a number of folds or for given pairs of arrays. Raises ValueError if `cv` is neither."""
     if not isinstance(cv, int | Iterable):
         raise ValueError(f"cv: {cv!r}; a number of folds, or pairs of arrays of training and test rows")
     return _Folds(cv if isinstance(cv, int) else list(cv))

@@ -1,6 +1,6 @@
-"""Presses that PyTorch differentiates: gradients of deflections by poses and by spheres, in closed form from the contact normals. Needs torch.
+"""Presses with gradients for PyTorch, with respect to poses and spheres, in closed form from the contact normals. Needs torch.
 
-Nothing of the press itself runs in PyTorch: it is the same kernel, in double precision on the CPU.
+The press itself does not run in PyTorch: it is computed by Patch.press, in double precision on the CPU.
 """
 
 from __future__ import annotations
@@ -24,13 +24,15 @@ def press(
     travel: float | None = None,
     force: float | None = None,
 ) -> torch.Tensor:
-    """Deflections as Patch.press gives them, metres, float64: (n, ny, nx) or (n, n_taxels) of poses (n, 7), without n of one (7,).
+    """Returns the deflections of Patch.press, metres, float64: (n, ny, nx) or (n, n_taxels) for poses (n, 7), without the axis n for one pose (7,).
 
-    Their gradient goes to the poses, x, y, z, qw, qx, qy, qz: that of the rotation is across the quaternion, which is normalised before the press.
-    thing: or spheres as tensors of float64, centers (k, 3) and radii (k,) in metres; then it goes to them too, where the patch is read at the
-    pose or after a travel (with a depth or a force the travel would change along).
+    poses: float64, x, y, z, qw, qx, qy, qz. The quaternion is normalised before the press, so its gradient is perpendicular to it.
+    thing: SphereUnion, Mesh, or spheres as a tuple of float64 tensors: centers (k, 3) and radii (k,), metres. Gradients with respect to these
+    tensors are available at a given pose and after a travel. With a depth or a force they are not available, because the travel would also change.
+    depth, travel, force: goal of the press, as for Patch.press.
 
-    Raises ValueError as Patch.press does; for tensors of another shape or type; for gradients by spheres with a depth or a force.
+    Raises ValueError for invalid arguments of Patch.press, for tensors of another shape or type, and for gradients with respect to spheres with a
+    depth or a force.
     """
     _check("poses", poses, poses.shape[-1:] == (7,) and poses.ndim <= 2, "(n, 7) or (7,)")
     goal = {"depth": depth, "travel": travel, "force": force}
@@ -48,11 +50,14 @@ def press(
 
 
 def _check(name: str, given: torch.Tensor, is_shape: bool, shape: str) -> None:
+    """Raises ValueError if the tensor does not have the allowed shape or is not float64."""
     if not is_shape or given.dtype != torch.float64:
         raise ValueError(f"{name}: {tuple(given.shape)} of {given.dtype}; {shape} of float64")
 
 
 class _Press(torch.autograd.Function):
+    """Autograd function of a press; its arguments are poses, centers, radii, patch, thing and goal."""
+
     @staticmethod
     def forward(
         ctx: Any,
@@ -86,7 +91,7 @@ class _Press(torch.autograd.Function):
 
 
 class _BySpheres:
-    """What each contact says of the sphere that makes it; taxels at their stroke say nothing."""
+    """Gradients of deflections with respect to spheres, from the contacts of a press. Saturated taxels have no gradient."""
 
     def __init__(self, patch: Patch, contacts: Any) -> None:
         stroke = np.broadcast_to(patch.stroke, len(patch))[contacts.taxel]
@@ -99,7 +104,10 @@ class _BySpheres:
     def gradients(
         self, gradient: torch.Tensor, poses: torch.Tensor, spheres: tuple[torch.Tensor, torch.Tensor]
     ) -> tuple[torch.Tensor, torch.Tensor]:
-        """By centers (in the frame of the object) and radii."""
+        """Returns the gradients of the loss with respect to the centers (k, 3), in the object frame, and the radii (k,).
+
+        gradient: gradient of the loss with respect to the deflections.
+        """
         centers, radii = (torch.zeros_like(sphere) for sphere in spheres)
         of_taxel = gradient.reshape(-1, self.n_taxels)[self.pose, self.taxel]
         motion = of_taxel[:, None] * self.gradient.to(gradient.device)
@@ -113,7 +121,10 @@ class _BySpheres:
 
 
 def _of_quaternion(turn: torch.Tensor, of_angles: torch.Tensor) -> torch.Tensor:
-    """The gradient by w, x, y, z of one by small turns about fixed axes: a change dq turns by 2 dq q* / |q|²."""
+    """Returns the gradient with respect to the quaternion w, x, y, z, given the gradient with respect to small rotations about fixed axes.
+
+    A change dq of the quaternion is a rotation by 2 dq q* / |q|².
+    """
     w, v = turn[..., :1], turn[..., 1:]
     by_w = -(v * of_angles).sum(dim=-1, keepdim=True)
     by_v = w * of_angles - torch.linalg.cross(v, of_angles)

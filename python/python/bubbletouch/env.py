@@ -1,12 +1,13 @@
-"""Gymnasium environments: find what lies on a table by touch, and say what it is.
+"""Gymnasium environments in which an object on a table is found and recognised by touch.
 
-`gymnasium.make("BubbleTouch/FindObject-v0")` after `import bubbletouch.env`; `gymnasium.make_vec(..., vectorization_mode="vector_entry_point")` steps
-many of them in one call.
+After `import bubbletouch.env`, `gymnasium.make("BubbleTouch/FindObject-v0")` creates one environment. `gymnasium.make_vec(...,
+vectorization_mode="vector_entry_point")` creates many environments that are stepped in one call.
 
-An object out of a list lies on a table, at a place and a turn that nobody tells. The patch starts somewhere over the table; an action moves
-it, and it comes down to a depth past first contact. An SVM, trained on touches of all objects, scores each frame's means over 2 × 2 taxels; the
-scores of an episode's touches are added up, and when one object leads the next by `confidence`, the episode ends: reward 1 if that is the object, −1 if not.
-A step costs 0.02; after `max_steps` the episode is cut off.
+An object from a list lies on a table. Its identity, position and rotation are hidden. The patch starts at a random place over the table. An action
+moves the patch; then the patch moves down to a depth past first contact. An SVM is trained on touches of all objects. Its features are the means of
+each frame over 2 × 2 taxels. The scores of the touches in an episode are summed. If the largest score exceeds the second largest by at least
+`confidence`, the episode ends. The reward is 1 if the object is correct, otherwise −1. A step costs 0.02. After `max_steps` steps, the episode is
+truncated.
 """
 
 from __future__ import annotations
@@ -31,14 +32,14 @@ Floats = NDArray[np.float64]
 
 STEP_COST = 0.02
 OBJECTS = ("tennis", "golf", "mug", "banana")
-# Metres past first contact of each touch.
+# Depth of each touch past first contact, metres.
 DEPTH = 3e-3
-# Touches of each object that the classifier learns from. More: it is right more often, and slower.
+# Number of training touches per object. If larger, the classifier is more accurate and slower.
 N_TRAINING = 400
 
 
 class _World:
-    """Objects, skin and classifier, for any number of episodes at once."""
+    """Objects, patch and classifier, shared by any number of episodes."""
 
     def __init__(self, objects: Sequence[str], n_taxels: int, reach: float, training_seed: int) -> None:
         n_taxels = whole("n_taxels", n_taxels, least=2, most=2048)
@@ -50,7 +51,7 @@ class _World:
         self.objects: list[SphereUnion] = [catalogue.object(name).pack(1e-3) for name in objects]
         self.patch = Patch.grid(n_taxels, n_taxels, 64e-3 / n_taxels, 5e-3)
         self.reach = real("reach", reach, above=0)
-        # Where each object stands if the patch's axis goes through its middle.
+        # Pose of each object in the patch frame if the patch's axis goes through the middle of the object.
         self.upright = np.stack([touch_poses(thing) for thing in self.objects])
         random = np.random.default_rng(whole("training_seed", training_seed, least=0))
         n = N_TRAINING
@@ -62,22 +63,26 @@ class _World:
         self.classifier = SVC(C=10, multi_class="ovr").fit(features, which[touched])
 
     def features(self, frames: NDArray[np.float32]) -> Floats:
-        """(n, n_taxels / 4): means over 2 × 2 taxels, shares of the stroke."""
+        """Returns the features (n, n_taxels / 4): means of the deflections over 2 × 2 taxels, as fractions of the stroke."""
         corners = [frames[:, y::2, x::2] for y in (0, 1) for x in (0, 1)]
         means = (corners[0] + corners[1] + corners[2] + corners[3]) / np.float32(4 * 5e-3)
         return means.reshape(len(frames), self.patch.n_taxels // 4).astype(np.float64)
 
     def scores(self, frames: NDArray[np.float32]) -> Floats:
-        """(n, n_objects); zero of a frame that nothing touches."""
+        """Returns the scores (n, n_objects) of frames; the scores are 0 for a frame without contact."""
         scores = np.zeros((len(frames), len(self.classifier.problems_)))
         touched = np.flatnonzero(frames.any(axis=(1, 2)))
         if len(touched):
-            # The estimator's own checks cost as much as what it computes.
+            # Calls the model directly: the estimator's checks take as long as the computation.
             scores[touched] = self.classifier._model.decision_values(self.features(frames[touched]))
         return scores
 
     def touch(self, which: NDArray[np.int64], offset: Floats, yaw: Floats) -> NDArray[np.float32]:
-        """Frames (n, ny, nx), metres, of the patch over places of the table seen from each object's own middle."""
+        """Returns frames (n, ny, nx), metres, float32.
+
+        which: object indices (n,). offset: position of the patch relative to the middle of the object, metres, (n, 2). yaw: rotation of the object
+        about the vertical, radians, (n,).
+        """
         poses = self._poses(which, offset, yaw)
         frames = np.empty((len(which), *self.patch.shape), np.float32)
         for number, thing in enumerate(self.objects):
@@ -87,11 +92,11 @@ class _World:
         return frames
 
     def _poses(self, which: NDArray[np.int64], offset: Floats, yaw: Floats) -> Floats:
-        # touch_poses for many objects at once: facing down, half a turn about x after the yaw about z.
+        # Equals touch_poses for several objects: the patch faces down, so a half turn about x follows the yaw about z.
         poses = self.upright[which].copy()
         x, y = poses[:, 0].copy(), poses[:, 1].copy()
         cos, sin = np.cos(yaw), np.sin(yaw)
-        # The middle of the object's box is at (−x, y) of its own frame, upside-down in the patch's.
+        # The middle of the object's bounding box is at (−x, y) in the object frame; the object is upside-down in the patch frame.
         poses[:, 0] = cos * x + sin * y - offset[:, 0]
         poses[:, 1] = -sin * x + cos * y + offset[:, 1]
         half = yaw / 2
@@ -101,14 +106,18 @@ class _World:
 
 
 class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any]):
-    """Many episodes, stepped in one call; an episode that has ended begins anew at its next step.
+    """Many environments that are stepped in one call. After the end of an episode, the next step starts a new episode.
 
-    num_envs: how many, at least 1. objects: two or more names of the catalogue. n_taxels: rows and columns of the patch, 64 mm wide; an even number. reach: how far from the table's
-    middle patch and object may be, metres, above 0. confidence: by how much one score must lead, at least 0. max_steps: of an episode, at least 1.
-    training_seed: of the touches that the classifier learns from. Raises TypeError and ValueError.
+    num_envs: number of environments, at least 1.
+    objects: two or more names of objects in the catalogue.
+    n_taxels: number of rows and of columns of the patch, even; the patch is 64 mm wide.
+    reach: largest coordinate of the patch relative to the middle of the table, metres, above 0. Objects lie within half of it.
+    confidence: minimum difference between the two largest scores that ends an episode, at least 0.
+    max_steps: maximum number of steps of an episode, at least 1.
+    training_seed: seed of the touches on which the classifier is trained.
 
-    Observations: float32 (num_envs, n_taxels² + 2), deflections as shares of the stroke and the patch's place as a share of the reach. Actions: float32
-    (num_envs, 2), −1 to 1: moves along x and y by up to 20 mm.
+    Observations: float32 (num_envs, n_taxels² + 2): deflections as fractions of the stroke, and the position of the patch as a fraction of the
+    reach. Actions: float32 (num_envs, 2), −1 to 1: moves along x and y by up to 20 mm. Raises TypeError and ValueError for invalid arguments.
     """
 
     metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -141,10 +150,11 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         self._scores = np.zeros((n, len(objects)))
         self._n_steps = np.zeros(n, np.int64)
         self._is_over = np.zeros(n, bool)
-        # A generator of each environment, if a list of seeds was given; otherwise one for all.
+        # One random generator per environment after a reset with a list of seeds; otherwise None: all share one generator.
         self._own_random: list[np.random.Generator] | None = None
 
     def _begin(self, rows: NDArray[Any]) -> None:
+        """Starts new episodes in the given environments."""
         if self._own_random is None:
             self._draw(rows, self.np_random)
         else:
@@ -154,6 +164,7 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         self._n_steps[rows] = 0
 
     def _draw(self, rows: NDArray[Any], random: np.random.Generator) -> None:
+        """Draws the objects, their poses and the positions of the patches for the given environments."""
         n, reach = len(rows), self._world.reach
         self._which[rows] = random.integers(len(self._world.objects), size=n)
         self._middle[rows] = random.uniform(-reach / 2, reach / 2, (n, 2))
@@ -161,6 +172,7 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         self._patch[rows] = random.uniform(-reach, reach, (n, 2))
 
     def _observe(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Returns the observations and the frames of all environments."""
         frames = self._world.touch(self._which, self._patch - self._middle, self._yaw)
         shares = np.minimum(frames.reshape(self.num_envs, -1) / np.float32(5e-3), 1)
         place = (self._patch / self._world.reach).astype(np.float32)
@@ -169,14 +181,14 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """New episodes in all environments; a seed makes them, and all after them, the same again.
+        """Starts new episodes in all environments; returns the observations, and a dict with the indices of the objects.
 
-        A sequence has a seed of each environment: its episodes are those of that environment alone with that seed. None in it: new ones.
-        Raises TypeError and ValueError.
+        seed: one seed makes the current and all later episodes reproducible. A sequence contains one seed per environment: the episodes of an
+        environment equal those of a single environment with this seed; None: random episodes. Raises TypeError and ValueError for invalid seeds.
         """
         if seed is None or isinstance(seed, Integral):
             super().reset(seed=None if seed is None else whole("seed", seed, least=0), options=options)
-            # As in Gymnasium, a reset without a seed goes on with the generators that there are.
+            # As in Gymnasium, a reset without a seed continues with the current generators.
             self._own_random = self._own_random if seed is None else None
         else:
             self._own_random = self._generators(seed)
@@ -185,6 +197,7 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
         return self._observe()[0], {"object": self._which.copy()}
 
     def _generators(self, seeds: int | Sequence[int | None]) -> list[np.random.Generator]:
+        """Returns one random generator per environment. Raises TypeError and ValueError for invalid seeds."""
         given = list(seeds) if isinstance(seeds, Sequence | np.ndarray) else None
         if given is None:
             raise TypeError(f"seed: {seeds!r}; a whole number, one for each of {self.num_envs} environments, or None")
@@ -196,7 +209,10 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
     def step(
         self, actions: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], Floats, NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Moves and touches in all environments; those whose episode had ended begin another instead, with no reward."""
+        """Moves and presses the patches of all environments. Environments whose episode has ended start a new episode instead, with reward 0.
+
+        Returns observations, rewards, terminated, truncated, and a dict with the indices of the objects and the summed scores.
+        """
         actions = np.clip(np.asarray(actions, np.float64), -1, 1)
         if actions.shape != (self.num_envs, 2):
             raise ValueError(f"actions: shape {actions.shape}; ({self.num_envs}, 2)")
@@ -217,7 +233,7 @@ class FindObjectVector(VectorEnv[NDArray[np.float32], NDArray[np.float32], Any])
 
 
 class FindObject(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
-    """One episode at a time; arguments, observations and actions as FindObjectVector's, without their first side."""
+    """Single environment. Arguments, observations and actions are as for FindObjectVector, without num_envs and the first axis."""
 
     metadata = {"render_modes": []}
 
@@ -229,7 +245,10 @@ class FindObject(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
-        """A new episode; a seed makes it, and all after it, the same again."""
+        """Starts a new episode; returns the observation, and a dict with the index of the object.
+
+        seed: makes the current and all later episodes reproducible.
+        """
         super().reset(seed=seed, options=options)
         self._many._np_random = self.np_random
         observed, info = self._many.reset()
@@ -238,7 +257,7 @@ class FindObject(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     def step(
         self, action: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Moves and touches."""
+        """Moves and presses the patch. Returns observation, reward, terminated, truncated, and a dict with the object's index and the summed scores."""
         observed, rewards, terminated, truncated, info = self._many.step(np.asarray(action)[None])
         said = {"object": int(info["object"][0]), "scores": info["scores"][0]}
         return observed[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), said

@@ -1,10 +1,12 @@
-"""Soft-margin support vector machines, as scikit-learn's estimators are used.
+"""Soft-margin support vector machines with the interface of scikit-learn's estimators.
 
-With scikit-learn installed (`pip install 'bubbletouch[learning]'`) they are its estimators and stand in its pipelines, searches and scores;
-without it they fit, predict and are pickled all the same. Features should be of one scale: StandardScaler before them.
+If scikit-learn is installed (`pip install 'bubbletouch[learning]'`), the classes are scikit-learn estimators and work in its pipelines, searches
+and scores. Without scikit-learn they can be trained, used for prediction and pickled. Features should have similar scales: apply StandardScaler
+first.
 
-Differs from scikit-learn: no class or sample weights; `SVC` needs 4 · n_rows² to 8 · n_rows² bytes up to `max_memory`, and is slower beyond. A
-trained model is pickled as the rows that it was trained on, and trained again when it is loaded: the same bits, after the same time.
+Differences from scikit-learn: there are no class or sample weights. `SVC` needs 4 · n_rows² to 8 · n_rows² bytes, at most `max_memory`; with less
+memory, training is slower. Pickling a trained model stores its training rows; unpickling trains the model again. The unpickled model is bitwise
+equal, and unpickling takes as long as training.
 """
 
 from __future__ import annotations
@@ -43,11 +45,12 @@ Floats = NDArray[np.float64]
 
 
 class _Classifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
-    """What both have: classes of any kind, numbered for the library."""
+    """Common base class of the estimators; it maps classes of any type to the labels 0, 1, … of the library."""
 
     classes_: NDArray[Any]
 
     def _numbered(self, X: ArrayLike, y: ArrayLike) -> tuple[Floats, NDArray[np.int64]]:
+        """Checks the training data and sets classes_. Returns the features (n, m) and the class numbers (n,) from 0."""
         features, labels = validate_data(self, X, y, dtype=np.float64, order="C")
         check_classification_targets(labels)
         self.classes_, numbers = np.unique(labels, return_inverse=True)
@@ -56,25 +59,29 @@ class _Classifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         return features, numbers
 
     def _features(self, X: ArrayLike) -> Floats:
+        """Returns the checked features (n, m) of a prediction. Raises NotFittedError before fit()."""
         check_is_fitted(self)
         return cast(Floats, validate_data(self, X, dtype=np.float64, order="C", reset=False))
 
     def _warn_of(self, n_capped: int, limit: str) -> None:
+        """Issues a ConvergenceWarning if problems stopped at a limit."""
         if n_capped:
             said = f"{n_capped} problems stopped at {limit} before they converged"
             warnings.warn(said, ConvergenceWarning, stacklevel=3)
 
 
 class SVC(_Classifier):
-    """A support vector machine with a kernel.
+    """Support vector machine with a kernel.
 
-    C: what a unit of margin violation costs, above 0. kernel: rbf, laplacian (slower), linear or poly (of `degree` and `coef0`). gamma: "scale"
-    (1 / (n_features · var X), of laplacian 1 / (n_features · std X)), "auto" (1 / n_features) or a number above 0. tol: how far the optimality conditions may be violated, in units of the
-    decision value. multi_class: "ovo", each pair of classes votes and of a tie the lowest class wins (as LIBSVM), or "ovr".
-    max_memory: bytes of kernel values held at once.
+    C: penalty per unit of margin violation, above 0.
+    kernel: rbf, laplacian (slower), linear or poly (with `degree` and `coef0`).
+    gamma: "scale" (1 / (n_features · var X), for laplacian 1 / (n_features · std X)), "auto" (1 / n_features) or a number above 0.
+    tol: allowed violation of the optimality conditions, in units of the decision value, above 0.
+    multi_class: "ovo" (one-vs-one: each pair of classes votes; the lowest class wins a tie, as in LIBSVM) or "ovr" (one-vs-rest).
+    max_memory: maximum size of the stored kernel values, bytes.
 
-    After fit: classes_, n_features_in_, support_ (numbers of training rows), n_support_ (of each class), problems_ (each binary
-    problem and its solution), n_capped_.
+    Attributes after fit: classes_, n_features_in_, support_ (indices of the support vectors in the training rows), n_support_ (number of support
+    vectors per class), problems_ (each binary problem and its solution), n_capped_ (number of problems that stopped at the iteration cap).
     """
 
     problems_: list[dict[str, Any]]
@@ -104,6 +111,7 @@ class SVC(_Classifier):
         self.max_memory = max_memory
 
     def _params(self, n_features: int) -> dict[str, Any]:
+        """Returns the checked parameters for the library. Raises TypeError and ValueError for invalid parameters."""
         match self.gamma:
             case "scale":
                 gamma = None
@@ -125,10 +133,12 @@ class SVC(_Classifier):
         }
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> SVC:
-        """Trains on features (n, m) and labels (n,). Ctrl-C returns at once; what runs is ended by its end."""
+        """Trains on features (n, m) and labels (n,), and returns the estimator. Ctrl-C raises KeyboardInterrupt at once; the training thread ends
+        later.
+        """
         features, numbers = self._numbered(X, y)
         self._model = _core.KernelSvm.train(features, numbers, self._params(features.shape[1]))
-        # What is fitted does not follow a later set_params.
+        # A later set_params() must not change the fitted model.
         self._fitted_multi_class = self.multi_class
         self.problems_ = self._model.problems
         support = [p["rows"][p["coefficients"] != 0] for p in self.problems_]
@@ -139,19 +149,23 @@ class SVC(_Classifier):
         return self
 
     def predict(self, X: ArrayLike) -> NDArray[Any]:
-        """(n,): the class of each row of features (n, m)."""
+        """Returns the predicted classes (n,) of features (n, m)."""
         features = self._features(X)
         return self.classes_[self._model.labels(features)]
 
     def decision_values(self, X: ArrayLike) -> Floats:
-        """(n, n_problems): of each binary problem; above 0 speaks for its first class. Sums over touches may be compared as well."""
+        """Returns the decision values (n, n_problems) of features (n, m). Positive values favour the first class of a binary problem. Sums over
+        several touches are comparable, too.
+        """
         features = self._features(X)
         return self._model.decision_values(features)
 
     def decision_function(self, X: ArrayLike) -> Floats:
-        """(n,) of two classes, above 0 for the second; otherwise (n, n_classes), the largest for the class that is predicted (but for ties).
+        """Returns scores of features (n, m).
 
-        Of one-vs-one these are votes and, below one vote, the sum of the decision values for and against a class.
+        For two classes, the scores are (n,); positive scores favour the second class. Otherwise the scores are (n, n_classes); the largest score
+        belongs to the predicted class, except for ties. For one-vs-one, a score is the number of votes plus a term between −1/3 and 1/3 that
+        increases with the sum of the decision values of the class.
         """
         values = self.decision_values(X)
         n_classes = len(self.classes_)
@@ -170,13 +184,17 @@ class SVC(_Classifier):
 
 
 class LinearSVC(_Classifier):
-    """A linear support vector machine without a kernel matrix, by dual coordinate descent.
+    """Linear support vector machine without a kernel matrix, trained by dual coordinate descent. Several classes are trained one-vs-rest.
 
-    C: what a unit of margin violation (hinge) costs, above 0; every class against all others. tol: the spread of projected
-    gradients at which it stops. max_iter: passes over the rows. random_state: seed of the order in which rows are visited (None: 0). The intercept
-    is regularised with the weights, as LIBLINEAR's: centre the features.
+    C: penalty per unit of margin violation (hinge loss), above 0.
+    tol: spread of the projected gradients at which the solver stops, above 0.
+    max_iter: maximum number of passes over the rows, at least 1.
+    random_state: seed of the order in which rows are visited; None: 0.
 
-    After fit: classes_, n_features_in_, coef_ (n_classes, m; of two classes (1, m)), intercept_, n_iter_, n_capped_.
+    The intercept is regularised together with the weights, as in LIBLINEAR; the features should therefore be centred.
+
+    Attributes after fit: classes_, n_features_in_, coef_ (n_classes, m; for two classes (1, m)), intercept_, n_iter_, n_capped_ (number of problems
+    that stopped at max_iter).
     """
 
     coef_: Floats
@@ -198,7 +216,9 @@ class LinearSVC(_Classifier):
         self.random_state = random_state
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> LinearSVC:
-        """Trains on features (n, m) and labels (n,). Ctrl-C returns at once; what runs is ended by its end."""
+        """Trains on features (n, m) and labels (n,), and returns the estimator. Ctrl-C raises KeyboardInterrupt at once; the training thread ends
+        later.
+        """
         features, numbers = self._numbered(X, y)
         seed = 0 if self.random_state is None else whole("random_state", self.random_state, least=0)
         self._model = _core.LinearModel.train(
@@ -219,25 +239,34 @@ class LinearSVC(_Classifier):
         return self
 
     def predict(self, X: ArrayLike) -> NDArray[Any]:
-        """(n,): the class of each row of features (n, m)."""
+        """Returns the predicted classes (n,) of features (n, m)."""
         features = self._features(X)
         return self.classes_[self._model.labels(features)]
 
     def decision_function(self, X: ArrayLike) -> Floats:
-        """(n,) of two classes, above 0 for the second; otherwise (n, n_classes), the largest for the class that is predicted."""
+        """Returns scores of features (n, m).
+
+        For two classes, the scores are (n,); positive scores favour the second class. Otherwise the scores are (n, n_classes); the largest score
+        belongs to the predicted class.
+        """
         features = self._features(X)
         scores = self._model.scores(features)
         return (scores[:, 1] - scores[:, 0]) / 2 if len(self.classes_) == 2 else scores
 
 
 class GridSearch(_Classifier):
-    """The C and γ of an SVC that recognise most held-out rows, over folds, on one matrix of products for the whole grid.
+    """Cross-validated choice of C and γ of an SVC, by the accuracy on held-out rows. The whole grid shares one matrix of inner products.
 
-    estimator: an SVC. C: candidates, each above 0. gamma_scales: candidates of γ as multiples of that of "scale"; None: as the
-    estimator has it. cv: a number of folds, an object of scikit-learn that splits, or pairs of arrays of training and test rows (numbers of rows, or
-    masks of all rows); rows that share a group (fit's `groups`) are kept together by those that take groups. Of equals the smaller γ, then the smaller C.
+    estimator: SVC whose other parameters are used; None: SVC().
+    C: candidate values, each above 0.
+    gamma_scales: candidate values of γ as multiples of the "scale" value; None: the γ of the estimator.
+    cv: number of folds, splitter of scikit-learn, or pairs of arrays of training and test rows (row indices, or masks of all rows). Splitters that
+    support groups keep rows of one group together (argument `groups` of fit()).
 
-    After fit: best_params_ (C and gamma), best_score_, results_ (C, gamma, accuracy of each), best_estimator_ (of all rows).
+    If accuracies are equal, the smaller γ is chosen, then the smaller C.
+
+    Attributes after fit: best_params_ (C and gamma), best_score_, results_ (C, gamma and accuracy of each candidate), best_estimator_
+    (trained on all rows).
     """
 
     results_: list[dict[str, Any]]
@@ -259,7 +288,7 @@ class GridSearch(_Classifier):
         self.cv = cv
 
     def fit(self, X: ArrayLike, y: ArrayLike, groups: ArrayLike | None = None) -> GridSearch:
-        """Chooses on features (n, m) and labels (n,), and trains on all of them."""
+        """Chooses C and γ on features (n, m) and labels (n,), trains best_estimator_ on all rows, and returns the GridSearch."""
         features, numbers = self._numbered(X, y)
         estimator = SVC() if self.estimator is None else self.estimator
         split = cast(
@@ -285,18 +314,18 @@ class GridSearch(_Classifier):
         return self
 
     def predict(self, X: ArrayLike) -> NDArray[Any]:
-        """(n,): the class of each row of features (n, m)."""
+        """Returns the predicted classes (n,) of features (n, m)."""
         features = self._features(X)
         return self.best_estimator_.predict(features)
 
     def decision_function(self, X: ArrayLike) -> Floats:
-        """As SVC's."""
+        """Returns the decision function of best_estimator_ on features (n, m); see SVC.decision_function."""
         features = self._features(X)
         return self.best_estimator_.decision_function(features)
 
 
 def _row_numbers(name: str, rows: ArrayLike, n_rows: int) -> NDArray[np.int64]:
-    """Numbers of rows, of numbers (negative ones count from the end) or a mask, as NumPy indexes."""
+    """Returns the row indices of a fold, as int64. The input is an array of row indices (negative indices count from the end) or a mask of all rows."""
     given = np.asarray(rows)
     if given.ndim != 1:
         raise ValueError(f"{name}: shape {given.shape}; (n,) numbers of rows, or a mask of {n_rows} rows")

@@ -1,10 +1,11 @@
-"""Recordings as a LeRobot dataset, format v3.0: what policies learn from, touch beside other observations.
+"""Writer of LeRobot datasets, format v3.0, from recordings.
 
-Touch is fast and video is slow: a row is an instant of the video's clock, and has the last few touch frames until then. Features of each patch:
+Touch is recorded at a higher rate than video. A row of the dataset is an instant of the video clock and contains the latest touch frames up to this
+instant. The features of each patch are:
 
-- observation.touch.NAME: (window, m) of what its taxels felt, the newest last;
-- observation.points.NAME: (m, 6) of x, y, z of each taxel and the force on it, Fx, Fy, Fz, in the world; metres and newtons;
-- observation.pose.NAME: (7,) in the world.
+- observation.touch.NAME: (window, m), the quantity measured by the taxels, newest frame last;
+- observation.points.NAME: (m, 6), for each taxel its position x, y, z in metres and the force Fx, Fy, Fz on it in newtons, in the world frame;
+- observation.pose.NAME: (7,), pose of the patch in the world.
 
 Needs pyarrow and pandas.
 """
@@ -25,7 +26,7 @@ from bubbletouch.recording import Floats, Recording
 
 __all__ = ["write_lerobot"]
 
-# How late a touch frame may be for its row, seconds: times are sums of steps.
+# Tolerance for a touch frame that is later than its row, seconds: times are sums of steps and contain rounding errors.
 _LATE = 1e-6
 _FILE = "chunk-000/file-000.parquet"
 _PLACE = {"chunk_index": 0, "file_index": 0}
@@ -40,12 +41,16 @@ def write_lerobot(
     quantity: Literal["deflection", "force", "signal"] = "force",
     robot: str = "unknown",
 ) -> None:
-    """Writes recordings of the same patches, an episode each; their titles are the tasks.
+    """Writes recordings of the same patches as a dataset, one episode per recording. The titles of the recordings are the tasks.
 
-    folder: where nothing is yet. fps: rows a second, a video's; recordings have at least as many frames a second. window: touch frames a row;
-    before the first frame of an episode there is the first again.
+    folder: folder of the new dataset.
+    fps: rows per second, usually the frame rate of the video. Recordings must have at least this frame rate.
+    window: number of touch frames per row. Before the start of an episode, the first frame is repeated.
+    quantity: quantity of observation.touch: deflection, force or signal.
+    robot: type of the robot, for the metadata.
 
-    Raises ValueError; FileExistsError where the folder is; ImportError without pyarrow and pandas.
+    Raises ValueError for invalid arguments and recordings, FileExistsError if the folder already contains a dataset, and ImportError without
+    pyarrow and pandas.
     """
     import pandas as pd
     import pyarrow as pa
@@ -91,7 +96,7 @@ def write_lerobot(
 def _columns(
     number: int, episode: Recording, given: tuple[int, int, Literal["deflection", "force", "signal"]]
 ) -> dict[str, NDArray[Any]]:
-    """Features of an episode's rows."""
+    """Returns the features of all rows of an episode, by name. given: fps, window and quantity."""
     fps, window, quantity = given
     time = episode.time - episode.time[0]
     if len(time) > 1 and (longest := np.diff(time).max()) > 1 / fps + _LATE:
@@ -111,7 +116,7 @@ def _columns(
 
 
 def _lists(values: NDArray[Any]) -> Any:
-    """A column, of lists of lists where the rows are matrices."""
+    """Returns a pyarrow column of the values; rows with several dimensions become nested fixed-size lists."""
     import pyarrow as pa
 
     column = pa.array(values.ravel())
@@ -121,6 +126,7 @@ def _lists(values: NDArray[Any]) -> Any:
 
 
 def _info(rows: Mapping[str, NDArray[Any]], clock: tuple[int, str], counts: tuple[int, int]) -> dict[str, Any]:
+    """Returns the content of meta/info.json. clock: fps and robot. counts: numbers of episodes and tasks."""
     (fps, robot), (n_episodes, n_tasks) = clock, counts
 
     def feature(name: str, values: NDArray[Any]) -> dict[str, Any]:
@@ -145,7 +151,7 @@ def _info(rows: Mapping[str, NDArray[Any]], clock: tuple[int, str], counts: tupl
 
 
 def _stats(values: NDArray[Any]) -> dict[str, Any]:
-    """Of each number of a feature, over all rows."""
+    """Returns the minimum, maximum, mean and standard deviation of each component of a feature over all rows, and the number of rows."""
     rows = values.reshape(len(values), -1) if values.ndim == 1 else values
     measures: dict[str, Callable[..., Any]] = {"min": np.min, "max": np.max, "mean": np.mean, "std": np.std}
     return {name: measure(rows, axis=0).tolist() for name, measure in measures.items()} | {"count": [len(rows)]}

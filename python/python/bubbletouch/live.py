@@ -1,4 +1,4 @@
-"""A live view of a scene through rerun: every taxel a ball where it is, in the colour of its deflection; nothing is interpolated.
+"""Live view of a scene in rerun. Each taxel is a ball at its deflected position, coloured by its deflection, without interpolation.
 
 Needs the package rerun-sdk.
 
@@ -23,14 +23,15 @@ from bubbletouch._core import Simulation
 
 __all__ = ["View"]
 
-# Deflections of nothing, half the stroke and the stroke.
+# Colours, RGB, of deflections 0, half the stroke and the stroke.
 _COLORS = np.array([[40, 40, 60], [220, 80, 60], [255, 240, 160]], np.float64)
 
 
 class View:
-    """Shows frames of a simulation: /NAME of each patch with its taxels, /NAME of each object with its axes, on the timeline "scene".
+    """View of the frames of a simulation on the timeline "scene". The entity /NAME of a patch shows its taxels; the entity /NAME of an object shows
+    its axes.
 
-    to: a rerun.RecordingStream; None: the one that is active.
+    to: rerun.RecordingStream that receives the data; None: the active stream.
     """
 
     def __init__(self, simulation: Simulation, to: rr.RecordingStream | None = None) -> None:
@@ -41,7 +42,7 @@ class View:
             rr.log(f"/{name}", rr.TransformAxes3D(0.02), static=True, recording=to)
 
     def show(self, frame: Mapping[str, Any]) -> None:
-        """Shows a frame at its time."""
+        """Shows a frame at the frame's time."""
         rr.set_time("scene", duration=frame["time"], recording=self._to)
         for name, skin in self._skins.items():
             felt = frame["patches"][name]
@@ -59,12 +60,13 @@ class View:
             self._place(name, frame["objects"][name]["pose"])
 
     def _place(self, name: str, pose: NDArray[np.float64]) -> None:
+        """Logs the pose (7,) of an entity."""
         x, y, z, qw, qx, qy, qz = pose.tolist()
         turn = rr.Quaternion(xyzw=[qx, qy, qz, qw])
         rr.log(f"/{name}", rr.Transform3D(translation=[x, y, z], quaternion=turn), recording=self._to)
 
 
 def _colors(share: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """(n, 3) of deflections as shares of the stroke."""
+    """Returns colours (n, 3), 0 to 255, of deflections (n,) that are fractions of the stroke."""
     channels = [np.interp(share, [0.0, 0.5, 1.0], channel) for channel in _COLORS.T]
     return np.stack(channels, axis=1).round().astype(np.uint8)

@@ -1,8 +1,11 @@
-"""Recordings as MCAP files, which Foxglove and rerun show and ROS tools read. Needs the package mcap.
+"""Writer of MCAP files from recordings, for Foxglove, rerun and ROS tools. Needs the package mcap.
 
-Messages are JSON, at the scene's times in nanoseconds. Of each patch /NAME/points (foxglove.PointCloud: taxels at rest in the frame of the patch
-and the force on each, x, y, z, fx, fy, fz in single precision, beside the pose in the world) and /NAME/touch (deflections and forces in double
-precision, the wrench); of each object /NAME/pose (foxglove.PoseInFrame).
+Messages are JSON; their times are the times of the scene in nanoseconds. The topics are:
+
+- /NAME/points of a patch (foxglove.PointCloud): positions of the taxels at rest and the force on each taxel in the patch frame, as x, y, z, fx, fy,
+  fz in single precision, and the pose of the patch in the world;
+- /NAME/touch of a patch (bubbletouch.Touch): deflections, forces and the wrench, in double precision;
+- /NAME/pose of an object (foxglove.PoseInFrame): pose in the world.
 """
 
 from __future__ import annotations
@@ -38,7 +41,7 @@ _SCHEMAS = {
 
 
 def write_mcap(path: str | PathLike[str], recording: Recording) -> None:
-    """Writes a recording. Raises OSError; ImportError without mcap."""
+    """Writes a recording to an MCAP file. Raises OSError if the file cannot be written, and ImportError without mcap."""
     from mcap.writer import Writer
 
     channels = list(_channels(recording))
@@ -63,7 +66,9 @@ def write_mcap(path: str | PathLike[str], recording: Recording) -> None:
 
 
 def _channels(recording: Recording) -> Iterator[tuple[str, str, Callable[[int], dict[str, Any]]]]:
-    """Topics, their schemas, and what each says of a frame by its number."""
+    """Yields the topic, the schema and the message function of each channel. A message function returns the message of a frame, given the frame's
+    number.
+    """
     for name, felt in recording.patches.items():
         yield f"/{name}/points", "foxglove.PointCloud", _points(felt)
         yield f"/{name}/touch", "bubbletouch.Touch", _touch(felt)
@@ -72,6 +77,7 @@ def _channels(recording: Recording) -> Iterator[tuple[str, str, Callable[[int], 
 
 
 def _points(felt: RecordedPatch) -> Callable[[int], dict[str, Any]]:
+    """Returns the message function of the taxel positions and forces of a patch."""
     fields = [
         {"name": name, "offset": 4 * place, "type": _FLOAT32}
         for place, name in enumerate(("x", "y", "z", "fx", "fy", "fz"))
@@ -87,6 +93,7 @@ def _points(felt: RecordedPatch) -> Callable[[int], dict[str, Any]]:
 
 
 def _touch(felt: RecordedPatch) -> Callable[[int], dict[str, Any]]:
+    """Returns the message function of the deflections, forces and wrench of a patch."""
     return lambda frame: {
         "deflection_m": felt.deflection[frame].ravel().tolist(),
         "force_n": felt.force[frame].ravel().tolist(),
@@ -95,6 +102,7 @@ def _touch(felt: RecordedPatch) -> Callable[[int], dict[str, Any]]:
 
 
 def _in_world(poses: Floats) -> Callable[[int], dict[str, Any]]:
+    """Returns the message function of poses (n, 7) in the world."""
     def message(frame: int) -> dict[str, Any]:
         x, y, z, qw, qx, qy, qz = poses[frame].tolist()
         turn = {"x": qx, "y": qy, "z": qz, "w": qw}

@@ -1,6 +1,7 @@
-"""Recordings of scenes: frames as arrays, and as Arrow tables and Parquet files.
+"""Recordings of scenes as arrays, Arrow tables and Parquet files.
 
-A Recording needs NumPy alone; tables need pyarrow. `bubbletouch.lerobot`, `.mcap_file` and `.live` have other forms of the same frames.
+A Recording needs only NumPy; tables need pyarrow. `bubbletouch.lerobot`, `bubbletouch.mcap_file` and `bubbletouch.live` write or show the frames in
+other formats.
 """
 
 from __future__ import annotations
@@ -23,10 +24,14 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RecordedPatch:
-    """What a patch felt in n frames of m taxels.
+    """Readings of a patch in n frames of m taxels.
 
-    patch: its skin, in its own frame. pose: (n, 7) in the world. deflection, force: (n, ny, nx) or (n, m), metres and newtons. force3: (n, m, 3)
-    on the taxels, newtons, in the frame of the patch. wrench: (n, 6) on the patch in its frame. signal: as deflection, or None.
+    patch: the patch, in its own frame.
+    pose: poses of the patch in the world, (n, 7).
+    deflection, force: metres and newtons, (n, ny, nx) or (n, m).
+    force3: force on each taxel, newtons, (n, m, 3), in the patch frame.
+    wrench: force and torque on the patch, newtons and newton metres, (n, 6), in the patch frame.
+    signal: sensor signals in the shape of deflection, or None.
     """
 
     patch: Patch
@@ -38,7 +43,7 @@ class RecordedPatch:
     signal: Floats | None
 
     def points(self) -> Floats:
-        """(n, m, 6): x, y, z of each taxel at rest and the force on it, Fx, Fy, Fz, in the world; metres and newtons."""
+        """Returns (n, m, 6): the position x, y, z of each taxel at rest, metres, and the force Fx, Fy, Fz on it, newtons, in the world frame."""
         turns = rotations(self.pose)
         at = np.einsum("nij,mj->nmi", turns, self.patch.centers) + self.pose[:, None, :3]
         return np.concatenate([at, np.einsum("nij,nmj->nmi", turns, self.force3)], axis=2)
@@ -46,7 +51,12 @@ class RecordedPatch:
 
 @dataclass(frozen=True)
 class Recording:
-    """Frames of a scene. time: (n,) seconds, ascending; patches by name; poses (n, 7) of objects in the world by name."""
+    """Frames of a scene.
+
+    time: seconds, (n,), ascending.
+    patches: readings of the patches, by name.
+    objects: poses (n, 7) of the objects in the world, by name.
+    """
 
     title: str
     time: Floats
@@ -55,7 +65,10 @@ class Recording:
 
     @classmethod
     def of(cls, simulation: Simulation, frames: Iterable[Mapping[str, Any]] | None = None) -> Recording:
-        """Of frames of a simulation; None: all that it has left. Raises ValueError for none, and what the simulation raises."""
+        """Creates a recording from frames of a simulation; None: all remaining frames.
+
+        Raises ValueError if there is no frame. Errors of the simulation are passed on.
+        """
         kept = list(simulation if frames is None else frames)
         if not kept:
             raise ValueError("frames: none; at least one")
@@ -77,8 +90,11 @@ class Recording:
         return len(self.time)
 
     def table(self) -> Any:
-        """As a pyarrow.Table, a row a frame: time_s; NAME.pose, .deflection, .force, .force3, .wrench and .signal of each patch and NAME.pose of
-        each object, fixed-shape tensors of the shapes above. The schema's metadata has the title and, as JSON, where taxels are.
+        """Returns a pyarrow.Table with one row per frame.
+
+        The columns are time_s; NAME.pose, NAME.deflection, NAME.force, NAME.force3, NAME.wrench and NAME.signal of each patch; NAME.pose of each
+        object. All columns except time_s are fixed-shape tensors with the shapes of the arrays. The metadata of the schema contains the title and,
+        as JSON, the positions and axes of the taxels.
 
         Raises ImportError without pyarrow.
         """
@@ -98,14 +114,14 @@ class Recording:
         return pa.table(columns).replace_schema_metadata(metadata)
 
     def write_parquet(self, path: str | PathLike[str]) -> None:
-        """Writes the table as a Parquet file. Raises ImportError without pyarrow; OSError."""
+        """Writes the table to a Parquet file. Raises ImportError without pyarrow, and OSError if the file cannot be written."""
         import pyarrow.parquet as pq
 
         pq.write_table(self.table(), path)
 
 
 def rotations(poses: Floats) -> Floats:
-    """(n, 3, 3) of poses (n, 7)."""
+    """Returns the rotation matrices (n, 3, 3) of poses (n, 7)."""
     w, x, y, z = poses[:, 3:].T
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

@@ -1,4 +1,4 @@
-"""Studies: a question in TOML, tables and charts as answer; and scenes."""
+"""Studies and scenes: run() and advise() for studies described in TOML, and simulate() for scenes."""
 
 from __future__ import annotations
 
@@ -20,15 +20,18 @@ from bubbletouch._core import Mesh, Simulation, SphereUnion
 
 Callback = Callable[[str, int, int], object]
 
-# Rows that a notebook shows of a table.
+# Maximum number of table rows shown in a notebook.
 _SHOWN = 20
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table of results.
+    """Table of results.
 
-    file: its name in the folder; title, note: what it holds, and how to read it; columns: float64 arrays (NaN where absent) and lists of words.
+    file: name of the file in the folder.
+    title: title of the table.
+    note: explanation of the table.
+    columns: float64 arrays (NaN if a value is absent) and lists of strings, by name.
     """
 
     file: str
@@ -40,24 +43,25 @@ class Table:
         return max((len(column) for column in self.columns.values()), default=0)
 
     def __getitem__(self, column: str) -> NDArray[np.float64] | list[str]:
-        """A column. Raises ValueError, which lists them."""
+        """Returns a column. Raises ValueError, which lists the columns, if it does not exist."""
         if column not in self.columns:
             raise ValueError(f"column: `{column}`; {', '.join(self.columns)}")
         return self.columns[column]
 
     def frame(self) -> Any:
-        """As a pandas.DataFrame. Raises ImportError without pandas."""
+        """Returns the table as a pandas.DataFrame. Raises ImportError without pandas."""
         import pandas
 
         return pandas.DataFrame(self.columns)
 
     def polars(self) -> Any:
-        """As a polars.DataFrame. Raises ImportError without polars."""
+        """Returns the table as a polars.DataFrame. Raises ImportError without polars."""
         import polars
 
         return polars.DataFrame(self.columns)
 
     def _repr_html_(self) -> str:
+        """Returns the table as HTML for notebooks, with at most 20 rows."""
         rows = [f"<th>{html.escape(name)}</th>" for name in self.columns]
         lines = [f"<tr>{''.join(rows)}</tr>"]
         for values in zip(*(column[:_SHOWN] for column in self.columns.values()), strict=True):
@@ -68,7 +72,7 @@ class Table:
 
 
 class Study(Mapping[str, Table]):
-    """What came of a study: its tables by name ("summary" is that of summary.csv), and the folder with charts and report.html."""
+    """Results of a study: a mapping from names to tables ("summary" is summary.csv), and the folder with the charts and report.html."""
 
     def __init__(
         self,
@@ -81,13 +85,13 @@ class Study(Mapping[str, Table]):
         self._kept = kept
 
     def __getitem__(self, name: str) -> Table:
-        """A table. Raises ValueError, which lists them."""
+        """Returns a table. Raises ValueError, which lists the tables, if it does not exist."""
         if name not in self._tables:
             raise ValueError(f"table: `{name}`; {', '.join(self._tables)}")
         return self._tables[name]
 
     def get(self, name: str, default: Any = None) -> Any:
-        """A table, or the default where there is none of that name."""
+        """Returns the table of this name, or the default if it does not exist."""
         return self._tables.get(name, default)
 
     def __contains__(self, name: object) -> bool:
@@ -101,13 +105,14 @@ class Study(Mapping[str, Table]):
 
     @property
     def charts(self) -> list[Path]:
-        """Files of charts as SVG."""
+        """Paths of the chart files (SVG)."""
         return sorted(self.folder.glob("*.svg"))
 
     def __repr__(self) -> str:
         return f"<bubbletouch.Study in {self.folder}: {', '.join(self._tables)}>"
 
     def _repr_html_(self) -> str:
+        """Returns the summary table and the charts as HTML for notebooks."""
         first = next((name for name in ("summary", *self._tables) if name in self._tables), None)
         shown = "" if first is None else self._tables[first]._repr_html_()
         for chart in self.charts:
@@ -123,14 +128,16 @@ def run(
     seed: int | None = None,
     callback: Callback | None = None,
 ) -> Study:
-    """Runs a study, on all cores: the same tables, bit by bit, as `bubbletouch run`.
+    """Runs a study on all cores. The tables are bitwise equal to the tables of `bubbletouch run`.
 
-    study: a TOML file, or its tables as a dict. out: the folder of results, where an interrupted run goes on (None: a temporary one, which
-    goes with the Study). seed: replaces the study's. callback: is told the stage, how many of its steps are done, and of how many, from
-    any thread and at most 20 times a second; what it raises ends the run.
+    study: path of a TOML file, or a dict with its tables.
+    out: result folder; an interrupted run in this folder is continued. None: a temporary folder that is deleted with the Study.
+    seed: replaces the seed of the study.
+    callback: function that is called as callback(stage, n_done, n_total), from any thread, at most 20 times per second. If the callback raises an
+    exception, the run ends and the exception is passed on.
 
-    Raises ValueError for what cannot be run, by key; OSError for files; what a callback raises; KeyboardInterrupt for Ctrl-C, and what is
-    finished by then is kept in `out`. The first work item that fails ends the run.
+    Raises ValueError, which names the key, if the study is invalid; OSError if a file cannot be read or written; KeyboardInterrupt after Ctrl-C.
+    The first work item that fails ends the run. Finished work items are kept in `out`.
     """
     if isinstance(study, Mapping):
         text, name, folder = _core.toml_of(_json(study)), "study", Path()
@@ -157,15 +164,24 @@ def advise(
     worst: bool = False,
     limits: Mapping[str, float] | None = None,
 ) -> dict[str, Any]:
-    """Which setting of a study to take, as `bubbletouch advise --json` says: the cheapest that is good enough, or the best that is cheap enough.
+    """Returns the advised configuration of a study, as `bubbletouch advise --json` does: the cheapest one that is good enough, or the best one within
+    a budget.
 
-    results: a Study, or a folder of results. One of accuracy (a share), reach (of another value, in its unit) and budget (the most that it may
-    cost, in the unit of its column). value, cost, table: columns and a table's file, if not the usual ones. given: conditions, such as
-    {"noise": 0.05}. worst: one answer for all conditions. limits: the largest values of columns of costs, such as {"measurements": 64,
-    "decision_time": 500}; with limits alone, the answer is the best that they allow.
+    results: a Study, or the path of a result folder.
+    accuracy, reach, budget: the requirement; one of them. accuracy: minimum accuracy, 0 to 1. reach: required value of another column, in its unit.
+    budget: maximum cost, in the unit of the cost column.
+    value, cost: columns of the value and the cost; None: the default columns.
+    table: file name of the table; None: the default table.
+    given: conditions, such as {"noise": 0.05}.
+    worst: whether to return one answer for all conditions.
+    limits: maximum values of cost columns, such as {"measurements": 64, "decision_time": 500}. If only limits are given, the answer is the best
+    configuration within the limits.
 
-    A dict: table, value, cost, and answers, each with a condition and choice, certain and next_up (rows by column, or None), or refused.
-    Raises ValueError where no choice is, and where there are no results; OSError for files that cannot be read.
+    Returns a dict: table, value, cost and answers. Each answer contains a condition and either `refused` or the rows choice, certain and next_up.
+    Each row is a dict by column, or None. `certain` is the cheapest configuration whose whole confidence interval is sufficient. `next_up` is the
+    cheapest configuration with a better value than `choice`.
+
+    Raises ValueError if there is nothing to choose from or no result, and OSError if a file cannot be read.
     """
     if accuracy is not None:
         if reach is not None or value is not None:
@@ -178,12 +194,13 @@ def advise(
 
 
 def simulate(scene: str | PathLike[str] | Mapping[str, Any]) -> Simulation:
-    """A scene, ready for its first frame: a TOML file, or its tables as a dict (paths in it are then relative to the working folder).
+    """Returns the simulation of a scene, before its first frame.
 
-    The "object" of one of a dict's objects may be a Mesh or a SphereUnion in place of a name; it is touched as it is.
+    scene: path of a TOML file, or a dict with its tables; paths in a dict are relative to the working folder. In a dict, the "object" of an object
+    may be a Mesh or a SphereUnion instead of a name.
 
-    Raises ValueError for what cannot be simulated, by key; OSError for a file that cannot be read. Warns (UserWarning) of what is not read of a
-    robot's file.
+    Raises ValueError, which names the key, if the scene is invalid, and OSError if a file cannot be read. Issues a UserWarning for parts of a robot
+    file that are ignored.
     """
     if isinstance(scene, Mapping):
         tables, models = _in_memory(scene)
@@ -193,7 +210,7 @@ def simulate(scene: str | PathLike[str] | Mapping[str, Any]) -> Simulation:
 
 
 def _in_memory(scene: Mapping[str, Any]) -> tuple[Mapping[str, Any], dict[str, Mesh | SphereUnion]]:
-    """A scene without its objects in memory, and these by their names in it."""
+    """Returns the scene without its Mesh and SphereUnion objects, and these objects by their names in the scene."""
     models: dict[str, Mesh | SphereUnion] = {}
 
     def named(given: Any) -> Any:
@@ -209,6 +226,7 @@ def _in_memory(scene: Mapping[str, Any]) -> tuple[Mapping[str, Any], dict[str, M
 
 
 def _json(study: Mapping[str, Any]) -> str:
+    """Returns the tables of a study or scene as JSON. Raises ValueError for values that TOML cannot represent."""
     def plain(value: object) -> object:
         if isinstance(value, np.ndarray | np.generic):
             return value.tolist()
