@@ -1,5 +1,5 @@
-//! Press of a flat square patch in double and in single precision, to measure the accuracy and speed of single precision. Only this benchmark uses it; studies
-//! and scenes compute presses in double precision.
+//! Press of a flat square patch in double and in single precision, to measure the accuracy and speed of single precision. Studies and scenes compute presses in
+//! double precision; the single-precision press exists only for this benchmark.
 //!
 //! Spheres are given in the patch frame; rows of the footprint are processed in blocks of a 512-bit register. No root is computed where it cannot increase a
 //! deflection. Coordinates are relative to the middle of the patch, which makes single precision as accurate as possible.

@@ -8,7 +8,8 @@
 //! use fused operations. The arrays of the triad are together as large as the working set of a path.
 //!
 //! The minimum time of a path is the largest of three times: of its operations at the fused peak, of its roots, and of its bytes. The fraction is the minimum
-//! time divided by the measured time. It exceeds one if a path skips work that its equations contain, such as roots that cannot increase a deflection.
+//! time divided by the measured time. The fraction exceeds one if a path skips work that its equations contain, such as roots that cannot increase a
+//! deflection.
 
 use bubbletouch::files::CsvFile;
 use clock::seconds;

@@ -29,7 +29,7 @@ use toml::de::{DeTable, DeValue};
 /// Rules of a kind of study for the keys that may be axes.
 #[derive(Clone, Copy, Debug)]
 pub struct AxisRules {
-    /// Function that returns whether a key accepts a list in its own table. These keys are moved from `[axes]` to their table.
+    /// Function that returns whether a key accepts a list in its own table. Keys with such a list are moved from `[axes]` to their table.
     pub in_place: fn(&str) -> bool,
     /// Keys that cannot be axes, because they must be equal within a study; includes all keys below them.
     pub refused: &'static [&'static str],

@@ -83,7 +83,7 @@ impl Range {
 const MAX_COPIES: usize = 1000;
 /// Allowed tilt angles of copies, degrees. For much larger tilts, the change of the readings is not a plane.
 const TILT: Range = Range::Of(|deg| deg > 0.0 && deg <= 45.0, "above 0, at most 45");
-/// Allowed slide distances, mm. A slide of 1 km passes far more taxels than it has steps, and the square of 1e160 mm would be infinite.
+/// Allowed slide distances, mm. Upper limit 1 km: a longer slide passes far more taxels than it has steps, and squares of very large distances overflow.
 const SLIDE: Range = Range::Of(|mm| (0.0..=1e6).contains(&mm), "0 to 1000000");
 pub const COUNT: Range = Range::Count(1, MAX_COUNTED);
 

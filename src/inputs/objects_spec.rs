@@ -30,10 +30,10 @@ pub struct ObjectsSpec {
     #[serde(alias = "mesh_unit")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
-    /// Allowed sizes of meshes without a unit. This is not a key; the plan derives the limits from the arrays.
+    /// Allowed sizes of meshes without a unit. Not a key of the file: the plan derives the limits from the arrays.
     #[serde(skip)]
     pub sizes: Option<SizeLimits>,
-    /// Pitch of the finest array, metres. This is not a key. If vertex spheres are farther than half a pitch from their mesh, a note is printed on standard
+    /// Pitch of the finest array, metres; not a key of the file. If vertex spheres are farther than half a pitch from their mesh, a note is printed on standard
     /// error.
     #[serde(skip)]
     pub pitch: Option<f64>,

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 struct ColumnSelector {
     /// Command-line option that sets the column's name.
     option: &'static str,
-    /// Default column name, used if no name is given and a table has this column. Otherwise, the first column of the role is used.
+    /// Default column name, used if no name is given and a table has this column. If a table has no column of this name, the first column of the role is used.
     usual: &'static str,
     has_role: fn(Role) -> bool,
     /// Column names that are valid for all kinds of studies, each with the columns that it selects.

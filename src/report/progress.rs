@@ -259,7 +259,7 @@ fn report_regularly<W: Write>(state: &Weak<Mutex<State<W>>>) {
 }
 
 impl<W: Write> State<W> {
-    /// Writes and flushes a complete line, so that readers never receive a part of it. A closed output does not stop the run.
+    /// Writes and flushes a complete line, so that readers never receive a part of it. If the output is closed, the run continues.
     fn write(&mut self, line: &impl std::fmt::Display) {
         let written = self.writer.write_all(format!("{line}\n").as_bytes());
         let _ = written.and_then(|()| self.writer.flush());

@@ -14,7 +14,7 @@ use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
 
-/// Key of the smoothing step. The other keys belong to [noise](NOISES) and sensor errors.
+/// Key of the smoothing step. All other keys of signal steps belong to [noise](NOISES) or sensor errors.
 const SMOOTHING: &str = "smoothing_mm";
 
 /// Signal chain of a patch, ready for execution.

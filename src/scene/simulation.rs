@@ -16,7 +16,7 @@ use crate::signal::SignalWorkspace;
 /// Choice of the time steps that are computed between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// Skips the steps between frames if the scene has no memory. Otherwise, only patches with memory are computed in these steps.
+    /// Skips the steps between frames if the scene has no memory. In scenes with memory, only patches with memory are computed in these steps.
     AsNeeded,
     /// Computes all patches in all steps. The frames are equal but take longer to compute; used in tests.
     Always,

@@ -1,6 +1,6 @@
 //! Specification of a scene: the keys of its TOML file, in the units of the file.
 //!
-//! Only names and types are checked here. The scene plan checks the values.
+//! The specification checks only names and types. The scene plan checks the values.
 
 pub use super::numbers::Numbers;
 pub use super::spec_motion::*;

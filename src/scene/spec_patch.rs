@@ -25,7 +25,7 @@ pub struct PatchSpec {
     /// Name of the robot link that carries the patch. Default: the base.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// Name of the object that carries the patch, instead of a robot. The patch does not touch this object.
+    /// Name of the object that carries the patch, instead of a robot. A patch never touches the object that carries it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
     /// Pose of the patch on the link, on the object, or in the world. Default: the origin.

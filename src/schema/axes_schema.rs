@@ -13,7 +13,7 @@ pub(super) fn complete(schema: &mut Value) {
     schema["properties"]["axes"] = axes;
 }
 
-/// Returns the schema of `[test]`: all keys of other tables that may differ for test touches. None of them is required.
+/// Returns the schema of `[test]`: all keys of other tables that may differ for test touches. No key is required.
 fn test_table(schema: &Value) -> Value {
     let tables = TABLES.iter().map(|&name| {
         let mut table = schema["properties"][name].clone();

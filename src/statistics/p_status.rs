@@ -9,10 +9,10 @@ pub const CONFIDENCE: f64 = 0.95;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PStatus {
-    /// The comparison has a p-value. This is the default, because tables of earlier versions contain no status.
+    /// The comparison has a p-value. Tables of earlier versions contain no status and get this one.
     #[default]
     Tested,
-    /// There are too few trials; hardly any difference could be significant.
+    /// The study has so few trials that hardly any difference could be significant.
     TooFewTrials,
     /// Some of the crossed trials are missing because they failed.
     TrialsMissing,

@@ -55,7 +55,7 @@ fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) ->
 }
 
 /// Returns the scores of a configuration as a matrix. If the trials are crossed, the shape is splits × projections, and the result is `None` if some trials are
-/// missing. Otherwise, the shape is (n_splits, 1), and repeated splits are averaged.
+/// missing. If the trials are not crossed, the shape is (n_splits, 1), and repeated splits are averaged.
 pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
     let mut ordered = merged(trials, |number| trials[number].place());
     if ordered.iter().any(|trial| trial.projection.is_none()) {

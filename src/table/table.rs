@@ -66,8 +66,8 @@ impl fmt::Display for Value {
     }
 }
 
-/// Relative tolerance for equal settings, with respect to the larger number. Example: a ratio of 100 on 4,096 taxels gives 41 measurements, which is a ratio of
-/// 99.90. If larger, neighbouring settings are merged; if smaller, this ratio is rejected.
+/// Relative tolerance for equal settings, with respect to the larger number. A ratio of 100 on 4,096 taxels, for example, gives 41 measurements, which is a
+/// ratio of 99.90. If larger, neighbouring settings are merged; if smaller, this ratio is rejected.
 const SAME_SETTING: f64 = 1e-3;
 
 impl Value {
@@ -118,7 +118,8 @@ impl Table {
         self
     }
 
-    /// Returns whether the rows are choices with a value and a cost. Only columns that vary count; in a table of one row, all columns except subjects count.
+    /// Returns whether the rows are choices with a value and a cost. The answer considers only columns that vary; in a table of one row, all columns except
+    /// subjects.
     pub fn offers_choices(&self) -> bool {
         let columns = self.columns.iter().zip(&self.data);
         let counted = columns.filter(|(column, data)| match self.n_rows {

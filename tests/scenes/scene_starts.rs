@@ -1,4 +1,4 @@
-//! Initial poses of objects: free objects must not overlap others. Also the part of a mesh that carries taxels.
+//! Initial poses of objects (free objects must not overlap others), and the part of a mesh that carries taxels.
 
 use bubbletouch::report::scene_summary::scene_table;
 use bubbletouch::scene::{PoseControl, ScenePlan, SceneSpec, Simulation, Stepping, Summary};

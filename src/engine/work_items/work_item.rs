@@ -16,7 +16,7 @@ pub struct WorkItem {
     /// Number of the item's group, from 0 without gaps. Items of a group share preparatory work, so one shard computes all of them if there are enough groups
     /// for every shard.
     pub group: usize,
-    /// Whether the rows are results of the study. Otherwise the item prepares data for results; studies that share only such items are different studies.
+    /// Whether the rows are results of the study. If false, the item prepares data for results; studies that share only preparing items are different studies.
     pub is_result: bool,
 }
 

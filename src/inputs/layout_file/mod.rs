@@ -39,7 +39,7 @@ pub struct LayoutFile {
     pub notes: Vec<String>,
 }
 
-/// What a reader needs besides the file.
+/// Inputs of a layout reader besides the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LayoutOptions<'a> {
     /// Surface whose normals the taxels take, if the file has points only.
@@ -52,8 +52,8 @@ impl LayoutFile {
     /// Reads a layout file; the ending of its name gives the format.
     ///
     /// # Errors
-    /// If the file cannot be read, has no taxels, or has an invalid row. The error contains the file and the row (from 1). Also if the file needs an
-    /// option that is missing, or has no use for an option that is given.
+    /// If the file cannot be read, has no taxels, or has an invalid row; the error contains the file and the row (from 1). If the file needs an option that is
+    /// missing, or does not use an option that is given.
     pub fn read(path: &Path, options: LayoutOptions) -> Result<Self> {
         let place = path.display().to_string();
         let ending = path.extension().and_then(|ending| ending.to_str());

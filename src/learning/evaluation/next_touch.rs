@@ -227,7 +227,7 @@ pub fn most_informative(
 }
 
 /// Returns a sequence of k ≤ n of the touches `0..n` that starts with `first`. Each further touch is chosen by `next`, which receives the previous touches in
-/// order and the remaining touches in ascending order. It returns a position in the latter list.
+/// order and the remaining touches in ascending order. The result of `next` is a position in the list of remaining touches.
 pub fn sequence(
     (first, k): (usize, usize),
     n: usize,

@@ -1,7 +1,7 @@
 //! Vector drawing: text, lines and areas at pixel positions, written as SVG and as PNG.
 //!
-//! The crate kuva provides the primitives, the font and both writers. Its complete plots are not used for two reasons. First, the plots place ticks at powers
-//! of ten, but a sweep needs ticks at its own values. Second, the plots number clip paths per process, so that equal tables could give different bytes.
+//! The crate kuva provides the primitives, the font and both writers. The complete plots of kuva are not used for two reasons. First, they place ticks at
+//! powers of ten, but a sweep needs ticks at its own values. Second, the plots number clip paths per process, so that equal tables could give different bytes.
 
 use crate::error::Result;
 use crate::report::pictures::colours::{INK, PAPER, Rgb};
@@ -220,7 +220,8 @@ impl Drawing {
         self.polyline(&corners, stroke);
     }
 
-    /// Draws a filled marker of a given radius (pixels). Its shape depends on the line's index. A white rim separates the marker from the background.
+    /// Draws a filled marker of a given radius (pixels). The shape of the marker depends on the line's index. A white rim separates the marker from the
+    /// background.
     pub fn marker(&mut self, line: usize, at: Point, radius: f64, fill: Rgb) {
         for (radius, fill) in [(radius + 1.2, PAPER), (radius, fill)] {
             match line % N_MARKERS {

@@ -87,7 +87,7 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
 
 /// Writes a patch of a recording as an animated PNG that loops, with one colour scale for all frames. Returns the frames that are shown.
 ///
-/// Only one picture and the file are in memory.
+/// The memory holds only one picture and the file.
 ///
 /// # Errors
 /// Returns the errors of [`shown_frames`], or an error if the recording cannot be read or the file cannot be written.
@@ -150,7 +150,8 @@ fn start(
     encoder.write_header()
 }
 
-/// Appends a frame to the animation: only the rows that changed since the previous frame, with unchanged pixels transparent. This needs a tenth of the bytes.
+/// Appends a frame to the animation: only the rows that changed since the previous frame, with unchanged pixels transparent. The file is ten times smaller than
+/// with whole frames.
 fn add(
     film: &mut png::Writer<&mut Vec<u8>>,
     before: Option<&Picture>,

@@ -71,8 +71,8 @@ impl RecordingFile {
         &self.time
     }
 
-    /// Returns a quantity of a patch in one frame, one number per taxel: metres, or newtons (length of vectors). Only this row is read, and no checksum is
-    /// checked.
+    /// Returns a quantity of a patch in one frame, one number per taxel: metres, or newtons (length of vectors). The file is read only at this row, and no
+    /// checksum is checked.
     ///
     /// # Errors
     /// If there is no such frame, or the file cannot be read.
@@ -93,7 +93,7 @@ impl RecordingFile {
         row.map_err(|e| self.damaged(&member.name, e))
     }
 
-    /// Calls `visit(frame, values)` for a quantity of a patch in every frame, in order. Only one frame is in memory.
+    /// Calls `visit(frame, values)` for a quantity of a patch in every frame, in order. The memory holds only one frame.
     ///
     /// The zip checksum is compared at the end.
     ///

@@ -108,8 +108,8 @@ impl Truth {
         DeflectionError::new(self.errors(model, offset))
     }
 
-    /// Returns the deflection error of a model that is pressed to the same depth past its own first contact. This is the error in a study that has only this
-    /// model of the object.
+    /// Returns the deflection error of a model that is pressed to the same depth past its own first contact. A study that has only this model of the object
+    /// makes this error.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::new(self.errors_of(|pose, reading, workspace| {

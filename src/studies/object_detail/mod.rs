@@ -10,8 +10,8 @@
 //!   uniformly inflated model has no error after offset.
 //! - **error past own contact**: the error if the model and the mesh are pressed to equal depths past their own first contact.
 //!
-//! With a table `[object_detail.recognition]`, classifiers are trained on each kind of model and tested on other touches of the exact meshes. This measures the
-//! loss of accuracy if coarse objects are used for training.
+//! With a table `[object_detail.recognition]`, classifiers are trained on each kind of model and tested on other touches of the exact meshes. The test
+//! accuracies show the loss that is caused by coarse objects in training.
 
 mod charts;
 mod deflection;

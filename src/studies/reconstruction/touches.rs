@@ -1,4 +1,4 @@
-//! Frames of all touches: simulated once, split into training and test frames, with and without noise. Also the dictionaries computed from them.
+//! Frames of all touches (simulated once, split into training and test frames, with and without noise), and the dictionaries computed from the frames.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::shared::Shared;

@@ -15,7 +15,7 @@ use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
 /// Numbers of patches around and along a cylindrical sleeve of skin. Growing skins use ten patches, so that 100,000 taxels are one sleeve with patches of
-/// 10,000. The other series need a larger area, as large as a trunk.
+/// 10,000. The series of growing touches and of growing objects need a larger area, as large as a trunk.
 const SMALL: (usize, usize) = (5, 2);
 const LARGE: (usize, usize) = (9, 4);
 /// Maximum fraction of a sleeve's taxels that a touch may cover, so that the cushion has space.

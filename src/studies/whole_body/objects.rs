@@ -61,7 +61,7 @@ const SPHERE_RADIUS: f64 = 3.0;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Returns a square cushion of n spheres with side length `side`, metres, bent around a cylinder about z, with its centre at +x. Half of the spheres touch the
-/// cylinder from outside. The others are on the far side of the cushion, half a side length away.
+/// cylinder from outside. The other half is on the far side of the cushion, half a side length away.
 pub(super) fn cushion(n: usize, side: f64, cylinder: f64) -> Result<SphereUnion> {
     let n_inside = n.div_ceil(2);
     let radius = SPHERE_RADIUS * side / (n_inside as f64).sqrt();

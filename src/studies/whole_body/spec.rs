@@ -185,7 +185,8 @@ pub struct LaddersSpec {
     pub touched_at_taxels: Vec<usize>,
     /// Approximate numbers of touched taxels in the series of growing touches.
     pub touched: Vec<usize>,
-    /// Numbers of spheres in the series of growing objects; half of the spheres are on the far side. The other series use the first number.
+    /// Numbers of spheres in the series of growing objects; half of the spheres are on the far side. The series of growing skins and of growing touches use the
+    /// first number.
     pub spheres: Vec<usize>,
     /// Approximate number of touched taxels in the series of growing objects.
     pub touched_at_spheres: usize,

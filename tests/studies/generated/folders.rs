@@ -1,4 +1,5 @@
-//! Laws of result folders: an extended, sharded or killed run gives the results of a fresh run. So does a run of a changed study, unless the folder refuses it.
+//! Laws of result folders: an extended, sharded or killed run gives the results of a fresh run. A run of a changed study also gives the results of a fresh run,
+//! or the folder rejects it.
 
 use super::generator::{GeneratedStudy, Generator, is_sample, n_studies};
 use super::outcome::{Tables, without_times};

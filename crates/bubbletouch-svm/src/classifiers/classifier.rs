@@ -60,7 +60,7 @@ pub struct Classifier {
     pub coef0: f64,
     /// Degree of the polynomial kernel, 1 to 20.
     pub degree: u32,
-    /// Stopping tolerance of the solver, above 0, in units of the decision value. Logistic regression uses one tenth of it.
+    /// Stopping tolerance of the solver, above 0, in units of the decision value. Logistic regression uses one tenth of this tolerance.
     pub tolerance: f64,
     /// Number k of nearest neighbours, 1 to the number of training rows.
     pub n_neighbours: usize,

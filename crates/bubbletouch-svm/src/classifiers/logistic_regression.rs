@@ -3,9 +3,9 @@
 //! Minimises `C Σ_i −ln p(y_i | x_i) + ½ Σ_k |w_k|²` by L-BFGS. The bias is not regularised, as in scikit-learn. For two classes, only the difference
 //! `w_1 − w_0` is regularised (half as much as two vectors), as in scikit-learn.
 //!
-//! Differs from linfa-logistic 0.8.1, because its log-sum-exp subtracts the maximum of the whole matrix instead of the maximum of each row. If the scores of
-//! rows differ by more than 34, its probabilities and gradients are wrong, and it stops early without an error. Example: with 600 rows, 5 classes and C =
-//! 1,000, the objective is 46.6, while C = 1 reaches 9.8.
+//! The crate linfa-logistic 0.8.1 is not used, because its log-sum-exp subtracts the maximum of the whole matrix instead of the maximum of each row. If the
+//! scores of rows differ by more than 34, linfa's probabilities and gradients are wrong, and linfa stops early without an error. With 600 rows, 5 classes and C
+//! = 1,000, for example, linfa's objective is 46.6, while C = 1 reaches 9.8.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};

@@ -1,8 +1,9 @@
 //! Random forests [Breiman 2001]. Each tree is grown on a bootstrap sample of the training rows, and each node considers √m random features. The trees vote
 //! with the class fractions of their leaves, as in scikit-learn.
 //!
-//! Differs from linfa-ensemble 0.8.1 for three reasons. Its trees (linfa-trees 0.8.1) sum impurities in f32 in the order of a `HashMap`, so two models trained
-//! on equal rows differ. linfa-ensemble breaks ties of votes in the order of a `HashMap`, and draws features once per tree instead of once per node.
+//! The crate linfa-ensemble 0.8.1 is not used for three reasons. The trees of linfa-trees 0.8.1 sum impurities in f32 in the order of a `HashMap`, so two
+//! models trained on equal rows differ. The crate linfa-ensemble breaks ties of votes in the order of a `HashMap`, and draws features once per tree instead of
+//! once per node.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
 use ndarray::{Array2, ArrayView2};

@@ -19,7 +19,7 @@ use crate::{Error, Result};
 pub struct Candidates {
     /// Candidate values of C; at least one.
     pub c: Vec<f64>,
-    /// Candidate values of γ, as multiples of the kernel's γ; if empty, the kernel's γ is used. With `Gamma::Scale`, the kernel's γ is computed from the
+    /// Candidate values of γ, as multiples of the kernel's γ; an empty list means only the kernel's γ. With `Gamma::Scale`, the kernel's γ is computed from the
     /// training rows. A linear kernel has no γ.
     pub gamma_scales: Vec<f64>,
 }

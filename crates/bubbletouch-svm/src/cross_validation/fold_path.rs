@@ -1,7 +1,8 @@
 //! Solutions of a binary problem for all folds and all values of C.
 //!
-//! Held-out rows keep their position; their label and multiplier are 0. Their f is the negative decision sum, so the solver's own values score validation rows.
-//! The solver starts a fold from the previous fold's multipliers or from the previous C's rescaled multipliers, whichever have the higher objective.
+//! Held-out rows keep their position; their label and multiplier are 0. The gradient entry f of a held-out row is its negative decision sum, so the solver's
+//! own values score validation rows. The solver starts a fold from the previous fold's multipliers or from the previous C's rescaled multipliers, whichever
+//! have the higher objective.
 
 use std::ops::Range;
 

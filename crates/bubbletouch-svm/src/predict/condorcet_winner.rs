@@ -1,8 +1,8 @@
 //! Condorcet winner: the class that wins all its pairs, found without evaluating every pair of classes.
 //!
 //! One-vs-one predicts the class with the most votes. If one of n classes wins all its n − 1 pairs, it has the most votes, because every other class has lost a
-//! pair. A knock-out finds the only possible winner of n − 1 pairs. This candidate must then win its remaining pairs. At most 2 (n − 1) of n (n − 1) / 2 pairs
-//! are therefore evaluated. On touches of 43 objects, 99 rows of 100 have a Condorcet winner.
+//! pair. A knock-out finds the only possible winner of n − 1 pairs. The winner of the knock-out must then win its remaining pairs. At most 2 (n − 1) of n (n −
+//! 1) / 2 pairs are therefore evaluated. On touches of 43 objects, 99 rows of 100 have a Condorcet winner.
 //!
 //! A pair is decided only if its value differs from ρ by more than the rounding error. The result then does not depend on the order of summation.
 //!

@@ -2,8 +2,8 @@
 //!
 //! With `β_i = y_i a_i`, the dual problem is: maximise `Σ_i y_i β_i − ½ Σ_ij β_i β_j K_ij` subject to `0 ≤ y_i β_i ≤ C` and `Σ_i β_i = 0`. The gradient is `f =
 //! y − Kβ`. A solution β is optimal if max f over the variables that can increase does not exceed min f over the variables that can decrease. Each iteration
-//! chooses one variable of each kind by second-order information [Fan, Chen, Lin 2005]. Both are moved to the optimum along their line, in two passes over f
-//! (`passes`).
+//! chooses one variable of each kind by second-order information [Fan, Chen, Lin 2005]. The iteration moves the two variables to the optimum along their line,
+//! in two passes over f (`passes`).
 //!
 //! - **Shrinking** [Joachims 1999]: variables that are likely to stay at a bound are omitted. The remaining part of the Gram matrix is copied, so that
 //!   iterations use short contiguous rows.

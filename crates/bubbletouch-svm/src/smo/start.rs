@@ -7,8 +7,9 @@ use crate::gram::matrix::Gram;
 use crate::gram::row_sums::add_row;
 
 impl<G> Smo<'_, G> {
-    /// Returns the unsolved problem with a start for small C: all multipliers at C, except for the surplus rows of the larger class. The surplus rows are those
-    /// farthest from the other class. If the objective with equal multipliers has its maximum below C, the start is 0. `sums` contains `K y`.
+    /// Returns the unsolved problem with a start for small C: all multipliers at C, except for the surplus rows of the larger class. The surplus rows of a
+    /// class are its rows that are farthest from the other class. If the objective with equal multipliers has its maximum below C, all multipliers start at 0.
+    /// `sums` contains `K y`.
     pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
     where
         G: Gram<T>,

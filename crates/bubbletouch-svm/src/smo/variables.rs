@@ -118,7 +118,7 @@ impl<T: Scalar> Variables<T> {
     }
 
     /// Returns the variables that may still move. `highest` is the largest f of variables that can increase, `lowest` the smallest f of variables that can
-    /// decrease. The other variables are at a bound, and their gradient pushes them against it [Joachims 1999].
+    /// decrease. A variable that cannot move is at a bound, and its gradient points out of the allowed range [Joachims 1999].
     pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
         (0..self.beta.len())
             .filter(|&i| {

@@ -1,4 +1,4 @@
-//! Access to tables that have rows.
+//! Search for a result table by file name; tables without rows are treated as missing.
 
 use crate::table::Table;
 

@@ -205,8 +205,8 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
     parts.collect()
 }
 
-/// Returns charts of accuracy against training time and prediction time. There is one panel for each value of the first condition, and one colour for each
-/// classifier. With one classifier, colours show the values of the first other varying setting.
+/// Returns charts of accuracy against training time and prediction time. Each value of the first condition has a panel, and each classifier has a colour. With
+/// one classifier, colours show the values of the first other varying setting.
 fn time_charts(configurations: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
     let all: Vec<usize> = (0..configurations.n_rows).collect();
     let free = Swept::new(configurations, &all).free;

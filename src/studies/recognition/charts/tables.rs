@@ -110,7 +110,7 @@ pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
     From::Folder(folder).all(axes, has_folds)
 }
 
-/// Source of the rows.
+/// Source of the rows of all tables: the results of a run, or the files of a folder.
 enum From<'a> {
     Rows(&'a Tables),
     Folder(&'a Path),

@@ -63,7 +63,7 @@ impl HumanTouches {
     }
 }
 
-/// Records a touch as frames, shape (n_frames, n_taxels), metres. Also returns whether the touch missed the skin, and whether it saturated a taxel.
+/// Records a touch. Returns its frames (shape (n_frames, n_taxels), metres), whether the touch missed the skin, and whether it saturated a taxel.
 pub fn record_touch(
     skin: &Patch,
     touch: &RecordedTouch,

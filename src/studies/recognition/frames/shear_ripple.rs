@@ -1,7 +1,7 @@
 //! Unevenness of shear readings on a flat face that is modelled by packed spheres.
 //!
-//! On an exactly flat face, every taxel has the same shear reading. Packed spheres bulge by up to half the surface error. Their contact normals are therefore
-//! tilted, and the shear readings ripple; a classifier can learn this ripple.
+//! On an exactly flat face, every taxel has the same shear reading. Packed spheres bulge by up to half the surface error. The bulges tilt the contact normals,
+//! so the shear readings ripple; a classifier can learn this ripple.
 
 use crate::error::Result;
 use crate::geometry::Pose;

@@ -110,8 +110,8 @@ impl Check<'_> {
         Err(self.error("signal.test_sensor", given, allowed))
     }
 
-    /// Checks the signal steps: each occurs at most once, a step whose axis is set is listed, and a listed sensor error has at least one strength. Otherwise a
-    /// key would be ignored silently.
+    /// Checks the signal steps: each occurs at most once, a step whose axis is set is listed, and a listed sensor error has at least one strength. Without the
+    /// check, a key could be ignored silently.
     pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
         const KEY: &str = "signal.steps";
         if !signal.steps.is_empty() {

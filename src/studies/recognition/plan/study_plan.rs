@@ -1,6 +1,6 @@
 //! Plan of a recognition study: the keys of its [`StudySpec`], checked and converted to SI units.
 //!
-//! The checks are in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. These checks convert
+//! The checks are in `scene.rs` (arrays, taxels, placement), `shear.rs`, `signal.rs`, `learning.rs`, `human.rs` and `recorded.rs`. The checks also convert
 //! millimetres, degrees and fractions into metres, radians and absolute values. Later stages use SI units only.
 
 use crate::engine::axes::AxisValues;
@@ -48,7 +48,7 @@ pub struct Plan {
     pub frames: Vec<usize>,
     /// Rule that groups touches which a split does not divide.
     pub group_by: Option<KeepTogether>,
-    /// Plan of the test touches; `None` unless the study has `[test]`. Only its touches and their signal are used.
+    /// Plan of the test touches; `None` unless the study has `[test]`. The study uses only the touches of this plan and their signal.
     pub tested: Option<Arc<Plan>>,
 }
 

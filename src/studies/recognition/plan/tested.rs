@@ -7,7 +7,7 @@
 //! [axes]
 //! "test.signal.dead_fraction" = [0.0, 0.1, 0.2]
 //! ```
-//! The study with these keys is planned as any other study. Its touches have the same numbers as the study's touches, so the splits are equal. Projections,
+//! The study with these keys is planned as any other study. Test touches have the same numbers as the study's touches, so the splits are equal. Projections,
 //! features and classifiers are fitted to the training touches.
 
 use crate::engine::axis::Axis;

@@ -1,4 +1,4 @@
-//! Configuration of a recognition study: one value of every axis. Its parameters are the first columns of a row of results.
+//! Configuration of a recognition study: one value of every axis. The parameters of a configuration are the first columns of a row of results.
 
 use crate::engine::axes::AxisValues;
 use crate::inputs::sensor_errors::{Strengths, TestSensor, strength_columns};
@@ -83,7 +83,7 @@ pub struct Configuration {
     smoothing_mm: f64 => always (Choice, "smoothing", "mm", Linear);
     /// Strength of each sensor error. The study has one column for each strength that it sets.
     strengths: Strengths => each_strength;
-    /// Skin of the test touches: the training skin or another one. Present only if the study has the key.
+    /// Skin of the test touches: the training skin or another one. The column is present only if the study has the key.
     test_sensor: Option<TestSensor> => if_given (Condition, "test sensor", "", Words);
     /// Ensemble of the measurement matrix.
     ensemble: Ensemble => always (Choice, "ensemble", "", Words) named Ensemble::NAMES;
@@ -93,13 +93,14 @@ pub struct Configuration {
     ratio: f64 => always (Choice, "compression", ":1", Log);
     /// Number F of frames per touch; a row of features has F · m values.
     frames: usize => always (Choice, "frames a touch", "", Log);
-    /// Combination of the frames of a touch into features. Present only if the study has the key; otherwise, frames are concatenated.
+    /// Combination of the frames of a touch into features. The column is present only if the study has the key; without the key, frames are concatenated.
     temporal_features: Option<TemporalFeatures> => if_given (Choice, "temporal features", "", Words) named OVER_TIME;
     /// Features that are computed from the measurements.
     features: Features => always (Choice, "features", "", Words) named Features::NAMES;
-    /// Depth window of image features behind the foremost point, as a fraction of the full scale; 1 for other features. Present only if the study has the key.
+    /// Depth window of image features behind the foremost point, as a fraction of the full scale; 1 for other features. The column is present only if the study
+    /// has the key.
     depth_window_full_scale: Option<f64> => if_given (Choice, "depth window", "%", Share);
-    /// Number of randomly tilted copies of each training touch. Present only if the study has the key.
+    /// Number of randomly tilted copies of each training touch. The column is present only if the study has the key.
     tilt_augmentation: Option<usize> => if_given (Choice, "tilt augmentation", "", Linear);
     /// Kind of classifier.
     classifier: ClassifierKind => always (Choice, "classifier", "", Words) named ClassifierKind::NAMES;
@@ -107,13 +108,13 @@ pub struct Configuration {
     c: Option<f64> => always (Choice, "C", "", Log) named CHOSEN;
     /// Maximum number of training touches per object.
     train_touches: usize => always (Choice, "training touches", "", Log);
-    /// Fraction of training touches that are labelled as another object, 0 to 1. Present only if the study has the key.
+    /// Fraction of training touches that are labelled as another object, 0 to 1. The column is present only if the study has the key.
     mislabelled_fraction: Option<f64> => if_given (Condition, "mislabelled", "%", Share);
-    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1. Present only if the study has the key.
+    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1. The column is present only if the study has the key.
     class_imbalance: Option<f64> => if_given (Condition, "class imbalance", ":1", Log);
     /// Number of test touches of an object that are combined into one decision by the sum of their scores.
     touches_per_decision: usize => always (Choice, "touches per decision", "", Log);
-    /// Policy that chooses the touches of a decision after the first one. Present only if the study has the key.
+    /// Policy that chooses the touches of a decision after the first one. The column is present only if the study has the key.
     next_touch: Option<NextTouch> => if_given (Choice, "next touch", "", Words);
     /// Values of the axes in `[axes]`, one column per axis.
     variant: AxisValues => each_axis;

@@ -14,14 +14,14 @@ row! {
 pub struct TrialScore {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
-    /// Number of the split that the trial uses. Present only if the study has `projections_per_split`.
+    /// Number of the split that the trial uses. The column is present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     split: Option<usize> => Note: Linear, optional;
-    /// Number of the projection that the trial uses. Present only if the study has `projections_per_split`.
+    /// Number of the projection that the trial uses. The column is present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     projection: Option<usize> => Note: Linear, optional;
-    /// Number of the first trial with the same training and test touches (with `projections_per_split`: of the first such split). Present only if trials repeat
-    /// splits, as splits by pose do if there are more trials than parts. Statistical tests count trials of one split once.
+    /// Number of the first trial with the same training and test touches (with `projections_per_split`: of the first such split). The column is present only if
+    /// trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count trials of one split once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     distinct_split: Option<usize> => Note "same split as": Linear, optional;
     /// Number of training rows (readings of training touches) of the trial.
@@ -38,7 +38,8 @@ pub struct TrialScore {
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of groups behind the interval of the accuracy; the number of test rows if no groups are held out. Present only if the study holds out groups.
+    /// Number of groups behind the interval of the accuracy; the number of test rows if no groups are held out. The column is present only if the study holds
+    /// out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// F1 score averaged over all objects, 0 to 1.
@@ -82,14 +83,14 @@ pub struct CellScore {
     accuracy_std: f64 => Note "standard deviation over trials": Share;
     /// Lower end of the 95 % interval of the mean accuracy.
     ///
-    /// This is Wilson's interval for the counts of all trials, at the number of test rows of one trial, or of all folds. If groups are held out, it is the
+    /// The interval is Wilson's for the counts of all trials, at the number of test rows of one trial, or of all folds. If groups are held out, it is the
     /// interval over all groups that the trials hold out. Trials split the same touches again, so counting the test rows of all trials would make the interval
     /// too narrow; each fold and each group counts once.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the mean accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of groups behind the interval, over all trials; the number of test rows of a trial if no groups are held out. Present only if the study holds out
-    /// groups.
+    /// Number of groups behind the interval, over all trials; the number of test rows of a trial if no groups are held out. The column is present only if the
+    /// study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials: its variation under other splits, projections and noise on the same touches.
@@ -123,8 +124,8 @@ pub struct Confusion {
 row! {
 /// Pair of objects that the best configuration confuses most often: a row of `confused.csv`.
 ///
-/// If the study varies `touches_per_decision`, the best configuration with the fewest touches per decision is listed. Its confusion with the most touches per
-/// decision is given beside it.
+/// If the study varies `touches_per_decision`, the best configuration with the fewest touches per decision is listed. The confusion of the same pair with the
+/// most touches per decision is given beside it.
 pub struct Confused {
     /// Number of the best configuration.
     configuration: usize => Subject: Linear;
@@ -142,10 +143,10 @@ pub struct Confused {
     fraction_low: f64 => Note "95 % interval, lower end": Share, optional;
     /// Upper end of the 95 % Wilson interval of `fraction`.
     fraction_high: f64 => Note "95 % interval, upper end": Share, optional;
-    /// Largest number of touches per decision in the study. Present only if the study combines several touches.
+    /// Largest number of touches per decision in the study. The column is present only if the study combines several touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     max_touches_per_decision: Option<usize> => Note "most touches per decision": Linear, optional;
-    /// Value of `fraction` for decisions on `max_touches_per_decision` touches. Present only if the study combines several touches.
+    /// Value of `fraction` for decisions on `max_touches_per_decision` touches. The column is present only if the study combines several touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     fraction_at_max_touches: Option<f64> => Value(Less) "fraction with most touches": Share, optional;
 } }

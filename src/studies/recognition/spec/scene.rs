@@ -49,7 +49,7 @@ pub struct TouchesSpec {
     /// Resting poses of the object on the table: `as_modelled` (default) or `stable`.
     #[schemars(with = "Names<RestPoses>")]
     pub rest: RestPoses,
-    /// Number of touches per object. Default: all combinations of the listed values.
+    /// Number of touches per object. Default: one touch per combination of the listed values.
     pub per_object: Option<usize>,
     /// Offset of the patch's centre from the object's centre along the table's x axis, mm. Default: 0.
     pub offset_x_mm: SpreadSpec,

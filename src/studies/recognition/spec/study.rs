@@ -1,6 +1,6 @@
 //! Specification of a recognition study: the keys of its TOML file, in the units of the file.
 //!
-//! Only names and types are checked here. The plan of the study checks values. A key that is an axis has one value or a
+//! The specification checks only names and types; the plan of the study checks values. A key that is an axis has one value or a
 //! list of values.
 
 use crate::engine::axes;
@@ -146,7 +146,7 @@ pub struct RecognitionSpec {
     /// press depth. Default: the whole image.
     pub depth_window_full_scale: Option<Axis<f64>>,
     /// Axis: number of additional copies of each training touch, tilted at random as far as its images allow. The copies make recognition robust to tilts that
-    /// do not occur in training. Only for image features. Default: 0.
+    /// do not occur in training. Copies require image features. Default: 0.
     pub tilt_augmentation: Option<Axis<usize>>,
     /// Maximum tilt of a copy about the array's x and y axes, degrees; tilts are distributed uniformly. Default: 5.
     pub tilt_augmentation_deg: Option<f64>,
@@ -204,7 +204,7 @@ pub struct RecognitionSpec {
     pub train_touches: Option<Axis<usize>>,
     /// Axis: fraction of each object's training touches that are labelled as another, randomly drawn object, 0 to 1. Default: 0.
     pub mislabelled_fraction: Option<Axis<f64>>,
-    /// Axis: ratio of the numbers of training touches of the most and the least frequent object, at least 1. The other objects lie between in a geometric
+    /// Axis: ratio of the numbers of training touches of the most and the least frequent object, at least 1. The numbers of all objects form a geometric
     /// sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
     pub class_imbalance: Option<Axis<f64>>,
     /// Axis: number k of test touches of an object that are combined into one decision by the sum of their scores, at least 1. Default: 1. An object's test

@@ -2,8 +2,8 @@
 //!
 //! Pairwise steps approach the optimum quickly, but may need a million steps to reach it. If the variables at bounds are known, the optimum solves linear
 //! equations: f is equal on all free variables, and their changes sum to 0. If the solution exceeds a bound, the step ends at the bound, and the variable is
-//! removed from the free variables. Otherwise, the bound variable with the largest violation of the optimality conditions becomes free. The method ends when no
-//! variable violates the conditions. Few features imply few free variables, so their equations (`free_factor`) are small.
+//! removed from the free variables. If the solution is within all bounds, the variable at a bound with the largest violation of the optimality conditions
+//! becomes free. The method ends when no variable violates the conditions. Few features imply few free variables, so their equations (`free_factor`) are small.
 
 mod free_factor;
 
