@@ -1,4 +1,4 @@
-"""Environment steps a second of many patches of 16 × 16 taxels, and where the time goes."""
+"""Measures the environment steps per second of 1,024 environments with patches of 16 × 16 taxels, and the time of touches and scores."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What presses into NumPy arrays cost beside the kernel alone: one thread, all threads, one pose.
+"""Compares the speed of presses into NumPy arrays with the kernel alone: one thread, all threads, and one pose.
 
-The kernel's own pace is measured in the same process, in turn with the calls: its results stay where it leaves them.
+The speed of the kernel is measured in the same process, alternating with the calls. The kernel does not write its results into an array.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ ROUNDS = 5
 
 
 def best(call: Callable[[], object], repeat: int = 1) -> float:
-    """Least seconds of a call in a few rounds."""
+    """Returns the shortest time of a call, seconds: the minimum over ROUNDS rounds of the mean over `repeat` calls."""
     times = []
     for _ in range(ROUNDS):
         start = time.perf_counter()
@@ -29,6 +29,7 @@ def best(call: Callable[[], object], repeat: int = 1) -> float:
 
 
 def batches(name: str, patch: bt.Patch, thing: bt.SphereUnion | bt.Mesh) -> None:
+    """Prints the speeds of a batch of 2,048 poses, in taxel readings per second."""
     random = np.random.default_rng(0)
     n = 2048
     offset, yaw = random.uniform(-0.01, 0.01, (n, 2)), random.uniform(0, 6.28, n)
@@ -48,6 +49,7 @@ def batches(name: str, patch: bt.Patch, thing: bt.SphereUnion | bt.Mesh) -> None
 
 
 def one_pose(side: int) -> None:
+    """Prints the times of a call with one pose on side × side taxels, microseconds."""
     patch, ball = bt.Patch.grid(side, side, 2e-3, 5e-3), bt.SphereUnion([[0, 0, 0]], 0.02)
     pose, out = np.array([0, 0, 0.03, 1, 0, 0, 0]), np.zeros((side, side))
     n = 20_000

@@ -1,4 +1,4 @@
-"""One touch of a mug on 64 × 64 taxels, as a picture."""
+"""Presses 64 × 64 taxels on a mug and writes the deflections as a picture."""
 
 import bubbletouch as bt
 

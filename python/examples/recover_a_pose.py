@@ -1,4 +1,4 @@
-"""Where is the drill? Its pose from one frame, by Levenberg's and Marquardt's steps along the derivatives of the press."""
+"""Estimates the pose of a drill from one frame, by the Levenberg-Marquardt method with the derivatives of the press."""
 
 import time
 
@@ -13,20 +13,20 @@ patch = bt.Patch.grid(32, 32, pitch=2e-3, stroke=5e-3)
 
 
 def turned(pose: Floats, change: Floats) -> Floats:
-    """The pose after a motion: metres of its origin, and a small turn about the patch's axes, radians."""
+    """Returns the pose (7,) after a motion (6,): translation, metres, and a small rotation about the axes of the patch, radians."""
     w, v, half = pose[3], pose[4:], 0.5 * change[3:]
     turn = np.array([w - half @ v, *(v + w * half + np.cross(half, v))])
     return np.concatenate([pose[:3] + change[:3], turn / np.sqrt(turn @ turn)])
 
 
-# What the patch felt somewhere, 3 mm deep; and a guess that is 1.4 mm and 2 degrees off.
+# The measured frame at the true pose, 3 mm deep, and an initial guess that is 1.4 mm and 2 degrees away.
 truth = bt.touch_poses(drill, offset=[10e-3, 5e-3], yaw=0.4, tilt=[0.08, -0.05])
 truth[2] -= patch.press(drill, truth, depth=3e-3, contacts=True)[1].travel[0]
 felt = patch.press(drill, truth)
 guess = turned(truth, np.array([1e-3, -1e-3, -0.3e-3, 0.015, -0.015, 0.03]))
 
 start = time.perf_counter()
-# Metres and radians alike: a turn moves what is some centimetres away.
+# Scales of translation and rotation: a rotation of 1 rad moves a point at a distance of 0.03 m by 0.03 m.
 unit = np.array([1, 1, 1, 0.03, 0.03, 0.03])
 damping = 1e-4
 frame, jacobian = patch.press(drill, guess, jacobian=True)

@@ -1,4 +1,4 @@
-"""A study from a dict: what do noise and compression cost?"""
+"""Runs a study from a dict: how noise and compression change the accuracy."""
 
 import bubbletouch as bt
 

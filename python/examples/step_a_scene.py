@@ -1,4 +1,4 @@
-"""A tennis ball comes down on a palm: its scene, frame by frame."""
+"""Simulates a scene frame by frame: a tennis ball moves down on a palm and up again."""
 
 import bubbletouch as bt
 

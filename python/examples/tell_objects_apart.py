@@ -1,4 +1,4 @@
-"""Noisy touches of four objects, 64 measurements each, and a linear SVM that has never seen the tested ones."""
+"""Classifies noisy touches of four objects from 64 measurements each with a linear SVM; the test touches are not in the training set."""
 
 import bubbletouch as bt
 import numpy as np

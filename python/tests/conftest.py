@@ -1,4 +1,4 @@
-"""What several tests press with, and the command to compare with."""
+"""Shared fixtures: objects, a patch, and the bubbletouch command for comparisons."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def patch() -> bt.Patch:
 
 @pytest.fixture(scope="session")
 def box() -> bt.Mesh:
-    """40 × 30 × 20 mm, its lowest face at z = 0."""
+    """Returns a box of 40 × 30 × 20 mm whose lowest face is at z = 0."""
     corners = np.array([[x, y, z] for x in (-20, 20) for y in (-15, 15) for z in (0, 20)]) * 1e-3
     faces = [
         [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
@@ -38,7 +38,7 @@ def box() -> bt.Mesh:
 
 @pytest.fixture(scope="session")
 def command() -> Command:
-    """The command of the same state; a test that compares with it skips aloud where it is not built."""
+    """Returns a function that runs the bubbletouch command of the same build. If the command is not built, the test is skipped with a message."""
     built = Path(__file__).resolve().parents[2] / "target" / "release" / "bubbletouch"
     named = os.environ.get("BUBBLETOUCH_COMMAND")
     path = named or (str(built) if built.exists() else shutil.which("bubbletouch"))

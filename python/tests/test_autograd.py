@@ -1,4 +1,4 @@
-"""Presses that PyTorch differentiates."""
+"""Tests of presses with gradients for PyTorch."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from bubbletouch import autograd  # noqa: E402
 
 @pytest.fixture(scope="module")
 def poses() -> object:
-    """Of an egg of two balls on the patch, near its middle, with kinks of the maximum away from here."""
+    """Returns poses of an egg (two spheres) near the middle of the patch. No taxel is near a kink of the deflection."""
     turns = np.array([[0.9, 0.1, -0.2, 0.3], [0.5, -0.5, 0.4, 0.6], [1.0, 0.0, 0.0, 0.0]])
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)
     at = np.array([[1e-3, 2e-3, 0.018], [-3e-3, 1e-3, 0.017], [0.5e-3, -0.2e-3, 0.0185]])
@@ -95,5 +95,5 @@ def test_bad_poses_are_refused() -> None:
         autograd.press(PATCH, (centers, radii[:1]), at)
     with pytest.raises(ValueError, match="with a depth or a force"):
         autograd.press(PATCH, (centers, radii), at, depth=1e-3)
-    # Nobody asks for gradients by spheres.
+    # Without gradients with respect to spheres, a depth is allowed.
     assert autograd.press(PATCH, (centers, radii.detach()), at, depth=1e-3).max() > 0

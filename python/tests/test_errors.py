@@ -1,4 +1,4 @@
-"""Errors: one way each, in the library's words."""
+"""Tests of errors: one exception type per kind of error, with the messages of the library."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def test_what_cannot_be_pressed_is_refused(ball: bt.SphereUnion, arguments, said
     arguments = {"poses": POSE} | arguments
     with pytest.raises(ValueError, match=said):
         patch.press(ball, **arguments)
-    # A refusal leaves everything usable.
+    # After an error, the patch and the object remain usable.
     assert patch.press(ball, POSE, depth=1e-3).max() == pytest.approx(1e-3)
 
 
@@ -154,12 +154,12 @@ def test_a_solid_says_how_it_is_pressed() -> None:
         bt.Patch.grid(8, 8, 2e-3, 5e-3).press(solid, POSE)  # type: ignore[call-overload]
 
 
-# Within 0.2 s on an idle machine; what is tested is that a call ends at all, not how busy the machine is.
+# Maximum time until a call ends, seconds. On an idle machine it is 0.2 s; the larger limit allows for a busy machine.
 PROMPTLY = 5.0
 
 
 def interrupted_after(seconds: float, call) -> float:  # type: ignore[no-untyped-def]
-    """How long after a Ctrl-C the call ends, seconds."""
+    """Sends Ctrl-C after `seconds`, and returns the time from Ctrl-C to the end of the call, seconds."""
     sent: list[float] = []
 
     def press_ctrl_c() -> None:
@@ -209,7 +209,7 @@ def test_ctrl_c_leaves_a_long_training() -> None:
 
 
 def test_a_forked_process_presses_too(mug: bt.SphereUnion) -> None:
-    """multiprocessing on Linux forks, and threads are not forked with it."""
+    """On Linux, multiprocessing forks processes; a forked process does not inherit threads."""
     program = """
 import multiprocessing, numpy, bubbletouch as bt
 mug = bt.Catalogue.builtin().object("mug").pack(1e-3)

@@ -1,4 +1,4 @@
-"""The examples run, and so does what the pages show."""
+"""Tests that the examples and the Python code of the README pages run."""
 
 from __future__ import annotations
 

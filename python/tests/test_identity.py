@@ -1,4 +1,4 @@
-"""The same bits from Python as from the command and the library."""
+"""Tests that Python, the command and the library return bitwise equal results."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def balls(apart: float) -> bt.SphereUnion:
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:  # type: ignore[type-arg]
-    """What reference/main.rs computes."""
+    """Returns the arrays computed by reference/main.rs, by name."""
     built = Path(__file__).resolve().parents[2] / "target" / "release" / "bubbletouch-reference"
     path = os.environ.get("BUBBLETOUCH_REFERENCE_BINARY") or (str(built) if built.exists() else None)
     if path is None:

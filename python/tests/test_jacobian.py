@@ -1,4 +1,4 @@
-"""Derivatives of deflections, against central differences."""
+"""Tests of the derivatives of deflections against central differences."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STEP = 1e-7
 
 
 def turned(pose: Floats, change: Floats) -> Floats:
-    """A pose after a motion: metres of its origin, and radians about axes of the patch."""
+    """Returns the pose (7,) after a motion (6,): translation, metres, and rotation vector in the axes of the patch, radians."""
     angle = np.linalg.norm(change[3:])
     axis = change[3:] / angle if angle > 0 else change[3:]
     w, v = np.cos(angle / 2), axis * np.sin(angle / 2)
@@ -22,7 +22,7 @@ def turned(pose: Floats, change: Floats) -> Floats:
 
 
 def differences(patch: bt.Patch, thing: bt.SphereUnion | bt.Mesh, pose: Floats, **goal: float) -> Floats:
-    """(n_taxels, 6), and NaN where the two sides differ in what they touch."""
+    """Returns the central differences of the deflections (n_taxels, 6); NaN if the touching part of a taxel differs between the two sides."""
     columns = []
     for number in range(6):
         change = np.zeros(6)
@@ -67,7 +67,7 @@ def test_it_is_the_limit_of_differences(layout: str, goal: dict[str, float]) -> 
     known = np.isfinite(expected).all(axis=1)
     touched = frame.ravel() > 0
     assert known.mean() > 0.8 and (touched & known).sum() > 10
-    # Relative to the row: metres by metres are about 1, metres by radians some centimetres, of which a column may be zero.
+    # Errors are relative to the row. Derivatives per metre are about 1; derivatives per radian are about 0.03 m and may be zero in a column.
     unit = np.array([1, 1, 1, 0.03, 0.03, 0.03])
     error, size = np.abs(rows - expected)[known] / unit, np.abs(expected)[known] / unit
     assert (error.max(axis=1) < 1e-6 * np.maximum(size.max(axis=1), 1)).all()
@@ -82,7 +82,7 @@ def test_of_a_mesh_too(box: bt.Mesh) -> None:
     rows, expected = jacobian.reshape(-1, 6), differences(patch, box, pose, depth=2e-3)
     known = np.isfinite(expected).all(axis=1)
     scale = np.abs(expected[known]).max(axis=0)
-    # The planes of two faces, and their edges, are kinks that parts do not tell.
+    # The deflection has kinks at edges and between faces, which the part numbers do not show.
     close = np.abs(rows[known] - expected[known]) <= 1e-5 * np.maximum(scale, 1e-2)
     assert close.all(axis=1).mean() > 0.97
 

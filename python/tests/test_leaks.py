@@ -1,4 +1,4 @@
-"""Memory after a million calls is what it was before them: in a process of its own, where no other test uses any."""
+"""Tests that a million calls do not increase the memory, in a separate process without other tests."""
 
 from __future__ import annotations
 
@@ -12,15 +12,17 @@ import numpy as np
 import pytest
 
 STATUS = Path("/proc/self/statm")
-# A leak of 4 bytes a call would be more.
+# Maximum increase of the memory, bytes. A leak of more than 4 bytes per call exceeds the limit.
 MOST_BYTES = 4_000_000
 
 
 def resident_bytes() -> int:
+    """Returns the resident memory of this process, bytes."""
     return int(STATUS.read_text().split()[1]) * 4096
 
 
 def growth(call: Callable[[], object], n: int) -> int:
+    """Returns the increase of the resident memory over n calls, after n / 10 calls as a warm-up, bytes."""
     for _ in range(n // 10):
         call()
     before = resident_bytes()

@@ -1,4 +1,4 @@
-"""SVMs as estimators."""
+"""Tests of the SVM estimators."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
-# Of scikit-learn's tiny and unscaled data.
+# The small, unscaled data of scikit-learn's checks causes this warning.
 pytestmark = pytest.mark.filterwarnings("ignore:.*stopped at max_iter = 1000")
 
-# No exceptions.
+# Checks that are expected to fail: none.
 FAILING: dict[str, str] = {}
 
 

@@ -1,4 +1,4 @@
-"""Numbers as arguments: each is refused by its name, with what was given and what is allowed."""
+"""Tests of numeric arguments: an error message contains the name, the given value and the allowed values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Objects: meshes, spheres, the catalogue."""
+"""Tests of objects: meshes, spheres and the catalogue."""
 
 from __future__ import annotations
 

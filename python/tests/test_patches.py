@@ -1,4 +1,4 @@
-"""Patches: where taxels rest, what they are."""
+"""Tests of patches: positions and properties of taxels."""
 
 from __future__ import annotations
 

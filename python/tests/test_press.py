@@ -1,4 +1,4 @@
-"""Presses: what they give, in which arrays."""
+"""Tests of presses: results and output arrays."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_frames_are_written_in_place(patch: bt.Patch, mug: bt.SphereUnion, poses
     new = patch.press(mug, poses, depth=3e-3, dtype="float32")
     assert new.dtype == np.float32
     np.testing.assert_array_equal(new, single)
-    # Part of a larger array, and a place that was written before.
+    # The output is a part of a larger array, and contains previous values.
     many = np.ones((100, 32, 48))
     patch.press(mug, poses, depth=3e-3, out=many[25:75])
     np.testing.assert_array_equal(many[25:75], expected)
@@ -120,8 +120,8 @@ def test_contacts_say_what_touches_what(
         np.testing.assert_allclose(contacts.deflection, flat[contacts.pose, contacts.taxel], atol=1e-14)
         np.testing.assert_array_equal(contacts.n_touched, (flat > 0).sum(axis=1))
         np.testing.assert_allclose(np.linalg.norm(contacts.normal, axis=1), 1, atol=1e-9)
-        # Without friction the spring's force on the object has its share along the taxel's axis, and runs along the normal.
-        # (That of a grazing contact, whose normal is across the axis, is bounded.)
+        # Without friction, the force is parallel to the normal, and its component along the taxel's axis is the spring force.
+        # At a grazing contact, whose normal is perpendicular to the axis, the force is bounded.
         head_on = contacts.normal[:, 2] < -0.01
         assert head_on.mean() > 0.99
         np.testing.assert_allclose(
@@ -140,7 +140,7 @@ def test_where_nothing_is_met_frames_are_zero_and_the_travel_is_nan(
     patch: bt.Patch, mug: bt.SphereUnion, poses: Floats
 ) -> None:
     poses = poses[:8] + np.array([10.0, 0, 0, 0, 0, 0, 0]) * (np.arange(8) % 2)[:, None]
-    # Two millimetres beyond the first contact of the pose that is met last.
+    # The travel is 2 mm past the largest travel to first contact.
     travel = 2e-3 + patch.press(mug, poses[::2], depth=1e-9, contacts=True)[1].travel.max()
     there = poses - np.array([0, 0, travel, 0, 0, 0, 0])
     goals: list[tuple[Floats, dict[str, float]]] = [

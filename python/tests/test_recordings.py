@@ -1,4 +1,4 @@
-"""Recordings in other formats, each read back by somebody else's reader."""
+"""Tests of recordings in other formats, read by independent readers."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_points_are_taxels_and_forces_in_the_world(recording: Recording) -> None
     assert points.shape == (51, 16 * 12, 6)
     turn = rotations(felt.pose)[30]
     assert np.allclose(turn @ turn.T, np.eye(3), atol=1e-15) and np.linalg.det(turn) == pytest.approx(1)
-    # The patch's frame in the world, from its roll and yaw.
+    # Rotation of the patch in the world, computed from its roll and yaw.
     roll, yaw = np.radians(10), np.radians(30)
     about_x = np.array([[1, 0, 0], [0, np.cos(roll), -np.sin(roll)], [0, np.sin(roll), np.cos(roll)]])
     about_z = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
@@ -132,11 +132,11 @@ def test_a_lerobot_dataset_has_windows_of_fast_touch_and_point_sets(lerobot: Pat
     assert set(rows.column_names) == set(info["features"]) and info["total_frames"] == rows.num_rows == 11 + 7 + 11
     touch = np.array(rows["observation.touch.palm"].to_pylist(), np.float32)
     fast = recording.patches["palm"].force.reshape(51, -1).astype(np.float32)
-    # A hundred touch frames a second beside twenty rows: row k has frames 5 k − 4 to 5 k.
+    # 100 touch frames and 20 rows per second: row k contains frames 5 k − 4 to 5 k.
     for row in range(1, 11):
         assert np.array_equal(touch[row], fast[5 * row - 4 : 5 * row + 1])
     assert np.array_equal(touch[0], np.repeat(fast[:1], 5, axis=0))
-    # The next episodes begin anew.
+    # Windows do not cross the boundary between episodes.
     assert np.array_equal(touch[11], touch[0]) and np.array_equal(touch[18:], touch[:11])
     points = np.array(rows["observation.points.palm"].to_pylist(), np.float32)
     assert np.array_equal(points[10], recording.patches["palm"].points()[50].astype(np.float32))
@@ -157,7 +157,7 @@ def test_huggingfaces_datasets_read_the_lerobot_dataset(lerobot: Path) -> None:
     info = json.loads((lerobot / "meta/info.json").read_text())
 
     def feature(about: dict[str, Any]) -> Any:
-        # As LeRobot's own reader makes them.
+        # The feature types equal the types in LeRobot's reader.
         shape = tuple(about["shape"])
         if shape == (1,):
             return datasets.Value(about["dtype"])
@@ -183,7 +183,7 @@ def test_lerobots_own_reader_reads_it(lerobot: Path, recording: Recording) -> No
     fast = recording.patches["palm"].force.reshape(51, -1).astype(np.float32)
     assert np.array_equal(dataset[28]["observation.touch.palm"].numpy(), fast[46:51])
     assert dataset[28]["observation.points.back"].shape == (25, 6)
-    # Asked for by time, as policies do.
+    # Frames are requested by time offsets, as policies do.
     poses = recording.patches["palm"].pose[[45, 50]].astype(np.float32)
     assert np.array_equal(dataset[28]["observation.pose.palm"].numpy(), poses)
     assert np.allclose(dataset.meta.stats["observation.pose.palm"]["mean"], poses[0])

@@ -1,4 +1,4 @@
-"""Scenes from Python."""
+"""Tests of scenes."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_the_same_frames_as_the_commands(tmp_path: Path, command: Command) -> No
     deflections = np.stack([frame["patches"]["palm"]["deflection"] for frame in bt.simulate(path)])
     written = [recording[name] for name in recording.files if "deflection" in name]
     assert len(written) == 1
-    # Recordings are of single precision.
+    # The command writes recordings in single precision.
     single = deflections.reshape(21, -1).astype(written[0].dtype)
     np.testing.assert_array_equal(single, written[0].reshape(21, -1))
 
@@ -78,7 +78,7 @@ def test_what_cannot_be_simulated_is_refused_by_its_key(tmp_path: Path) -> None:
 
 
 def same(a: dict[str, Any], b: dict[str, Any]) -> bool:
-    """Whether two frames are the same, bit by bit."""
+    """Returns whether two frames are bitwise equal."""
     pairs = [
         (a[kind][name][key], b[kind][name][key])
         for kind in ("patches", "objects")
@@ -112,7 +112,7 @@ def test_objects_in_memory_are_touched_as_they_are(box: bt.Mesh) -> None:
     at = {"position_mm": [0.0, 0.0, -1.0]}
     boxed = bt.simulate(SCENE | {"objects": [{"name": "box", "object": box, "at": at}]})
     frame = boxed.observe()["patches"]["palm"]
-    # A face of 40 × 30 mm lies a millimetre below the tips, which are half a pitch in front of their centres.
+    # The lowest face of the box, 40 × 30 mm, is at z = −1 mm; the taxel centres are at z = 0, the tips half a pitch above.
     patch, pose = boxed.patch("palm"), np.array([0, 0, -1e-3, 1, 0, 0, 0])
     np.testing.assert_allclose(frame["deflection"], patch.press(box, pose), atol=1e-9)
     assert frame["n_touched"] >= 80

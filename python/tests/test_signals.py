@@ -1,4 +1,4 @@
-"""Signal chains and projections."""
+"""Tests of signal chains and projections."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The stubs say what is there, and what help() says."""
+"""Tests that the stubs equal the compiled module, including the texts of help()."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ EXAMPLES = sorted((Path(__file__).resolve().parents[1] / "examples").glob("*.py"
 
 
 def documented() -> Iterator[tuple[str, object, str]]:
-    """Every docstring of the stub, and what it is of."""
+    """Yields each docstring of the stub: its name, the documented object and the text."""
     for node in ast.parse(STUB.read_text()).body:
         if not isinstance(node, ast.ClassDef | ast.FunctionDef):
             continue

@@ -1,4 +1,4 @@
-"""Studies from Python."""
+"""Tests of studies."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_advice_is_the_cheapest_that_is_good_enough(study: bt.Study) -> None:
     advice = bt.advise(study, accuracy=0.5)
     rows = study[Path(advice["table"]).stem]
     accuracy, cost = (np.asarray(rows[advice[key]], float) for key in ("value", "cost"))
-    # The cheapest of each condition; of all conditions, the cheapest row.
+    # Each choice is the cheapest configuration of its condition; the cheapest choice is the cheapest sufficient row of the table.
     choices = [answer["choice"] for answer in advice["answers"] if "choice" in answer]
     assert min(choice[advice["cost"]] for choice in choices) == cost[accuracy >= 0.5].min()
     assert all(choice[advice["value"]] >= 0.5 for choice in choices)
@@ -150,7 +150,7 @@ def test_ctrl_c_ends_a_study_and_the_next_run_goes_on(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         bt.run(long, tmp_path / "long")
         time.sleep(5)
-    # 0.2 s on an idle machine; the study would take much longer.
+    # Ctrl-C takes 0.2 s on an idle machine; the whole study would take much longer.
     assert time.perf_counter() - sent[0] < 5
     thread.join()
 
