@@ -180,8 +180,10 @@ impl Patch {
         })
     }
 
-    /// Returns a patch of rings of taxels on a sphere about the origin, as on a fingertip or an elbow. radius: of the sphere, metres. half_angle: angle
-    /// from the pole at +z to the edge, radians, above 0 to π.
+    /// Returns a patch of rings of taxels on a sphere about the origin, as on a fingertip or an elbow.
+    ///
+    /// radius: radius of the sphere, metres.
+    /// half_angle: angle from the pole at +z to the edge, radians, above 0 to π.
     #[staticmethod]
     #[pyo3(signature = (radius, half_angle, pitch, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0))]
     fn sphere_cap(
@@ -512,15 +514,15 @@ impl Patch {
     ///
     /// Without a goal, the deflections are computed at the given pose. If the patch does not touch the object, the deflections are zero.
     ///
-    /// out: C-contiguous array of float32 or float64 that receives the frames and is returned. dtype: type of a new array, float64 (default) or
-    /// float32.
+    /// out: C-contiguous array of float32 or float64 that receives the frames and is returned.
+    /// dtype: type of a new array, float64 (default) or float32.
     /// threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends the call.
     ///
     /// Returns an array (n, ny, nx) for a grid, and (n, n_taxels) for another patch; for a single pose, without the axis n. The result is bitwise equal
     /// for any number of threads. With contacts=True, the Contacts are also returned; the frames are unchanged. With jacobian=True, the derivatives
-    /// (…, 6) of the deflections are also returned: per metre along x, y, z, and per radian about x, y, z through the object's origin, in the axes of
-    /// the patch. The derivatives are zero for free and saturated taxels. With a depth or a force, the derivatives include the change of the travel; a
-    /// depth then needs a flat patch.
+    /// (…, 6) of the deflections with respect to the object's pose are also returned. They are per metre along x, y, z, and per radian about x, y, z
+    /// through the object's origin, in the axes of the patch. The derivatives are zero for free and saturated taxels. With a depth or a force, the
+    /// derivatives include the change of the travel; a depth then needs a flat patch.
     ///
     /// Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
     #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, out=None, dtype=None, threads=None, contacts=false, jacobian=false))]

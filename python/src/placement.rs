@@ -60,8 +60,11 @@ impl Groups {
 /// at x = y = 0 and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y) at the height of the object's top. The
 /// axis is tilted by `tilt` about the patch's x axis, then about its y axis.
 ///
-/// offset: metres, (2,) or (n, 2); tilt: radians, (2,) or (n, 2); yaw: radians, one number or (n,). Returns (7,) if all arguments are single
-/// values, otherwise (n, 7). Raises ValueError if an argument is invalid.
+/// offset: metres, (2,) or (n, 2).
+/// tilt: radians, (2,) or (n, 2).
+/// yaw: radians, one number or (n,).
+///
+/// Returns (7,) if all arguments are single values, otherwise (n, 7). Raises ValueError if an argument is invalid.
 #[pyfunction]
 #[pyo3(signature = (object, *, offset=None, yaw=None, tilt=None, rest=None))]
 pub fn touch_poses<'py>(

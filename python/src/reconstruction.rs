@@ -121,8 +121,9 @@ impl Reconstructor {
         })
     }
 
-    /// Reconstructs frames from measurements (n, m). Returns a dict: frames (n, ny, nx); n_atoms (n,), the number of atoms used; is_capped (n,),
-    /// whether the solver stopped at a limit.
+    /// Reconstructs frames from measurements (n, m).
+    ///
+    /// Returns a dict: frames (n, ny, nx); the numbers of atoms used, n_atoms (n,); is_capped (n,), whether the solver stopped at a limit.
     fn __call__<'py>(
         &self,
         py: Python<'py>,

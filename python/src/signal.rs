@@ -58,8 +58,10 @@ impl Step {
         }
     }
 
-    /// Returns a step that adds Gaussian noise to every taxel. std: standard deviation, zero or more. unit: unit of std, full_scale (fraction of the
-    /// signal of a taxel at its stroke), mm (millimetres) or n (newtons).
+    /// Returns a step that adds Gaussian noise to every taxel.
+    ///
+    /// std: standard deviation, zero or more.
+    /// unit: unit of std. full_scale is the fraction of the signal of a taxel at its stroke, mm is millimetres, n is newtons.
     #[staticmethod]
     #[pyo3(signature = (std, unit="full_scale"))]
     fn noise(std: f64, unit: &str) -> PyResult<Self> {

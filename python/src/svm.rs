@@ -343,8 +343,11 @@ impl LinearModel {
     }
 }
 
-/// Evaluates all pairs of C and γ by cross-validation; all pairs share one matrix of inner products. gamma_scales: values of γ as multiples of
-/// 'scale'; if empty, γ is unchanged. Returns a dict: the best C, gamma and accuracy; tried, tuples of C, γ and accuracy; n_capped.
+/// Evaluates all pairs of C and γ by cross-validation; all pairs share one matrix of inner products.
+///
+/// gamma_scales: values of γ as multiples of 'scale'; if empty, γ is unchanged.
+///
+/// Returns a dict with the best C, gamma and accuracy, with `tried` (tuples of C, γ and accuracy) and with n_capped.
 #[pyfunction]
 pub fn choose_svm<'py>(
     py: Python<'py>,

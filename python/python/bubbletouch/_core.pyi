@@ -330,8 +330,10 @@ class Patch:
         stiffness: float = 100.0,
         damping: float = 0.0,
     ) -> Patch:
-        """Returns a patch of rings of taxels on a sphere about the origin, as on a fingertip or an elbow. radius: of the sphere, metres. half_angle: angle
-        from the pole at +z to the edge, radians, above 0 to π.
+        """Returns a patch of rings of taxels on a sphere about the origin, as on a fingertip or an elbow.
+
+        radius: radius of the sphere, metres.
+        half_angle: angle from the pole at +z to the edge, radians, above 0 to π.
         """
 
     @staticmethod
@@ -573,15 +575,15 @@ class Patch:
 
         Without a goal, the deflections are computed at the given pose. If the patch does not touch the object, the deflections are zero.
 
-        out: C-contiguous array of float32 or float64 that receives the frames and is returned. dtype: type of a new array, float64 (default) or
-        float32.
+        out: C-contiguous array of float32 or float64 that receives the frames and is returned.
+        dtype: type of a new array, float64 (default) or float32.
         threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends the call.
 
         Returns an array (n, ny, nx) for a grid, and (n, n_taxels) for another patch; for a single pose, without the axis n. The result is bitwise equal
         for any number of threads. With contacts=True, the Contacts are also returned; the frames are unchanged. With jacobian=True, the derivatives
-        (…, 6) of the deflections are also returned: per metre along x, y, z, and per radian about x, y, z through the object's origin, in the axes of
-        the patch. The derivatives are zero for free and saturated taxels. With a depth or a force, the derivatives include the change of the travel; a
-        depth then needs a flat patch.
+        (…, 6) of the deflections with respect to the object's pose are also returned. They are per metre along x, y, z, and per radian about x, y, z
+        through the object's origin, in the axes of the patch. The derivatives are zero for free and saturated taxels. With a depth or a force, the
+        derivatives include the change of the travel; a depth then needs a flat patch.
 
         Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
         """
@@ -596,8 +598,10 @@ class Step:
 
     @staticmethod
     def noise(std: float, unit: Literal["full_scale", "mm", "n"] = "full_scale") -> Step:
-        """Returns a step that adds Gaussian noise to every taxel. std: standard deviation, zero or more. unit: unit of std, full_scale (fraction of the
-        signal of a taxel at its stroke), mm (millimetres) or n (newtons).
+        """Returns a step that adds Gaussian noise to every taxel.
+
+        std: standard deviation, zero or more.
+        unit: unit of std. full_scale is the fraction of the signal of a taxel at its stroke, mm is millimetres, n is newtons.
         """
 
     @staticmethod
@@ -745,8 +749,9 @@ class Reconstructor:
         seed: int = 0,
     ) -> Reconstructor: ...
     def __call__(self, measurements: ArrayLike) -> dict[str, NDArray[Any]]:
-        """Reconstructs frames from measurements (n, m). Returns a dict: frames (n, ny, nx); n_atoms (n,), the number of atoms used; is_capped (n,),
-        whether the solver stopped at a limit.
+        """Reconstructs frames from measurements (n, m).
+
+        Returns a dict: frames (n, ny, nx); the numbers of atoms used, n_atoms (n,); is_capped (n,), whether the solver stopped at a limit.
         """
 
 @final
@@ -903,8 +908,11 @@ def choose_svm(
     c: Sequence[float],
     gamma_scales: Sequence[float],
 ) -> dict[str, Any]:
-    """Evaluates all pairs of C and γ by cross-validation; all pairs share one matrix of inner products. gamma_scales: values of γ as multiples of
-    'scale'; if empty, γ is unchanged. Returns a dict: the best C, gamma and accuracy; tried, tuples of C, γ and accuracy; n_capped.
+    """Evaluates all pairs of C and γ by cross-validation; all pairs share one matrix of inner products.
+
+    gamma_scales: values of γ as multiples of 'scale'; if empty, γ is unchanged.
+
+    Returns a dict with the best C, gamma and accuracy, with `tried` (tuples of C, γ and accuracy) and with n_capped.
     """
 
 def touch_poses(
@@ -921,8 +929,11 @@ def touch_poses(
     at x = y = 0 and turned by `yaw` about the vertical. The axis of the patch goes through `offset` (x, y) at the height of the object's top. The
     axis is tilted by `tilt` about the patch's x axis, then about its y axis.
 
-    offset: metres, (2,) or (n, 2); tilt: radians, (2,) or (n, 2); yaw: radians, one number or (n,). Returns (7,) if all arguments are single
-    values, otherwise (n, 7). Raises ValueError if an argument is invalid.
+    offset: metres, (2,) or (n, 2).
+    tilt: radians, (2,) or (n, 2).
+    yaw: radians, one number or (n,).
+
+    Returns (7,) if all arguments are single values, otherwise (n, 7). Raises ValueError if an argument is invalid.
     """
 
 def run_study(
