@@ -99,11 +99,6 @@ pub fn with_mesh_unit(schema: &mut Schema) {
     also_named("unit", "mesh_unit", schema.ensure_object());
 }
 
-/// Adds the key `rotation_deg`, another name of `turn_deg`, to a schema.
-pub fn with_rotation_deg(schema: &mut Schema) {
-    also_named("turn_deg", "rotation_deg", schema.ensure_object());
-}
-
 /// Adds another name of a key to all tables of a schema that have the key.
 fn also_named(name: &str, other: &str, schema: &mut Map<String, Value>) {
     if let Some(keys) = schema.get_mut("properties").and_then(Value::as_object_mut)

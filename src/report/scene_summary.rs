@@ -86,7 +86,7 @@ fn ending(movement: &Movement, held: &PoseControl) -> String {
     match held {
         PoseControl::Imposed => match movement {
             Movement::Imposed(Motion::Fixed(_)) => "fixed".to_owned(),
-            Movement::Carried(_) => "where its robot carries it".to_owned(),
+            Movement::Carried { .. } => "where its robot carries it".to_owned(),
             _ => "where its motion says".to_owned(),
         },
         PoseControl::Pressed {

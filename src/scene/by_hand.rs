@@ -103,7 +103,7 @@ impl Simulation<'_> {
         match self.plan.objects[number].movement {
             Movement::Imposed(_) => self.put[number] = Some(pose),
             Movement::Free { .. } => self.free.put(number, pose),
-            Movement::Carried(_) => {
+            Movement::Carried { .. } => {
                 let given = "an object that a robot carries";
                 return Err(Error::input(key, given, "the pose or joints of the robot"));
             }

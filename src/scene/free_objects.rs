@@ -46,7 +46,7 @@ impl FreeObjects {
         let is_free =
             |object: usize| matches!(plan.objects[object].movement, Movement::Free { .. });
         let all = objects.filter_map(|(object, planned)| match planned.movement {
-            Movement::Imposed(_) | Movement::Carried(_) => None,
+            Movement::Imposed(_) | Movement::Carried { .. } => None,
             Movement::Free {
                 start,
                 mass,

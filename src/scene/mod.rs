@@ -91,6 +91,7 @@ pub use plan_patch::PlannedPatch;
 pub use plan_press::PlannedPress;
 pub use plan_robot::PlannedRobot;
 pub use plan_signal::PlannedSignal;
+pub(crate) use reader::Reader;
 pub use simulation::{Simulation, Stepping};
 pub use spec::*;
 pub use summary::{ObjectSummary, PatchPeaks, Summary};

@@ -1,4 +1,4 @@
-//! Mounts of patches and carried objects, which are fixed to the world, to a robot's link, or to an object.
+//! Mounts of patches, which are fixed to the world, to a robot's link, or to an object.
 
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;
@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::scene::spec_motion::PoseSpec;
 
-/// Body to which a patch or an object is fixed.
+/// Body to which a patch is fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mount {
     /// Fixed to the world; the pose `world_from_mounted` is constant.
@@ -100,17 +100,28 @@ impl Reader<'_> {
                 )),
             };
         };
-        let names = robots.iter().map(|robot| robot.name.as_str());
-        let robot = self.known(&format!("{key}.robot"), name, names)?;
-        let carrier = &robots[robot].robot;
-        let link = match link {
-            Some(link) => self.under(&format!("{key}.link"), carrier.link(link))?,
-            None => carrier.base(),
-        };
+        let (robot, link) = self.link(key, (name, link), robots)?;
         Ok(Mount::Link {
             robot,
             link,
             link_from_mounted: at,
         })
+    }
+
+    /// Returns the indices of a robot and of its link; without a link, of its base.
+    pub fn link(
+        &self,
+        key: &str,
+        (robot, link): (&str, Option<&str>),
+        robots: &[PlannedRobot],
+    ) -> Result<(usize, usize)> {
+        let names = robots.iter().map(|robot| robot.name.as_str());
+        let robot = self.known(&format!("{key}.robot"), robot, names)?;
+        let carrier = &robots[robot].robot;
+        let link = match link {
+            Some(link) => self.under(&format!("{key}.link"), carrier.link(link))?,
+            None => carrier.base(),
+        };
+        Ok((robot, link))
     }
 }

@@ -42,7 +42,11 @@ pub(super) fn check_starts(
     let starts = objects.iter().zip(models).filter_map(|(object, model)| {
         let pose = match &object.movement {
             Movement::Imposed(motion) => motion.pose_at(0.0),
-            Movement::Carried(mount) => mount.place(&states, &[]),
+            Movement::Carried {
+                robot,
+                link,
+                motion,
+            } => states[*robot].world_from_link[*link].compose(&motion.pose_at(0.0)),
             Movement::Free { start, .. } => *start,
         };
         let spheres = model.spheres()?.spheres();

@@ -323,8 +323,7 @@ fn end(robots: &[PlannedRobot], objects: &[PlannedObject]) -> f64 {
     let objects = objects.iter().map(|object| {
         let press = object.press.as_ref().map_or(0.0, PlannedPress::end);
         match &object.movement {
-            Movement::Imposed(motion) => motion.end().max(press),
-            Movement::Carried(_) => press,
+            Movement::Imposed(motion) | Movement::Carried { motion, .. } => motion.end().max(press),
             Movement::Free { .. } => 0.0,
         }
     });

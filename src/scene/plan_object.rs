@@ -1,6 +1,5 @@
 //! Objects of an executable scene: contact models and motions.
 
-use super::mount::Mount;
 use super::plan_patch::PlannedPatch;
 use super::plan_press::PlannedPress;
 use super::plan_robot::PlannedRobot;
@@ -12,10 +11,11 @@ use crate::inputs::check::positive;
 use crate::inputs::object_files::{load_catalogue, load_mesh, load_spheres};
 use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
 use crate::mesh::SizeLimits;
-use crate::objects::{Catalogue, Model};
+use crate::objects::{Catalogue, Model, Solid, pack};
 use crate::spelling::nearest_names;
 use crate::world::Motion;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Checked object of an executable scene.
 #[derive(Clone, Debug)]
@@ -46,8 +46,15 @@ impl ObjectSpec {
 pub enum Movement {
     /// Motion that is imposed and does not depend on contacts.
     Imposed(Motion),
-    /// Pose that is fixed on a robot's link.
-    Carried(Mount),
+    /// Motion that is imposed on a robot's link.
+    Carried {
+        /// Index of the robot in the scene.
+        robot: usize,
+        /// Index of the link in the robot.
+        link: usize,
+        /// Motion of the object in the frame of the link.
+        motion: Motion,
+    },
     /// Free motion under gravity and contact forces.
     Free {
         /// Initial pose of the free object, `world_from_object`, before the first equilibrium.
@@ -71,17 +78,14 @@ impl Reader<'_> {
         let for_mesh = spec.model.unwrap_or(default);
         let model = self.model(key, spec, finest_mm, for_mesh)?;
         let is_carried = spec.robot.is_some() || spec.link.is_some();
-        if is_carried && (spec.free.is_some() || spec.motion.is_some()) {
-            let allowed = "one of robot, motion and free";
+        if is_carried && spec.free.is_some() {
+            let allowed = "robot or free, not both";
             return Err(self
                 .check
                 .error(key, "an object with two movements", allowed));
         }
         let movement = match (&spec.free, &spec.motion) {
-            _ if is_carried => {
-                let on = (spec.robot.as_deref(), spec.link.as_deref());
-                Movement::Carried(self.mount(key, on, &spec.at, robots)?)
-            }
+            _ if is_carried => self.carried(key, spec, robots)?,
             (None, motion) => Movement::Imposed(self.motion(key, &spec.at, motion.as_ref())?),
             (Some(_), Some(_)) => {
                 let allowed = "free or motion, not both";
@@ -103,6 +107,26 @@ impl Reader<'_> {
         Ok((object, model))
     }
 
+    /// Checks the motion of an object on the link of a robot.
+    pub fn carried(
+        &self,
+        key: &str,
+        spec: &ObjectSpec,
+        robots: &[PlannedRobot],
+    ) -> Result<Movement> {
+        let Some(name) = &spec.robot else {
+            let given = format!("`{}` without a robot", spec.link.as_deref().unwrap_or(""));
+            let allowed = "robot = \"NAME\" beside it";
+            return Err(self.check.error(&format!("{key}.link"), given, allowed));
+        };
+        let (robot, link) = self.link(key, (name, spec.link.as_deref()), robots)?;
+        Ok(Movement::Carried {
+            robot,
+            link,
+            motion: self.motion(key, &spec.at, spec.motion.as_ref())?,
+        })
+    }
+
     /// Checks that each model given in memory belongs to an object of the scene.
     pub fn check_models(&self, objects: &[ObjectSpec]) -> Result<()> {
         let names = objects.iter().map(|object| object.name.as_str());
@@ -117,7 +141,7 @@ impl Reader<'_> {
     }
 
     /// Returns the contact model of an object; `model` selects the contact model of a mesh.
-    fn model(
+    pub fn model(
         &self,
         key: &str,
         spec: &ObjectSpec,
@@ -128,6 +152,7 @@ impl Reader<'_> {
             return self.model_in_memory(key, spec, model);
         }
         let has_file = spec.mesh.is_some() || spec.spheres.is_some();
+        let is_solid = spec.object.is_some() || !spec.parts.is_empty();
         let misplaced = [
             (
                 spec.model.is_some() && spec.mesh.is_none(),
@@ -140,6 +165,7 @@ impl Reader<'_> {
                 "objects",
                 "object = \"NAME\"",
             ),
+            (spec.centered && !is_solid, "centered", "object or parts"),
         ];
         if let Some((_, what, beside)) = misplaced.into_iter().find(|(is_so, ..)| *is_so) {
             let given = format!("{what} without {beside}");
@@ -147,8 +173,7 @@ impl Reader<'_> {
                 .check
                 .error(key, given, format!("it only beside {beside}")));
         }
-        let is_made_of_spheres =
-            spec.object.is_some() || (spec.mesh.is_some() && model == ModelSpec::Packed);
+        let is_made_of_spheres = is_solid || (spec.mesh.is_some() && model == ModelSpec::Packed);
         if spec.surface_error_mm.is_some() && has_file && !is_made_of_spheres {
             let given = "given beside spheres, or a mesh that is not packed";
             let allowed = "it only beside object = \"NAME\" or model = \"packed\"";
@@ -160,26 +185,23 @@ impl Reader<'_> {
         let error_key = format!("{key}.surface_error_mm");
         let allowed = "a positive number of millimetres";
         let surface_error = MM * self.check.value(&error_key, error_mm, positive, allowed)?;
-        match (&spec.object, &spec.spheres, &spec.mesh) {
-            (Some(name), None, None) => {
-                let catalogue = match &spec.objects {
-                    Some(path) => {
-                        let key = &format!("{key}.objects");
-                        self.open(key, path)?;
-                        self.under(key, load_catalogue(&self.path(path)))?
-                    }
-                    None => Catalogue::builtin()?,
-                };
-                let entry = self.under(&format!("{key}.object"), catalogue.object(name))?;
-                Ok(entry.build(surface_error)?.model)
+        let kinds = [is_solid, spec.spheres.is_some(), spec.mesh.is_some()];
+        match (kinds, &spec.spheres, &spec.mesh) {
+            ([true, false, false], ..) => {
+                let mut solid = self.solid(key, spec)?;
+                if spec.centered {
+                    let middle = solid.bounds().center();
+                    solid = solid.moved(&Pose::from_translation(-middle));
+                }
+                Ok(self.under(key, pack(&solid, surface_error))?.into())
             }
-            (None, Some(path), None) => {
+            ([false, true, false], Some(path), _) => {
                 let key = &format!("{key}.spheres");
                 self.open(key, path)?;
                 let spheres = load_spheres(&self.path(path), spec.unit, &SizeLimits::ANY);
                 Ok(self.under(key, spheres)?.into())
             }
-            (None, None, Some(path)) => {
+            ([false, false, true], _, Some(path)) => {
                 let key = &format!("{key}.mesh");
                 self.open(key, path)?;
                 let wanted = ObjectsSpec {
@@ -194,10 +216,34 @@ impl Reader<'_> {
             }
             _ => Err(self.check.error(
                 key,
-                "none, or several, of object, spheres and mesh",
+                "none, or several, of object, parts, spheres and mesh",
                 "one of them",
             )),
         }
+    }
+
+    /// Returns the solid of a named object, or of parts.
+    fn solid(&self, key: &str, spec: &ObjectSpec) -> Result<Solid> {
+        let Some(name) = &spec.object else {
+            let text = toml::to_string(&BTreeMap::from([("part", &spec.parts)]));
+            let text = text.expect("tables that were read have a TOML form");
+            let place = format!("{}, key {key}.parts", self.check.place);
+            return Solid::parse_parts(&place, &text);
+        };
+        if !spec.parts.is_empty() {
+            let given = "object and parts";
+            return Err(self.check.error(key, given, "one of them"));
+        }
+        let catalogue = match &spec.objects {
+            Some(path) => {
+                let key = &format!("{key}.objects");
+                self.open(key, path)?;
+                self.under(key, load_catalogue(&self.path(path)))?
+            }
+            None => Catalogue::builtin()?,
+        };
+        let entry = self.under(&format!("{key}.object"), catalogue.object(name))?;
+        Ok(entry.solid.clone())
     }
 
     /// Returns a model given in memory unchanged.
@@ -205,6 +251,8 @@ impl Reader<'_> {
         let shape = [
             ("object", spec.object.is_some()),
             ("objects", spec.objects.is_some()),
+            ("parts", !spec.parts.is_empty()),
+            ("centered", spec.centered),
             ("spheres", spec.spheres.is_some()),
             ("mesh", spec.mesh.is_some()),
             ("model", spec.model.is_some()),

@@ -60,7 +60,8 @@ impl Reader<'_> {
         })
     }
 
-    fn joints(
+    /// Checks the way-points of a robot's joints.
+    pub fn joints(
         &self,
         key: &str,
         joints: Option<&JointsSpec>,

@@ -4,11 +4,11 @@ use super::spec::PlaneSpec;
 use crate::contact::equilibrium::HalfSpace;
 use crate::error::Result;
 use crate::geometry::{Pose, rotation_from_rpy};
-use crate::inputs::check::{Check, not_negative};
+use crate::inputs::check::{Check, not_negative, positive};
 use crate::objects::Model;
-use crate::scene::spec_motion::{MotionSpec, PoseSpec};
+use crate::scene::spec_motion::{MotionSpec, OscillationSpec, PoseSpec};
 use crate::spelling::known;
-use crate::world::{Motion, Phase, PoseTrajectory, VelocityPlan};
+use crate::world::{Motion, Oscillation, Phase, PoseTrajectory, VelocityPlan};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 pub(super) const MM: f64 = 1e-3;
 
 /// Reader of the keys of a scene file.
-pub(super) struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     pub check: Check<'a>,
     /// Folder to which paths in the file are relative.
     pub folder: &'a Path,
@@ -105,21 +105,34 @@ impl Reader<'_> {
         let key = &format!("{key}.motion");
         let has_phases = !motion.phases.is_empty();
         let has_way_points = !motion.way_points.is_empty();
-        let ways = [has_phases, has_way_points, motion.csv.is_some()];
+        let oscillation = motion.oscillation.as_ref();
+        let ways = [
+            has_phases,
+            has_way_points,
+            motion.csv.is_some(),
+            oscillation.is_some(),
+        ];
         if ways.into_iter().filter(|&is_given| is_given).count() != 1 {
-            let allowed = "exactly one of phases, way_points and csv";
+            let allowed = "exactly one of phases, way_points, csv and oscillation";
             return Err(self.check.error(key, "none of them, or several", allowed));
         }
+        let is_way = has_way_points || motion.csv.is_some();
+        if motion.interpolation.is_some() && !is_way {
+            let given = format!(
+                "interpolation beside {}",
+                if has_phases { "phases" } else { "oscillation" }
+            );
+            return Err(self.check.error(key, given, "it only beside way-points"));
+        }
         if has_phases {
-            if motion.interpolation.is_some() {
-                let given = "interpolation beside phases";
-                return Err(self.check.error(key, given, "it only beside way-points"));
-            }
             return self.phases(key, start, motion);
+        }
+        if let Some(oscillation) = oscillation {
+            return self.oscillation(key, start, oscillation);
         }
         if *at != PoseSpec::default() {
             let given = "way-points beside `at`";
-            let allowed = "one of them: way-points are in the world";
+            let allowed = "one of them: way-points replace it";
             return Err(self.check.error(key, given, allowed));
         }
         let interpolation = motion.interpolation.unwrap_or_default();
@@ -142,6 +155,20 @@ impl Reader<'_> {
             }
         };
         Ok(Motion::WayPoints(self.under(key, trajectory)?))
+    }
+
+    fn oscillation(&self, key: &str, start: Pose, spec: &OscillationSpec) -> Result<Motion> {
+        let key = |name: &str| format!("{key}.oscillation.{name}");
+        let degree = 1f64.to_radians();
+        let period = spec.period_s;
+        Ok(Motion::Oscillation(Oscillation {
+            start,
+            linear: self.vector(&key("linear_mm"), spec.linear_mm, MM)?,
+            angular: self.vector(&key("angular_deg"), spec.angular_deg, degree)?,
+            period: self
+                .check
+                .value(&key("period_s"), period, positive, "a positive number")?,
+        }))
     }
 
     fn phases(&self, key: &str, start: Pose, motion: &MotionSpec) -> Result<Motion> {

@@ -197,7 +197,14 @@ impl<'p> Simulation<'p> {
         for ((pose, object), put) in objects.zip(&self.put) {
             match &object.movement {
                 Movement::Imposed(motion) => *pose = put.unwrap_or_else(|| motion.pose_at(time)),
-                Movement::Carried(mount) => *pose = mount.place(&self.robots, &[]),
+                Movement::Carried {
+                    robot,
+                    link,
+                    motion,
+                } => {
+                    let link = &self.robots[*robot].world_from_link[*link];
+                    *pose = link.compose(&motion.pose_at(time));
+                }
                 Movement::Free { .. } => {}
             }
         }

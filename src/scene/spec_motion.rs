@@ -20,16 +20,19 @@ pub struct PoseSpec {
     pub rotation_deg: [f64; 3],
 }
 
-/// Imposed motion of a base or an object: phases of constant velocity, way-points, or a CSV file of way-points.
+/// Imposed motion of a base or an object: phases of constant velocity, an oscillation, way-points, or a CSV file of way-points.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionSpec {
     /// Phases of constant velocity, in order, starting at the pose `at`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<PhaseSpec>,
-    /// Poses in the world at given times; replaces `at`.
+    /// Poses in the world, or on the link that carries the object, at given times; replaces `at`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub way_points: Vec<WayPointSpec>,
+    /// Sinusoidal motion about `at`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub oscillation: Option<OscillationSpec>,
     /// CSV file of way-points of a pose.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
@@ -52,6 +55,22 @@ pub struct PhaseSpec {
     /// Angular velocity about the origin in the world frame, degrees per second. Default: 0.
     #[serde(default)]
     pub angular_deg_per_s: [f64; 3],
+}
+
+/// Sinusoidal motion, such as `{ linear_mm = [0.0, 0.0, 10.0], period_s = 0.5 }`.
+///
+/// At time t, with s = sin(2π t / period), the body at `at` is rotated about the origin by s · `angular_deg`, then translated by s · `linear_mm`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OscillationSpec {
+    /// Amplitude of the translation in the world or link frame, mm. Default: 0.
+    #[serde(default)]
+    pub linear_mm: [f64; 3],
+    /// Amplitude of the rotation vector about the origin of the world or link frame, degrees. Default: 0.
+    #[serde(default)]
+    pub angular_deg: [f64; 3],
+    /// Period, s, positive.
+    pub period_s: f64,
 }
 
 /// Way-point of a pose, such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.

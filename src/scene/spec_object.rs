@@ -8,6 +8,7 @@ use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::{MotionSpec, PoseSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Keys of `[[objects]]`: an object of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -23,6 +24,13 @@ pub struct ObjectSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub objects: Option<FilePath>,
+    /// Parts of a solid: tables with the keys of `[[object.part]]` in a file of objects, in the frame of the object; replaces `object`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(with = "Vec<BTreeMap<String, serde_json::Value>>")]
+    pub parts: Vec<toml::Table>,
+    /// Whether the middle of the bounding box is the origin of a solid. Default: the middle of the base of a named object, the origin of `parts`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub centered: bool,
     /// CSV file of spheres with the columns x, y, z, r; replaces `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
@@ -41,7 +49,7 @@ pub struct ObjectSpec {
     /// Maximum distance between the spheres and the surface of a solid or packed mesh, mm. Default: 0.25, or a tenth of the finest pitch for a packed mesh.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface_error_mm: Option<f64>,
-    /// Name of the robot that carries the object; replaces `motion`.
+    /// Name of the robot that carries the object; `at` and `motion` are then in the frame of its link.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<String>,
     /// Name of the robot link that carries the object. Default: the base.

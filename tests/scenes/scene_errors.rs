@@ -131,7 +131,7 @@ fn what_moves_needs_a_motion_that_it_can_make() {
         &said,
         &[
             "key objects.ball.motion",
-            "exactly one of phases, way_points and csv",
+            "exactly one of phases, way_points, csv and oscillation",
         ],
     );
     let said = refused(

@@ -53,6 +53,104 @@ fn over_skin(carrier: &str, object: &str) -> String {
     )
 }
 
+/// A link that is turned and moved, and the skin on it.
+const TURNED: &str =
+    "at = { position_mm = [40.0, 30.0, -20.0], rotation_deg = [10.0, 20.0, 30.0] }";
+
+#[test]
+fn the_motion_of_an_object_on_a_link_is_in_the_frame_of_the_link() {
+    let at = "at = { position_mm = [3.0, -2.0, 6.0], rotation_deg = [0.0, 0.0, 15.0] }";
+    let oscillation = "motion = { oscillation = { linear_mm = [2.0, 0.0, -6.0], angular_deg = [0.0, 10.0, 20.0], period_s = 0.4 } }";
+    for motion in [MOTION, oscillation] {
+        let alone = over_skin("", &format!("{at}\n{motion}"));
+        let carrier = format!("[[robots]]\nname = \"hand\"\nfloating = true\n{TURNED}\n");
+        let carried = over_skin(&carrier, &format!("robot = \"hand\"\n{at}\n{motion}"));
+        let carried = carried.replace("name = \"skin\"", "name = \"skin\"\nrobot = \"hand\"");
+        assert_same(&frames(&alone), &frames(&carried));
+    }
+    // Without `duration_s`, a scene ends with its motion, here after one period.
+    let carrier = format!("[[robots]]\nname = \"hand\"\nfloating = true\n{TURNED}\n");
+    let text = over_skin(&carrier, &format!("robot = \"hand\"\n{at}\n{oscillation}"));
+    let plan = plan(&text.replace("duration_s = 0.5", "")).unwrap();
+    assert_eq!(plan.n_frames, 21);
+}
+
+#[test]
+fn an_oscillation_is_farthest_after_a_quarter_of_its_period() {
+    let text = over_skin(
+        "",
+        "at = { position_mm = [1.0, 0.0, 50.0] }
+        motion = { oscillation = { linear_mm = [0.0, 0.0, 8.0], angular_deg = [0.0, 0.0, 90.0], period_s = 0.4 } }",
+    );
+    let frames = frames(&text);
+    let place = |frame: usize| 1e3 * frames[frame].objects[0].pose.translation;
+    assert_eq!(place(0), glam::DVec3::new(1.0, 0.0, 50.0));
+    assert!(place(5).distance(glam::DVec3::new(0.0, 1.0, 58.0)) < 1e-9);
+    assert!(place(15).distance(glam::DVec3::new(0.0, -1.0, 42.0)) < 1e-9);
+    assert!(place(20).distance(place(0)) < 1e-9);
+}
+
+#[test]
+fn parts_in_a_scene_are_the_solid_of_a_file_of_objects() {
+    let folder = tempfile::tempdir().unwrap();
+    let parts = "shape = \"ball\"\ndiameter_mm = 30\nposition_mm = [0, 0, 85]
+        [[object.part]]\nshape = \"cylinder\"\ndiameter_mm = 4\nheight_mm = 70\nposition_mm = [0, 0, 35]";
+    let file =
+        format!("[[object]]\nname = \"lollipop\"\nsource = \"ours\"\n[[object.part]]\n{parts}");
+    std::fs::write(folder.path().join("sweets.toml"), file).unwrap();
+    let models = |object: &str| {
+        let text = over_skin("", object).replace("object = \"pear\"", "");
+        let spec = SceneSpec::parse("test.toml", &text)?;
+        Ok(ScenePlan::new("test.toml", folder.path(), spec)?.models)
+    };
+    let model = |object: &str| -> bubbletouch::Result<_> { models(object) };
+    let named = model("object = \"lollipop\"\nobjects = \"sweets.toml\"").unwrap();
+    let ball = "shape = \"ball\", diameter_mm = 30";
+    let stick = "shape = \"cylinder\", diameter_mm = 4, height_mm = 70";
+    // The stick of the file stands on z = 0 with the middle of the bounding box above the origin.
+    let written = format!(
+        "parts = [{{ {ball}, position_mm = [0, 0, 85] }}, {{ {stick}, position_mm = [0, 0, 35] }}]"
+    );
+    let spheres = |models: &[bubbletouch::objects::Model]| models[0].spheres().unwrap().clone();
+    let as_written = spheres(&model(&written).unwrap());
+    assert_eq!(as_written, spheres(&named));
+    let centered = spheres(&model(&format!("{written}\ncentered = true")).unwrap());
+    assert!(centered.bounds().center().length() < 1e-3);
+    let moved = as_written.bounds().center() - centered.bounds().center();
+    assert!(
+        moved.distance(glam::DVec3::new(0.0, 0.0, 0.05)) < 1e-9,
+        "{moved}"
+    );
+    for (object, expected) in [
+        (
+            "parts = [{ shape = \"ball\" }]",
+            "key objects.pear.parts, part 1 (ball): ",
+        ),
+        (
+            "parts = [{ shape = \"sphere\", diameter_mm = 3 }]",
+            "key objects.pear.parts: ",
+        ),
+        (
+            "parts = [{ shape = \"ball\", diameter_mm = -3 }]",
+            "part 1 (ball): diameter_mm = -3",
+        ),
+        (
+            "object = \"apple\"\nparts = [{ shape = \"ball\", diameter_mm = 3 }]",
+            "object and parts",
+        ),
+        (
+            "spheres = \"a.csv\"\ncentered = true",
+            "centered without object or parts",
+        ),
+    ] {
+        let said = model(object).unwrap_err().to_string();
+        assert!(
+            said.starts_with("test.toml") && said.contains(expected),
+            "{said}"
+        );
+    }
+}
+
 #[test]
 fn an_object_on_a_link_goes_where_the_link_goes() {
     let at = "at = { position_mm = [3.0, -2.0, 6.0] }";
@@ -163,7 +261,7 @@ fn what_cannot_carry_is_refused_by_its_key() {
         let said = refused(&skinned_can("", patch, can));
         assert!(said.contains(expected), "{said}");
     }
-    let said = refused(&over_skin("", &format!("link = \"palm\"\n{MOTION}")));
+    let said = refused(&over_skin("", "link = \"palm\"\nfree = { mass_kg = 0.1 }"));
     assert!(said.contains("an object with two movements"), "{said}");
     let said = refused(&over_skin("", "link = \"palm\""));
     assert!(said.contains("`palm` without a robot"), "{said}");

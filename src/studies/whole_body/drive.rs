@@ -3,9 +3,9 @@
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::objects::SphereUnion;
-use crate::studies::whole_body::path::Path;
 use crate::studies::whole_body::plan::Aim;
 use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
+use crate::world::Oscillation;
 use glam::DVec3;
 
 /// Time step after which a damped taxel has fully relaxed, s.
@@ -25,7 +25,40 @@ pub(super) struct Posture<'a> {
     pub links: Vec<Pose>,
 }
 
-/// Object that moves along a path over the skin.
+/// Motion of an object in the frame of a link.
+#[derive(Clone, Copy)]
+pub(super) struct Path {
+    /// Pose of the link, `world_from_link`.
+    pub world_from_link: Pose,
+    /// Motion of the object in the frame of the link.
+    pub motion: Oscillation,
+}
+
+impl Path {
+    /// Returns the pose `world_from_object` at a time, seconds.
+    pub fn at(&self, time: f64) -> Pose {
+        self.world_from_link.compose(&self.motion.pose_at(time))
+    }
+
+    /// Returns the path with its start shifted in the frame of the link, metres.
+    pub fn shifted(&self, by: DVec3) -> Self {
+        let start = self.motion.start;
+        self.starting_at(Pose::new(start.rotation, start.translation + by))
+    }
+
+    /// Returns the path with another pose at its start, `link_from_object`.
+    pub fn starting_at(&self, start: Pose) -> Self {
+        Self {
+            motion: Oscillation {
+                start,
+                ..self.motion
+            },
+            ..*self
+        }
+    }
+}
+
+/// An object that moves along a path.
 pub(super) struct Drive<'a> {
     pub body: &'a WholeBody,
     pub state: BodyState,
@@ -43,7 +76,7 @@ impl<'a> Drive<'a> {
             object: [SphereClusters::new(object)],
             path: Path {
                 world_from_link: posture.links[aim.link],
-                ..aim.path
+                motion: aim.motion,
             },
         }
     }

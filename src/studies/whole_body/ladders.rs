@@ -5,12 +5,11 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::studies::whole_body::drive::{Drive, Posture};
 use crate::studies::whole_body::objects::cushion;
-use crate::studies::whole_body::path::Path;
 use crate::studies::whole_body::plan::{Aim, WholeBodyPlan};
 use crate::studies::whole_body::rows::{Driven, Series};
 use crate::studies::whole_body::spec::LaddersSpec;
 use crate::whole_body::WholeBody;
-use crate::world::{Extrusion, Patch, Taxel};
+use crate::world::{Extrusion, Oscillation, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
@@ -90,18 +89,18 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &ScalingPoint) -> Result<Driven>
         patches,
         links: vec![Pose::IDENTITY],
     };
-    let path = Path {
-        moves: SLIDE * side * DVec3::Z,
-        swing: SWING,
-        period: PERIOD,
-        ..Path::resting(Pose::IDENTITY)
-    };
     let aim = Aim {
         link: 0,
         from: DVec3::X,
-        path,
+        motion: Oscillation {
+            start: Pose::IDENTITY,
+            linear: SLIDE * side * DVec3::Z,
+            angular: SWING * DVec3::Z,
+            period: PERIOD,
+        },
     };
     let mut drive = Drive::new(&posture, &object, &aim);
+    let path = drive.path;
     // Beyond the stroke, a deeper cushion only saturates more taxels.
     let (mut out, mut deep) = (0.0, plan.taxel.stroke);
     for _ in 0..N_HALVINGS {

@@ -16,7 +16,6 @@ mod drive;
 mod ladders;
 mod memory_chart;
 mod objects;
-mod path;
 mod picture;
 mod plan;
 mod recognition;
@@ -25,9 +24,8 @@ mod spec;
 mod steps;
 mod study;
 
-pub use crate::studies::whole_body::path::Path;
 pub use crate::studies::whole_body::plan::{Aim, ScenePlan, WholeBodyPlan};
 pub use crate::studies::whole_body::spec::{
-    BodyPartSpec, BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
+    BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, LaddersSpec, WholeBodySpec,
     WholeBodyStudySpec,
 };

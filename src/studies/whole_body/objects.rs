@@ -1,19 +1,36 @@
-//! Objects that touch the skin: built-in objects, solids of a few parts, and cushions of spheres.
+//! Objects that touch a body: objects of scenes, built-in objects, and cushions of spheres.
 
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::inputs::units::MM;
-use crate::objects::{Catalogue, Part, Shape, Solid, Sphere, SphereUnion, pack};
-use crate::studies::whole_body::spec::{BodyPartSpec, BodySceneSpec};
+use crate::inputs::check::Check;
+use crate::inputs::objects_spec::ModelSpec;
+use crate::inputs::units::millimetres;
+use crate::objects::{Catalogue, Model, Sphere, SphereUnion, pack};
+use crate::scene::Reader;
+use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
-/// Returns the spheres of a scene's object, in metres.
-pub(super) fn of_scene(scene: &BodySceneSpec, surface_error: f64) -> Result<SphereUnion> {
-    match &scene.object {
-        Some(name) => built_in(name, surface_error),
-        None => {
-            let parts = scene.parts.iter().map(part).collect::<Result<_>>()?;
-            pack(&Solid::new(parts)?, surface_error)
+/// Returns the spheres of a scene's object, metres.
+pub(super) fn of_scene(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SphereUnion> {
+    let reader = Reader {
+        check: Check { place: &plan.place },
+        folder: &plan.folder,
+        models: &BTreeMap::new(),
+    };
+    let mut spec = scene.spec.object.clone();
+    let model = spec.model.unwrap_or(ModelSpec::Packed);
+    let is_packed = spec.spheres.is_none() && (spec.mesh.is_none() || model == ModelSpec::Packed);
+    if is_packed && spec.surface_error_mm.is_none() {
+        spec.surface_error_mm = Some(plan.spec.whole_body.surface_error_mm);
+    }
+    let key = format!("objects.{}", spec.name);
+    match reader.model(&key, &spec, millimetres(plan.pitch), model)? {
+        Model::Spheres(spheres) => Ok(spheres),
+        Model::Mesh(_) => {
+            let given = "exact contact with triangles";
+            let allowed = "model = \"packed\" or \"vertex_spheres\" on a whole body";
+            Err(reader.check.error(&format!("{key}.model"), given, allowed))
         }
     }
 }
@@ -26,36 +43,7 @@ pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
     pack(&solid, surface_error)
 }
 
-fn part(part: &BodyPartSpec) -> Result<Part> {
-    let (at_mm, shape) = match *part {
-        BodyPartSpec::Ball { diameter_mm, at_mm } => {
-            let diameter = MM * diameter_mm;
-            (at_mm, Shape::Ball { diameter })
-        }
-        BodyPartSpec::Capsule {
-            diameter_mm,
-            length_mm,
-            at_mm,
-        } => {
-            let (diameter, length) = (MM * diameter_mm, MM * length_mm);
-            (at_mm, Shape::Capsule { diameter, length })
-        }
-        BodyPartSpec::Torus {
-            ring_diameter_mm,
-            tube_diameter_mm,
-            at_mm,
-        } => {
-            let shape = Shape::Torus {
-                ring_diameter: MM * ring_diameter_mm,
-                tube_diameter: MM * tube_diameter_mm,
-            };
-            (at_mm, shape)
-        }
-    };
-    Part::new(shape, Pose::from_translation(MM * DVec3::from_array(at_mm)))
-}
-
-/// Ratio of the radius of a cushion's spheres to their distance. If larger, each taxel is under more spheres.
+/// Radius of the spheres of a cushion, divided by their distance. With a larger radius, each taxel is under more spheres.
 const SPHERE_RADIUS: f64 = 3.0;
 /// Golden ratio: increment of a lattice that is distributed evenly in a square for any number of points.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;

@@ -1,22 +1,27 @@
 //! Plan of a whole-body study: checked keys, converted to SI units.
 
 use crate::error::Result;
-use crate::geometry::{Pose, rotation_from_rpy};
+use crate::geometry::Pose;
 use crate::inputs::check::{COUNT, Check, Range, SURFACE_ERROR, TOUCHES};
 use crate::inputs::units::MM;
+use crate::scene::{Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::sensing::Ensemble;
-use crate::studies::whole_body::path::Path as ObjectPath;
 use crate::studies::whole_body::spec::{
     BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, WholeBodyStudySpec,
 };
-use crate::world::{Robot, Taxel};
+use crate::world::{Motion, Oscillation, Robot, Taxel};
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Checked keys of a whole-body study, converted to SI units.
 #[derive(Clone, Debug)]
 pub struct WholeBodyPlan {
-    /// Specification as written in the study file.
+    /// File name of the study, for error messages.
+    pub place: String,
+    /// Folder to which paths in the file are relative.
+    pub folder: PathBuf,
+    /// Specification as written in the file.
     pub spec: WholeBodyStudySpec,
     /// Robot that is covered with skin.
     pub robot: Robot,
@@ -40,12 +45,12 @@ pub struct WholeBodyPlan {
     pub aim: Aim,
 }
 
-/// Scene of a study: an object and its path.
+/// A scene: an object and its motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePlan {
     /// Specification as written in the study file.
     pub spec: BodySceneSpec,
-    /// Target and path of the object.
+    /// Target and motion of the object.
     pub aim: Aim,
     /// Joint positions of the robot, radians or metres.
     pub positions: Vec<f64>,
@@ -58,8 +63,8 @@ pub struct Aim {
     pub link: usize,
     /// Direction from the target to the start of the approach, a unit vector.
     pub from: DVec3,
-    /// Path of the object, with the link at the origin until the robot's posture is known.
-    pub path: ObjectPath,
+    /// Motion of the object in the frame of the link.
+    pub motion: Oscillation,
 }
 
 /// Maximum number of steps of a scene; the times of all steps are in memory.
@@ -94,13 +99,6 @@ const KEYS: [(&str, Range); 23] = [
     ("ladders.taxels_at_touch", COUNT),
 ];
 
-/// Allowed values of the numeric keys of a scene.
-const SCENE_KEYS: [(&str, Range); 3] = [
-    ("depth_mm", Range::Positive),
-    ("period_ms", Range::Positive),
-    ("swing_deg", Range::Finite),
-];
-
 impl WholeBodyPlan {
     /// Creates the plan of a study and checks all keys; the path of the robot is relative to `folder`.
     ///
@@ -110,16 +108,29 @@ impl WholeBodyPlan {
         let check = Check { place };
         let wanted = &spec.whole_body;
         let robot_file = wanted.robot.within(folder);
-        let robot = Robot::read_urdf(&robot_file)?;
+        let covered = PlannedRobot {
+            name: ROBOT.to_owned(),
+            robot: Robot::read_urdf(&robot_file)?,
+            folder: None,
+            base: Motion::Fixed(Pose::IDENTITY),
+            joints: None,
+        };
         check.keys("whole_body", wanted, KEYS)?;
+        let reader = Reader {
+            check: Check { place },
+            folder,
+            models: &BTreeMap::new(),
+        };
         let scenes = wanted.scenes.iter().enumerate();
         let scenes = scenes
-            .map(|(number, scene)| check.scene(number, scene, &robot))
+            .map(|(number, scene)| scene_plan(&reader, number, scene, &covered))
             .collect::<Result<Vec<_>>>()?;
+        let robot = covered.robot;
         let names = scenes.iter().map(|scene| scene.spec.name.as_str());
         check.list("whole_body.scenes", names.collect())?;
         let compressions = check.compressions(&wanted.sensing)?;
         let n_measured = compressions.len() * wanted.sensing.measurements;
+        check.body_recognition(&wanted.recognition, n_measured)?;
         let radius_mm = wanted.taxel_radius_mm.unwrap_or(0.5 * wanted.pitch_mm);
         Ok(Self {
             taxel: Taxel {
@@ -133,7 +144,9 @@ impl WholeBodyPlan {
             dt: MM * wanted.step_ms,
             surface_error: MM * wanted.surface_error_mm,
             scenes,
-            aim: check.body_recognition(&wanted.recognition, (&robot, n_measured))?,
+            folder: folder.to_owned(),
+            place: place.to_owned(),
+            aim: recognition_aim(&reader, &wanted.recognition, &robot)?,
             compressions,
             robot,
             robot_file,
@@ -152,69 +165,86 @@ impl WholeBodyPlan {
     }
 }
 
-impl Check<'_> {
-    fn scene(&self, number: usize, scene: &BodySceneSpec, robot: &Robot) -> Result<ScenePlan> {
-        let prefix = format!("whole_body.scenes[{number}]");
-        let key = |name: &str| format!("{prefix}.{name}");
-        if scene.object.is_some() != scene.parts.is_empty() {
-            let given = "both or neither of object and parts";
-            return Err(self.error(&key("object"), given, "one of object and parts"));
-        }
-        self.keys(&prefix, scene, SCENE_KEYS)?;
-        let mut aim = self.aim(&prefix, (&scene.link, scene.at_mm, scene.from), robot)?;
-        let turn = self.vector(&key("turn_deg"), scene.turn_deg)?;
-        aim.path.start.rotation = rotation_from_rpy(turn.map(f64::to_radians));
-        aim.path.moves = MM * self.vector(&key("moves_mm"), scene.moves_mm)?;
-        aim.path.swing = scene.swing_deg.to_radians();
-        aim.path.period = MM * scene.period_ms;
-        Ok(ScenePlan {
-            spec: scene.clone(),
-            aim,
-            positions: self.positions(&key("posture_deg"), scene, robot)?,
-        })
-    }
+/// Name of the covered robot, as the `robot` of objects.
+const ROBOT: &str = "robot";
 
-    fn positions(&self, key: &str, scene: &BodySceneSpec, robot: &Robot) -> Result<Vec<f64>> {
-        let mut positions = robot.rest_positions();
-        for (joint, &degrees) in &scene.posture_deg {
-            let number = robot.joint(joint);
-            let number = number.map_err(|_| self.error(key, joint, "joints of the robot"))?;
-            let Some((coordinate, ..)) = robot.drive_of(number) else {
-                return Err(self.error(key, joint, "joints that move"));
-            };
-            let degrees = self.value(key, degrees, f64::is_finite, "finite degrees")?;
-            positions[coordinate] = degrees.to_radians();
-        }
-        Ok(positions)
+fn scene_plan(
+    reader: &Reader,
+    number: usize,
+    scene: &BodySceneSpec,
+    robot: &PlannedRobot,
+) -> Result<ScenePlan> {
+    let prefix = format!("whole_body.scenes[{number}]");
+    let key = |name: &str| format!("{prefix}.{name}");
+    let check = &reader.check;
+    check.keys(&prefix, scene, [("depth_mm", Range::Positive)])?;
+    let object = &scene.object;
+    let misplaced = [
+        ("free", object.free.is_some()),
+        ("press", object.press.is_some()),
+    ];
+    if let Some((name, _)) = misplaced.into_iter().find(|(_, is_given)| *is_given) {
+        let allowed = "at and motion, and depth_mm beside the object";
+        return Err(check.error(&key(&format!("object.{name}")), "given", allowed));
     }
+    let on_robot = ObjectSpec {
+        robot: Some(object.robot.clone().unwrap_or(ROBOT.to_owned())),
+        ..object.clone()
+    };
+    let robots = std::slice::from_ref(robot);
+    let (link, motion) = match reader.carried(&key("object"), &on_robot, robots)? {
+        Movement::Carried { link, motion, .. } => (link, motion),
+        Movement::Imposed(_) | Movement::Free { .. } => unreachable!("a link carries the object"),
+    };
+    let motion = match motion {
+        Motion::Fixed(start) => Oscillation::resting(start),
+        Motion::Oscillation(oscillation) => oscillation,
+        Motion::Plan(_) | Motion::WayPoints(_) => {
+            let given = "phases or way-points";
+            return Err(check.error(&key("object.motion"), given, "an oscillation"));
+        }
+    };
+    let positions = match reader.joints(&key("joints"), scene.joints.as_ref(), &robot.robot)? {
+        None => robot.robot.rest_positions(),
+        Some(joints) if joints.times().len() > 1 => {
+            let given = format!("{} times", joints.times().len());
+            return Err(check.error(&key("joints"), given, "one time: the robot stands still"));
+        }
+        Some(joints) => joints.positions_at(0.0),
+    };
+    Ok(ScenePlan {
+        spec: scene.clone(),
+        aim: Aim {
+            link,
+            from: direction(reader, &key("from"), scene.from)?,
+            motion,
+        },
+        positions,
+    })
+}
 
-    /// Returns the target that is given by the name of a link, a position in millimetres and a direction.
-    fn aim(
-        &self,
-        prefix: &str,
-        (link, at, from): (&str, [f64; 3], [f64; 3]),
-        robot: &Robot,
-    ) -> Result<Aim> {
-        let key = |name: &str| format!("{prefix}.{name}");
-        let found = robot.link(link);
-        let direction = self.vector(&key("from"), from)?.try_normalize();
+/// Returns the target of the objects to be recognised.
+fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot) -> Result<Aim> {
+    let key = |name: &str| format!("whole_body.recognition.{name}");
+    let at = reader.vector(&key("at_mm"), wanted.at_mm, MM)?;
+    Ok(Aim {
+        link: reader.under(&key("link"), robot.link(&wanted.link))?,
+        from: direction(reader, &key("from"), wanted.from)?,
+        motion: Oscillation::resting(Pose::from_translation(at)),
+    })
+}
+
+/// Returns a unit vector.
+fn direction(reader: &Reader, key: &str, from: [f64; 3]) -> Result<DVec3> {
+    let direction = reader.vector(key, from, 1.0)?.try_normalize();
+    let zero = || {
         let given = format!("{from:?}");
-        let zero = || self.error(&key("from"), given, "a vector that is not zero");
-        let at = MM * self.vector(&key("at_mm"), at)?;
-        Ok(Aim {
-            link: found.map_err(|_| self.error(&key("link"), link, "links of the robot"))?,
-            from: direction.ok_or_else(zero)?,
-            path: ObjectPath::resting(Pose::from_translation(at)),
-        })
-    }
+        reader.check.error(key, given, "a vector that is not zero")
+    };
+    direction.ok_or_else(zero)
+}
 
-    fn vector(&self, key: &str, values: [f64; 3]) -> Result<DVec3> {
-        match values.iter().all(|value| value.is_finite()) {
-            true => Ok(DVec3::from_array(values)),
-            false => Err(self.error(key, format!("{values:?}"), "three finite numbers")),
-        }
-    }
-
+impl Check<'_> {
     fn compressions(&self, wanted: &BodySensingSpec) -> Result<Vec<(String, Option<usize>)>> {
         let blocks = &wanted.sbhe_blocks;
         if let Some(block) = blocks.iter().find(|block| !block.is_power_of_two()) {
@@ -234,11 +264,7 @@ impl Check<'_> {
         Ok(compressions.collect::<Result<Vec<_>>>()?.concat())
     }
 
-    fn body_recognition(
-        &self,
-        wanted: &BodyRecognitionSpec,
-        (robot, n_measured): (&Robot, usize),
-    ) -> Result<Aim> {
+    fn body_recognition(&self, wanted: &BodyRecognitionSpec, n_measured: usize) -> Result<()> {
         let prefix = "whole_body.recognition";
         let key = |name: &str| format!("{prefix}.{name}");
         if wanted.objects.len() < 2 {
@@ -253,6 +279,6 @@ impl Check<'_> {
         let bytes = 8.0 * n_touches as f64 * n_measured as f64;
         let what = format!("{n_measured} measurements of each of {n_touches} touches");
         self.memory(&key("training_touches"), wanted.of_each(), bytes, &what)?;
-        self.aim(prefix, (&wanted.link, wanted.at_mm, wanted.from), robot)
+        Ok(())
     }
 }

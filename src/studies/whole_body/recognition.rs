@@ -12,7 +12,6 @@ use crate::sensing::{Columns, Ensemble, Projection};
 use crate::studies::model_recognition::{accuracy, touches_of};
 use crate::studies::whole_body::drive::{Drive, Posture};
 use crate::studies::whole_body::objects::built_in;
-use crate::studies::whole_body::path::Path;
 use crate::studies::whole_body::plan::WholeBodyPlan;
 use crate::studies::whole_body::rows::BodyRecognition;
 use glam::DQuat;
@@ -84,10 +83,7 @@ fn measure(
                 _ => kept.insert((object, Drive::new(posture, &unions[object], &plan.aim))),
             };
             let (start, depth) = draw(plan, object, number % wanted.of_each());
-            drive.path = Path {
-                start,
-                ..drive.path
-            };
+            drive.path = drive.path.starting_at(start);
             drive.approach(plan.aim.from, depth)?;
             drive.probe(drive.path);
             let row = row.as_slice_mut().expect("rows are whole");
@@ -115,7 +111,7 @@ fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
     let [least, most] = wanted.depth_mm.map(|depth| MM * depth);
     let depth = 0.5 * (least + most) + within(0.5 * (most - least));
     (
-        Pose::new(turn, plan.aim.path.start.translation + offset),
+        Pose::new(turn, plan.aim.motion.start.translation + offset),
         depth,
     )
 }

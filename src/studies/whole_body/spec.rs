@@ -2,12 +2,12 @@
 
 use crate::files::FilePath;
 use crate::inputs::defaults::{count, number};
-use crate::inputs::schema_types::{Names, with_rotation_deg};
+use crate::inputs::schema_types::Names;
+use crate::scene::{JointsSpec, ObjectSpec};
 use crate::sensing::Ensemble;
 use crate::study_file::study_file;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 study_file! {
 pub struct WholeBodyStudySpec {
@@ -61,77 +61,22 @@ pub struct WholeBodySpec {
     pub ladders: Option<LaddersSpec>,
 }
 
-/// Keys of `[[whole_body.scenes]]`: an object that moves along a path over the skin.
+/// Keys of `[[whole_body.scenes]]`: an object that moves over the skin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(transform = with_rotation_deg)]
 pub struct BodySceneSpec {
     /// Name of the scene.
     pub name: String,
-    /// Name of a built-in object; the centre of its bounding box is its origin. Replaces `parts`.
-    pub object: Option<String>,
-    /// Parts of the object, in its own frame; replaces `object`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub parts: Vec<BodyPartSpec>,
-    /// Name of the robot link in whose frame the object is placed and moves.
-    pub link: String,
-    /// Position of the object's origin in the link's frame, mm; with `depth_mm`, the target of its approach. Default: the link's origin.
-    #[serde(default)]
-    pub at_mm: [f64; 3],
-    /// Orientation of the object: roll, pitch, yaw about the link's axes, degrees. Default: 0.
-    #[serde(default, alias = "rotation_deg")]
-    pub turn_deg: [f64; 3],
-    /// Direction from `at_mm` to the start of the approach, in the link's frame, with `depth_mm`. Default: +x.
+    /// Joint positions of the robot, with the keys of `[robots.joints]` in a scene file: one time. Joints that are not listed are at 0, or at their nearest limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joints: Option<JointsSpec>,
+    /// Object, with the keys of `[[objects]]` in a scene file. `link` is a link of the covered robot. Default of `motion`: none; otherwise, an oscillation.
+    pub object: ObjectSpec,
+    /// With `depth_mm`: direction from the position of `object.at` to the start of the approach, in the frame of the link.
     #[serde(default = "default_from")]
     pub from: [f64; 3],
-    /// Travel of the object past first contact, mm, positive. Without this key, the object is placed at `at_mm`.
+    /// Travel past first contact, mm. The position of `object.at` is then the target of the approach. Without this key, the object is placed there.
     pub depth_mm: Option<f64>,
-    /// Amplitude of a sinusoidal translation of the object, mm. Default: 0.
-    #[serde(default)]
-    pub moves_mm: [f64; 3],
-    /// Amplitude of a sinusoidal rotation about the link's z axis, degrees; in phase with `moves_mm`. Default: 0.
-    #[serde(default)]
-    pub swing_deg: f64,
-    /// Period of the sinusoidal motion, ms, positive. Default: 1000.
-    #[serde(default = "number::<1000>")]
-    pub period_ms: f64,
-    /// Joint angles of the robot by joint name, degrees. Joints that are not listed are at 0.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub posture_deg: BTreeMap<String, f64>,
-}
-
-/// Part of an object: a ball, a capsule or a torus.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum BodyPartSpec {
-    /// Ball, given by its diameter and centre.
-    Ball {
-        /// Diameter of the ball, mm.
-        diameter_mm: f64,
-        /// Centre of the ball, mm. Default: the origin.
-        #[serde(default)]
-        at_mm: [f64; 3],
-    },
-    /// Capsule: cylinder about z with a hemisphere on each end.
-    Capsule {
-        /// Diameter of the capsule, mm.
-        diameter_mm: f64,
-        /// Length of the capsule along z including both hemispheres, mm.
-        length_mm: f64,
-        /// Centre of the capsule, mm. Default: the origin.
-        #[serde(default)]
-        at_mm: [f64; 3],
-    },
-    /// Torus about z, for example arms around the robot.
-    Torus {
-        /// Diameter of the centre line of the torus's tube, mm.
-        ring_diameter_mm: f64,
-        /// Diameter of the torus's tube, mm.
-        tube_diameter_mm: f64,
-        /// Centre of the torus, mm. Default: the origin.
-        #[serde(default)]
-        at_mm: [f64; 3],
-    },
 }
 
 /// Keys of `[whole_body.sensing]`: compression of the readings of touched taxels into measurements.

@@ -24,6 +24,7 @@ use crate::studies::whole_body::rows::{
 use crate::studies::whole_body::spec::WholeBodyStudySpec;
 use crate::table::{File, Table};
 use crate::whole_body::CoveredRobot;
+use std::collections::BTreeMap;
 
 const CASES: File<(BodyCase, BodyCount)> = File::new("whole_body.csv", "Scenes and rungs", "");
 const RECOGNITION: File<BodyRecognition> = File::new(
@@ -74,8 +75,23 @@ impl Study for WholeBodyPlan {
     }
 
     fn facts(&self) -> Result<Facts> {
-        let robot = file_content(&self.robot_file)?;
-        Ok(Facts::new(&self.spec, [("robot".to_owned(), robot)].into()))
+        let mut content = BTreeMap::from([("robot".to_owned(), file_content(&self.robot_file)?)]);
+        for scene in &self.scenes {
+            let object = &scene.spec.object;
+            let joints = scene.spec.joints.as_ref();
+            let files = [
+                ("objects", object.objects.as_ref()),
+                ("spheres", object.spheres.as_ref()),
+                ("mesh", object.mesh.as_ref()),
+                ("joints", joints.and_then(|joints| joints.csv.as_ref())),
+            ];
+            for (name, path) in files {
+                let Some(path) = path else { continue };
+                let name = format!("{} of scene {}", name, scene.spec.name);
+                content.insert(name, file_content(&path.within(&self.folder))?);
+            }
+        }
+        Ok(Facts::new(&self.spec, content))
     }
 
     fn scale(&self) -> Scale {
@@ -229,7 +245,7 @@ impl WholeBodyPlan {
         covered: &'a CoveredRobot,
     ) -> Result<(Drive<'a>, SphereUnion)> {
         let begin = || {
-            let object = of_scene(&scene.spec, self.surface_error)?;
+            let object = of_scene(self, scene)?;
             let posture = self.posture(covered, &scene.positions)?;
             let mut drive = Drive::new(&posture, &object, &scene.aim);
             if let Some(depth_mm) = scene.spec.depth_mm {

@@ -37,28 +37,31 @@ surface_error_mm = 0.5
 
 [[whole_body.scenes]]
 name = "nothing"
-object = "tennis_ball"
-link = "base"
-at_mm = [500.0, 0.0, 0.0]
+object = { name = "ball", object = "tennis_ball", centered = true, link = "base", at = { position_mm = [500.0, 0.0, 0.0] } }
 
 [[whole_body.scenes]]
 name = "ball"
-object = "tennis_ball"
-link = "arm"
-at_mm = [30.0, 0.0, -100.0]
 depth_mm = 1.5
-moves_mm = [0.0, 0.0, 2.0]
-period_ms = 40.0
-posture_deg = { shoulder = -90.0 }
+joints = { time_s = [0.0], positions = { shoulder_deg = [-90.0] } }
+
+[whole_body.scenes.object]
+name = "tennis"
+object = "tennis_ball"
+centered = true
+link = "arm"
+at = { position_mm = [30.0, 0.0, -100.0] }
+motion = { oscillation = { linear_mm = [0.0, 0.0, 2.0], period_s = 0.04 } }
 
 [[whole_body.scenes]]
 name = "fingertip"
-parts = [{ capsule = { diameter_mm = 16.0, length_mm = 40.0 } }]
-link = "arm"
-at_mm = [0.0, 0.0, -230.0]
-turn_deg = [0.0, 20.0, 0.0]
 from = [0.0, 0.0, -1.0]
 depth_mm = 1.0
+
+[whole_body.scenes.object]
+name = "finger"
+parts = [{ shape = "capsule", diameter_mm = 16.0, length_mm = 40.0 }]
+link = "arm"
+at = { position_mm = [0.0, 0.0, -230.0], rotation_deg = [0.0, 20.0, 0.0] }
 
 [whole_body.sensing]
 measurements = 256
@@ -188,7 +191,7 @@ fn a_study_of_a_body_takes_no_objects_and_misses_none() {
         let output = case.run(&[command, "study.toml", "--objects", "robots"]);
         assert_eq!(output.status.code(), Some(2), "{command}");
     }
-    let away = STUDY.replace("at_mm = [30.0, 0.0, -100.0]", "at_mm = [900.0, 900.0, 0.0]");
+    let away = STUDY.replace("[30.0, 0.0, -100.0]", "[900.0, 900.0, 0.0]");
     case.file("away.toml", away);
     let output = case.run(&["run", "away.toml", "--out", "1", "--fail-fast"]);
     let said = String::from_utf8(output.stderr).unwrap();
@@ -218,12 +221,37 @@ fn keys_of_a_body_study_that_are_out_of_range_are_named() {
         (
             "link = \"arm\"",
             "link = \"leg\"",
-            "key whole_body.scenes[1].link: leg",
+            "key whole_body.scenes[1].object.link: ",
         ),
         (
-            "shoulder = -90.0",
-            "hip = -90.0",
-            "key whole_body.scenes[1].posture_deg: hip",
+            "shoulder_deg = [-90.0]",
+            "hip_deg = [-90.0]",
+            "key whole_body.scenes[1].joints.positions: `hip_deg`",
+        ),
+        (
+            "time_s = [0.0], positions = { shoulder_deg = [-90.0] }",
+            "time_s = [0.0, 1.0], positions = { shoulder_deg = [0.0, 10.0] }",
+            "key whole_body.scenes[1].joints: 2 times",
+        ),
+        (
+            "motion = { oscillation = { linear_mm = [0.0, 0.0, 2.0], period_s = 0.04 } }",
+            "motion = { phases = [{ duration_s = 1.0 }] }",
+            "key whole_body.scenes[1].object.motion: phases",
+        ),
+        (
+            "period_s = 0.04",
+            "period_s = 0.0",
+            "key whole_body.scenes[1].object.motion.oscillation.period_s: 0",
+        ),
+        (
+            "name = \"tennis\"",
+            "name = \"tennis\"\nfree = { mass_kg = 0.1 }",
+            "key whole_body.scenes[1].object.free: given",
+        ),
+        (
+            "name = \"tennis\"",
+            "name = \"tennis\"\nrobot = \"other\"",
+            "key whole_body.scenes[1].object.robot: `other`",
         ),
         (
             "depth_mm = 1.5",
@@ -236,16 +264,10 @@ fn keys_of_a_body_study_that_are_out_of_range_are_named() {
             "key whole_body.scenes[2].from",
         ),
         (
-            "name = \"ball\"\nobject = \"tennis_ball\"",
-            "name = \"ball\"",
-            "key whole_body.scenes[1].object",
-        ),
-        (
             "name = \"fingertip\"",
             "name = \"ball\"",
             "key whole_body.scenes: \"ball\" twice",
         ),
-        ("{ capsule =", "{ torus =", "diameter_mm"),
         (
             "[\"sbhe\", \"sparse\"]",
             "[\"gaussian\"]",

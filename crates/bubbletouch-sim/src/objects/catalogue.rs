@@ -19,7 +19,7 @@
 //!
 //! After reading, each object is moved so that it rests on z = 0 with the middle of its bounding box on the z axis.
 
-use super::solid_toml::WrittenPart;
+use super::solid_toml::{WrittenPart, of_part};
 use super::{Hand, Object, Part, Solid, pack};
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
@@ -241,24 +241,6 @@ impl WrittenObject {
             source: self.source,
             solid: solid.resting(),
         })
-    }
-}
-
-/// Converts an error in a part to an error at the position of its key.
-fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
-    match error {
-        Error::Input {
-            place: key,
-            given,
-            allowed,
-        } => {
-            let given = match given.parse::<f64>() {
-                Ok(_) => format!("{key} = {given}"),
-                Err(_) => format!("{key}: {given}"),
-            };
-            Error::input(place(&key), given, allowed)
-        }
-        other => other,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Parts of objects as written in object files, in millimetres and degrees.
 
 use super::shape::Wording;
-use super::{Part, Shape};
+use super::{Part, Shape, Solid};
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy};
 use glam::{DVec2, DVec3};
@@ -53,6 +53,48 @@ enum ShapeName {
     HexagonalPrism,
     #[serde(rename = "strand")]
     SphereSweep,
+}
+
+impl Solid {
+    /// Reads a union of parts where they are written, from the text of `[[part]]` tables with the keys of a [catalogue](super::Catalogue) file.
+    ///
+    /// # Errors
+    /// If the text is invalid; errors begin with `place`.
+    pub fn parse_parts(place: &str, text: &str) -> Result<Self> {
+        #[derive(Deserialize)]
+        struct Written {
+            part: Vec<WrittenPart>,
+        }
+        let allowed = "parts with a shape, and lengths in mm and degrees";
+        let written: Written = toml::from_str(text)
+            .map_err(|error| Error::input(place, error.message().replace('\n', ", "), allowed))?;
+        let numbered = written.part.into_iter().enumerate();
+        let parts = numbered.map(|(index, part)| {
+            let which = format!("{place}, part {} ({})", index + 1, part.name());
+            part.part()
+                .map_err(|error| of_part(error, |_| which.clone()))
+        });
+        let solid = Self::new(parts.collect::<Result<_>>()?);
+        solid.map_err(|error| error.under(format!("{place}: ")))
+    }
+}
+
+/// Converts an error of a part to an error at the position of its key.
+pub(super) fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
+    match error {
+        Error::Input {
+            place: key,
+            given,
+            allowed,
+        } => {
+            let given = match given.parse::<f64>() {
+                Ok(_) => format!("{key} = {given}"),
+                Err(_) => format!("{key}: {given}"),
+            };
+            Error::input(place(&key), given, allowed)
+        }
+        other => other,
+    }
 }
 
 impl WrittenPart {

@@ -32,7 +32,7 @@ mod trajectory;
 pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
 pub(crate) use layouts::Rule;
 pub use layouts::{ArrayLayout, Dome, DomeRing, DrapeRegion, Extrusion, Layout, MAX_TAXELS};
-pub use motion::{Interpolation, JointTrajectory, Motion, PoseTrajectory};
+pub use motion::{Interpolation, JointTrajectory, Motion, Oscillation, PoseTrajectory};
 pub use neighbours::Neighbours;
 pub use patch::Patch;
 pub(crate) use patch::{EvenGrid, Travelling};

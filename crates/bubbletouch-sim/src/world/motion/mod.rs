@@ -11,6 +11,7 @@
 mod curve;
 mod joint_limits;
 mod joint_trajectory;
+mod oscillation;
 mod pose_trajectory;
 mod rotation_curve;
 mod slopes;
@@ -19,6 +20,7 @@ mod way_points;
 
 pub use curve::Interpolation;
 pub use joint_trajectory::JointTrajectory;
+pub use oscillation::Oscillation;
 pub use pose_trajectory::PoseTrajectory;
 
 use super::VelocityPlan;
@@ -33,24 +35,28 @@ pub enum Motion {
     Plan(VelocityPlan),
     /// Interpolation between waypoints.
     WayPoints(PoseTrajectory),
+    /// Sinusoidal motion.
+    Oscillation(Oscillation),
 }
 
 impl Motion {
-    /// Returns `world_from_body` at a time in seconds.
+    /// Returns the pose of the body in the fixed frame, `world_from_body`, at a time in seconds.
     pub fn pose_at(&self, time: f64) -> Pose {
         match self {
             Self::Fixed(pose) => *pose,
             Self::Plan(plan) => plan.pose_at(time),
             Self::WayPoints(trajectory) => trajectory.pose_at(time),
+            Self::Oscillation(oscillation) => oscillation.pose_at(time),
         }
     }
 
-    /// Returns the time in seconds at which the motion ends; 0 for a fixed body.
+    /// Returns the time in seconds at which the motion ends; 0 for a fixed body, one period for an oscillation.
     pub fn end(&self) -> f64 {
         match self {
             Self::Fixed(_) => 0.0,
             Self::Plan(plan) => plan.duration(),
             Self::WayPoints(trajectory) => trajectory.end(),
+            Self::Oscillation(oscillation) => oscillation.period,
         }
     }
 }
