@@ -2,7 +2,7 @@
 
 pub use crate::studies::*;
 
-/// Recognition studies.
+/// Types of recognition studies.
 pub mod recognition {
     pub use crate::studies::recognition::study::{
         RecognitionRows, RecognitionStudy, recognition_scale, touch_content,

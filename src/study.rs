@@ -46,7 +46,7 @@ pub use crate::studies::recognition::spec::study::*;
 pub use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
 pub use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 
-/// Rows of the result tables.
+/// Row types of the result tables of recognition studies.
 pub mod table {
     pub use crate::statistics::p_status::PStatus;
     pub use crate::studies::recognition::rows::configuration::Configuration;

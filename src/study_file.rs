@@ -4,7 +4,7 @@
 macro_rules! toml_file {
     ($file:ident) => {
         impl $file {
-            /// Parses the text of a file.
+            /// Parses the text of a TOML file. `place` is the name of the file in error messages.
             ///
             /// # Errors
             /// If a key is unknown, missing or of another type; the error names the file, the line and the key.

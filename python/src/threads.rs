@@ -82,12 +82,12 @@ impl Stop {
         }
     }
 
-    /// Returns whether the flag is set.
+    /// Returns whether another thread has requested the stop.
     pub fn is_told(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Sets the flag.
+    /// Requests that the work stops at its next check.
     pub fn tell(&self) {
         self.0.store(true, Ordering::Relaxed);
     }

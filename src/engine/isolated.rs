@@ -1,4 +1,4 @@
-//! Isolation of work that may fail without ending the run.
+//! Isolation of a work item, so that its error or panic does not end the run.
 
 use crate::error::Result;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -117,7 +117,7 @@ impl PoseControl {
 
 /// Receiver of frames; each frame is passed on as soon as it is computed.
 pub trait FrameSink {
-    /// Receives a frame.
+    /// Receives the next frame of a scene.
     ///
     /// # Errors
     /// If the simulation must stop, for example because a file cannot be written.

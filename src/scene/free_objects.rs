@@ -209,7 +209,7 @@ impl FreeObjects {
         }
     }
 
-    /// Writes the readings of all free objects.
+    /// Writes the poses and equilibria of all free objects to their readings.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for free in &self.all {
             readings[free.object] = free.reading;

@@ -50,7 +50,7 @@ impl Mount {
 }
 
 impl Reader<'_> {
-    /// Returns the mount of a patch.
+    /// Returns the body to which a patch is fixed.
     pub fn mount_of_patch(
         &self,
         key: &str,

@@ -12,7 +12,7 @@ use crate::objects::{Model, Sphere};
 /// Maximum overlap, as a fraction of the smaller object's radius. If larger, deeper overlaps are accepted; if smaller, objects of coarse spheres are rejected.
 const MAX_SHARE: f64 = 0.5;
 
-/// Object at its initial pose.
+/// Object of a scene at its initial pose, with its spheres in the object's frame.
 struct Start<'a> {
     object: &'a PlannedObject,
     spheres: &'a [Sphere],

@@ -47,8 +47,8 @@ pub fn same_rows(folder: &Path, again: &[Table], is_whole: bool) -> Result<usize
     Ok(n_rows)
 }
 
-/// Returns a table restricted to the columns of `header`. Columns such as the number of groups exist only if some row of the whole table has them, so the table
-/// of a few work items may lack them. Returns `None` if the table lacks a column of `header`.
+/// Returns a table restricted to the columns of `header`. Some columns (such as the number of groups) exist only if a row of the table has a value, so tables
+/// of few work items may lack them. Returns `None` if the table lacks a column of `header`.
 fn columns_of(text: &str, header: &str) -> Option<String> {
     let mut reader = csv::ReaderBuilder::new();
     let mut reader = reader.has_headers(false).from_reader(text.as_bytes());

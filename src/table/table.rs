@@ -259,7 +259,7 @@ pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
     }
 }
 
-/// Builder of a column's values.
+/// Builder of a column's values from the fields of a CSV file.
 struct Maker {
     data: Data,
     /// Code of each known word, its index into `levels`.
@@ -279,7 +279,7 @@ impl Maker {
         Self { data, known }
     }
 
-    /// Appends a value. Returns false if the text is not a number in a numeric column.
+    /// Appends the value of a CSV field. Returns false if the column is numeric and the text is not a number.
     fn push(&mut self, text: &str) -> bool {
         match &mut self.data {
             Data::Numbers(numbers) => match (text.is_empty(), text.parse()) {

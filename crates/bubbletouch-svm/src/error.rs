@@ -11,9 +11,9 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub struct Error {
     /// Name of the parameter, or row and column of the data.
     pub place: String,
-    /// Given value.
+    /// Description of the rejected value.
     pub given: String,
-    /// Allowed values.
+    /// Description of the allowed values.
     pub allowed: String,
 }
 

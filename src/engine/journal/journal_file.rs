@@ -35,7 +35,7 @@ pub struct Journal {
 struct Writer {
     file: File,
     synced: Instant,
-    /// Whether a write failed. The last line may then be incomplete, so no further line is written.
+    /// Whether a write to the journal failed. The last line may then be incomplete, so no further line is written.
     is_broken: bool,
 }
 

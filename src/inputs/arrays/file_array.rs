@@ -5,11 +5,11 @@
 pub enum ElementKind {
     /// Floating-point numbers with the given relative spacing.
     Float(f64),
-    /// Integers.
+    /// Signed or unsigned integers.
     Integer,
-    /// Booleans.
+    /// Boolean values.
     Truth,
-    /// Texts.
+    /// Unicode texts or ASCII texts.
     Text,
 }
 

@@ -149,7 +149,7 @@ impl LayoutFile {
 /// Largest number of taxels whose neighbours are searched for the default radius. A larger number takes longer and moves the median little.
 const MAX_LOOKED_AT: usize = 200;
 
-/// Shortest vector that has a direction. Files have normals of four decimals; shorter vectors are zero up to their rounding.
+/// Minimum length of a normal or axis vector in a layout file. Files have normals of four decimals; shorter vectors are zero up to their rounding.
 const MIN_AXIS: f64 = 1e-3;
 
 /// Returns the unit vector; a vector that already has length one, up to rounding, keeps its bits.

@@ -177,7 +177,7 @@ fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
 }
 
 impl XLabels {
-    /// Wraps the tick labels. If one is too wide or has too many lines, all labels are rotated.
+    /// Wraps the tick labels of the horizontal axis. If one is too wide or has too many lines, all labels are rotated.
     fn new(scale: &Scale, width: f64) -> Self {
         let labels = scale.ticks.iter().map(|tick| &tick.label[..]);
         let mut is_turned = false;

@@ -39,9 +39,9 @@ pub(super) struct View<'a> {
 pub struct Place {
     /// Index of the row in the table.
     pub row: usize,
-    /// Index of the row's panel.
+    /// Index of the panel that shows the row.
     pub panel: usize,
-    /// Index of the row's line.
+    /// Index of the line (series) to which the row belongs.
     pub line: usize,
     /// Horizontal position as a fraction of the panel's width, from the left.
     pub x: f64,

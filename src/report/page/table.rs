@@ -19,7 +19,7 @@ struct Shown<'a> {
     is_number: bool,
     /// Indices of the file columns whose fields a cell contains: its own column, and the columns of its interval's ends.
     held: Vec<usize>,
-    /// Whether any of these columns varies.
+    /// Whether any of the columns in `held` varies between rows.
     varies: bool,
 }
 
@@ -125,7 +125,7 @@ impl Shown<'_> {
         )
     }
 
-    /// Returns a table cell. If its fields vary and differ from the text, its attribute `data-v` contains them.
+    /// Returns the HTML of a table cell. If its fields vary and differ from the text, its attribute `data-v` contains them.
     fn cell(&self, table: &Table, row: usize, fields: &[String]) -> String {
         let said = with_interval(table, self.column, row);
         let values = self.joined(fields);

@@ -40,7 +40,7 @@ impl ReconstructionStudy {
         self.sample_frames(tables)
     }
 
-    /// Returns the answers for each noise level: the best configuration, and the fewest measurements for which a configuration is as good as full sampling.
+    /// Returns the answers for each noise level: the best configuration, and the fewest measurements that are as good as full sampling.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (configurations, timing) = (&tables[0], &tables[2]);
         let error = |row: usize| configurations.number("error", row);

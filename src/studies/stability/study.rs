@@ -163,8 +163,7 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
 /// Minimum number of array sizes in a series of growing arrays.
 const LEAST_RUNGS: usize = 3;
 
-/// Returns the rows of the plunger configurations with the load per taxel that occurs on the most array sizes; empty if fewer than three sizes have the same
-/// load.
+/// Returns the rows of the plunger configurations with the load per taxel that the most array sizes share; empty if fewer than three sizes share a load.
 fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
     let plungers = rows.iter();
     let plungers =

@@ -20,7 +20,7 @@ fn smallest<T: Scalar>(diagonal: &[T]) -> T {
 #[derive(Clone, Debug)]
 pub(crate) struct InverseCurvatures<T> {
     values: Vec<T>,
-    /// Whether each row is stored. If empty, no rows are stored and `values` contains only the last requested row.
+    /// Whether each row of `values` is computed and stored. If the list is empty, `values` contains only the last requested row.
     is_here: Vec<bool>,
     smallest: T,
 }

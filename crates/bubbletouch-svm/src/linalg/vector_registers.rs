@@ -12,7 +12,7 @@ pub(crate) fn load(values: &[f32; 16]) -> __m512 {
     _mm512_setr_ps(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
 }
 
-/// Returns the values of a register.
+/// Returns the 16 values of a vector register.
 #[inline]
 #[target_feature(enable = "avx512f")]
 pub(crate) fn store(register: __m512) -> [f32; 16] {

@@ -72,7 +72,7 @@ pub fn touches_to_read<'a>(
     touches
 }
 
-/// Measures touches. Returns the measurements, shape (n_touches · F, m), and the processor time, s.
+/// Applies the signal chain and the measurement matrix to touches. Returns the measurements, shape (n_touches · F, m), and the processor time, s.
 ///
 /// # Errors
 /// If a signal step fails.

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Selection of the recorded frames in which nothing touches the skin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UntouchedFrames {
-    /// No untouched frames are known.
+    /// The recording marks no untouched frames.
     None,
     /// Separate file of untouched frames, recorded at even intervals over the same session, in order of time.
     File(PathBuf),

@@ -25,8 +25,8 @@ pub struct Group {
 }
 
 impl Group {
-    /// Returns the configurations by family. The configurations of a family share the rows of features, and differ only in C, in the number of touches per
-    /// decision and in the choice of the next touch. Configurations with equal C are adjacent.
+    /// Returns the configurations by family. The configurations of a family share the rows of features: only C, the number of touches per decision and the
+    /// choice of the next touch differ. Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {
         let family = |configuration: &Configuration| {
             let (m, kind) = (configuration.measurements, configuration.classifier);

@@ -67,7 +67,7 @@ impl TaxelArray {
         Ok(self)
     }
 
-    /// Marks the taxel positions as unknown.
+    /// Returns the array with unknown taxel positions, for recorded skins without a layout.
     pub fn without_places(mut self) -> Self {
         self.is_placed = false;
         self

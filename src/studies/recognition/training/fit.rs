@@ -125,8 +125,7 @@ impl Training<'_> {
         Ok((chosen.best.c, classifier.with_choice(&chosen)))
     }
 
-    /// Returns the predicted label of each touch (its first reading) by classifiers that were trained with the parameters of `like`, but without the touch's
-    /// fold.
+    /// Returns the predicted label of the first reading of each touch. The classifiers have the parameters of `like` and are trained without the touch's fold.
     ///
     /// # Errors
     /// If a fold cannot be drawn or the training fails.

@@ -80,7 +80,7 @@ pub(super) fn choose_touches(
 pub(super) struct AnsweredTouches<'a> {
     pub(super) fitted: &'a Fitted,
     pub(super) test: &'a Dataset,
-    /// Numbers of the touches.
+    /// Number of the touch of each test row.
     pub(super) touches: &'a [usize],
     /// Group of each test touch; `None` unless whole groups are held out.
     pub(super) groups: Option<&'a [usize]>,
