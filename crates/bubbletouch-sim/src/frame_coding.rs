@@ -11,6 +11,14 @@ pub fn most_bytes(n_taxels: usize) -> usize {
     n_taxels.div_ceil(WORD) * 8 + 4 * n_taxels
 }
 
+/// Rounds values to single precision; both slices have equal lengths.
+pub fn round_to_single(values: &[f64], out: &mut [f32]) {
+    assert_eq!(values.len(), out.len(), "values");
+    for (to, &from) in out.iter_mut().zip(values) {
+        *to = from as f32;
+    }
+}
+
 /// Encodes a frame as bytes.
 pub fn encode(frame: &[f32]) -> Box<[u8]> {
     let mut out = Vec::with_capacity(most_bytes(frame.len()));

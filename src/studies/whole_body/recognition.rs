@@ -88,7 +88,7 @@ fn measure(
             drive.probe(drive.path);
             let row = row.as_slice_mut().expect("rows are whole");
             for (columns, row) in columns.iter().zip(row.chunks_exact_mut(m)) {
-                columns.measure_touched(drive.touched(), row);
+                drive.state.measure(drive.body, columns, row);
             }
             progress.advance(1);
             Ok(())

@@ -91,7 +91,7 @@ impl Drive<'_> {
                 deflection: self.touched().map(|(_, deflection)| deflection).sum(),
             });
             for (compression, (row, sensed)) in compressions.iter().zip(&mut sensed) {
-                sensed.push(compression.sense(self.touched(), row)?);
+                sensed.push(compression.sense(self, row)?);
             }
         }
         let steps = &steps[WARM_UP..];
@@ -121,13 +121,9 @@ impl Drive<'_> {
 
 impl Compression {
     /// Computes the measurements and the decision of a step; `row` is scratch memory for the measurements.
-    fn sense(
-        &self,
-        touched: impl Iterator<Item = (usize, f64)>,
-        row: &mut [f64],
-    ) -> Result<SensedStep> {
+    fn sense(&self, drive: &Drive, row: &mut [f64]) -> Result<SensedStep> {
         let start = Instant::now();
-        self.columns.measure_touched(touched, row);
+        drive.state.measure(drive.body, &self.columns, row);
         let compress_s = start.elapsed().as_secs_f64();
         let rows = ArrayView2::from_shape((1, row.len()), row).expect("one row");
         let label = self.classifier.labels(rows)?[0];

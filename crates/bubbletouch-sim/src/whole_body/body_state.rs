@@ -5,6 +5,7 @@ use super::patch_state::PatchState;
 use crate::contact::Instructions;
 use crate::geometry::Pose;
 use crate::objects::{Sphere, SphereClusters};
+use crate::sensing::Columns;
 
 /// Number of deflected taxels at the last step above which several threads are used. If smaller, the work ends before a second thread has started.
 pub const WORTH_THREADS: usize = 4000;
@@ -122,6 +123,15 @@ impl BodyState {
             let touched = touched.iter();
             touched.map(move |&(taxel, deflection)| (first + taxel as usize, deflection))
         })
+    }
+
+    /// Measures the deflections of the last step: [`Columns::measure_touched`] of the [touched](Self::touched) taxels. The loop is compiled with this
+    /// crate, also for callers that are compiled without optimisation.
+    ///
+    /// # Panics
+    /// If a touched taxel has no column, or `measurements` does not have length m.
+    pub fn measure(&self, body: &WholeBody, columns: &Columns, measurements: &mut [f64]) {
+        columns.measure_touched(self.touched(body), measurements);
     }
 
     /// Returns the deflected taxels patch by patch: the index of the patch's first taxel, and the touched taxels with indices relative to it.

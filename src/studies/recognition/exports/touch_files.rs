@@ -436,7 +436,9 @@ fn pressed<'a>(
     for frame in 1..=n_frames {
         let part = frame as f64 / n_frames as f64;
         contact = press.touch(pose, (touch.depth, part), workspace);
-        frames.extend(press.values(workspace).map(|value| value as f32));
+        let start = frames.len();
+        frames.resize(start + press.n_values(), 0.0);
+        press.write_values(workspace, &mut frames[start..]);
     }
     let pose = press.end(pose, contact);
     Reading {

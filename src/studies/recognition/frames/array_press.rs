@@ -6,6 +6,7 @@ use crate::objects::Model;
 use crate::studies::recognition::plan::sensed::Sensed;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Shears;
+use bubbletouch_sim::frame_coding::round_to_single;
 use glam::{DVec2, DVec3};
 
 /// Scratch memory of a thread for simulating touches.
@@ -14,6 +15,14 @@ pub struct ArrayWorkspace {
     press: Workspace,
     /// Friction state of the array's taxels; `None` without friction.
     friction: Option<FrictionState>,
+}
+
+impl ArrayWorkspace {
+    /// Returns the force on each taxel in the last touch, newtons; empty if the array does not read shear.
+    pub fn shear_forces(&self) -> &[DVec3] {
+        let friction = self.friction.as_ref();
+        friction.map_or(&[], FrictionState::force3)
+    }
 }
 
 /// Array that is prepared for touches of one object.
@@ -64,14 +73,18 @@ impl ArrayPress<'_> {
         pose
     }
 
-    /// Returns the readings of the last touch, ordered by channel: deflections in metres, followed by shear forces in
-    /// newtons if the array reads shear.
-    pub fn values<'w>(&self, workspace: &'w ArrayWorkspace) -> impl Iterator<Item = f64> + 'w {
-        let forces = workspace.friction.as_ref();
-        let forces = forces.map_or(&[][..], FrictionState::force3);
-        let across = [|force: &DVec3| force.x, |force: &DVec3| force.y];
-        let across = across.into_iter();
-        let across = across.flat_map(move |along| forces.iter().map(along));
-        workspace.press.deflections().iter().copied().chain(across)
+    /// Returns the number of readings of a touch.
+    pub fn n_values(&self) -> usize {
+        self.array.n_values()
+    }
+
+    /// Writes the readings of the last touch in single precision, ordered by channel: [`n_values`](TaxelArray::n_values) deflections in metres,
+    /// followed by shear forces in newtons if the array reads shear.
+    pub fn write_values(&self, workspace: &ArrayWorkspace, out: &mut [f32]) {
+        let (deflections, shear) = out.split_at_mut(self.array.patch().n_taxels());
+        round_to_single(workspace.press.deflections(), deflections);
+        if let Some(forces) = &workspace.friction {
+            forces.write_lateral(shear);
+        }
     }
 }

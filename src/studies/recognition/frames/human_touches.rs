@@ -6,6 +6,7 @@ use crate::objects::{Hand, Model};
 use crate::random::Seed;
 use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::world::{HumanTouch, Patch, TouchRanges};
+use bubbletouch_sim::frame_coding::round_to_single;
 use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
@@ -82,9 +83,8 @@ pub fn record_touch(
         let contact = press_with_contacts(skin, hand, &[state.patch_from_hand], workspace);
         n_touched += contact.n_touched;
         n_saturated += contact.n_saturated;
-        for (to, &from) in row.into_iter().zip(workspace.deflections()) {
-            *to = from as f32;
-        }
+        let row = row.into_slice().expect("rows are whole");
+        round_to_single(workspace.deflections(), row);
     }
     (n_touched == 0, n_saturated > 0)
 }

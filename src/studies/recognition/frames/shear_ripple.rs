@@ -78,8 +78,8 @@ fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.1));
     let press = array.press(object);
     press.touch(pose, (depth, 1.0), &mut workspace)?;
-    let n = array.patch().n_taxels();
-    Some(press.values(&workspace).skip(n).take(n).collect())
+    let forces = workspace.shear_forces().iter();
+    Some(forces.map(|force| force.x).collect())
 }
 
 /// Returns the exact box as a triangle mesh.

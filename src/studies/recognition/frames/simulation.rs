@@ -44,9 +44,7 @@ pub(crate) fn press_objects(
                 for (frame, row) in rows.outer_iter_mut().enumerate() {
                     let part = (frame + 1) as f64 / n_frames as f64;
                     last = press.touch(pose, (touch.depth, part), workspace);
-                    for (to, from) in row.into_iter().zip(press.values(workspace)) {
-                        *to = from as f32;
-                    }
+                    press.write_values(workspace, row.into_slice().expect("rows are whole"));
                 }
                 let reads_any = |count: fn(Contact) -> usize| last.is_some_and(|c| count(c) > 0);
                 (!reads_any(|c| c.n_touched), reads_any(|c| c.n_saturated))

@@ -175,6 +175,14 @@ impl FrictionState {
         &self.forces
     }
 
+    /// Writes the lateral readings in single precision: x of all taxels, followed by y; `out` has two values per taxel.
+    pub fn write_lateral(&self, out: &mut [f32]) {
+        let (x, y) = out.split_at_mut(self.forces.len());
+        for ((force, x), y) in self.forces.iter().zip(x).zip(y) {
+            (*x, *y) = (force.x as f32, force.y as f32);
+        }
+    }
+
     /// Returns the contact mode of each taxel in the last step, shape (n_taxels,).
     pub fn contact_modes(&self) -> &[ContactMode] {
         &self.contact_modes
