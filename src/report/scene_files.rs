@@ -35,7 +35,7 @@ const WRENCHES: &str = "wrenches.csv";
 const SCENE: &str = "scene.toml";
 
 /// Writer of a scene's output files in one folder: `recording.npz`, `wrenches.csv` (wrenches on each patch, in its frame) and `scene.toml`.
-/// The method `finish` completes the files. If the writer is dropped before, no file remains.
+/// The method `finish` completes the files. If the writer is dropped before completion, no file remains.
 pub struct SceneFiles {
     folder: PathBuf,
     claimed: DataFolder,

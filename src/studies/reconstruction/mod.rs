@@ -4,7 +4,7 @@
 //! [`ReconstructionStudySpec`] (as written) → [`ReconstructionPlan`] (checked, SI) → [`ReconstructionStudy`] → [its tables](rows).
 //!
 //! Noise is added to the taxel readings before they are multiplied by Φ. Dictionaries, covariances and the choice of atoms are computed from the **clean**
-//! frames of training touches, which a simulation provides. Test touches are not used for them.
+//! frames of training touches, which a simulation provides. These computations use no test touches.
 
 mod charts;
 mod frames;

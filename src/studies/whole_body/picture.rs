@@ -101,7 +101,7 @@ fn view(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SceneView> {
 }
 
 /// Draws two panels: the robot with the object, and the robot alone. A higher mean pressure on a patch is drawn in a deeper blue; touched taxels are orange.
-/// Equal inputs give equal bytes.
+/// Equal inputs give pictures with equal bytes.
 fn draw(name: &str, scene: &SceneView) -> Result<Picture> {
     let turn = DQuat::from_rotation_z(-FRAC_PI_2);
     let sphere = |center: DVec3, radius| Sphere {

@@ -67,7 +67,8 @@ pub struct WholeBodySpec {
 pub struct BodySceneSpec {
     /// Name of the scene.
     pub name: String,
-    /// Joint positions of the robot, with the keys of `[robots.joints]` in a scene file: one time. Joints that are not listed are at 0, or at their nearest limit.
+    /// Joint positions of the robot, with the keys of `[robots.joints]` in a scene file: one time. Joints that are not listed are at 0, or at their nearest
+    /// limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
     /// Object, with the keys of `[[objects]]` in a scene file. `link` is a link of the covered robot. Default of `motion`: none; otherwise, an oscillation.
@@ -85,7 +86,7 @@ pub struct BodySceneSpec {
 pub struct BodySensingSpec {
     /// Number m of measurements per step, at least 1.
     pub measurements: usize,
-    /// Ensembles with sparse matrices: `sbhe` and `sparse`.
+    /// Ensembles of the measurement matrix to compare: `sbhe` and `sparse`. Only these ensembles have sparse matrices.
     #[schemars(with = "Vec<Names<Ensemble>>")]
     pub ensembles: Vec<Ensemble>,
     /// Numbers of taxels in a Hadamard block, powers of two; each number defines one compression. Default: 32.

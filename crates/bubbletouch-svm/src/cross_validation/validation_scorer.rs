@@ -169,7 +169,7 @@ mod tests {
         Array2::from_shape_fn((N, N), |(i, j)| (-(at(i) - at(j)).powi(2)).exp())
     }
 
-    /// Returns irregular β, with 0 for held-out rows; some C repeat the β of the previous C.
+    /// Returns irregular coefficients β of all rows for each C, with 0 for held-out rows; some C repeat the β of the previous C.
     fn path(members: &[usize], own: &Range<usize>, is_training: &[bool]) -> Vec<Vec<f64>> {
         let beta = |c: f64, at: usize| {
             let size = (c * (0.6 + (at as f64 * 2.3 + c).sin())).clamp(0.0, c);

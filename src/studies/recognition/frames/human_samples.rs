@@ -16,7 +16,8 @@ use rayon::prelude::*;
 /// Number of frames in a film strip; a strip is one row of the picture.
 const N_FRAMES: usize = 4;
 
-/// Number of touches of a kind among which the one with the largest force is shown. With a single touch, a fingertip might represent a flat hand.
+/// Number of touches of a kind among which the one with the largest force is shown. If only one touch were considered, a flat hand could be represented by a
+/// touch of one fingertip.
 const N_LOOKED_AT: usize = 10;
 
 /// Returns film strips of the kinds of touch that the study lists for its picture, by default of all kinds. Each strip shows the strongest of the first touches

@@ -74,7 +74,7 @@ impl Images {
     }
 
     /// Returns the image features of all frames. Each requested kind has shape n_touches × F·k, with k values per frame, followed by the rows of all tilted
-    /// copies in the same order. Each image is estimated once for all kinds.
+    /// copies in the same order. Each image is estimated once and then used for all kinds of features.
     ///
     /// # Panics
     /// If there is no estimator for the number of measurements.

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SkinSpec {
-    /// Axis: side of the square area per taxel, mm, positive. In a grid it is the distance between neighbours. In a hexagonal lattice (`hexagonal`, `disc`) the
-    /// distance between neighbours is 1.0746 times as large.
+    /// Axis: side of the square area per taxel, mm, positive. In a grid, the side is the distance between neighbours. In a hexagonal lattice (`hexagonal`,
+    /// `disc`) the distance between neighbours is 1.0746 times as large.
     pub pitch_mm: Axis<f64>,
     /// Axis: side length of the square array, mm, a multiple of the pitch.
     pub size_mm: Option<Axis<f64>>,
