@@ -19,8 +19,7 @@ pub fn not_negative(value: f64) -> bool {
     value == 0.0 || positive(value)
 }
 
-/// Maximum number of values of one axis. A longer list indicates a mistake, and its check for duplicates would be slow, because every value is compared with
-/// all others.
+/// Maximum number of values of one axis. A longer list indicates a mistake, and the search for duplicates compares all pairs of values.
 pub const MAX_VALUES: usize = 10_000;
 
 /// Maximum value of keys that are counts. Larger counts exceed the memory or take too long.

@@ -107,7 +107,7 @@ impl Reader<'_> {
         Ok((object, model))
     }
 
-    /// Checks the motion of an object on the link of a robot.
+    /// Checks an object that a robot's link carries, and returns its motion.
     pub fn carried(
         &self,
         key: &str,
@@ -222,7 +222,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the solid of a named object, or of parts.
+    /// Returns the solid of a named object, or of the key `parts`.
     fn solid(&self, key: &str, spec: &ObjectSpec) -> Result<Solid> {
         let Some(name) = &spec.object else {
             let text = toml::to_string(&BTreeMap::from([("part", &spec.parts)]));

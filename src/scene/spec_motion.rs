@@ -69,7 +69,7 @@ pub struct OscillationSpec {
     /// Amplitude of the rotation vector about the origin of the world or link frame, degrees. Default: 0.
     #[serde(default)]
     pub angular_deg: [f64; 3],
-    /// Period, s, positive.
+    /// Period of the oscillation, s, positive.
     pub period_s: f64,
 }
 

@@ -24,11 +24,12 @@ pub struct ObjectSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub objects: Option<FilePath>,
-    /// Parts of a solid: tables with the keys of `[[object.part]]` in a file of objects, in the frame of the object; replaces `object`.
+    /// Parts of a solid in the frame of the object; replaces `object`. Each part is a table with the keys of `[[object.part]]` in a file of objects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<BTreeMap<String, serde_json::Value>>")]
     pub parts: Vec<toml::Table>,
-    /// Whether the middle of the bounding box is the origin of a solid. Default: the middle of the base of a named object, the origin of `parts`.
+    /// Whether the origin of a solid is the middle of its bounding box. Default: false; the origin is then the middle of the base of a named object, or the
+    /// origin of `parts`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub centered: bool,
     /// CSV file of spheres with the columns x, y, z, r; replaces `object`.

@@ -1,4 +1,5 @@
-//! Layouts as CSV: `x_mm, y_mm, z_mm, nx, ny, nz`, optional `radius_mm`, optional `row` and `column` of the image, in any order.
+//! Layouts as CSV files with the columns `x_mm, y_mm, z_mm, nx, ny, nz` in any order. The columns `radius_mm`, and `row` and `column` (of the sensor's image)
+//! are optional.
 
 use super::LayoutFile;
 use crate::error::{Error, Result};
@@ -86,10 +87,10 @@ pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
 }
 
 impl LayoutFile {
-    /// Writes the layout as a CSV file that [`read`](Self::read) reads as the same layout.
+    /// Writes the layout as a CSV file, from which [`read`](Self::read) returns the same layout.
     ///
     /// # Errors
-    /// If the file cannot be written, or is an input of this command.
+    /// If the file cannot be written, or if the running command reads it.
     pub fn write_csv(&self, path: &Path) -> Result<()> {
         let mut header = REQUIRED.join(",");
         if self.radii.is_some() {
@@ -117,7 +118,7 @@ impl LayoutFile {
     }
 }
 
-/// Returns millimetres that read back as the same metres, with the fewest digits where rounding allows it.
+/// Converts metres to millimetres so that the conversion back gives the same number; if possible, the result has few digits.
 fn in_mm(metres: f64) -> f64 {
     let mm = metres / MM;
     let candidates = [(mm * 1e9).round() / 1e9, mm, mm.next_up(), mm.next_down()];

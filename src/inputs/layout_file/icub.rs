@@ -1,5 +1,5 @@
-//! Position files of iCub's skin (`icub-main/app/skinGui/conf/positions`): keys such as `name` and `taxel2Repr`, a section `[calibration]`, and one row
-//! `x y z nx ny nz` (metres) for each taxel. Rows of zeros belong to channels without a taxel.
+//! Position files of iCub's skin (`icub-main/app/skinGui/conf/positions`). A file has keys such as `name` and `taxel2Repr`, and a section `[calibration]` with
+//! one row `x y z nx ny nz` (positions in metres) for each taxel. Rows of zeros belong to channels without a taxel.
 
 use super::LayoutFile;
 use crate::error::{Error, Result};

@@ -1,11 +1,11 @@
-//! Files of taxel layouts: where the taxels of a real skin are, in the formats in which makers and laboratories publish them.
+//! Files of taxel layouts: positions and axes of the taxels of real skins, in the formats that manufacturers and laboratories publish.
 //!
 //! | file | format | content |
 //! |---|---|---|
 //! | `.csv` | [`csv`] | `x_mm, y_mm, z_mm, nx, ny, nz[, radius_mm][, row, column]`, one row for each taxel |
 //! | `.npz` | [`npz`] | `positions` and `normals`, each n × 3, metres; or `poses`, n × 3 × 4, and `taxel2pixel`, n × 2, as for Analog Devices' DEX-01 |
-//! | `.txt`, `.ini` | [`icub`] | the position files of iCub's skin: x, y, z and normal of each taxel, metres |
-//! | `.json` | [`paxini`] | points of PaXini's sensors, mm, without normals |
+//! | `.txt`, `.ini` | [`icub`] | position files of iCub's skin: position (metres) and normal of each taxel |
+//! | `.json` | [`paxini`] | taxel positions of PaXini's sensors, mm, without normals |
 //! | `.urdf`, `.xml` | [`urdf`] | `<sensor><tactile>` of urdf_tactile, or taxels of three prismatic joints, as for XELA's uSkin |
 
 pub mod csv;
@@ -21,10 +21,10 @@ use crate::world::{Layout, TactileSensor};
 use glam::DVec3;
 use std::path::Path;
 
-/// Formats, for error messages.
+/// List of the readable formats, for error messages.
 const FORMATS: &str = "a layout in .csv, .npz, .txt or .ini (iCub), .json (PaXini) or .urdf";
 
-/// Taxels of a layout file.
+/// Content of a layout file: the taxels of one skin or sensor.
 #[derive(Clone, Debug)]
 pub struct LayoutFile {
     /// Rest centres and axes of the taxels.
@@ -33,7 +33,7 @@ pub struct LayoutFile {
     pub radii: Option<Vec<f64>>,
     /// Row and column of each taxel in the sensor's image, shape (n_taxels,). `None` if the file has no image.
     pub pixels: Option<Vec<[usize; 2]>>,
-    /// Link to which the layout is fixed, for a layout from a robot's file.
+    /// Name of the robot link to which the layout is fixed; `None` unless the layout is read from a robot's file.
     pub link: Option<String>,
     /// Notes on parts of the file that are not taxels, such as unused rows.
     pub notes: Vec<String>,
@@ -42,14 +42,14 @@ pub struct LayoutFile {
 /// Inputs of a layout reader besides the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LayoutOptions<'a> {
-    /// Surface whose normals the taxels take, if the file has points only.
+    /// Surface from which the taxels get their normals, if the file has only positions.
     pub mesh: Option<&'a TriangleMesh>,
-    /// Name of the sensor in a file with several sensors.
+    /// Name of the sensor to read; required only if the file has several sensors.
     pub sensor: Option<&'a str>,
 }
 
 impl LayoutFile {
-    /// Reads a layout file; the ending of its name gives the format.
+    /// Reads a layout file; the file name's extension determines the format.
     ///
     /// # Errors
     /// If the file cannot be read, has no taxels, or has an invalid row; the error contains the file and the row (from 1). If the file needs an option that is
@@ -79,10 +79,10 @@ impl LayoutFile {
         Ok(file)
     }
 
-    /// Creates the file's content from taxels: places in metres, and vectors along the axes of any length.
+    /// Creates the file's content from the taxels: positions in metres, and vectors of any length along the axes.
     ///
     /// # Errors
-    /// If a number is not finite or an axis has length zero; the error contains the taxel's row, from `rows`.
+    /// If a number is not finite or an axis has length zero; the error contains the taxel's row number, which is taken from `rows`.
     fn new(place: &str, taxels: Vec<(DVec3, DVec3)>, rows: &[usize]) -> Result<Self> {
         let Some(_) = taxels.first() else {
             return Err(Error::input(place, "no taxel", "at least one taxel"));
@@ -111,7 +111,7 @@ impl LayoutFile {
     /// Returns the taxels of a tactile sensor, in the frame of its link.
     ///
     /// # Errors
-    /// If the sensor's poses are no layout; the error begins with `place`.
+    /// If the sensor's poses are not a valid layout; the error begins with `place`.
     pub fn of_sensor(place: &str, sensor: &TactileSensor) -> Result<Self> {
         let poses = sensor
             .taxels
@@ -125,8 +125,7 @@ impl LayoutFile {
         })
     }
 
-    /// Returns half the median distance of a taxel to its nearest neighbour, metres: the default radius of taxels without one. One taxel alone has
-    /// radius 1 mm.
+    /// Returns the default radius of the taxels, metres: half the median distance from a taxel to its nearest neighbour, or 1 mm for a single taxel.
     pub fn default_radius(&self) -> f64 {
         let centers = self.layout.centers();
         let nearest = |one: &DVec3| {
@@ -146,13 +145,13 @@ impl LayoutFile {
     }
 }
 
-/// Largest number of taxels whose neighbours are searched for the default radius. A larger number takes longer and moves the median little.
+/// Maximum number of taxels whose neighbours are searched for the default radius. A larger number takes longer and hardly changes the median.
 const MAX_LOOKED_AT: usize = 200;
 
 /// Minimum length of a normal or axis vector in a layout file. Files have normals of four decimals; shorter vectors are zero up to their rounding.
 const MIN_AXIS: f64 = 1e-3;
 
-/// Returns the unit vector; a vector that already has length one, up to rounding, keeps its bits.
+/// Returns the vector scaled to length 1. A vector that already has length 1, up to rounding, is returned unchanged.
 fn unit(axis: DVec3) -> DVec3 {
     match (axis.length() - 1.0).abs() < 1e-15 {
         true => axis,

@@ -1,13 +1,13 @@
-//! Normals of a surface at points near it.
+//! Computation of a mesh's surface normals at the positions of taxels.
 
 use crate::error::{Error, Result};
 use crate::mesh::{Surface, TriangleMesh};
 use glam::DVec3;
 
-/// Largest distance of a taxel from the surface, metres. A larger distance indicates another frame or unit than the mesh's.
+/// Maximum distance of a taxel from the surface, metres. A larger distance indicates that the taxels have another frame or unit than the mesh.
 const MAX_DISTANCE: f64 = 5e-3;
 
-/// Returns the outward unit normal of the surface at the place nearest to each point.
+/// Returns the outward unit normal of the surface at the nearest surface point of each taxel.
 pub(super) fn surface_normals(
     place: &str,
     points: &[DVec3],

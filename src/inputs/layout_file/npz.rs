@@ -1,5 +1,6 @@
-//! Layouts as NumPy archives: `positions` and `normals` (n × 3, metres) with optional `radii` (n, metres) and `pixels` (n × 2: row, column); or `poses`
-//! (n × 3 × 4: rotation, whose third column is the normal, and place in metres) with `taxel2pixel` (n × 2), as for Analog Devices' DEX-01.
+//! Layouts as NumPy archives, in one of two forms. The first form has `positions` (n × 3, metres), `normals` (n × 3), and optionally `radii` (n, metres) and
+//! `pixels` (n × 2: row, column). The second form, used for Analog Devices' DEX-01, has `poses` (n × 3 × 4) and `taxel2pixel` (n × 2). A pose is a rotation
+//! matrix, whose third column is the normal, followed by the position in metres.
 
 use super::LayoutFile;
 use crate::error::{Error, Result};
@@ -8,10 +9,10 @@ use glam::{DMat3, DVec3};
 use ndarray::ArrayD;
 use std::path::Path;
 
-/// Largest deviation of an entry of Rᵀ R from the identity. Files have single precision.
+/// Maximum deviation of an entry of Rᵀ R from the identity, for a rotation matrix R of a file in single precision.
 const MAX_ROTATION_ERROR: f64 = 1e-3;
 
-/// Reads a layout from an archive.
+/// Reads a layout from a `.npz` archive.
 pub(super) fn read(path: &Path) -> Result<LayoutFile> {
     let place = path.display().to_string();
     let names = crate::inputs::arrays::member_names(path)?;
@@ -92,7 +93,7 @@ fn vectors(array: &ArrayD<f64>) -> Vec<DVec3> {
     numbers.chunks(3).map(DVec3::from_slice).collect()
 }
 
-/// Returns place and normal of each pose.
+/// Returns the position and the normal of each taxel from its pose.
 fn from_poses(place: &str, poses: &ArrayD<f64>) -> Result<Vec<(DVec3, DVec3)>> {
     let numbers: Vec<f64> = poses.iter().copied().collect();
     let pose = |(row, m): (usize, &[f64])| {

@@ -1,5 +1,5 @@
-//! Layouts in robots' files: `<sensor><tactile>` with an `<array>` or `<taxel>`s (urdf_tactile), or three prismatic joints along x, y and z for each taxel,
-//! as in the files of XELA's uSkin. Places are in the frame of the link that carries the sensor.
+//! Layouts in URDF files, in one of two forms: `<sensor><tactile>` with an `<array>` or `<taxel>`s (urdf_tactile), or three prismatic joints along x, y and z
+//! for each taxel (XELA's uSkin). Positions are in the frame of the link that carries the sensor.
 
 use super::LayoutFile;
 use crate::error::{Error, Result};
@@ -8,8 +8,8 @@ use crate::world::{JointKind, Robot};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Reads a layout from the text of a robot's file. `sensor` is the name of a tactile sensor, or of the link that carries the prismatic taxels; it may be
-/// left out if there is only one.
+/// Reads a layout from the text of a URDF file. `sensor` is the name of a tactile sensor, or of the link that carries the prismatic joints; it may be omitted
+/// if there is only one.
 pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<LayoutFile> {
     let robot = Robot::from_urdf(place, text)?;
     let mut all = BTreeMap::new();
@@ -53,18 +53,18 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
     })
 }
 
-/// Place and normal of a taxel in the frame of its link, metres.
+/// Position (metres) and normal of a taxel in the frame of its link.
 type Taxel = (DVec3, DVec3);
 
-/// Returns the taxels that hang on three prismatic joints along x, y and z each, by the link that carries them, in the order of the file. The normal is
-/// the axis of the third joint.
+/// Returns the taxels that three prismatic joints along x, y and z connect to a link, by the name of this link, in the order of the file. The normal is the
+/// axis of the third joint.
 fn prismatic_taxels(robot: &Robot) -> BTreeMap<String, Vec<Taxel>> {
     let joints = robot.joints();
     let is_slide = |kind: JointKind| kind == JointKind::Prismatic;
     let below = |link: usize| joints.iter().filter(move |joint| joint.parent == link);
     let mut all: BTreeMap<String, Vec<Taxel>> = BTreeMap::new();
     for first in joints.iter().filter(|joint| is_slide(joint.kind)) {
-        // The first slide of a chain hangs on a link that is not moved by a slide.
+        // The parent link of the first prismatic joint of a chain is not moved by another prismatic joint.
         if joints
             .iter()
             .any(|joint| joint.child == first.parent && is_slide(joint.kind))

@@ -40,7 +40,7 @@ impl Path {
         self.world_from_link.compose(&self.motion.pose_at(time))
     }
 
-    /// Returns the path with its start shifted in the frame of the link, metres.
+    /// Returns the path with its start shifted by a vector in the frame of the link, metres.
     pub fn shifted(&self, by: DVec3) -> Self {
         let start = self.motion.start;
         self.starting_at(Pose::new(start.rotation, start.translation + by))
@@ -58,7 +58,7 @@ impl Path {
     }
 }
 
-/// An object that moves along a path.
+/// Object that moves along a path over a body's skin.
 pub(super) struct Drive<'a> {
     pub body: &'a WholeBody,
     pub state: BodyState,

@@ -1,4 +1,4 @@
-//! Objects that touch a body: objects of scenes, built-in objects, and cushions of spheres.
+//! Sphere models of the objects that touch a body: objects of scenes, built-in objects, and cushions of spheres.
 
 use crate::error::Result;
 use crate::geometry::Pose;

@@ -41,11 +41,11 @@ pub struct WholeBodyPlan {
     pub scenes: Vec<ScenePlan>,
     /// Compressions by name (`sbhe_32`, `sparse`), each with the number of taxels in a Hadamard block; `None` for very sparse rows.
     pub compressions: Vec<(String, Option<usize>)>,
-    /// Target of the objects that are to be recognised.
+    /// Target of the objects to recognise.
     pub aim: Aim,
 }
 
-/// A scene: an object and its motion.
+/// Plan of a scene: an object, its motion, and the joint positions of the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePlan {
     /// Specification as written in the study file.
@@ -165,7 +165,7 @@ impl WholeBodyPlan {
     }
 }
 
-/// Name of the covered robot, as the `robot` of objects.
+/// Name of the covered robot, for the key `robot` of objects.
 const ROBOT: &str = "robot";
 
 fn scene_plan(
@@ -223,7 +223,7 @@ fn scene_plan(
     })
 }
 
-/// Returns the target of the objects to be recognised.
+/// Returns the target of the objects to recognise.
 fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot) -> Result<Aim> {
     let key = |name: &str| format!("whole_body.recognition.{name}");
     let at = reader.vector(&key("at_mm"), wanted.at_mm, MM)?;
@@ -234,7 +234,7 @@ fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot)
     })
 }
 
-/// Returns a unit vector.
+/// Returns the direction of the approach as a unit vector.
 fn direction(reader: &Reader, key: &str, from: [f64; 3]) -> Result<DVec3> {
     let direction = reader.vector(key, from, 1.0)?.try_normalize();
     let zero = || {

@@ -61,22 +61,24 @@ pub struct WholeBodySpec {
     pub ladders: Option<LaddersSpec>,
 }
 
-/// Keys of `[[whole_body.scenes]]`: an object that moves over the skin.
+/// Keys of `[[whole_body.scenes]]`: a scene in which an object touches the skin and may move over it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySceneSpec {
     /// Name of the scene.
     pub name: String,
-    /// Joint positions of the robot, with the keys of `[robots.joints]` in a scene file: one time. Joints that are not listed are at 0, or at their nearest
-    /// limit.
+    /// Constant joint positions of the robot, with the keys of `[robots.joints]` in a scene file and a single time. Joints that are not listed are at 0, or at
+    /// the limit nearest to 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
-    /// Object, with the keys of `[[objects]]` in a scene file. `link` is a link of the covered robot. Default of `motion`: none; otherwise, an oscillation.
+    /// Object that touches the skin, with the keys of `[[objects]]` in a scene file. Its `link` is a link of the covered robot. Its `motion` can only be an
+    /// oscillation; by default, the object does not move.
     pub object: ObjectSpec,
-    /// With `depth_mm`: direction from the position of `object.at` to the start of the approach, in the frame of the link.
+    /// Direction from the position `object.at` to the start of the approach, in the frame of the link; used with `depth_mm`. Default: +x.
     #[serde(default = "default_from")]
     pub from: [f64; 3],
-    /// Travel past first contact, mm. The position of `object.at` is then the target of the approach. Without this key, the object is placed there.
+    /// Travel of the object past first contact, mm. The object then approaches the position `object.at` along a straight line. Default: no approach; the object
+    /// is placed at `object.at`.
     pub depth_mm: Option<f64>,
 }
 
