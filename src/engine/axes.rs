@@ -13,8 +13,9 @@
 
 use crate::error::{Error, Result};
 use crate::inputs::check::MAX_VALUES;
+use crate::inputs::keys::{AxisPlace, KeyAbout, find as find_key};
 use crate::inputs::renamed_keys::check_renamed;
-use crate::inputs::toml_value::{is_at, number, value_at};
+use crate::inputs::toml_value::{number, value_at};
 use crate::table::{Column, Role, Scale};
 use crate::toml_lines::line_of;
 use crate::toml_text::{check_brackets, check_numbers};
@@ -25,15 +26,6 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
-
-/// Rules of a kind of study for the keys that may be axes.
-#[derive(Clone, Copy, Debug)]
-pub struct AxisRules {
-    /// Function that returns whether a key accepts a list in its own table. Keys with such a list are moved from `[axes]` to their table.
-    pub in_place: fn(&str) -> bool,
-    /// Keys that cannot be axes, because they must be equal within a study; includes all keys below them.
-    pub refused: &'static [&'static str],
-}
 
 /// Rule that combines the values of several axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -61,7 +53,9 @@ pub struct StudyAxes {
 pub struct StudyAxis {
     /// Path of the key, such as `touches.depth_mm`, or `touches.offset_{x,y}_mm` for two keys.
     pub key: String,
-    /// Whether the result tables already have a column with these values.
+    /// Description of the key; of the first one for several keys. Keys of test touches have the description without `test.`.
+    pub about: Option<&'static KeyAbout>,
+    /// Whether the tables already have a column with these values.
     pub has_column: bool,
     /// Distinct values of the axis, at least one.
     pub values: Vec<toml::Value>,
@@ -144,7 +138,7 @@ pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<
     }
 }
 
-/// Reads a study file and its axes. In the returned study, each axis key has its first value; keys that accept lists have all values.
+/// Reads a study with these `keys`, and its axes. In the returned study, each key of an axis has its first value; keys that accept lists have all values.
 ///
 /// # Errors
 /// If the study is invalid. If an axis has no values, a repeated value, a key that is also given elsewhere, or a key that cannot be an axis. The error names
@@ -152,7 +146,7 @@ pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<
 pub fn read<S: DeserializeOwned>(
     place: &str,
     text: &str,
-    rules: AxisRules,
+    keys: &'static [KeyAbout],
 ) -> Result<(S, StudyAxes)> {
     check_brackets(place, text)?;
     check_numbers(place, text)?;
@@ -179,13 +173,12 @@ pub fn read<S: DeserializeOwned>(
     };
     for (key, start, value) in found {
         let line = line_of(text, start);
+        let values = list(place, text, &value)?;
         let axis = StudyAxis {
-            values: list(place, text, &value)?,
-            has_column: (rules.in_place)(&key),
-            key,
             line: Some(line),
+            ..StudyAxis::new(key, values, keys)
         };
-        axis.check(place, rules)?;
+        axis.check(place, keys)?;
         if axes.combine == CombineSpec::OneAtATime {
             let keys = axis.keys();
             let has_value = |key: &String| {
@@ -285,6 +278,25 @@ fn insert<'i>(
 }
 
 impl StudyAxis {
+    /// Creates an axis that does not come from a file.
+    fn new(key: String, values: Vec<toml::Value>, known: &'static [KeyAbout]) -> Self {
+        let mut axis = Self {
+            key,
+            about: None,
+            has_column: false,
+            values,
+            line: None,
+        };
+        let keys = axis.keys();
+        axis.about = keys
+            .first()
+            .and_then(|key| find_key(known, without_test(key)));
+        axis.has_column = axis
+            .about
+            .is_some_and(|about| about.axis == AxisPlace::Table && about.path == axis.key);
+        axis
+    }
+
     /// Returns an error about the axis; its place consists of file, line and key.
     fn error(&self, place: &str, given: impl ToString, allowed: impl ToString) -> Error {
         let line = self.line.map_or(String::new(), |line| format!(":{line}"));
@@ -292,12 +304,11 @@ impl StudyAxis {
         Error::input(place, given, allowed)
     }
 
-    fn check(&self, place: &str, rules: AxisRules) -> Result<()> {
+    fn check(&self, place: &str, known: &[KeyAbout]) -> Result<()> {
         let keys = self.keys();
-        let refused = rules.refused.iter();
-        let refused = refused
-            .copied()
-            .find(|name| keys.iter().any(|key| is_at(key, name)));
+        let refused = keys
+            .iter()
+            .find(|key| find_key(known, key).is_some_and(|about| about.axis == AxisPlace::Never));
         let is_path =
             |key: &String| !key.split('.').any(str::is_empty) && !key.contains(['{', '}']);
         let twice = self.values.iter().enumerate().find(|(place, value)| {
@@ -350,7 +361,7 @@ impl StudyAxis {
     fn name(&self) -> String {
         let path = self.path();
         let last = path.rsplit('.').next().unwrap_or(&path);
-        match path.starts_with(OF_TESTS) {
+        match self.is_of_tests() {
             true => format!("test_{last}"),
             false => last.to_owned(),
         }
@@ -366,19 +377,23 @@ impl StudyAxis {
         };
         // The name is leaked, because the names of columns must be `'static`.
         let name: &'static str = name.leak();
-        let found = UNITS.iter().find_map(|(suffix, unit)| {
-            let words = last.strip_suffix(suffix)?;
-            (!words.is_empty()).then_some((words, *unit))
-        });
-        let (words, unit) = found.unwrap_or((last, ""));
-        let known = WORDS.iter().find(|(key, _)| *key == self.key);
-        let words = known.map_or(words, |(_, known)| known);
-        let mut words = words.replace('_', " ");
-        if let (true, Some((table, _))) = (words.starts_with("per "), self.key.split_once('.')) {
-            words = format!("{table} {words}");
-        }
         let numbers: Option<Vec<f64>> = self.values.iter().map(number).collect();
-        Column::new(name, self.role(), words, unit, scale(numbers)).optional()
+        let scale = scale(numbers);
+        let Some(about) = self.about else {
+            return Column::new(name, Role::Choice, last.replace('_', " "), "", scale).optional();
+        };
+        let (role, words) = match self.is_of_tests() {
+            true => (Role::Condition, format!("test {}", about.title())),
+            false => (about.role, about.title()),
+        };
+        let column = Column::new(
+            name,
+            role,
+            words,
+            about.unit(),
+            about.scale.unwrap_or(scale),
+        );
+        column.named(about.names.unwrap_or_default()).optional()
     }
 
     /// Returns the value of the axis key in a study; `None` if the study has no value, or a value of another type than the axis.
@@ -394,64 +409,19 @@ impl StudyAxis {
         self.keys().iter().all(has)
     }
 
-    fn role(&self) -> Role {
-        let known = ROLES.iter().find(|(start, _)| self.key.starts_with(start));
-        known.map_or(Role::Choice, |(_, role)| *role)
+    /// Returns whether the key belongs to test touches only.
+    fn is_of_tests(&self) -> bool {
+        self.key.starts_with(OF_TESTS)
     }
 }
 
 /// Prefix of keys that apply only to test touches.
 const OF_TESTS: &str = "test.";
 
-/// Names in words of keys whose last part is not clear by itself.
-const WORDS: [(&str, &str); 3] = [
-    ("skin.sensed", "sensed quantity"),
-    ("recognition.group_by", "group held out"),
-    ("recognition.split", "poses held out"),
-];
-
-/// Units of keys by their suffix, longer suffixes first.
-const UNITS: [(&str, &str); 15] = [
-    ("_n_s_per_m", "N·s/m"),
-    ("_mm_per_s", "mm/s"),
-    ("_n_per_m", "N/m"),
-    ("_deg", "°"),
-    ("_gib", "GiB"),
-    ("_mm", "mm"),
-    ("_ms", "ms"),
-    ("_hz", "Hz"),
-    ("_kg", "kg"),
-    ("_us", "µs"),
-    ("_pa", "Pa"),
-    ("_n", "N"),
-    ("_m", "m"),
-    ("_s", "s"),
-    ("_g", "g"),
-];
-
-/// Roles of keys by their prefix; all other keys are choices. Depth, slide, number and speed of presses are choices. Pose and friction of the object are
-/// conditions. The split, its groups and recorded data are conditions of the experiment; as a choice, the easiest split would always be the best.
-const ROLES: [(&str, Role); 19] = [
-    (OF_TESTS, Role::Condition),
-    ("seed", Role::Subject),
-    ("recorded.", Role::Condition),
-    ("recognition.split", Role::Condition),
-    ("recognition.group_by", Role::Condition),
-    ("recognition.test_fraction", Role::Condition),
-    ("recognition.folds", Role::Condition),
-    ("skin.friction", Role::Condition),
-    ("touches.depth", Role::Choice),
-    ("touches.slide", Role::Choice),
-    ("touches.per_object", Role::Choice),
-    ("touches.frames", Role::Choice),
-    ("touches.speed", Role::Choice),
-    ("touches.", Role::Condition),
-    ("signal.smoothing", Role::Choice),
-    ("signal.steps", Role::Choice),
-    ("signal.", Role::Condition),
-    ("human_touch.kinds", Role::Condition),
-    ("objects.", Role::Condition),
-];
+/// Returns the path of the study's key to which a key of test touches corresponds.
+fn without_test(key: &str) -> &str {
+    key.strip_prefix(OF_TESTS).unwrap_or(key)
+}
 
 /// Minimum ratio of the largest to the smallest value for a logarithmic axis. If larger, the small values of a sweep by powers of two overlap on a linear axis;
 /// if smaller, evenly spaced values are drawn unevenly. Zero is drawn separately.
@@ -619,7 +589,8 @@ pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::Role;
+    use crate::inputs::keys::keys;
+    use crate::inputs::range::Range;
 
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
@@ -638,15 +609,15 @@ mod tests {
         words: String,
     }
 
-    const RULES: AxisRules = AxisRules {
-        in_place: |key| key == "ratio",
-        refused: &["report"],
+    const KEYS: &[KeyAbout] = keys! {
+        "ratio": Table, Choice, Range::Any;
+        "report": Never, Note, Range::Any;
     };
 
     const TEXT: &str = "[axes]\n\"skin.stroke_mm\" = [5.0, 1]\nseed = [3, 1]\nratio = [1.0, 4.0]\n[skin]\nwords = \"a\"\n";
 
     fn said(text: &str) -> String {
-        let read = read::<Study>("s.toml", text, RULES);
+        let read = read::<Study>("s.toml", text, KEYS);
         let made = read.and_then(|(study, axes)| axes.variants("s.toml", &study));
         let error = made.unwrap_err();
         assert_eq!(error.exit_code(), 2);
@@ -655,7 +626,7 @@ mod tests {
 
     #[test]
     fn every_combination_is_a_study_and_the_first_axis_changes_slowest() {
-        let (study, axes) = read::<Study>("s.toml", TEXT, RULES).unwrap();
+        let (study, axes) = read::<Study>("s.toml", TEXT, KEYS).unwrap();
         assert_eq!(study.ratio, [1.0, 4.0]);
         let variants = axes.variants("s.toml", &study).unwrap();
         let found = variants
@@ -673,9 +644,9 @@ mod tests {
 
     #[test]
     fn a_study_with_axes_reads_back_from_what_it_is_written_as() {
-        let (study, axes) = read::<Study>("s.toml", TEXT, RULES).unwrap();
+        let (study, axes) = read::<Study>("s.toml", TEXT, KEYS).unwrap();
         let text = to_toml(&study, &axes);
-        let (again, same) = read::<Study>("s.toml", &text, RULES).unwrap();
+        let (again, same) = read::<Study>("s.toml", &text, KEYS).unwrap();
         let keys = |axes: &StudyAxes| -> Vec<(String, Vec<toml::Value>)> {
             let axes = axes.axes.iter();
             axes.map(|axis| (axis.key.clone(), axis.values.clone()))
@@ -707,7 +678,7 @@ mod tests {
             ),
             (
                 with("skin.stroke_mm = [1.0]\nreport.pareto = [true, false]"),
-                "report as an axis",
+                "report.pareto as an axis",
             ),
             (
                 with("skin.stroke_mm = [1.0, \"a\"]"),
@@ -743,53 +714,96 @@ mod tests {
     }
 
     #[test]
-    fn the_column_of_an_axis_says_its_unit_and_role_and_a_taken_name_its_whole_path() {
-        let column = |key: &str, values: &str| {
-            let text = format!("v = {values}");
-            let table: toml::Table = text.parse().unwrap();
-            let axis = StudyAxis {
-                key: key.to_owned(),
-                values: table["v"].as_array().unwrap().clone(),
-                has_column: false,
-                line: None,
-            };
-            axis.column(|name| name == "frames")
+    fn a_column_has_the_description_of_its_key_and_a_taken_name_its_whole_path() {
+        const KEYS: &[KeyAbout] = keys! {
+            "skin.stiffness_n_per_m": Axes, Choice, Range::Positive;
+            "skin.friction": Axes, Condition, Range::NotNegative;
+            "touches.frames": Table, Choice, Range::AtLeastOne, title: "frames a touch", scale: Scale::Log;
+            "touches.depth_mm": Axes, Choice, Range::Positive;
+            "recognition.solver": Axes, Choice, Range::Any;
         };
-        let depth = column("touches.depth_mm", "[1.0, 2, 4]");
-        let shown = (&depth.name[..], depth.title(), depth.role, depth.scale);
-        let expected = (
-            "depth_mm",
-            "depth (mm)".to_owned(),
-            Role::Choice,
-            Scale::Linear,
-        );
-        assert_eq!(shown, expected);
-        let stiffness = column("skin.stiffness_n_per_m", "[10, 1000]");
-        assert_eq!(
-            (stiffness.title(), stiffness.scale),
-            ("stiffness (N/m)".to_owned(), Scale::Log)
-        );
-        assert_eq!(
-            column("human_touch.frames", "[1]").name,
-            "human_touch_frames"
-        );
-        assert_eq!(column("seed", "[1]").role, Role::Subject);
-        // The split and the recorded data are not choices of a designer.
-        for key in [
-            "recognition.split",
-            "recognition.group_by",
-            "recognition.group_by_mm",
-            "recognition.group_by_deg",
-            "recognition.test_fraction",
-            "recognition.folds",
-            "recorded.groups",
+        let axis = |key: &str, values: &str| {
+            let table: toml::Table = format!("v = {values}").parse().unwrap();
+            StudyAxis::new(key.to_owned(), table["v"].as_array().unwrap().clone(), KEYS)
+        };
+        let column = |key: &str, values: &str| axis(key, values).column(|name| name == "frames");
+        for (key, values, name, title, role, scale) in [
+            (
+                "touches.depth_mm",
+                "[1.0, 2, 4]",
+                "depth_mm",
+                "depth (mm)",
+                Role::Choice,
+                Scale::Linear,
+            ),
+            (
+                "touches.depth_mm.within",
+                "[1, 16]",
+                "depth_mm",
+                "depth (mm)",
+                Role::Choice,
+                Scale::Log,
+            ),
+            (
+                "test.touches.depth_mm",
+                "[1, 2]",
+                "test_depth_mm",
+                "test depth (mm)",
+                Role::Condition,
+                Scale::Linear,
+            ),
+            (
+                "touches.frames",
+                "[1, 2]",
+                "touches_frames",
+                "frames a touch",
+                Role::Choice,
+                Scale::Log,
+            ),
+            (
+                "skin.stiffness_n_per_m",
+                "[10, 1000]",
+                "stiffness_n_per_m",
+                "stiffness (N/m)",
+                Role::Choice,
+                Scale::Log,
+            ),
+            (
+                "skin.friction",
+                "[0.0, 1.0]",
+                "friction",
+                "friction",
+                Role::Condition,
+                Scale::Linear,
+            ),
+            (
+                "recognition.solver",
+                "[\"smo\"]",
+                "solver",
+                "solver",
+                Role::Choice,
+                Scale::Words,
+            ),
+            (
+                "other.a_b",
+                "[1]",
+                "a_b",
+                "a b",
+                Role::Choice,
+                Scale::Linear,
+            ),
         ] {
-            assert_eq!(column(key, "[\"a\"]").role, Role::Condition, "{key}");
+            let column = column(key, values);
+            let found = (
+                &column.name[..],
+                &column.title()[..],
+                column.role,
+                column.scale,
+            );
+            assert_eq!(found, (name, title, role, scale), "{key}");
         }
-        assert_eq!(column("touches.rest", "[\"stable\"]").role, Role::Condition);
-        assert_eq!(
-            column("recognition.solver", "[\"smo\"]").scale,
-            Scale::Words
-        );
+        assert!(axis("touches.frames", "[1]").has_column);
+        assert!(!axis("test.touches.frames", "[1]").has_column);
+        assert!(!axis("touches.{frames,depth_mm}", "[1]").has_column);
     }
 }

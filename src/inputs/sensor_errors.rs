@@ -1,5 +1,7 @@
 //! Strengths of a study's sensor errors, and the skin of the test touches.
 
+use crate::inputs::keys::{AxisPlace, KeyAbout};
+use crate::inputs::range::Range;
 use crate::random::Seed;
 use crate::signal::{MAX_STRENGTHS, NoiseUnit, SENSOR_ERRORS, SensorError, SignalStep, Strength};
 use crate::table::{Column, Role, Scale};
@@ -37,19 +39,34 @@ pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)>
     })
 }
 
-/// Returns the table columns of all sensor-error strengths, in the order of [`all_strengths`].
-pub fn strength_columns() -> &'static [Column] {
-    static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
-        let column = |(_, strength): (SensorError, &'static Strength)| {
+/// Returns the descriptions of the keys of all strengths, in the order of [`all_strengths`].
+pub fn strength_keys() -> &'static [KeyAbout] {
+    static KEYS: LazyLock<Vec<KeyAbout>> = LazyLock::new(|| {
+        let about = |(_, strength): (SensorError, &'static Strength)| {
             let scale = match strength.unit {
                 "%" => Scale::Share,
                 _ => Scale::Linear,
             };
-            let (key, words, unit) = (strength.key, strength.words, strength.unit);
-            let column = Column::new(key, Role::Condition, words, unit, scale);
-            column.named(strength.names).optional()
+            let path: &'static str = format!("signal.{}", strength.key).leak();
+            let range = Range::Of(strength.is_allowed, strength.allowed);
+            KeyAbout {
+                title: Some(strength.words),
+                unit: Some(strength.unit),
+                scale: Some(scale),
+                names: Some(strength.names),
+                ..KeyAbout::new(path, AxisPlace::Table, Role::Condition, range)
+            }
         };
-        all_strengths().map(column).collect()
+        all_strengths().map(about).collect()
+    });
+    &KEYS
+}
+
+/// Returns the table columns of all strengths, in the order of [`all_strengths`].
+pub fn strength_columns() -> &'static [Column] {
+    static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
+        let keys = strength_keys().iter();
+        keys.map(|key| key.column(key.name()).optional()).collect()
     });
     &COLUMNS
 }

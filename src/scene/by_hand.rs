@@ -9,7 +9,7 @@ use super::plan_object::Movement;
 use super::simulation::Simulation;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::inputs::check::positive;
+use crate::inputs::range::positive;
 use crate::spelling::known;
 use crate::world::{Interpolation, JointTrajectory};
 use ndarray::Array2;

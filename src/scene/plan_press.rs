@@ -5,7 +5,7 @@ use super::plan_patch::PlannedPatch;
 use super::reader::{MM, Reader};
 use super::spec::PressSpec;
 use crate::error::Result;
-use crate::inputs::check::{not_negative, positive};
+use crate::inputs::range::{not_negative, positive};
 use glam::DVec3;
 
 /// Force control of an object that is pressed onto a patch.

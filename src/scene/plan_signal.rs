@@ -4,7 +4,7 @@ use super::frame::PatchReading;
 use super::reader::{MM, Reader};
 use super::spec::SignalStepSpec;
 use crate::error::Result;
-use crate::inputs::check::not_negative;
+use crate::inputs::range::not_negative;
 use crate::inputs::sensor_errors::{NOISES, all_strengths};
 use crate::random::Seed;
 use crate::signal::{

@@ -4,7 +4,7 @@ use super::numbers::Numbers;
 use super::reader::{MM, Reader};
 use super::spec::PatchSpec;
 use crate::error::{Error, Result};
-use crate::inputs::check::{not_negative, positive};
+use crate::inputs::range::{not_negative, positive};
 use crate::numbers_csv::NumberTable;
 use crate::spelling::nearest_names;
 use crate::world::{PerTaxel, Shear, Shears, Taxel, Taxels};

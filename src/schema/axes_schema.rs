@@ -1,8 +1,10 @@
 //! JSON Schemas of the tables `[axes]` and `[test]`, which repeat keys of other tables.
 
 use super::study_schema::properties;
+use crate::inputs::keys::AxisPlace;
+use crate::inputs::toml_value::is_at;
 use crate::studies::recognition::plan::tested::{SHARED, TABLES};
-use crate::studies::recognition::spec::study::AXIS_RULES;
+use crate::studies::recognition::spec::keys::recognition_keys;
 use serde_json::{Map, Value, json};
 
 /// Adds the tables `[test]` and `[axes]` to the schema of a recognition study.
@@ -48,7 +50,8 @@ fn remove_required(table: &mut Value) {
 fn axes_table(schema: &Value) -> Value {
     let mut axes = Map::new();
     for (name, of_key) in properties(schema) {
-        if !AXIS_RULES.refused.contains(&&name[..]) {
+        let mut keys = recognition_keys().iter();
+        if keys.any(|key| is_at(key.path, name) && key.axis != AxisPlace::Never) {
             add_paths(name, of_key, &mut axes);
             axes.insert(name.clone(), lists(of_key));
         }

@@ -31,6 +31,7 @@ use crate::engine::axes::AxisValues;
 use crate::error::{Error, Result};
 use crate::files::{OwnedFiles, RUN, with_folder};
 use crate::inputs::check::Check;
+use crate::inputs::keys::KeyAbout;
 use crate::report::csv_tables::FAILURES_FILE;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::table::Table;
@@ -45,6 +46,7 @@ struct Entry {
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
     tables: TableFiles,
     schema: fn(SchemaGenerator) -> Schema,
+    keys: fn() -> Vec<KeyAbout>,
 }
 
 /// Registry of all kinds of studies.
@@ -65,6 +67,7 @@ const fn entry<K: Study>() -> Entry {
         load: |source| Ok(Box::new(Loaded::<K>::load(source)?)),
         tables: K::TABLES,
         schema: SchemaGenerator::into_root_schema_for::<K::Spec>,
+        keys: K::keys,
     }
 }
 
@@ -81,6 +84,17 @@ pub(crate) const RECOGNITION_TABLE: &str = RECOGNITION.about.table;
 /// Returns the kind of a study file; `None` if the file has no table of a kind.
 pub fn about(text: &str) -> Option<About> {
     find(text).map(|entry| entry.about)
+}
+
+/// Returns the descriptions of all keys of a kind of study, such as `recognition` or `stability`. Returns `None` if there is no such kind.
+pub fn keys(kind: &str) -> Option<Vec<KeyAbout>> {
+    let entry = KINDS.iter().find(|entry| entry.about.table == kind)?;
+    Some((entry.keys)())
+}
+
+/// Returns the tables that identify the kinds of study, for [`keys`].
+pub fn kinds() -> impl Iterator<Item = &'static str> {
+    KINDS.iter().map(|entry| entry.about.table)
 }
 
 /// Reads and checks a study of any kind. A file without a table of a kind is read as a recognition study.

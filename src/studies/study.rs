@@ -5,6 +5,7 @@ use crate::engine::work_items::{
     ItemFailure, ItemRows, PendingItems, RunOptions, Scale, StudyRun, WorkItem,
 };
 use crate::error::Result;
+use crate::inputs::keys::KeyAbout;
 use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
 use crate::table::{ChartSpec, Columns, File, Table};
@@ -191,6 +192,9 @@ pub trait Study: Send + Sized + Sync + 'static {
 
     /// Rows that a work item returns.
     type Rows: ItemRows;
+
+    /// Returns the descriptions of all keys of the kind's study files, in the order of a file.
+    fn keys() -> Vec<KeyAbout>;
 
     /// Reads and checks a study, and loads its objects.
     ///

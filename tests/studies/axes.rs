@@ -164,7 +164,7 @@ fn a_combination_that_a_check_refuses_is_told_with_its_axis() {
         depth.contains("axes.\"touches.depth_mm\": touches.depth_mm = -1.0;"),
         "{depth}"
     );
-    assert!(depth.contains("positive numbers"), "{depth}");
+    assert!(depth.contains("a positive number"), "{depth}");
     let k = said(&format!(
         "{rest}touches.depth_mm = [1.0]\nrecognition.n_neighbours = [3, 0]"
     ));

@@ -21,6 +21,7 @@ mod hardware;
 mod images;
 mod intervals;
 mod kept_packings;
+mod keys;
 mod kinds_of_study;
 mod laws;
 mod layouts;

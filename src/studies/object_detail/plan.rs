@@ -1,11 +1,15 @@
 //! Plan of an object-detail study: checked keys, converted to SI units.
 
 use crate::error::Result;
-use crate::inputs::check::{Check, Range, SURFACE_ERROR, TOUCHES};
+use crate::inputs::check::Check;
+use crate::inputs::keys::{KeyAbout, keys};
+use crate::inputs::range::Range::{Any, Count};
+use crate::inputs::range::{SURFACE_ERROR, TOUCHES};
 use crate::studies::object_detail::spec::{
     DetailMethod, DetailRecognitionSpec, ObjectDetailStudySpec,
 };
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::keys::shared_keys;
 use crate::world::Placement;
 use std::path::PathBuf;
 
@@ -25,16 +29,23 @@ pub struct ObjectDetailPlan {
 /// Maximum number of measured points of a mesh; all points are in memory together.
 const MAX_POINTS: usize = 10_000_000;
 
-/// Allowed values of the numeric keys of `[object_detail]`.
-const KEYS: [(&str, Range); 7] = [
-    ("tolerances_mm", SURFACE_ERROR),
-    ("methods", Range::Any),
-    ("surface_points", Range::Count(1, MAX_POINTS)),
-    ("recognition.measurements", TOUCHES),
-    ("recognition.training_touches", TOUCHES),
-    ("recognition.test_touches", TOUCHES),
-    ("recognition.classifiers", Range::Any),
-];
+/// Keys of `[object_detail]`.
+const KEYS: &[KeyAbout] = keys! {
+    "object_detail.tolerances_mm": Table, Choice, SURFACE_ERROR;
+    "object_detail.methods": Table, Choice, Any;
+    "object_detail.surface_points": Never, Note, Count(1, MAX_POINTS);
+    "object_detail.recognition.training_touches": Never, Choice, TOUCHES;
+    "object_detail.recognition.test_touches": Never, Condition, TOUCHES;
+    "object_detail.recognition.ensemble": Never, Choice, Any;
+    "object_detail.recognition.measurements": Never, Choice, TOUCHES;
+    "object_detail.recognition.classifiers": Table, Choice, Any;
+};
+
+/// Returns the descriptions of all keys of an object-detail study.
+pub fn object_detail_keys() -> Vec<KeyAbout> {
+    let tables = ["question", "expected", "seed", "objects", "skin", "touches"];
+    [&shared_keys(&tables, &[]), KEYS].concat()
+}
 
 impl ObjectDetailPlan {
     /// Creates the plan of a study and checks all keys.

@@ -4,10 +4,12 @@ use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
+use crate::inputs::keys::KeyAbout;
 use crate::inputs::object_files::{NamedMesh, load_named_meshes, objects_content};
 use crate::studies::model_recognition::check_apart;
 use crate::studies::object_detail::measured::Measured;
 use crate::studies::object_detail::plan::ObjectDetailPlan;
+use crate::studies::object_detail::plan::object_detail_keys;
 use crate::studies::object_detail::recognition::{Learned, Sensor};
 use crate::studies::object_detail::rows::{
     DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
@@ -111,6 +113,10 @@ impl Study for ObjectDetailStudy {
 
     type Spec = ObjectDetailStudySpec;
     type Rows = DetailRows;
+
+    fn keys() -> Vec<KeyAbout> {
+        object_detail_keys()
+    }
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ObjectDetailStudySpec::parse(&source.place, &source.text)?;

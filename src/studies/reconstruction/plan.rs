@@ -3,12 +3,17 @@
 use crate::engine::axes::CombineSpec;
 use crate::engine::work_items::shared::Shared;
 use crate::error::Result;
-use crate::inputs::check::{COUNT, Check, Range};
+use crate::inputs::check::Check;
+use crate::inputs::keys::{KeyAbout, keys};
+use crate::inputs::range::COUNT;
+use crate::inputs::range::Range::{Any, Count, Part, Positive};
+use crate::inputs::sensor_errors::NOISES;
 use crate::inputs::units::MM;
 use crate::random::Seed;
 use crate::sensing::{Basis, Dictionary, Effort, Ensemble, Projection, Solver};
 use crate::signal::{Noise, NoiseUnit, Quantity, SignalStep};
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
+use crate::studies::recognition::spec::keys::shared_keys;
 use crate::studies::recognition::spec::signal::{SignalSpec, StepSpec};
 use crate::studies::recognition::sweep::configurations::nested;
 use crate::studies::reconstruction::rows::ReconstructionCell;
@@ -40,19 +45,33 @@ const MAX_SUBSETS: usize = 1_000_000;
 /// Maximum number of atoms of a dictionary, more than any array has taxels. The minimum is two, because λ = √(2 ln k) vanishes for k = 1 atom.
 const MAX_ATOMS: usize = 100_000_000;
 
-/// Allowed values of the numeric keys of `[reconstruction]`.
-const KEYS: [(&str, Range); 10] = [
-    ("dictionary", Range::Any),
-    ("atoms", Range::Count(2, MAX_ATOMS)),
-    ("solver", Range::Any),
-    ("most_atoms", COUNT),
-    ("most_steps", COUNT),
-    ("lambda_scale", Range::Positive),
-    ("tolerance", Range::Positive),
-    ("test_fraction", Range::Part),
-    ("isometry_sparsity", COUNT),
-    ("isometry_subsets", Range::Count(1, MAX_SUBSETS)),
-];
+/// Keys of `[reconstruction]`.
+const KEYS: &[KeyAbout] = keys! {
+    "reconstruction.solver": Table, Choice, Any;
+    "reconstruction.dictionary": Table, Choice, Any;
+    "reconstruction.atoms": Never, Choice, Count(2, MAX_ATOMS);
+    "reconstruction.most_atoms": Never, Choice, COUNT;
+    "reconstruction.lambda_scale": Never, Choice, Positive;
+    "reconstruction.tolerance": Never, Choice, Positive;
+    "reconstruction.most_steps": Never, Choice, COUNT;
+    "reconstruction.test_fraction": Never, Condition, Part;
+    "reconstruction.isometry_sparsity": Table, Condition, COUNT;
+    "reconstruction.isometry_subsets": Never, Note, Count(1, MAX_SUBSETS);
+};
+
+/// Returns the descriptions of all keys of a reconstruction study.
+pub fn reconstruction_keys() -> Vec<KeyAbout> {
+    let tables = [
+        "question", "expected", "seed", "objects", "skin", "touches", "signal", "sensing",
+    ];
+    let noise = NOISES.map(|(key, _)| format!("signal.{key}"));
+    let axes: Vec<&str> = noise
+        .iter()
+        .map(String::as_str)
+        .chain(["sensing"])
+        .collect();
+    [&shared_keys(&tables, &axes), KEYS].concat()
+}
 
 impl ReconstructionPlan {
     /// Creates the plan of a study and checks all keys.

@@ -6,6 +6,7 @@ use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::shared::Shared;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
+use crate::inputs::keys::KeyAbout;
 use crate::inputs::object_files::{load_objects, objects_content};
 use crate::random::Seed;
 use crate::report::study_content::Beyond;
@@ -13,6 +14,7 @@ use crate::studies::found_and_cost;
 use crate::studies::recognition::touches::drawn_touches::{TouchedObject, draw_touches};
 use crate::studies::reconstruction::measured::measure_cells;
 use crate::studies::reconstruction::plan::ReconstructionPlan;
+use crate::studies::reconstruction::plan::reconstruction_keys;
 use crate::studies::reconstruction::rows::{
     EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionRows,
     ReconstructionScore, ReconstructionTime,
@@ -76,6 +78,10 @@ impl Study for ReconstructionStudy {
 
     type Spec = ReconstructionStudySpec;
     type Rows = ReconstructionRows;
+
+    fn keys() -> Vec<KeyAbout> {
+        reconstruction_keys()
+    }
 
     fn load(source: &Source) -> Result<Self> {
         let mut spec = ReconstructionStudySpec::parse(&source.place, &source.text)?;

@@ -4,10 +4,12 @@ use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
 use crate::engine::work_items::work_item::WorkItem;
 use crate::error::Result;
+use crate::inputs::keys::KeyAbout;
 use crate::inputs::units::millimetres;
 use crate::studies::source::Source;
 use crate::studies::stability::configuration::measure;
 use crate::studies::stability::peers::peer_rows;
+use crate::studies::stability::plan::STABILITY_KEYS;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{
     Joints, Outcome, StabilityCell, StabilityRow, StabilityScore, StabilitySummary, StabilityTime,
@@ -47,6 +49,10 @@ impl Study for StabilityPlan {
 
     type Spec = StabilityStudySpec;
     type Rows = Vec<StabilityRow>;
+
+    fn keys() -> Vec<KeyAbout> {
+        STABILITY_KEYS.to_vec()
+    }
 
     fn load(source: &Source) -> Result<Self> {
         source.refuse_objects("a ball is what touches")?;

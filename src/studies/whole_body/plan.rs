@@ -2,10 +2,14 @@
 
 use crate::error::Result;
 use crate::geometry::Pose;
-use crate::inputs::check::{COUNT, Check, Range, SURFACE_ERROR, TOUCHES};
+use crate::inputs::check::Check;
+use crate::inputs::keys::{KeyAbout, keys};
+use crate::inputs::range::Range::{Any, Count, NotNegative, Positive, Unchecked};
+use crate::inputs::range::{COUNT, SURFACE_ERROR, TOUCHES};
 use crate::inputs::units::MM;
 use crate::scene::{Movement, ObjectSpec, PlannedRobot, Reader};
 use crate::sensing::Ensemble;
+use crate::studies::recognition::spec::keys::shared_keys;
 use crate::studies::whole_body::spec::{
     BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, WholeBodyStudySpec,
 };
@@ -72,32 +76,48 @@ const MAX_STEPS: usize = 10_000_000;
 /// Maximum number of spheres of a cushion.
 const MAX_SPHERES: usize = 10_000_000;
 
-/// Allowed values of the numeric keys of `[whole_body]`.
-const KEYS: [(&str, Range); 23] = [
-    ("pitch_mm", Range::Positive),
-    ("taxel_radius_mm", Range::Positive),
-    ("stiffness_n_per_m", Range::Positive),
-    ("damping_n_s_per_m", Range::NotNegative),
-    ("stroke_mm", Range::Positive),
-    ("patch_mm", Range::Positive),
-    ("step_ms", Range::Positive),
-    ("surface_error_mm", SURFACE_ERROR),
-    ("steps", Range::Count(1, MAX_STEPS)),
-    ("sensing.measurements", COUNT),
-    ("sensing.ensembles", Range::Any),
-    ("sensing.sbhe_blocks", Range::Any),
-    ("recognition.objects", Range::Any),
-    ("recognition.offset_mm", Range::NotNegative),
-    ("recognition.yaw_deg", Range::NotNegative),
-    ("recognition.training_touches", TOUCHES),
-    ("recognition.test_touches", TOUCHES),
-    ("ladders.taxels", COUNT),
-    ("ladders.touched_at_taxels", COUNT),
-    ("ladders.touched", COUNT),
-    ("ladders.spheres", Range::Count(1, MAX_SPHERES)),
-    ("ladders.touched_at_spheres", COUNT),
-    ("ladders.taxels_at_touch", COUNT),
-];
+/// Keys of `[whole_body]`.
+const KEYS: &[KeyAbout] = keys! {
+    "whole_body.robot": Never, Condition, Unchecked;
+    "whole_body.pitch_mm": Never, Choice, Positive;
+    "whole_body.patch_mm": Never, Choice, Positive;
+    "whole_body.flat_ends": Never, Choice, Any;
+    "whole_body.taxel_radius_mm": Never, Choice, Positive;
+    "whole_body.stroke_mm": Never, Choice, Positive;
+    "whole_body.stiffness_n_per_m": Never, Choice, Positive;
+    "whole_body.damping_n_s_per_m": Never, Choice, NotNegative;
+    "whole_body.step_ms": Never, Choice, Positive;
+    "whole_body.steps": Never, Note, Count(1, MAX_STEPS);
+    "whole_body.surface_error_mm": Never, Condition, SURFACE_ERROR;
+    "whole_body.scenes.name": Never, Subject, Unchecked;
+    "whole_body.scenes.joints": Never, Condition, Unchecked;
+    "whole_body.scenes.object": Never, Condition, Unchecked;
+    "whole_body.scenes.from": Never, Condition, Unchecked;
+    "whole_body.scenes.depth_mm": Never, Condition, Positive;
+    "whole_body.sensing.measurements": Never, Choice, COUNT;
+    "whole_body.sensing.ensembles": Table, Choice, Any;
+    "whole_body.sensing.sbhe_blocks": Table, Choice, Any;
+    "whole_body.recognition.objects": Never, Subject, Any;
+    "whole_body.recognition.link": Never, Condition, Unchecked;
+    "whole_body.recognition.at_mm": Never, Condition, Unchecked;
+    "whole_body.recognition.from": Never, Condition, Unchecked;
+    "whole_body.recognition.offset_mm": Never, Condition, NotNegative;
+    "whole_body.recognition.yaw_deg": Never, Condition, NotNegative;
+    "whole_body.recognition.depth_mm": Never, Condition, Unchecked;
+    "whole_body.recognition.training_touches": Never, Choice, TOUCHES;
+    "whole_body.recognition.test_touches": Never, Condition, TOUCHES;
+    "whole_body.ladders.taxels": Table, Condition, COUNT;
+    "whole_body.ladders.touched_at_taxels": Table, Condition, COUNT;
+    "whole_body.ladders.touched": Table, Condition, COUNT;
+    "whole_body.ladders.spheres": Table, Condition, Count(1, MAX_SPHERES);
+    "whole_body.ladders.touched_at_spheres": Never, Condition, COUNT;
+    "whole_body.ladders.taxels_at_touch": Never, Condition, COUNT;
+};
+
+/// Returns the descriptions of all keys of a whole-body study.
+pub fn whole_body_keys() -> Vec<KeyAbout> {
+    [&shared_keys(&["question", "expected", "seed"], &[]), KEYS].concat()
+}
 
 impl WholeBodyPlan {
     /// Creates the plan of a study and checks all keys; the path of the robot is relative to `folder`.
@@ -177,7 +197,7 @@ fn scene_plan(
     let prefix = format!("whole_body.scenes[{number}]");
     let key = |name: &str| format!("{prefix}.{name}");
     let check = &reader.check;
-    check.keys(&prefix, scene, [("depth_mm", Range::Positive)])?;
+    check.keys(&prefix, scene, KEYS)?;
     let object = &scene.object;
     let misplaced = [
         ("free", object.free.is_some()),

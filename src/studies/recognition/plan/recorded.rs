@@ -2,7 +2,7 @@
 
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
-use crate::inputs::check::{Check, not_negative, positive};
+use crate::inputs::check::Check;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::MM;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
@@ -55,19 +55,16 @@ impl Check<'_> {
             let allowed = "no such key: recorded.groups says what stays together";
             return Err(self.error("recognition.group_by", "given", allowed));
         }
-        let (key, allowed) = ("recorded.zero", "a finite number");
+        self.table("recorded", recorded)?;
         let zero = match recorded.zero {
-            ZeroSpec::One(zero) => self.value(key, zero, f64::is_finite, allowed)?,
-            // Zeros from a file are compared with the full scale later, when the frames are read.
+            ZeroSpec::One(zero) => zero,
+            // Zeros from a file are compared with the full scale when the frames are read.
             ZeroSpec::Each(_) => f64::NEG_INFINITY,
         };
         if let Some(full_scale) = recorded.full_scale
-            && !(full_scale.is_finite() && full_scale > zero)
+            && full_scale <= zero
         {
-            let allowed = match zero.is_finite() {
-                true => format!("a number above recorded.zero, {zero}"),
-                false => allowed.to_owned(),
-            };
+            let allowed = format!("a number above recorded.zero, {zero}");
             return Err(self.error("recorded.full_scale", full_scale, allowed));
         }
         self.of_time(recorded, spec)?;
@@ -108,12 +105,6 @@ impl Check<'_> {
 
     /// Checks the keys for the speed and for the time between frames.
     fn of_time(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<()> {
-        self.value(
-            "recorded.speed_mm_per_s",
-            recorded.speed_mm_per_s,
-            not_negative,
-            "a number of mm/s, zero or more",
-        )?;
         if spec.skin.damping_n_s_per_m == 0.0
             && recorded.speed_mm_per_s > 0.0
             && recorded.depths.is_none()
@@ -128,12 +119,6 @@ impl Check<'_> {
         let Some(interval) = recorded.frame_interval_s else {
             return Ok(());
         };
-        self.value(
-            "recorded.frame_interval_s",
-            interval,
-            positive,
-            "a positive number of seconds",
-        )?;
         match recorded.speed_mm_per_s > 0.0 && recorded.depths.is_some() {
             true => {
                 let allowed = "no such key: recorded.depths and recorded.speed_mm_per_s say how much time goes on between frames";

@@ -2,7 +2,7 @@
 
 use crate::engine::axis::Axis;
 use crate::error::Result;
-use crate::inputs::check::{Check, MAX_VALUES, positive};
+use crate::inputs::check::{Check, MAX_VALUES};
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::{MAX_SIDE, MM};
 use crate::mesh::SizeLimits;
@@ -220,10 +220,6 @@ impl Check<'_> {
         spread: &SpreadSpec,
         unit: f64,
     ) -> Result<Spread> {
-        let (is_allowed, allowed): (fn(f64) -> bool, _) = match key {
-            "touches.depth_mm" => (positive, "positive numbers of millimetres"),
-            _ => (f64::is_finite, "finite numbers"),
-        };
         let values = match *spread {
             SpreadSpec::Range(RangeSpec::Within(0.0)) => vec![0.0],
             SpreadSpec::Range(RangeSpec::Within(half_width)) => {
@@ -241,7 +237,7 @@ impl Check<'_> {
             SpreadSpec::One(value) => vec![value],
         };
         for &value in &values {
-            self.value(key, value, is_allowed, allowed)?;
+            self.number(key, value)?;
         }
         let ends = match *spread {
             SpreadSpec::Range(RangeSpec::Uniform(low, high)) => Some((low, high)),

@@ -3,8 +3,8 @@
 use crate::engine::axes::CombineSpec;
 use crate::engine::axis::Axis;
 use crate::error::Result;
-use crate::inputs::check::{Check, Range};
-use crate::inputs::sensor_errors::{NOISES, Strengths, all_strengths};
+use crate::inputs::check::Check;
+use crate::inputs::sensor_errors::{NOISES, Strengths};
 use crate::inputs::units::MM;
 use crate::signal::{NoiseUnit, SENSOR_ERRORS, Strength};
 use crate::studies::recognition::plan::study_plan::Plan;
@@ -60,9 +60,6 @@ impl Check<'_> {
 
     /// Checks the strengths of sensor errors. Errors that act only during motion require that the press moves while frames are read.
     pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
-        let range = |strength: &Strength| Range::Of(strength.is_allowed, strength.allowed);
-        let ranges = all_strengths().map(|(_, strength)| (strength.key, range(strength)));
-        self.keys("signal", signal, ranges)?;
         let largest = |strength: &Strength| {
             let axis = signal.axes.get(strength.key).into_iter();
             axis.flat_map(Axis::values).fold(0.0, f64::max)

@@ -18,11 +18,7 @@ use crate::world::Placement;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Maximum number of trials of a study; the splits of all trials are in memory before the first trial runs.
-pub(crate) const MAX_TRIALS: usize = 100_000;
-
-/// Rounds a converted number to the decimal that was written, for example to 30 instead of 29.999999999999996. Numbers with more than nine decimals are
-/// unchanged.
+/// Rounds a converted number to the decimal that was written: 30, not 29.999999999999996. Numbers that are not decimals of nine places are unchanged.
 pub fn as_written(value: f64) -> f64 {
     let decimal = (value * 1e9).round() / 1e9;
     match (decimal - value).abs() <= 4.0 * f64::EPSILON * value.abs() {
@@ -69,7 +65,7 @@ impl Plan {
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub(crate) fn with_any_keys(place: &str, mut spec: StudySpec) -> Result<Self> {
         let check = Check { place };
-        check.count("trials", spec.trials, MAX_TRIALS)?;
+        check.number("trials", spec.trials as f64)?;
         check.layout(&spec)?;
         check.shear(&spec)?;
         if let Some(recorded) = &mut spec.recorded {

@@ -9,24 +9,18 @@ use crate::sensing::Ensemble;
 use crate::signal::NoiseUnit;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
+use crate::studies::recognition::spec::keys::key;
 use crate::table::{Column, Columns, Role, Scale};
 use bubbletouch_sim::features::Features;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::borrow::Cow;
 
-const OVER_TIME: &[(&str, &str)] = &[
-    ("", "all frames"),
-    ("deepest", "deepest frame"),
-    ("summarised", "moments and course"),
-];
-const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
-
-/// Declares a configuration: each parameter has a type, a column, and a condition under which the column exists. The struct, the columns and the file format
+/// Declares a configuration: each parameter has a type, a condition under which its column exists, and the key that describes the column (or the column itself). The struct, the columns and the file format
 /// are generated from this list, in its order.
 macro_rules! configuration {
     ($(#[$of_cell:meta])* pub struct $configuration:ident {
-        $($(#[$of_field:meta])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(named $names:expr)?;)*
+        $($(#[$of_field:meta])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(of $key:literal)?;)*
     }) => {
         $(#[$of_cell])*
         #[derive(Clone, Debug, PartialEq)]
@@ -51,7 +45,7 @@ macro_rules! configuration {
                     #[allow(unused_mut, unused_assignments)]
                     let mut column: Option<Column> = None;
                     $(column = Some(Column::new(stringify!($field), Role::$role, $words, $unit, Scale::$scale));)?
-                    $(column = column.map(|column| column.named($names));)?
+                    $(column = Some(key($key).column(stringify!($field)));)?
                     $how::columns(column, &mut columns);
                 )*
                 columns
@@ -66,7 +60,7 @@ pub struct Configuration {
     /// Number of the configuration in sweep order, from 0.
     configuration: usize => always (Note, "configuration", "", Linear);
     /// Pitch of the taxels, mm: side of the square area per taxel.
-    pitch_mm: f64 => always (Choice, "pitch", "mm", Linear);
+    pitch_mm: f64 => always of "skin.pitch_mm";
     /// Number of taxel columns (along x).
     nx: usize => always (Note, "taxels along x", "", Linear);
     /// Number of taxel rows (along y).
@@ -74,48 +68,48 @@ pub struct Configuration {
     /// Numbers of rows and columns of the array's images.
     image_shape: (usize, usize) => hidden;
     /// Side length of the array along x, mm: nx times the pitch.
-    size_mm: f64 => always (Choice, "array size", "mm", Linear);
+    size_mm: f64 => always of "skin.size_mm";
     /// Noise standard deviation, in `noise_unit`.
-    noise_std: f64 => always (Condition, "noise", "%", Share);
+    noise_std: f64 => always of "signal.noise_std_full_scale";
     /// Unit of `noise_std`: fraction of full scale, mm or N.
     noise_unit: NoiseUnit => always (Note, "noise unit", "", Words);
     /// Standard deviation of the Gaussian smoothing over the array, mm; 0 without smoothing.
-    smoothing_mm: f64 => always (Choice, "smoothing", "mm", Linear);
+    smoothing_mm: f64 => always of "signal.smoothing_mm";
     /// Strength of each sensor error. The study has one column for each strength that it sets.
     strengths: Strengths => each_strength;
     /// Skin of the test touches: the training skin or another one. The column is present only if the study has the key.
-    test_sensor: Option<TestSensor> => if_given (Condition, "test sensor", "", Words);
+    test_sensor: Option<TestSensor> => if_given of "signal.test_sensor";
     /// Ensemble of the measurement matrix.
-    ensemble: Ensemble => always (Choice, "ensemble", "", Words) named Ensemble::NAMES;
+    ensemble: Ensemble => always of "sensing.ensemble";
     /// Number m of measurements per frame.
-    measurements: usize => always (Choice, "m", "", Log);
+    measurements: usize => always of "sensing.measurements";
     /// Compression ratio n / m: values of a frame per measurement.
-    ratio: f64 => always (Choice, "compression", ":1", Log);
+    ratio: f64 => always of "sensing.ratio";
     /// Number F of frames per touch; a row of features has F · m values.
-    frames: usize => always (Choice, "frames a touch", "", Log);
+    frames: usize => always of "touches.frames";
     /// Combination of the frames of a touch into features. The column is present only if the study has the key; without the key, frames are concatenated.
-    temporal_features: Option<TemporalFeatures> => if_given (Choice, "temporal features", "", Words) named OVER_TIME;
+    temporal_features: Option<TemporalFeatures> => if_given of "recognition.temporal_features";
     /// Features that are computed from the measurements.
-    features: Features => always (Choice, "features", "", Words) named Features::NAMES;
+    features: Features => always of "recognition.features";
     /// Depth window of image features behind the foremost point, as a fraction of the full scale; 1 for other features. The column is present only if the study
     /// has the key.
-    depth_window_full_scale: Option<f64> => if_given (Choice, "depth window", "%", Share);
+    depth_window_full_scale: Option<f64> => if_given of "recognition.depth_window_full_scale";
     /// Number of randomly tilted copies of each training touch. The column is present only if the study has the key.
-    tilt_augmentation: Option<usize> => if_given (Choice, "tilt augmentation", "", Linear);
+    tilt_augmentation: Option<usize> => if_given of "recognition.tilt_augmentation";
     /// Kind of classifier.
-    classifier: ClassifierKind => always (Choice, "classifier", "", Words) named ClassifierKind::NAMES;
+    classifier: ClassifierKind => always of "recognition.classifier";
     /// Penalty C; empty if C is chosen by cross-validation or the classifier has no C.
-    c: Option<f64> => always (Choice, "C", "", Log) named CHOSEN;
+    c: Option<f64> => always of "recognition.c";
     /// Maximum number of training touches per object.
-    train_touches: usize => always (Choice, "training touches", "", Log);
+    train_touches: usize => always of "recognition.train_touches";
     /// Fraction of training touches that are labelled as another object, 0 to 1. The column is present only if the study has the key.
-    mislabelled_fraction: Option<f64> => if_given (Condition, "mislabelled", "%", Share);
+    mislabelled_fraction: Option<f64> => if_given of "recognition.mislabelled_fraction";
     /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1. The column is present only if the study has the key.
-    class_imbalance: Option<f64> => if_given (Condition, "class imbalance", ":1", Log);
+    class_imbalance: Option<f64> => if_given of "recognition.class_imbalance";
     /// Number of test touches of an object that are combined into one decision by the sum of their scores.
-    touches_per_decision: usize => always (Choice, "touches per decision", "", Log);
+    touches_per_decision: usize => always of "recognition.touches_per_decision";
     /// Policy that chooses the touches of a decision after the first one. The column is present only if the study has the key.
-    next_touch: Option<NextTouch> => if_given (Choice, "next touch", "", Words);
+    next_touch: Option<NextTouch> => if_given of "recognition.next_touch";
     /// Values of the axes in `[axes]`, one column per axis.
     variant: AxisValues => each_axis;
 } }

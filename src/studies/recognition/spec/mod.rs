@@ -1,6 +1,7 @@
 //! Specification of a recognition study: the keys of its TOML file.
 
 pub mod human;
+pub mod keys;
 pub mod pose_split;
 pub mod recorded;
 pub mod scene;

@@ -4,10 +4,11 @@
 //! list of values.
 
 use crate::engine::axes;
-use crate::engine::axes::{AxisRules, StudyAxes};
+use crate::engine::axes::StudyAxes;
 use crate::engine::axis::{Axis, one_value};
 use crate::error::Result;
 use crate::inputs::defaults::{count, is_default, number};
+use crate::inputs::keys::AxisPlace;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::schema_types::{FeatureNames, Names};
 use crate::inputs::toml_value::value_at;
@@ -18,6 +19,7 @@ use crate::sensing::Ensemble;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::TrialScore;
 pub use crate::studies::recognition::spec::human::*;
+use crate::studies::recognition::spec::keys::recognition_keys;
 use crate::studies::recognition::spec::pose_split::GroupSpec;
 pub use crate::studies::recognition::spec::pose_split::PoseSplit;
 pub use crate::studies::recognition::spec::recorded::*;
@@ -79,46 +81,7 @@ pub struct StudySpec {
     pub axes: StudyAxes,
 }
 
-/// Keys that accept a list of values in their own table. If one of them is given in `[axes]`, its values are moved to its own table. In `[signal]`, all keys
-/// except `steps` and `combine` are axes.
-const AXES_IN_PLACE: &[&str] = &[
-    "skin.pitch_mm",
-    "skin.size_mm",
-    "skin.taxels",
-    "touches.frames",
-    "sensing.ensemble",
-    "sensing.ratio",
-    "sensing.measurements",
-    "recognition.features",
-    "recognition.depth_window_full_scale",
-    "recognition.tilt_augmentation",
-    "recognition.temporal_features",
-    "recognition.classifier",
-    "recognition.c",
-    "recognition.train_touches",
-    "recognition.mislabelled_fraction",
-    "recognition.class_imbalance",
-    "recognition.touches_per_decision",
-    "recognition.next_touch",
-];
-
-/// Keys that cannot be axes: all trials use the same touches, and texts and reports belong to the whole study.
-pub(crate) const AXIS_RULES: AxisRules = AxisRules {
-    in_place: |key| match key.strip_prefix("signal.") {
-        Some(key) => !matches!(key, "steps" | "combine"),
-        None => AXES_IN_PLACE.contains(&key),
-    },
-    refused: &[
-        "question",
-        "expected",
-        "trials",
-        "projections_per_split",
-        "report",
-        "axes",
-    ],
-};
-
-/// Keys of `[sensing]`: compression of frames into measurements.
+/// `[sensing]`: compression of frames into measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensingSpec {
@@ -282,7 +245,7 @@ impl StudySpec {
     /// # Errors
     /// If the text is not a valid study. The error names the file, the line and the key.
     pub fn parse(place: &str, text: &str) -> Result<Self> {
-        let (spec, axes) = axes::read::<Self>(place, text, AXIS_RULES)?;
+        let (spec, axes) = axes::read::<Self>(place, text, recognition_keys())?;
         Ok(Self { axes, ..spec })
     }
 
@@ -300,10 +263,13 @@ impl StudySpec {
         };
         let table = toml::Table::try_from(without_seed);
         let table = table.expect("every other field of a study has a TOML form");
-        let keys = AXES_IN_PLACE.iter();
-        keys.chain(&["signal.test_sensor"]).map(move |key| {
-            let values = value_at(&table, key).and_then(toml::Value::as_array);
-            (*key, values.map_or(1, Vec::len))
+        let keys = recognition_keys().iter();
+        let keys = keys.filter(|key| key.axis == AxisPlace::Table);
+        let is_condition = |path: &str| path.starts_with("signal.") && path != "signal.test_sensor";
+        let keys = keys.filter(move |key| !is_condition(key.path));
+        keys.map(move |key| {
+            let values = value_at(&table, key.path).and_then(toml::Value::as_array);
+            (key.path, values.map_or(1, Vec::len))
         })
     }
 

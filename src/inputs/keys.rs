@@ -1,0 +1,183 @@
+//! Descriptions of the keys of study files: range, axis, role, title, unit and scale of each key, in one line.
+//!
+//! Types, defaults and texts of the keys are in the structs that read them (`spec.rs`, `spec/`).
+
+use crate::inputs::range::Range;
+use crate::inputs::toml_value::is_at;
+use crate::table::{Column, Role, Scale};
+
+/// Description of one key of a study file.
+#[derive(Clone, Copy, Debug)]
+pub struct KeyAbout {
+    /// Path of the key: `skin.pitch_mm`. Entries of an array of tables share a path: `stability.parts.taxels`.
+    pub path: &'static str,
+    /// Where the key may have a list of values that are swept.
+    pub axis: AxisPlace,
+    /// Role of the key's column in tables.
+    pub role: Role,
+    /// Allowed numbers.
+    pub range: Range,
+    /// Title of the column, if it differs from the name of the key.
+    pub title: Option<&'static str>,
+    /// Unit, if the key has no suffix of a unit.
+    pub unit: Option<&'static str>,
+    /// Scale of the column; if there is none, the scale depends on the swept values.
+    pub scale: Option<Scale>,
+    /// Display names of values; see [`Column::names`].
+    pub names: Option<&'static [(&'static str, &'static str)]>,
+}
+
+/// Place at which a key may have a list of values that are swept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisPlace {
+    /// The key's own table, or `[axes]`.
+    Table,
+    /// `[axes]` only.
+    Axes,
+    /// None: the key is equal in all configurations of a study.
+    Never,
+}
+
+/// A key is identified by its path.
+impl PartialEq for KeyAbout {
+    fn eq(&self, other: &Self) -> bool {
+        self.path == other.path
+    }
+}
+
+/// Units by suffix of the key, longer suffixes first.
+const UNITS: [(&str, &str); 15] = [
+    ("_n_s_per_m", "N·s/m"),
+    ("_mm_per_s", "mm/s"),
+    ("_n_per_m", "N/m"),
+    ("_deg", "°"),
+    ("_gib", "GiB"),
+    ("_mm", "mm"),
+    ("_ms", "ms"),
+    ("_hz", "Hz"),
+    ("_kg", "kg"),
+    ("_us", "µs"),
+    ("_pa", "Pa"),
+    ("_n", "N"),
+    ("_m", "m"),
+    ("_s", "s"),
+    ("_g", "g"),
+];
+
+/// Declares a list of keys, a line for each: path, place as an axis, role, range, and further fields of [`KeyAbout`] if they differ from the default.
+macro_rules! keys {
+    ($($path:literal: $axis:ident, $role:ident, $range:expr $(, $field:ident: $value:expr)*;)*) => {
+        &[$($crate::inputs::keys::KeyAbout {
+            $($field: Some($value),)*
+            ..$crate::inputs::keys::KeyAbout::new(
+                $path,
+                $crate::inputs::keys::AxisPlace::$axis,
+                $crate::table::Role::$role,
+                $range,
+            )
+        }),*]
+    };
+}
+
+pub(crate) use keys;
+
+impl KeyAbout {
+    /// Creates a description without fields that override the name of the key.
+    pub const fn new(path: &'static str, axis: AxisPlace, role: Role, range: Range) -> Self {
+        Self {
+            path,
+            axis,
+            role,
+            range,
+            title: None,
+            unit: None,
+            scale: None,
+            names: None,
+        }
+    }
+
+    /// Returns the last part of the path.
+    pub fn name(&self) -> &'static str {
+        self.path.rsplit('.').next().unwrap_or(self.path)
+    }
+
+    /// Returns the last part of the path without the suffix of a unit, and the unit of the suffix.
+    fn name_and_unit(&self) -> (&'static str, &'static str) {
+        let name = self.name();
+        let found = UNITS.iter().find_map(|(suffix, unit)| {
+            let words = name.strip_suffix(suffix)?;
+            (!words.is_empty()).then_some((words, *unit))
+        });
+        found.unwrap_or((name, ""))
+    }
+
+    /// Returns the title of the key's column, without unit: `depth`.
+    pub fn title(&self) -> String {
+        if let Some(title) = self.title {
+            return title.to_owned();
+        }
+        let words = self.name_and_unit().0.replace('_', " ");
+        match (words.starts_with("per "), self.path.split_once('.')) {
+            (true, Some((table, _))) => format!("{table} {words}"),
+            _ => words,
+        }
+    }
+
+    /// Returns the unit of the key's numbers; empty if there is none. Unit `%`: fractions of one. Unit `:1`: ratios.
+    pub fn unit(&self) -> &'static str {
+        self.unit.unwrap_or(self.name_and_unit().1)
+    }
+
+    /// Returns the column of the key in tables.
+    ///
+    /// # Panics
+    /// If the key has no scale.
+    pub fn column(&self, name: &'static str) -> Column {
+        let scale = self.scale.expect("a key with a column has a scale");
+        let column = Column::new(name, self.role, self.title(), self.unit(), scale);
+        column.named(self.names.unwrap_or_default())
+    }
+}
+
+/// Returns the description of a key, or of the key above it: `touches.depth_mm` for `touches.depth_mm.within`. Returns `None` if the list has no such key.
+pub fn find<'k>(keys: &'k [KeyAbout], path: &str) -> Option<&'k KeyAbout> {
+    let exact = keys.iter().find(|key| key.path == path);
+    exact.or_else(|| keys.iter().find(|key| is_at(path, key.path)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn title_and_unit_come_from_the_name_unless_they_are_given() {
+        const KEYS: &[KeyAbout] = keys! {
+            "skin.damping_n_s_per_m": Axes, Choice, Range::NotNegative;
+            "touches.per_object": Axes, Choice, Range::AtLeastOne;
+            "a.m": Axes, Choice, Range::Any;
+            "a.noise_mm": Axes, Condition, Range::Any, title: "noise", unit: "%", scale: Scale::Share;
+        };
+        let shown = KEYS.iter().map(|key| (key.title(), key.unit()));
+        let expected = [
+            ("damping", "N·s/m"),
+            ("touches per object", ""),
+            ("m", ""),
+            ("noise", "%"),
+        ];
+        let expected = expected.map(|(title, unit)| (title.to_owned(), unit));
+        assert_eq!(shown.collect::<Vec<_>>(), expected);
+        assert_eq!(KEYS[3].column("n").scale, Scale::Share);
+    }
+
+    #[test]
+    fn a_key_below_a_described_key_has_its_description() {
+        const KEYS: &[KeyAbout] = keys! {
+            "a.b": Axes, Choice, Range::Any;
+            "a.b_mm": Axes, Choice, Range::Any;
+        };
+        let path = |path: &str| find(KEYS, path).map(|key| key.path);
+        assert_eq!(path("a.b"), Some("a.b"));
+        assert_eq!(path("a.b_mm.within"), Some("a.b_mm"));
+        assert_eq!((path("a"), path("a.bc")), (None, None));
+    }
+}

@@ -1,0 +1,144 @@
+//! Allowed numbers of a key.
+
+use crate::inputs::units::MAX_SIDE;
+use crate::world::MAX_TOUCHES;
+use std::borrow::Cow;
+
+/// Smallest positive value of a key. Squares and reciprocals of smaller values approach the limits of f64; no quantity is measured in such small values.
+pub const MIN_POSITIVE: f64 = 1e-12;
+
+/// Returns whether a number is at least [`MIN_POSITIVE`].
+pub fn positive(value: f64) -> bool {
+    value.is_finite() && value >= MIN_POSITIVE
+}
+
+/// Returns whether a number is zero or at least [`MIN_POSITIVE`].
+pub fn not_negative(value: f64) -> bool {
+    value == 0.0 || positive(value)
+}
+
+/// Allowed numbers of a key.
+#[derive(Clone, Copy, Debug)]
+pub enum Range {
+    /// Numbers above zero.
+    Positive,
+    /// Numbers of at least zero.
+    NotNegative,
+    /// All finite numbers.
+    Finite,
+    /// Fractions from 0 to 1, including both ends.
+    Fraction,
+    /// Fractions between 0 and 1, excluding both ends.
+    Part,
+    /// Numbers of at least one.
+    AtLeastOne,
+    /// Integers between two bounds, including both.
+    Count(usize, usize),
+    /// Numbers between two bounds, including both, with a description in words.
+    Between(f64, f64, &'static str),
+    /// Zero and the numbers between two positive bounds, including both, with a description in words.
+    ZeroOrBetween(f64, f64, &'static str),
+    /// Numbers that a predicate allows, with a description in words.
+    Of(fn(f64) -> bool, &'static str),
+    /// Texts and truth values. A list of them contains each value once.
+    Any,
+    /// Values that the reader of the key checks: texts, files, vectors and tables.
+    Unchecked,
+}
+
+impl Range {
+    /// Returns whether a number is allowed.
+    pub fn contains(self, value: f64) -> bool {
+        match self {
+            Self::Positive => positive(value),
+            Self::NotNegative => not_negative(value),
+            Self::Finite => value.is_finite(),
+            Self::Fraction => (0.0..=1.0).contains(&value),
+            Self::Part => value > 0.0 && value < 1.0,
+            Self::AtLeastOne => value.is_finite() && value >= 1.0,
+            Self::Count(least, most) => (least as f64..=most as f64).contains(&value),
+            Self::Between(low, high, _) => (low..=high).contains(&value),
+            Self::ZeroOrBetween(low, high, _) => value == 0.0 || (low..=high).contains(&value),
+            Self::Of(is_allowed, _) => is_allowed(value),
+            Self::Any | Self::Unchecked => true,
+        }
+    }
+
+    /// Describes the allowed numbers.
+    pub fn words(self) -> Cow<'static, str> {
+        let words = match self {
+            Self::Positive => "a positive number, at least 1e-12",
+            Self::NotNegative => "zero or a positive number, at least 1e-12",
+            Self::Finite => "a finite number",
+            Self::Fraction => "a fraction, 0 to 1",
+            Self::Part => "between 0 and 1",
+            Self::AtLeastOne => "a number of at least 1",
+            Self::Count(least, most) => {
+                return format!("at least {least} and at most {most}").into();
+            }
+            Self::Between(.., words) | Self::ZeroOrBetween(.., words) | Self::Of(_, words) => words,
+            Self::Any | Self::Unchecked => "any value",
+        };
+        words.into()
+    }
+
+    /// Returns the least and the largest allowed number; infinite if there is no bound. Returns `None` for [`Of`](Self::Of) and for values other than numbers.
+    /// The bounds of [`Part`](Self::Part) are not allowed themselves.
+    pub fn bounds(self) -> Option<[f64; 2]> {
+        Some(match self {
+            Self::Positive => [MIN_POSITIVE, f64::INFINITY],
+            Self::NotNegative => [0.0, f64::INFINITY],
+            Self::Finite => [f64::NEG_INFINITY, f64::INFINITY],
+            Self::Fraction | Self::Part => [0.0, 1.0],
+            Self::AtLeastOne => [1.0, f64::INFINITY],
+            Self::Count(least, most) => [least as f64, most as f64],
+            Self::Between(low, high, _) => [low, high],
+            Self::ZeroOrBetween(_, high, _) => [0.0, high],
+            Self::Of(..) | Self::Any | Self::Unchecked => return None,
+        })
+    }
+}
+
+/// Maximum value of keys that count something. Larger counts exceed memory or take too long.
+pub const MAX_COUNTED: usize = 100_000_000;
+
+/// Numbers from 1 to the largest count.
+pub const COUNT: Range = Range::Count(1, MAX_COUNTED);
+
+/// Numbers of taxels along a side of an array.
+pub const SIDE: Range = Range::Count(1, MAX_SIDE);
+
+/// Numbers of touches per object.
+pub const TOUCHES: Range = Range::Count(1, MAX_TOUCHES);
+
+/// Distances of spheres from a surface, mm. Below a nanometre, rounding errors of coordinates are equally large.
+pub const SURFACE_ERROR: Range = Range::Between(1e-6, f64::MAX, "at least 1e-6 mm");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_contains_its_bounds_and_nothing_beyond() {
+        let beyond = |bound: f64, sign: f64| bound + sign * 1e-3 * bound.abs().max(1e-12);
+        for range in [
+            Range::Positive,
+            Range::Fraction,
+            Range::AtLeastOne,
+            COUNT,
+            TOUCHES,
+            SURFACE_ERROR,
+            Range::ZeroOrBetween(1e-12, 1000.0, ""),
+        ] {
+            let [low, high] = range.bounds().unwrap();
+            assert!(range.contains(low), "{range:?}");
+            assert!(!range.contains(beyond(low, -1.0)), "{range:?}");
+            assert!(!high.is_finite() || range.contains(high), "{range:?}");
+            assert!(!range.contains(beyond(high, 1.0)), "{range:?}");
+            assert!(!range.contains(f64::NAN) && !range.contains(f64::INFINITY));
+        }
+        assert!(!Range::Part.contains(0.0) && !Range::Part.contains(1.0));
+        assert!(!Range::ZeroOrBetween(1e-12, 1.0, "").contains(1e-13));
+        assert!(!Range::Finite.contains(f64::NAN));
+    }
+}
