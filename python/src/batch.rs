@@ -6,7 +6,8 @@ use pyo3::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Maximum number of items that a thread takes at one time. If larger, threads finish at different times; if smaller, threads wait for each other more often.
+/// Maximum number of items that a thread takes at one time. With a larger value, threads finish at different times; with a smaller value, threads wait for each
+/// other more often.
 const MAX_AT_ONCE: usize = 16;
 /// Minimum number of items per thread; for fewer items, waking a thread (5 to 50 µs) takes too long.
 const LEAST_PER_THREAD: usize = 4;

@@ -22,8 +22,8 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Number of points of a mesh at which the error of vertex spheres is measured. If larger, the measurement is slower; if smaller, the largest error may be
-/// missed.
+/// Number of points of a mesh at which the error of vertex spheres is measured. With a larger value, the measurement is slower; with a smaller value, the
+/// largest error may be missed.
 const N_ERROR_POINTS: usize = 2000;
 
 /// Mesh of a study, with its name and path.

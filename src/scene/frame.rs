@@ -100,7 +100,7 @@ pub enum PoseControl {
     },
 }
 
-/// Tolerance for reaching a target force, N, relative above 1 N. If smaller, rounding errors of stiff skins count as missed forces.
+/// Tolerance for reaching a target force, N, relative above 1 N. With a smaller value, rounding errors of stiff skins count as missed forces.
 const REACHED: f64 = 1e-9;
 
 impl PoseControl {

@@ -12,7 +12,8 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
-/// Maximum distance from a facet's middle to the round shape, relative to the pitch. If larger, taxels are deeper; if smaller, more triangles are needed.
+/// Maximum distance from a facet's middle to the round shape, relative to the pitch. With a larger value, taxels are deeper; with a smaller value, more
+/// triangles are needed.
 const SAGITTA: f64 = 0.02;
 /// Minimum and maximum number of facets around a round shape. More facets would need memory without moving taxels noticeably.
 const N_FACETS: [f64; 2] = [16.0, 720.0];

@@ -9,7 +9,8 @@ use crate::geometry::Pose;
 use crate::inputs::check::Check;
 use crate::objects::{Model, Sphere};
 
-/// Maximum overlap, as a fraction of the smaller object's radius. If larger, deeper overlaps are accepted; if smaller, objects of coarse spheres are rejected.
+/// Maximum overlap, as a fraction of the smaller object's radius. With a larger value, deeper overlaps are accepted; with a smaller value, objects of coarse
+/// spheres are rejected.
 const MAX_SHARE: f64 = 0.5;
 
 /// Object of a scene at its initial pose, with its spheres in the object's frame.

@@ -67,7 +67,7 @@ impl fmt::Display for Value {
 }
 
 /// Relative tolerance for equal settings, with respect to the larger number. A ratio of 100 on 4,096 taxels, for example, gives 41 measurements, which is a
-/// ratio of 99.90. If larger, neighbouring settings are merged; if smaller, this ratio is rejected.
+/// ratio of 99.90. With a larger value, neighbouring settings are merged; with a smaller value, this ratio is rejected.
 const SAME_SETTING: f64 = 1e-3;
 
 impl Value {

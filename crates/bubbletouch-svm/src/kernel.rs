@@ -20,7 +20,7 @@ const SINGLE_EXPONENT: f64 = 1e4;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gamma {
-    /// scikit-learn's default `1 / (m · var(X))`, where the variance is taken over all training features; 1 if the variance is 0. For a Laplacian kernel
+    /// scikit-learn's default `1 / (m · var(X))`, where the variance is taken over all training features; 1 if the variance is 0. For a Laplacian kernel, γ is
     /// `1 / (m · √var(X))`.
     Scale,
     /// Given value of γ, above 0.

@@ -19,7 +19,7 @@ pub const JOURNAL_FILE: &str = "journal.jsonl";
 const HEADER: &str = "study";
 
 /// Time between flushes of journal lines to the disk. When `keep` returns, the operating system has the line, so it survives the end of the process.
-/// If larger, a power failure loses more results; a flush after each line would take longer than a work item of a millisecond.
+/// With a larger value, a power failure loses more results; a flush after each line would take longer than a work item of a millisecond.
 const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Journal of a run: finished results in a file. A journal may also store nothing.

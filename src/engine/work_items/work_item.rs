@@ -2,7 +2,7 @@
 
 use crate::inputs::content_hash::short_hash;
 
-/// Number of hexadecimal digits of the hash of an item's content. If smaller, two items with one name may collide.
+/// Number of hexadecimal digits of the hash of an item's content. With a smaller value, two items with one name may collide.
 const CONTENT_DIGITS: usize = 16;
 
 /// Work item of a study: a named part of its work that is computed on its own.

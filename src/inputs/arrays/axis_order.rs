@@ -8,8 +8,8 @@ use crate::error::{Error, Result};
 use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};
 use ndarray::{Array2, ArrayD};
 
-/// Maximum aspect ratio of a grid for which the last two axes are assumed to be rows and columns. If larger, time may be mistaken for taxels; if smaller, the
-/// order must be given for more arrays.
+/// Maximum aspect ratio of a grid for which the last two axes are assumed to be rows and columns. With a larger value, time may be mistaken for taxels; with a
+/// smaller value, the order must be given for more arrays.
 const MAX_ASPECT: usize = 6;
 /// Maximum length of a last axis that is assumed to contain the values of a taxel (three force components).
 const MAX_VALUES: usize = 3;

@@ -1,7 +1,7 @@
 //! Fusion: one decision on several touches of one object.
 //!
-//! The scores of k touches are summed, and the sum determines one label. If scores are log-probabilities, this is the decision for independent observations. If
-//! scores are decision values of an SVM, this is a vote weighted by margins.
+//! The scores of k touches are summed, and the sum determines one label. If scores are log-probabilities, the sum gives the decision for independent
+//! observations. If scores are decision values of an SVM, the sum is a vote weighted by margins.
 
 use std::collections::BTreeMap;
 

@@ -98,7 +98,8 @@ pub struct AnswerModel<'a> {
     strength: f64,
 }
 
-/// Candidate bandwidths, in units of the axis range. If smaller, a pose has no neighbours; above 1, an axis has little influence, at infinity none.
+/// Candidate bandwidths, in units of the axis range. With smaller bandwidths, a pose has no neighbours. A bandwidth above 1 gives an axis little influence, an
+/// infinite bandwidth none.
 const BANDWIDTHS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, f64::INFINITY];
 /// Candidate strengths s of the prior. If small, few touches in a pose determine the probabilities; if large, many touches are needed.
 const STRENGTHS: [f64; 3] = [1.0, 5.0, 25.0];

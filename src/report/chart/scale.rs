@@ -29,7 +29,7 @@ pub(super) struct Scale {
 /// Position on an axis that may have a label.
 #[derive(Clone, Debug)]
 pub(super) struct Tick {
-    /// Fraction of the axis length.
+    /// Position of the tick as a fraction of the axis length, from the start of the axis.
     pub at: f64,
     /// Text of the tick's label.
     pub label: String,

@@ -12,9 +12,9 @@ use crate::report::study_content::{Beyond, Found, NamedPicture};
 use crate::table::{ChartSpec, Mark, Table, short_number};
 use std::collections::HashMap;
 
-/// Maximum size of all charts on a page, bytes. If larger, the page is slow; if smaller, charts of some hundred points become links.
+/// Maximum size of all charts on a page, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become links.
 const MAX_CHART_BYTES: usize = 1_200_000;
-/// Maximum size of all tables on a page, bytes. If larger, the page is slow; if smaller, tables of some hundred rows are truncated.
+/// Maximum size of all tables on a page, bytes. With a larger value, the page is slow; with a smaller value, tables of some hundred rows are truncated.
 const MAX_TABLE_BYTES: usize = 1_200_000;
 
 /// Parts of a page besides tables and answers.

@@ -10,7 +10,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Minimum cosine between the axes of a flat skin and their mean (10°). The projection then shortens lengths by at most 1.5 %.
 const FLAT: f64 = 0.985;
-/// Maximum residual of p = c + R n, relative to R. If larger, ellipsoids are accepted as spheres; if smaller, printed shapes are rejected.
+/// Maximum residual of p = c + R n, relative to R. With a larger value, ellipsoids are accepted as spheres; with a smaller value, printed shapes are rejected.
 const FIT: f64 = 0.05;
 /// Maximum angle from the middle of a flattened sphere, radians. At larger angles, the rim would be drawn more than twice as long as it is.
 const WIDEST_CAP: f64 = 1.9;

@@ -13,7 +13,8 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// Maximum size of the rows in memory, bytes. If smaller, there are more and shorter reads and writes; if larger, the rows exceed the processor's cache.
+/// Maximum size of the rows in memory, bytes. With a smaller value, there are more and shorter reads and writes; with a larger value, the rows exceed the
+/// processor's cache.
 const BLOCK: usize = 2 << 20;
 
 /// Writer of an `.npz` recording. The method `finish` completes the file. If the writer is dropped before, no file remains.

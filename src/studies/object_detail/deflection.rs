@@ -59,7 +59,7 @@ pub(super) struct Reading {
     deflections: Vec<f64>,
 }
 
-/// Number of offsets evaluated before the best one is refined. If smaller, the search may end in a local minimum.
+/// Number of offsets evaluated before the best one is refined. With a smaller value, the search may end in a local minimum.
 const N_OFFSETS: usize = 48;
 /// Approximate number of golden-section steps around the best offset.
 const N_STEPS: usize = 30;

@@ -16,7 +16,8 @@ use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Number of frames that a thread reconstructs together. If smaller, matrix products are less efficient; if larger, threads finish at different times.
+/// Number of frames that a thread reconstructs together. With a smaller value, matrix products are less efficient; with a larger value, threads finish at
+/// different times.
 const BLOCK: usize = 64;
 
 /// Computes the pending configurations of one ensemble and m, given by index; dictionaries are computed when a work item needs them.

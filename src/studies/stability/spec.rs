@@ -96,8 +96,8 @@ impl StabilityScene {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {
-    /// Method of this library: massless taxels, solved in closed form. The equilibrium solver computes a ball at rest, a press to a force computes a plunger,
-    /// and damper states are used over time.
+    /// Method of this library: massless taxels, solved in closed form. Balls at rest are computed by the equilibrium solver, plungers by a press to a force,
+    /// and motions over time with damper states.
     QuasiStatic,
     /// Semi-implicit Euler steps with the better of two contact stiffnesses. One limits the penetration to
     /// 1/400 of the deflection or stroke; the other is the largest stable stiffness for the time step.

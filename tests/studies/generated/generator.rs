@@ -25,7 +25,7 @@ pub fn is_sample() -> bool {
     n_studies() <= SAMPLE
 }
 
-/// Number of studies per law in `cargo test`. If larger, the tests take longer than a few seconds.
+/// Number of studies per law in `cargo test`. With a larger value, the tests take longer than a few seconds.
 const SAMPLE: u64 = 3;
 
 /// Generated study: the text of its file by the path of each key.

@@ -15,8 +15,8 @@ use crate::class_model::{ClassModel, log_vote_shares};
 use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::{Error, Result};
 
-/// Number of rows whose distances to all training rows are computed together. If larger, the distances exceed the processor's cache; if smaller, the matrix
-/// products are inefficient.
+/// Number of rows whose distances to all training rows are computed together. With a larger value, the distances exceed the processor's cache; with a smaller
+/// value, the matrix products are inefficient.
 const BLOCK_ROWS: usize = 128;
 
 /// Trained k-nearest-neighbours classifier: the training rows and their labels. Scores are the logarithms of smoothed vote fractions.

@@ -4,7 +4,8 @@ use std::collections::VecDeque;
 
 use ndarray::Array1;
 
-/// Number of stored pairs of steps and gradient changes: 10, as in SciPy. If larger, more memory is used; if smaller, more iterations are needed.
+/// Number of stored pairs of steps and gradient changes: 10, as in SciPy. With a larger value, more memory is used; with a smaller value, more iterations are
+/// needed.
 const MEMORY: usize = 10;
 
 /// Minimum decrease of a step as a fraction of the predicted decrease (Armijo's condition).

@@ -17,7 +17,8 @@ use crate::smo::SolverScalar;
 use crate::split::Split;
 use crate::training::Goal;
 
-/// Maximum number of folds whose solutions are in memory together. If larger, more memory is used; if smaller, usual numbers of folds need several passes.
+/// Maximum number of folds whose solutions are in memory together. With a larger value, more memory is used; with a smaller value, usual numbers of folds need
+/// several passes.
 const FOLDS_AT_ONCE: usize = 8;
 
 /// Number of classes per block. Pairs of classes from two blocks are solved together and share kernel values (5 MB for 140 rows per class).

@@ -7,7 +7,7 @@ use ndarray::ArrayViewMut2;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 
-/// Minimum number of rows of a group of classes, except the last group. If smaller, matrix products are inefficient.
+/// Minimum number of rows of a group of classes, except the last group. With a smaller value, matrix products are inefficient.
 const GROUP_ROWS: usize = 512;
 
 /// Divides the classes, given by their row ranges, into groups of about [`GROUP_ROWS`] rows.

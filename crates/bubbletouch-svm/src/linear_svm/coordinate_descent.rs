@@ -12,8 +12,8 @@ use rand::Rng;
 use crate::linear_svm::params::LinearSvmParams;
 use crate::{Error, Result};
 
-/// Number of lanes of the inner products; rows are padded to a multiple. If smaller, vector units are partly idle; if larger, the padding grows without
-/// benefit.
+/// Number of lanes of the inner products; rows are padded to a multiple. With a smaller value, vector units are partly idle; with a larger value, the padding
+/// grows without benefit.
 const LANES: usize = 8;
 
 /// Changes of multipliers, and gradients, below this limit are rounding errors.

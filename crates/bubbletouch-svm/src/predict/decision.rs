@@ -15,8 +15,8 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Number of rows per block of decision values. If smaller, packing the support vectors dominates the time; if larger, the kernel values (10 MB with 5,000
-/// support vectors) take much memory.
+/// Number of rows per block of decision values. With a smaller value, packing the support vectors dominates the time; with a larger value, the kernel values
+/// (10 MB with 5,000 support vectors) take much memory.
 const BLOCK_ROWS: usize = 512;
 
 /// Decision functions `Σ y_i a_i K(x_i, x) − ρ` of all binary problems.

@@ -1,9 +1,9 @@
 //! One-vs-one linear SVMs solved on the rows near their margins.
 //!
 //! If classes are well separated, a hyperplane depends on few rows. With many features, the products of all rows with each other dominate the training time.
-//! Each pair of classes is therefore solved on a few rows of each class. The optimality conditions of all rows are then checked. Rows that violate them are
-//! added, and the pair is solved again from the last solution. At the end, every row satisfies the conditions, so the solution solves the whole problem. The
-//! pairs of a block share rounds: one matrix product multiplies all hyperplanes of a round with the rows of a class.
+//! Each pair of classes is therefore solved on a few rows of each class. The optimality conditions of all rows are then checked. Rows that violate the
+//! conditions are added, and the pair is solved again from the last solution. At the end, every row satisfies the conditions, so the solution solves the whole
+//! problem. The pairs of a block share rounds: one matrix product multiplies all hyperplanes of a round with the rows of a class.
 //!
 //! The first rows are selected in a low-dimensional subspace (`first_rows`).
 

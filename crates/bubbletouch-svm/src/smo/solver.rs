@@ -10,12 +10,13 @@ use super::variables::Variables;
 use crate::dual::DualSolution;
 use crate::gram::matrix::Gram;
 
-/// Minimum number of pairwise steps before active-set steps. If larger, slowly converging problems take longer; if smaller, equations are solved without need.
+/// Minimum number of pairwise steps before active-set steps. With a larger value, slowly converging problems take longer; with a smaller value, equations are
+/// solved without need.
 const MIN_PAIR_STEPS: u64 = 10_000;
 /// Minimum number of pairwise steps per row before active-set steps.
 const PAIR_STEPS_PER_ROW: u64 = 20;
-/// Maximum number of restarts after a check in f64 finds a violation that the precision of the matrix hides. If larger, time is spent on rounding errors; if
-/// smaller, solutions may miss their tolerance.
+/// Maximum number of restarts after a check in f64 finds a violation that the precision of the matrix hides. With a larger value, time is spent on rounding
+/// errors; with a smaller value, solutions may miss their tolerance.
 const MAX_REFRESHES: usize = 30;
 
 impl<G> Smo<'_, G> {

@@ -81,15 +81,15 @@ pub enum HalfStatus {
     AllAtChance,
 }
 
-/// Number of random draws for an interval. If larger, intervals vary less but reports of many configurations take longer. With 1,000 draws, the standard error
-/// of an interval's end is about a tenth of its half width.
+/// Number of random draws for an interval. With a larger value, intervals vary less but reports of many configurations take longer. With 1,000 draws, the
+/// standard error of an interval's end is about a tenth of its half width.
 const N_DRAWS: usize = 1000;
 
 /// Minimum number of values of a condition. With two values, the result would only reflect the straight line between them.
 const MIN_VALUES: usize = 3;
 
-/// Length of the range from zero to the smallest positive value on a logarithmic axis, in decades. If larger, this range takes most of the axis; if smaller,
-/// zero and that value are hardly distinguishable.
+/// Length of the range from zero to the smallest positive value on a logarithmic axis, in decades. With a larger value, this range takes most of the axis; with
+/// a smaller value, zero and that value are hardly distinguishable.
 const ZERO_DECADES: f64 = 0.5;
 
 /// Ratio of the largest to the smallest positive value above which an axis is logarithmic, as in charts.

@@ -7,7 +7,8 @@ use ndarray::{Array2, ArrayViewMut2};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Approximate number of frames per task of a thread. If smaller, scheduling takes more time; if larger, the threads finish at different times.
+/// Approximate number of frames per task of a thread. With a smaller value, scheduling takes more time; with a larger value, the threads finish at different
+/// times.
 const BLOCK: usize = 32;
 /// Number of tasks per thread between two storage steps.
 const BLOCKS_A_THREAD: usize = 8;

@@ -31,8 +31,8 @@ use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-/// Fraction of missing readings (NaN) above which a taxel is masked. If larger, recordings with an intermittently failing taxel are rejected; if smaller, a few
-/// missing readings mask a taxel.
+/// Fraction of missing readings (NaN) above which a taxel is masked. With a larger value, recordings with an intermittently failing taxel are rejected; with a
+/// smaller value, a few missing readings mask a taxel.
 const MASKED: f64 = 0.1;
 
 /// Recorded touches of a real skin.

@@ -16,7 +16,8 @@ use crate::studies::recognition::spec::study::{RecognitionSpec, SensingSpec, Stu
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
 
-/// Default of the maximum tilt of a copy about each axis, degrees. If larger, images lack parts that were not touched; if smaller, the copies add no new tilts.
+/// Default of the maximum tilt of a copy about each axis, degrees. With a larger value, images lack parts that were not touched; with a smaller value, the
+/// copies add no new tilts.
 const DEFAULT_TILT_DEG: f64 = 5.0;
 
 /// Pairs of keys that exclude each other.

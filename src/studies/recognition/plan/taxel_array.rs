@@ -12,7 +12,7 @@ use ndarray::Array2;
 use std::fmt;
 use std::sync::Arc;
 
-/// Picture cells per pitch. If smaller, the offset of staggered rows is not visible.
+/// Picture cells per pitch. With a smaller value, the offset of staggered rows is not visible.
 const PICTURE_CELLS: f64 = 3.0;
 
 /// Array of taxels: its layout, the quantity that it reads, and its slide along the object. All layouts have the density and the size of a square grid.

@@ -116,8 +116,8 @@ impl RecognitionStudy {
     }
 }
 
-/// Number of touches times trials above which [`slow_splits`] returns a message; it corresponds to a few seconds. If larger, commands are silent for longer; if
-/// smaller, short waits are announced.
+/// Number of touches times trials above which [`slow_splits`] returns a message; it corresponds to a few seconds. With a larger value, commands are silent for
+/// longer; with a smaller value, short waits are announced.
 const MANY_SPLITS: f64 = 7e7;
 
 /// Returns a message if splitting the touches takes a noticeable time.

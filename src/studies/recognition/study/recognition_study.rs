@@ -362,7 +362,7 @@ fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<(
     ))
 }
 
-/// Number of hexadecimal digits of the hash of touches. If smaller, two sets of touches may collide.
+/// Number of hexadecimal digits of the hash of touches. With fewer digits, two sets of touches may get the same hash.
 const DIGITS: usize = 24;
 
 impl RecognitionStudy {

@@ -5,7 +5,7 @@ pub(crate) fn learned_touches(n_frames: usize) -> usize {
     LEARNED_FRAMES.div_ceil(n_frames.max(1))
 }
 
-/// Maximum number of frames on which image estimators are fitted. If smaller than the number of components, the estimate is underdetermined; if larger, fitting
+/// Maximum number of frames on which image estimators are fitted. With fewer frames than components, the estimate is underdetermined; with more frames, fitting
 /// takes longer.
 pub const LEARNED_FRAMES: usize = 4096;
 

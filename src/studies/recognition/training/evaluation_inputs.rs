@@ -23,7 +23,7 @@ use bubbletouch_svm::kernel::Gamma;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
 
-/// Number of hexadecimal digits of a hash in a work item's name. If smaller, the names of two work items may collide.
+/// Number of hexadecimal digits of a hash in a work item's name. With fewer digits, the names of two work items may collide.
 const DIGITS: usize = 24;
 
 /// Inputs that all families of a trial share.
