@@ -23,6 +23,7 @@ mod projection;
 mod reconstruction;
 mod signal;
 mod simulation;
+mod skin;
 mod sphere_union;
 mod study;
 mod svm;
@@ -58,6 +59,8 @@ mod _core {
     use signal::{Chain, Step};
     #[pymodule_export]
     use simulation::Simulation;
+    #[pymodule_export]
+    use skin::Skin;
     #[pymodule_export]
     use sphere_union::SphereUnion;
     #[pymodule_export]

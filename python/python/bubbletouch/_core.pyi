@@ -19,6 +19,7 @@ __all__ = [
     "Projection",
     "Reconstructor",
     "Simulation",
+    "Skin",
     "Solid",
     "SphereUnion",
     "Step",
@@ -102,6 +103,45 @@ class Mesh:
         """Number of triangles."""
 
     def __getnewargs__(self) -> tuple[NDArray[np.float64], NDArray[np.uint32]]: ...
+
+@final
+class Skin:
+    """Patches of skin and bodies that may touch them, read at given poses in one call.
+
+    `Skin(patches, bodies)`: patches, a sequence of Patch; bodies, a sequence of Mesh or SphereUnion. A taxel that several bodies deflect has the largest
+    of the deflections. Raises ValueError for an empty sequence of patches.
+    """
+
+    def __new__(cls, patches: Sequence[Patch], bodies: Sequence[_Model]) -> Skin: ...
+    @property
+    def n_taxels(self) -> int:
+        """Number of taxels of all patches."""
+
+    @property
+    def ranges(self) -> list[tuple[int, int]]:
+        """First and last index (exclusive) of each patch's taxels in a frame, a list of pairs."""
+
+    def read(
+        self,
+        patch_poses: ArrayLike | tuple[ArrayLike, ArrayLike],
+        body_poses: ArrayLike | tuple[ArrayLike, ArrayLike],
+        *,
+        output: Literal["deflection", "force"] = "deflection",
+        out: NDArray[np.float64] | None = None,
+        wrenches: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """Reads all patches under all bodies; returns a frame of the skin, (n_taxels,) or (n, n_taxels) float64, patch after patch.
+
+        patch_poses, body_poses: poses in the world of the patches and of the bodies, in their order: (k, 7) or (n, k, 7) of x, y, z, qw, qx, qy, qz;
+        (…, k, 4, 4); or a pair (positions, rotations) with positions (…, k, 3) and rotations (…, k, 4) as quaternions w, x, y, z, or (…, k, 9) or
+        (…, k, 3, 3) as matrices by rows, as MuJoCo has them.
+        output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
+        out: float64 array of the frame's shape, C order, which is filled and returned.
+        wrenches: (n_patches, 6) or (n, n_patches, 6) float64 array that is filled with the force and the torque of the normal forces on each patch, in
+        the patch's frame about its origin, newtons and newton metres.
+        """
+
+    def __len__(self) -> int: ...
 
 @final
 class SphereUnion:

@@ -1,0 +1,182 @@
+"""Skin in MuJoCo's loop: what its taxels read is what the geometry at MuJoCo's poses gives."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import bubbletouch as bt
+
+mujoco = pytest.importorskip("mujoco")
+from bubbletouch.mujoco import Skin, geom_surface  # noqa: E402
+
+MODEL = """
+<mujoco>
+  <option timestep="0.002"/>
+  <worldbody>
+    <geom name="floor" type="plane" size="1 1 0.1"/>
+    <body name="palm" pos="0 0 0.1">
+      <geom name="plate" type="box" size="0.04 0.04 0.005" pos="0 0 -0.008"/>
+      <site name="palm" pos="0 0 0"/>
+      <site name="edge" pos="0.2 0 0" euler="0 90 0"/>
+    </body>
+    <body name="ball" pos="0 0 0.128"><freejoint/><geom name="ball" type="sphere" size="0.03" mass="0.1"/></body>
+    <body name="block" pos="0.26 0 0.1"><freejoint/><geom name="block" type="box" size="0.05 0.02 0.01" mass="0.1"/></body>
+    <body name="rod" pos="0.6 0 0.1"><geom name="rod" type="capsule" size="0.01 0.03"/></body>
+    <body name="can" pos="0.8 0 0.1"><geom name="can" type="cylinder" size="0.02 0.03"/></body>
+    <body name="egg" pos="1 0 0.1"><geom name="egg" type="ellipsoid" size="0.02 0.03 0.01"/></body>
+    <geom name="decal" type="sphere" size="0.5" contype="0" conaffinity="0"/>
+  </worldbody>
+  <sensor><user name="skin" dim="128" needstage="pos"/></sensor>
+</mujoco>
+"""
+
+
+@pytest.fixture(scope="module")
+def model():
+    return mujoco.MjModel.from_xml_string(MODEL)
+
+
+def patches() -> dict[str, bt.Patch]:
+    return {name: bt.Patch.grid(8, 8, pitch=4e-3, stroke=5e-3, stiffness=200.0) for name in ("palm", "edge")}
+
+
+def placed(model, **moves):
+    data = mujoco.MjData(model)
+    for name, pose in moves.items():
+        start = model.jnt_qposadr[model.body_jntadr[model.body(name).id]]
+        data.qpos[start : start + 7] = pose
+    mujoco.mj_forward(model, data)
+    return data
+
+
+def test_readings_are_those_of_each_body_alone_and_the_larger_where_both_touch(model) -> None:
+    layout = patches()
+    skin = Skin(model, layout, geoms=["ball", "block"])
+    data = placed(model, ball=[0.003, 0.001, 0.13, 1, 0, 0, 0], block=[0.008, 0, 0.1115, 0.8, 0, 0, 0.6])
+    read = skin.read(data)
+    assert read.shape == (128,)
+    palm = skin.frame("palm", read)
+    assert palm.shape == (8, 8) and not skin.frame("edge", read).any()
+    site = data.site("palm")
+    expected = np.zeros((8, 8))
+    for name in ("ball", "block"):
+        geom = data.geom(name)
+        pose = np.eye(4)
+        pose[:3, :3] = site.xmat.reshape(3, 3).T @ geom.xmat.reshape(3, 3)
+        pose[:3, 3] = site.xmat.reshape(3, 3).T @ (geom.xpos - site.xpos)
+        alone = layout["palm"].press(geom_surface(model, model.geom(name).id), pose)
+        assert alone.any(), name
+        expected = np.maximum(expected, alone)
+    assert np.abs(palm - expected).max() < 1e-12
+
+
+def test_deflections_of_a_sphere_and_a_box_are_their_closed_forms(model) -> None:
+    skin = Skin(model, patches(), geoms=["ball", "block"])
+    data = placed(model, ball=[0.0, 0.0, 0.1302, 1, 0, 0, 0])
+    centers = patches()["palm"].centers
+    height = 0.0302  # of the ball's centre above the taxels' centres
+    reach = 0.03 + 2e-3
+    across = np.hypot(centers[:, 0], centers[:, 1])
+    closed = np.clip(np.sqrt(np.maximum(reach**2 - across**2, 0.0)) - height, 0.0, 5e-3)
+    closed[across >= reach] = 0.0
+    assert np.abs(skin.read(data)[:64] - closed).max() < 1e-12
+    data = placed(model, ball=[0.5, 0, 0.5, 1, 0, 0, 0], block=[0.0, 0.0, 0.111, 1, 0, 0, 0])
+    palm = skin.frame("palm", skin.read(data))
+    assert np.abs(palm - 1e-3).max() < 1e-12  # taxel radius 2 mm, face 1 mm above the centres
+
+
+def test_forces_wrenches_and_out(model) -> None:
+    skin = Skin(model, patches())
+    assert skin.geoms == ["ball", "block", "rod", "can", "egg"]
+    data = placed(model, ball=[0.004, 0.002, 0.13, 1, 0, 0, 0])
+    out, wrenches = np.empty(128), np.empty((2, 6))
+    forces = skin.read(data, output="force", out=out, wrenches=wrenches)
+    assert forces is out
+    assert np.array_equal(forces, 200.0 * skin.read(data))
+    centers = patches()["palm"].centers
+    on_patch = -forces[:64, None] * np.array([0.0, 0.0, 1.0])
+    assert np.abs(wrenches[0, :3] - on_patch.sum(axis=0)).max() < 1e-12
+    assert np.abs(wrenches[0, 3:] - np.cross(centers, on_patch).sum(axis=0)).max() < 1e-12
+    assert not wrenches[1].any()
+
+
+def test_a_batch_of_poses_is_its_poses_one_by_one(model) -> None:
+    layout = list(patches().values())
+    skin = bt.Skin(layout, [bt.SphereUnion(np.zeros((1, 3)), [0.03])])
+    rng = np.random.default_rng(0)
+    unit = np.array([1.0, 0, 0, 0])
+    patch_poses = np.tile(np.concatenate([[0.0, 0, 0], unit]), (5, 2, 1))
+    patch_poses[:, 1, 0] = 0.02
+    body_poses = np.tile(np.concatenate([[0.0, 0, 0.03], unit]), (5, 1, 1))
+    body_poses[:, 0, :2] = rng.uniform(-0.01, 0.01, (5, 2))
+    batch = skin.read(patch_poses, body_poses)
+    assert batch.shape == (5, 128)
+    for number in range(5):
+        one = skin.read(patch_poses[number], (body_poses[number, :, :3], body_poses[number, :, 3:]))
+        assert np.array_equal(one, batch[number])
+    matrices = np.tile(np.eye(3), (5, 1, 1, 1))
+    assert np.array_equal(skin.read(patch_poses, (body_poses[..., :3], matrices)), batch)
+    for poses, wanted in [
+        (body_poses[:, :, :6], "shape"),
+        (np.zeros((5, 2, 7)), "k = 1 poses"),
+        (np.zeros((5, 1, 7)), r"body_poses\[0\]: no pose"),
+        (body_poses[:3], "equally many"),
+    ]:
+        with pytest.raises(ValueError, match=wanted):
+            skin.read(patch_poses, poses)
+
+
+def test_facets_of_round_geoms_are_within_the_tolerance(model) -> None:
+    for name in ("rod", "can", "egg"):
+        mesh = geom_surface(model, model.geom(name).id, 1e-5)
+        size = model.geom(name).size
+        corners = np.array(mesh.vertices)[np.array(mesh.triangles)]
+        middles = corners.mean(axis=1)
+        if name == "egg":
+            # To first order: (|x / size| − 1) divided by the gradient.
+            scaled = middles / size
+            length = np.linalg.norm(scaled, axis=1)
+            off = (length - 1) * length / np.linalg.norm(scaled / size, axis=1)
+        elif name == "rod":
+            along = np.clip(middles[:, 2], -size[1], size[1])
+            off = np.linalg.norm(middles - along[:, None] * [0, 0, 1], axis=1) - size[0]
+        else:
+            side = np.hypot(middles[:, 0], middles[:, 1]) - size[0]
+            off = np.where(np.abs(np.abs(middles[:, 2]) - size[1]) < 1e-12, 0.0, side)
+        assert np.abs(off).max() < 2e-5, name
+
+
+def test_a_user_sensor_holds_the_readings_at_every_step(model) -> None:
+    skin = Skin(model, patches())
+    skin.install("skin")
+    try:
+        data = placed(model, ball=[0.002, 0, 0.1305, 1, 0, 0, 0])
+        assert np.array_equal(data.sensordata, skin.read(data, output="force")) and data.sensordata.any()
+        before = data.sensordata.copy()
+        for _ in range(20):
+            mujoco.mj_step(model, data)
+        assert not np.array_equal(data.sensordata, before)
+    finally:
+        mujoco.set_mjcb_sensor(None)
+    with pytest.raises(ValueError, match="dim 64"):
+        Skin(model, {"palm": patches()["palm"]}).install("skin")
+
+
+def test_taxels_are_drawn_where_they_are(model) -> None:
+    skin = Skin(model, patches())
+    data = placed(model, ball=[0.002, 0, 0.1305, 1, 0, 0, 0])
+    scene = mujoco.MjvScene(model, maxgeom=100)
+    skin.draw(scene, data, skin.read(data, output="force"))
+    assert scene.ngeom == 100
+    first = scene.geoms[0]
+    assert np.allclose(first.pos, data.site("palm").xpos + patches()["palm"].centers[0], atol=1e-6)
+
+
+def test_names_that_are_not_there_are_refused(model) -> None:
+    with pytest.raises(ValueError, match="site: 'hand'; one of palm, edge"):
+        Skin(model, {"hand": patches()["palm"]})
+    with pytest.raises(ValueError, match="geom: 'cup'; one of floor"):
+        Skin(model, patches(), geoms=["cup"])
+    with pytest.raises(ValueError, match="geom floor: a plane"):
+        Skin(model, patches(), geoms=["floor"])
