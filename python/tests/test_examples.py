@@ -17,7 +17,7 @@ PAGES = [PACKAGE / "README.md", PACKAGE.parent / "README.md"]
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_example(example: Path, tmp_path: Path) -> None:
     source = example.read_text()
-    for needed in ("sklearn", "gymnasium", "torch", "rerun"):
+    for needed in ("sklearn", "gymnasium", "mujoco", "torch", "rerun"):
         if re.search(rf"^(import|from) {needed}", source, re.M):
             pytest.importorskip(needed)
     done = subprocess.run(
