@@ -90,7 +90,9 @@ impl Skin {
             let patches = patches.iter().map(|patch| {
                 let patch = patch.get().inner().clone();
                 let taxels = patch.layout().centers().iter().enumerate();
-                let reach = taxels.clone().map(|(taxel, _)| patch.taxels().at(taxel).radius);
+                let reach = taxels
+                    .clone()
+                    .map(|(taxel, _)| patch.taxels().at(taxel).radius);
                 let reach = reach.fold(0.0, f64::max);
                 let (min, max) = taxels.fold(
                     (DVec3::INFINITY, DVec3::NEG_INFINITY),
@@ -167,14 +169,27 @@ impl Skin {
                     return Err(bad_input("output", format!("{other:?}"), allowed));
                 }
             };
-            let mut scratch = self.scratch.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            let mut scratch = self
+                .scratch
+                .lock()
+                .unwrap_or_else(|poisoned| poisoned.into_inner());
             let scratch = &mut *scratch;
             let (n_patches, n_bodies) = (self.patches.len(), self.bodies.len());
-            let of_patches = read_poses("patch_poses", patch_poses, n_patches, &mut scratch.patch_poses)?;
-            let of_bodies = read_poses("body_poses", body_poses, n_bodies, &mut scratch.body_poses)?;
+            let of_patches = read_poses(
+                "patch_poses",
+                patch_poses,
+                n_patches,
+                &mut scratch.patch_poses,
+            )?;
+            let of_bodies =
+                read_poses("body_poses", body_poses, n_bodies, &mut scratch.body_poses)?;
             if of_patches != of_bodies {
                 let words = |n: Option<usize>| n.map_or("one".to_owned(), |n| n.to_string());
-                let given = format!("{} patch_poses, {} body_poses", words(of_patches), words(of_bodies));
+                let given = format!(
+                    "{} patch_poses, {} body_poses",
+                    words(of_patches),
+                    words(of_bodies)
+                );
                 return Err(bad_input("poses", given, "equally many of both"));
             }
             let n = of_patches.unwrap_or(1);
@@ -241,8 +256,14 @@ impl Skin {
                         continue;
                     }
                     let body = std::slice::from_ref(&body.model);
-                    press_at_pose(&skin.patch, body, &[patch_from_body], &mut scratch.workspace);
-                    for (taxel, deflection) in frame.iter_mut().zip(scratch.workspace.deflections()) {
+                    press_at_pose(
+                        &skin.patch,
+                        body,
+                        &[patch_from_body],
+                        &mut scratch.workspace,
+                    );
+                    for (taxel, deflection) in frame.iter_mut().zip(scratch.workspace.deflections())
+                    {
                         *taxel = taxel.max(*deflection);
                     }
                     is_touched = true;
@@ -251,7 +272,12 @@ impl Skin {
                     continue;
                 }
                 let wrench = &mut scratch.wrenches[(set * n_patches + number) * 6..][..6];
-                let taxels = skin.patch.layout().centers().iter().zip(skin.patch.layout().axes());
+                let taxels = skin
+                    .patch
+                    .layout()
+                    .centers()
+                    .iter()
+                    .zip(skin.patch.layout().axes());
                 for (index, (value, (center, axis))) in frame.iter_mut().zip(taxels).enumerate() {
                     if *value == 0.0 {
                         continue;
@@ -306,9 +332,14 @@ fn read_poses(
             _ => return Err(bad_input(place, shape_of(&shape), ALLOWED)),
         };
         let sets = n_sets(place, &shape, &shape[..shape.len() - width], n_each)?;
-        let array = array.try_readonly().map_err(|e| bad_input(place, e, ALLOWED))?;
+        let array = array
+            .try_readonly()
+            .map_err(|e| bad_input(place, e, ALLOWED))?;
         let numbers = array.as_slice()?;
-        for (number, pose) in numbers.chunks_exact(if width == 1 { 7 } else { 16 }).enumerate() {
+        for (number, pose) in numbers
+            .chunks_exact(if width == 1 { 7 } else { 16 })
+            .enumerate()
+        {
             let read = match pose.len() {
                 7 => from_parts(&pose[..3], &pose[3..]),
                 _ => from_parts(
@@ -332,8 +363,12 @@ fn read_poses(
         [of @ .., 4 | 9] | [of @ .., 3, 3] if of == leading => rotations.len() / n.max(1),
         other => return Err(bad_input(place, shape_of(other), ALLOWED)),
     };
-    let positions = positions.try_readonly().map_err(|e| bad_input(place, e, ALLOWED))?;
-    let rotations = rotations.try_readonly().map_err(|e| bad_input(place, e, ALLOWED))?;
+    let positions = positions
+        .try_readonly()
+        .map_err(|e| bad_input(place, e, ALLOWED))?;
+    let rotations = rotations
+        .try_readonly()
+        .map_err(|e| bad_input(place, e, ALLOWED))?;
     let each = positions.as_slice()?.chunks_exact(3);
     let each = each.zip(rotations.as_slice()?.chunks_exact(width.max(1)));
     for (number, (position, rotation)) in each.enumerate() {
