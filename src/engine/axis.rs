@@ -34,7 +34,7 @@ impl<T: Clone> Axis<T> {
     }
 }
 
-/// Implemented manually, because an untagged enum does not report which value is wrong and what is allowed.
+/// The implementation is not derived, because an untagged enum does not report which value is wrong and what is allowed.
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Axis<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
         deserializer.deserialize_any(AxisVisitor(PhantomData))

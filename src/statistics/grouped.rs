@@ -21,7 +21,7 @@
 //! - Student's t: Korn and Graubard, *Confidence intervals for proportions with small expected number of positive counts estimated from survey data*, Survey
 //!   Methodology 24, 1998.
 //!
-//! Differs from both sources: D* replaces D, because a few errors cannot show whether errors are clustered. Without errors, D is unknown, and each group
+//! Unlike in both sources, D* replaces D, because a few errors cannot show whether errors are clustered. Without errors, D is unknown, and each group
 //! counts as one row. Each observed error increases the weight of D.
 //!
 //! Several tests may split one set of touches, so a group can be tested several times. The number n counts the rows of each group once.

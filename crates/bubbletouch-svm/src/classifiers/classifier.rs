@@ -74,7 +74,7 @@ pub struct Classifier {
 
 impl Classifier {
     /// Creates a classifier with scikit-learn's defaults on standardised features: C = 1, γ 'scale', degree 3, 5 neighbours, 100 trees of unlimited depth. SVMs
-    /// are one-vs-one. Differs from scikit-learn: c₀ = 1, because c₀ = 0 omits all lower powers.
+    /// are one-vs-one. The default c₀ = 1 differs from scikit-learn, because c₀ = 0 omits all lower powers.
     pub fn new(kind: ClassifierKind) -> Self {
         Self {
             kind,

@@ -1,7 +1,7 @@
 //! Multinomial logistic regression: `p(k | x) = exp(w_k·x + b_k) / Σ_j exp(w_j·x + b_j)`.
 //!
-//! Minimises `C Σ_i −ln p(y_i | x_i) + ½ Σ_k |w_k|²` by L-BFGS. The bias is not regularised, as in scikit-learn. For two classes, only the difference
-//! `w_1 − w_0` is regularised (half as much as two vectors), as in scikit-learn.
+//! The training minimises `C Σ_i −ln p(y_i | x_i) + ½ Σ_k |w_k|²` by L-BFGS. The bias is not regularised, as in scikit-learn. For two classes, only the
+//! difference `w_1 − w_0` is regularised (half as much as two vectors), as in scikit-learn.
 //!
 //! The crate linfa-logistic 0.8.1 is not used, because its log-sum-exp subtracts the maximum of the whole matrix instead of the maximum of each row. If the
 //! scores of rows differ by more than 34, linfa's probabilities and gradients are wrong, and linfa stops early without an error. With 600 rows, 5 classes and C

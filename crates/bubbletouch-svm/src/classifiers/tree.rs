@@ -4,8 +4,9 @@
 //! on the left and right. If splits are equal, the first visited feature and its lowest threshold are chosen. Thresholds are midpoints between values that
 //! occur in the node.
 //!
-//! Differs from linfa-trees 0.8.1, which sums impurities in f32 in the order of a `HashMap`. Two trees grown on equal rows can differ there (2,000 rows, 20
-//! classes: 3 of 500 predictions). linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and feature at every node.
+//! The crate linfa-trees 0.8.1 is not used, because it sums impurities in f32 in the order of a `HashMap`. Two of its trees grown on equal rows can differ
+//! (2,000 rows, 20 classes: 3 of 500 predictions). The crate linfa-trees also treats values closer than 1e-5 as equal in any unit, and visits every row and
+//! feature at every node.
 
 use crate::classifiers::ranked::Ranked;
 use crate::streams::Streams;

@@ -44,8 +44,8 @@ struct Fold {
 }
 
 impl<T: SolverScalar> Grid<'_, T> {
-    /// Returns the number of correctly classified validation rows over all folds, per kernel and C (kernels.len() × path.len()). Also returns the number of
-    /// solver runs that stopped at the iteration cap.
+    /// Returns the number of correctly classified validation rows over all folds, per kernel and C (kernels.len() × path.len()), and the number of solver runs
+    /// that stopped at the iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
         // The kernels differ only in γ, so they share the pairwise numbers.

@@ -159,7 +159,7 @@ impl<'de> Deserialize<'de> for Key {
     }
 }
 
-/// Implemented manually, because each sensor error defines its own keys.
+/// The implementation is not derived, because each sensor error defines its own keys.
 impl<'de> Deserialize<'de> for SignalSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(SpecVisitor)
