@@ -426,7 +426,7 @@ fn a_die_of_seventeen_metres_is_refused_everywhere_unless_its_unit_is_given() {
     }
 }
 
-const HARDWARE: &str = include_str!("../../guide/own_objects.md");
+const HARDWARE: &str = include_str!("../../guide/objects.md");
 
 #[test]
 fn own_objects_are_named_by_the_same_option_everywhere() {

@@ -4,8 +4,8 @@ use bubbletouch::objects::{Catalogue, surface_error};
 
 const MM: f64 = 1e-3;
 
-/// Text of the guide page on own objects.
-const GUIDE: &str = include_str!("../../guide/own_objects.md");
+/// The page about own objects.
+const GUIDE: &str = include_str!("../../guide/objects.md");
 
 #[test]
 fn the_nut_of_the_guide_is_built() {
