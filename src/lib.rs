@@ -1,13 +1,25 @@
 //! Simulated touch for robot skin: press, sense, recognise.
 //!
-//! # Terms
+//! # Glossary
 //!
-//! - A **taxel** is one sensing element: a sphere on a spring and damper, sliding along one axis.
-//! - A **patch** is a rigid substrate with a grid of taxels; a **frame** contains the values of all its taxels at one instant.
-//! - An **object** is a union of rigid spheres, or a triangle mesh.
-//! - A **touch** is one contact experiment: a patch is lowered onto an object that lies on a table, to first contact and then further by a **depth**.
-//! - A **measurement** is a compressed frame, `y = Φx`; the **compression ratio** is taxels per measurement, n / m.
-//! - A **study** is a TOML file with a question and the axes to sweep; its results are tables and charts.
+//! `bubbletouch_sim` defines the words of the simulation (taxel, patch, touch, press, frame, measurement, feature, scene), and `bubbletouch_svm` those of
+//! learning (row, split, group, fold, kernel). The words of studies are:
+//!
+//! | word | meaning |
+//! |---|---|
+//! | **study** | a TOML file with a question and the axes to sweep; its results are tables and charts |
+//! | **kind** | the type of a study: recognition, reconstruction, object detail, whole body or stability |
+//! | **axis** | a key with several values; a **choice** describes the design, a **condition** the world |
+//! | **configuration** | one value of each axis; its number identifies it in all tables |
+//! | **variant** | one value of each axis of `[axes]`: a study with these values in place of its own |
+//! | **trial** | one draw of split, projection and noise; all configurations have the same trials |
+//! | **family** | configurations that differ only in C and in touches per decision; they are trained together |
+//! | **decision** | the class of one touch, or of several touches of an object (`touches_per_decision`) whose scores are added |
+//! | **work item** | the smallest part of a study that is computed, stored and resumed |
+//! | **journal** | the file with the results of all finished work items |
+//! | **shard** | one of N parts of the work items, for one of N processes |
+//! | **table**, **row**, **column** | a CSV file of results; a column has a role: choice, condition, value, cost or note |
+//! | **page** | the file `report.html` with charts and tables |
 //!
 //! # One touch, from the object to the picture
 //!
@@ -107,7 +119,7 @@
 //! `studies` and `report`. Files are read and written in `studies`, `report`, `inputs`, `engine`, `scene` and the command.
 //!
 //! The [`guide`] has chapters for users of the command and of the library, from a [first study](guide::first_study) and the
-//! [study file](guide::study_file) to [objects of your own](guide::own_objects), [statistics](guide::statistics), [long
+//! [study file](guide::study_file) to [objects](guide::objects), [statistics](guide::statistics), [long
 //! runs](guide::long_runs) and the [limits](guide::limits) of every method.
 //!
 //! # Sources

@@ -34,7 +34,7 @@ pub use crate::studies::recognition::frames::samples::sample_frames;
 pub use crate::studies::recognition::frames::shear_ripple::ShearRipple;
 pub use crate::studies::recognition::frames::simulation::simulate_array;
 pub use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-pub use crate::studies::recognition::plan::group::Group;
+pub use crate::studies::recognition::plan::group::MeasurementGroup;
 pub use crate::studies::recognition::plan::pose_groups::KeepTogether;
 pub use crate::studies::recognition::plan::sensed::Sensed;
 pub use crate::studies::recognition::plan::signal::Condition;

@@ -153,6 +153,68 @@ fn what_the_readme_and_the_guide_link_to_is_there() {
     }
 }
 
+/// Text of a file, or of all Rust files of a folder and its subfolders.
+fn sources(path: &Path) -> String {
+    if path.is_file() {
+        return fs::read_to_string(path).unwrap();
+    }
+    let entries = fs::read_dir(path).unwrap().map(|e| e.unwrap().path());
+    let rust = entries.filter(|p| p.is_dir() || p.extension().is_some_and(|e| e == "rs"));
+    rust.map(|path| sources(&path)).collect()
+}
+
+/// Texts in backticks that are not the text of a link.
+fn code_words(text: &str) -> impl Iterator<Item = &str> {
+    let parts = text.split('`').skip(1).step_by(2);
+    parts.filter(move |word| !text.contains(&format!("[`{word}`]")))
+}
+
+#[test]
+fn every_function_of_the_architecture_page_is_in_its_files() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("guide/architecture.md")).unwrap();
+    let mut n_functions = 0;
+    let mut missing = Vec::new();
+    let mut is_table = false;
+    for line in page.lines() {
+        let fields: Vec<&str> = line.split('|').map(str::trim).collect();
+        match fields[..] {
+            ["", _, "function", "file", ""] => is_table = true,
+            ["", _, functions, files, ""] if is_table => {
+                let files = linked_files(files).map(|file| sources(&root.join("guide").join(file)));
+                let text: String = files.collect();
+                for name in code_words(functions).flat_map(|name| name.split("::")) {
+                    let name = name.trim_end_matches('!');
+                    let items = [
+                        "fn",
+                        "struct",
+                        "enum",
+                        "trait",
+                        "const",
+                        "type",
+                        "macro_rules!",
+                    ];
+                    let is_defined = |item: &str| {
+                        [" ", "(", "<", ":", "\n", ";"]
+                            .iter()
+                            .any(|end| text.contains(&format!("{item} {name}{end}")))
+                    };
+                    // A method's type may be defined beside it, in another file.
+                    let is_type = text.contains(&format!("impl {name}"))
+                        || text.contains(&format!("> {name}"));
+                    if !items.iter().any(|item| is_defined(item)) && !is_type {
+                        missing.push(format!("{name}: {files:?}", files = fields[3]));
+                    }
+                    n_functions += 1;
+                }
+            }
+            _ => is_table = false,
+        }
+    }
+    assert!(n_functions > 50, "{n_functions}");
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
 /// Maximum size of the committed results, bytes.
 const MAX_RESULTS_BYTES: u64 = 12_000_000;
 

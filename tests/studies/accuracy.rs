@@ -4,7 +4,7 @@
 
 use crate::study::Study;
 use bubbletouch::sensing::Ensemble;
-use bubbletouch::study::table::{CellScore, Configuration, Tables};
+use bubbletouch::study::table::{Configuration, ConfigurationScore, Tables};
 
 const STUDY: &str = r#"
 question = "What does accuracy obey?"
@@ -40,7 +40,7 @@ classifier = "linear_svm"
 /// Number of objects; one guess in this number is correct.
 const N_OBJECTS: f64 = 8.0;
 
-fn score(outcome: &Tables, is_wanted: impl Fn(&Configuration) -> bool) -> &CellScore {
+fn score(outcome: &Tables, is_wanted: impl Fn(&Configuration) -> bool) -> &ConfigurationScore {
     let mut rows = outcome.summary.iter().filter(|(c, _)| is_wanted(c));
     let (_, score) = rows.next().expect("a configuration with these settings");
     assert!(

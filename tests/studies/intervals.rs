@@ -2,7 +2,7 @@
 
 use crate::study::Study;
 use bubbletouch::recognition::statistics::interval::Interval;
-use bubbletouch::study::table::{CellScore, Tables};
+use bubbletouch::study::table::{ConfigurationScore, Tables};
 
 const STUDY: &str = r#"
 question = "What is an interval over?"
@@ -32,7 +32,7 @@ fn run(keys: &str) -> Tables {
 }
 
 /// Returns the summary of each configuration, with the numbers of test rows and of correct rows over all trials.
-fn configurations(tables: &Tables) -> Vec<(CellScore, usize, usize)> {
+fn configurations(tables: &Tables) -> Vec<(ConfigurationScore, usize, usize)> {
     let found = tables.summary.iter().map(|(configuration, score)| {
         let trials = tables
             .accuracy

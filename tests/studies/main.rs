@@ -37,5 +37,6 @@ mod recorded_law;
 mod repeatability;
 mod sensor_error_names;
 mod shear;
+mod statistics_examples;
 mod test_touches;
 mod variance;

@@ -71,13 +71,26 @@
 //! # Ok::<(), bubbletouch_sim::Error>(())
 //! ```
 //!
-//! # Terms
+//! # Glossary
 //!
-//! - A **taxel** is one sensing element: a sphere on a spring and damper that slides along one axis.
-//! - A **patch** is a rigid substrate with taxels; a **frame** is the readings of all its taxels at one instant.
-//! - An **object** is a union of rigid spheres, or a triangle mesh.
-//! - A **touch** is one contact: a pose of the object, and a depth past first contact.
-//! - A **measurement** is a compressed frame, `y = Φx`.
+//! | word | meaning |
+//! |---|---|
+//! | **taxel** | one sensing element (tactile pixel): a sphere on a spring and damper that slides along one axis |
+//! | **patch** | a rigid substrate with taxels in a **layout**; an **array** is a patch in a study |
+//! | **stroke** | the largest deflection of a taxel, metres; a taxel at its stroke is **saturated** |
+//! | **object** | a rigid body: a union of spheres (its **packing** if it was a mesh or a solid), or a triangle mesh |
+//! | **scene** | robots, patches and objects that move |
+//! | **touch** | one contact experiment: a pose of the object, and a depth past first contact |
+//! | **press** | the computation of the deflections of one patch at one touch or pose |
+//! | **deflection** | displacement of a taxel along its axis from rest, metres, 0 ≤ δ ≤ stroke |
+//! | **equilibrium** | poses of free objects at which all forces and torques balance |
+//! | **frame** | the values of all taxels of a patch at one instant: one number per taxel, or three with shear |
+//! | **signal chain** | the steps that turn deflections into frames; a **sensor error** is a step with a strength |
+//! | **measurement** | one number of a compressed frame, `y = Φx`; **ratio** is taxels per measurement, n / m |
+//! | **ensemble** | a distribution of the matrix Φ; a **projection** is one draw of it |
+//! | **feature** | a number that is computed from a frame for a classifier |
+//! | **seed** | the root, or a named node, of the tree of random numbers; a **stream** is the numbers of one node |
+//! | **workspace** | reusable memory of a computation; results do not depend on its content |
 #![warn(missing_docs)]
 #![warn(clippy::missing_errors_doc)]
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]

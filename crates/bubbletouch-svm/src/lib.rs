@@ -20,12 +20,25 @@
 //! # Ok::<(), bubbletouch_svm::Error>(())
 //! ```
 //!
-//! # Terms
+//! # Glossary
 //!
-//! - A **data set** is a linfa data set: features (n_rows × m, `f32` or `f64`) and one label (a `usize`) per row.
-//! - A **binary problem** separates the rows of a positive class from the rows of a negative class, or from all other rows ([`Multiclass`]).
-//! - A **decision value** is the value of a binary problem's decision function for a row: positive for the positive class.
-//! - **C** is the penalty per unit of margin violation; **γ** is the width parameter of a kernel.
+//! | word | meaning |
+//! |---|---|
+//! | **row** | the features of one example; a **label** is the class of a row, a `usize` |
+//! | **data set** | a linfa data set: features (n_rows × m, `f32` or `f64`) and one label per row |
+//! | **split** | training rows and test rows |
+//! | **group** | rows that are never on both sides of a split, such as touches of one pose |
+//! | **fold** | one of k splits of the training rows whose test parts are disjoint |
+//! | **scaling** | the linear map of features that is computed from training rows |
+//! | **kernel** | the function K(x, z) of two rows; **γ** is its width parameter |
+//! | **Gram matrix** | the kernel values of all pairs of rows of a problem |
+//! | **binary problem** | the separation of the rows of a positive class from a negative class, or from all other rows ([`Multiclass`]) |
+//! | **C** | the penalty per unit of margin violation |
+//! | **multiplier** | the dual variable of a row, 0 ≤ a ≤ C; the row is a **support vector** if it is above 0 |
+//! | **decision value** | the value of a binary problem's decision function for a row: positive for the positive class |
+//! | **path** | the solutions of one problem for several C, each started from the previous one |
+//! | **alpha seeding** | the start of a fold from the multipliers of another fold |
+//! | **stream** | a source of random numbers that is named after the drawn quantity ([`streams`]) |
 //!
 //! # How it works
 //!

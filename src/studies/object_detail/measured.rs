@@ -7,7 +7,7 @@ use crate::packing::{Body, packing_error};
 use crate::random::Seed;
 use crate::studies::object_detail::deflection::{Truth, in_mm};
 use crate::studies::object_detail::plan::ObjectDetailPlan;
-use crate::studies::object_detail::rows::{DetailCell, DetailScore, DetailTime};
+use crate::studies::object_detail::rows::{DetailConfiguration, DetailScore, DetailTime};
 use crate::studies::object_detail::spec::DetailMethod;
 use crate::studies::object_detail::variants::{Variant, variants};
 use std::path::Path;
@@ -39,8 +39,8 @@ impl<'a> Measured<'a> {
     }
 
     /// Returns one row per model of the object.
-    fn rows<T>(&self, row: impl Fn(&Variant) -> T) -> Vec<(DetailCell, T)> {
-        let configuration = |variant: &Variant| DetailCell {
+    fn rows<T>(&self, row: impl Fn(&Variant) -> T) -> Vec<(DetailConfiguration, T)> {
+        let configuration = |variant: &Variant| DetailConfiguration {
             object: self.mesh.name.clone(),
             method: variant.level.0,
             tolerance_mm: variant.level.1,
@@ -52,12 +52,12 @@ impl<'a> Measured<'a> {
             .collect()
     }
 
-    pub fn models(&self, plan: &ObjectDetailPlan) -> Vec<(DetailCell, DetailScore)> {
+    pub fn models(&self, plan: &ObjectDetailPlan) -> Vec<(DetailConfiguration, DetailScore)> {
         let n_points = plan.spec.object_detail.surface_points;
         self.rows(|variant| self.score(variant, n_points))
     }
 
-    pub fn times(&self) -> Vec<(DetailCell, DetailTime)> {
+    pub fn times(&self) -> Vec<(DetailConfiguration, DetailTime)> {
         self.rows(|variant| DetailTime {
             us_per_touch: 1e6 * self.truth.seconds_per_touch(&variant.model),
             prepare_s: variant.prepare_s,

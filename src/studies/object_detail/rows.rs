@@ -9,7 +9,7 @@ const METHODS: &[(&str, &str)] = &[("mesh", "exact mesh")];
 
 row! {
 /// Model of an object; each row of `object_detail.csv` and `timing.csv` begins with these columns.
-pub struct DetailCell {
+pub struct DetailConfiguration {
     /// Name of the touched object.
     object: String => Subject;
     /// Method that replaces the mesh by a model.
@@ -21,7 +21,7 @@ pub struct DetailCell {
 } }
 
 row! {
-/// Deviation of a model from its mesh. A row of `object_detail.csv` is a [`DetailCell`] followed by a `DetailScore`.
+/// Deviation of a model from its mesh. A row of `object_detail.csv` is a [`DetailConfiguration`] followed by a `DetailScore`.
 pub struct DetailScore {
     /// Mean distance between the surfaces of model and mesh, measured at points of the mesh, mm: `protrusion_mean_mm` + `gap_mean_mm`.
     surface_error_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log;
@@ -58,7 +58,7 @@ pub struct DetailScore {
 } }
 
 row! {
-/// Computing cost of a model. A row of `timing.csv` is a [`DetailCell`] followed by a `DetailTime`.
+/// Computing cost of a model. A row of `timing.csv` is a [`DetailConfiguration`] followed by a `DetailTime`.
 pub struct DetailTime {
     /// Computing time per touch on one thread, median over touches, µs.
     us_per_touch: f64 => Cost "time of a touch" in "µs": Log;

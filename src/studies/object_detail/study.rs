@@ -12,7 +12,7 @@ use crate::studies::object_detail::plan::ObjectDetailPlan;
 use crate::studies::object_detail::plan::object_detail_keys;
 use crate::studies::object_detail::recognition::{Learned, Sensor};
 use crate::studies::object_detail::rows::{
-    DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
+    DetailConfiguration, DetailRecognition, DetailScore, DetailSummary, DetailTime, LevelTime,
 };
 use crate::studies::object_detail::spec::ObjectDetailStudySpec;
 use crate::studies::object_detail::summary::{costs, summary};
@@ -35,13 +35,13 @@ pub struct ObjectDetailStudy {
 
 /// Results of work items: errors of models, their computing costs, and accuracies of classifiers.
 pub type DetailRows = (
-    Vec<(DetailCell, DetailScore)>,
-    Vec<(DetailCell, DetailTime)>,
+    Vec<(DetailConfiguration, DetailScore)>,
+    Vec<(DetailConfiguration, DetailTime)>,
     Vec<DetailRecognition>,
 );
 
 /// Files of the result tables.
-const DETAIL: File<(DetailCell, DetailScore)> =
+const DETAIL: File<(DetailConfiguration, DetailScore)> =
     File::new("object_detail.csv", "Models of each object", "");
 const SUMMARY: File<DetailSummary> = File::new(
     "object_detail_summary.csv",
@@ -50,7 +50,7 @@ const SUMMARY: File<DetailSummary> = File::new(
      offset with the best constant depth taken off.",
 )
 .summary();
-const TIMING: File<(DetailCell, DetailTime)> =
+const TIMING: File<(DetailConfiguration, DetailTime)> =
     File::new("timing.csv", "Time of a touch of each model", "").of_times();
 const COST: File<(DetailSummary, LevelTime)> =
     File::new("object_detail_cost.csv", "What errors cost", "")

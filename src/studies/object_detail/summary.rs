@@ -3,14 +3,14 @@
 use crate::quantile::quantile;
 use crate::studies::grouped;
 use crate::studies::object_detail::rows::{
-    DetailCell, DetailScore, DetailSummary, DetailTime, LevelTime,
+    DetailConfiguration, DetailScore, DetailSummary, DetailTime, LevelTime,
 };
 use crate::studies::object_detail::spec::DetailMethod;
 use crate::studies::object_detail::variants::Level;
 
-type Row = (DetailCell, DetailScore);
+type Row = (DetailConfiguration, DetailScore);
 
-fn level(configuration: &DetailCell) -> Level {
+fn level(configuration: &DetailConfiguration) -> Level {
     (configuration.method, configuration.tolerance_mm)
 }
 
@@ -71,7 +71,7 @@ fn summary_row((method, tolerance_mm): Level, of_level: &[&Row], rows: &[Row]) -
 /// Returns the computing time per touch for each method and tolerance.
 pub(super) fn costs(
     summary: &[DetailSummary],
-    timing: &[(DetailCell, DetailTime)],
+    timing: &[(DetailConfiguration, DetailTime)],
 ) -> Vec<(DetailSummary, LevelTime)> {
     let cost = |row: &DetailSummary| {
         let of_level = (row.method, row.tolerance_mm);

@@ -7,7 +7,7 @@ use crate::random::Seed;
 use crate::sensing::{Basis, Extremes, Reconstructor, SensedDictionary};
 use crate::studies::reconstruction::plan::ReconstructionPlan;
 use crate::studies::reconstruction::rows::{
-    EnsembleStatistics, ReconstructionCell, ReconstructionRow, ReconstructionRows,
+    EnsembleStatistics, ReconstructionConfiguration, ReconstructionRow, ReconstructionRows,
     ReconstructionTime,
 };
 use crate::studies::reconstruction::score::{Found, square_errors};
@@ -23,7 +23,7 @@ const BLOCK: usize = 64;
 /// Computes the pending configurations of one ensemble and m, given by index; dictionaries are computed when a work item needs them.
 pub(super) fn measure_cells(
     (plan, touches): (&ReconstructionPlan, &Touches),
-    (group, configurations): (usize, &[ReconstructionCell]),
+    (group, configurations): (usize, &[ReconstructionConfiguration]),
     left: &PendingItems<ReconstructionRows>,
 ) -> Result<()> {
     let first = &configurations[0];
@@ -70,7 +70,7 @@ pub(super) fn measure_cells(
 /// Returns the reconstruction errors and times of a configuration.
 fn reconstruct(
     (plan, touches): (&ReconstructionPlan, &Touches),
-    configuration: &ReconstructionCell,
+    configuration: &ReconstructionConfiguration,
     sensed: &SensedDictionary,
     (noisy, measurements): (&Noisy, &Array2<f64>),
 ) -> Result<ReconstructionRow> {
@@ -94,7 +94,7 @@ fn reconstruct(
     let found = found.collect::<Result<Vec<Found>>>()?;
     let seconds: f64 = found.iter().map(|block| block.seconds).sum();
     let us_per_frame = 1e6 * seconds / measurements.nrows() as f64;
-    let configuration = ReconstructionCell {
+    let configuration = ReconstructionConfiguration {
         atoms: sensed.dictionary().n_atoms(),
         ..configuration.clone()
     };

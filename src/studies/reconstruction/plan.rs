@@ -16,7 +16,7 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::keys::shared_keys;
 use crate::studies::recognition::spec::signal::{SignalSpec, StepSpec};
 use crate::studies::recognition::sweep::configurations::nested;
-use crate::studies::reconstruction::rows::ReconstructionCell;
+use crate::studies::reconstruction::rows::ReconstructionConfiguration;
 use crate::studies::reconstruction::spec::{ReconstructionSpec, ReconstructionStudySpec};
 use crate::world::{Grid, Placement};
 
@@ -171,7 +171,7 @@ impl ReconstructionPlan {
     }
 
     /// Returns all configurations, ordered by ensemble and m. The numbers of atoms are set when the dictionaries are computed.
-    pub fn configurations(&self) -> Vec<ReconstructionCell> {
+    pub fn configurations(&self) -> Vec<ReconstructionConfiguration> {
         let n_taxels = self.array.n_taxels() as f64;
         let mut configurations = Vec::new();
         nested! {
@@ -180,7 +180,7 @@ impl ReconstructionPlan {
             &noise_std in &self.noise;
             &dictionary in &self.dictionaries;
             solver in self.spec.reconstruction.solver.values();
-            configurations.push(ReconstructionCell {
+            configurations.push(ReconstructionConfiguration {
                 configuration: configurations.len(),
                 noise_std,
                 noise_unit: self.noise_unit,

@@ -16,7 +16,7 @@ const SOLVERS: &[(&str, &str)] = &[("omp", "OMP"), ("l1", "ℓ1"), ("lmmse", "LM
 
 row! {
 /// Configuration of a reconstruction study: one value of every axis.
-pub struct ReconstructionCell {
+pub struct ReconstructionConfiguration {
     /// Number of the configuration in sweep order, from 0.
     configuration: usize => Note: Linear;
     /// Noise standard deviation on each taxel, in `noise_unit`.
@@ -37,7 +37,7 @@ pub struct ReconstructionCell {
     solver: Solver => Choice named SOLVERS;
 } }
 
-impl ReconstructionCell {
+impl ReconstructionConfiguration {
     /// Returns the name of the configuration's work item. The name contains the settings, because the number changes if an axis has more values.
     pub(super) fn name(&self) -> String {
         format!(
@@ -59,7 +59,7 @@ impl ReconstructionCell {
 }
 
 row! {
-/// Reconstruction error of a configuration. A row of `reconstruction.csv` is a [`ReconstructionCell`] followed by a `ReconstructionScore`.
+/// Reconstruction error of a configuration. A row of `reconstruction.csv` is a [`ReconstructionConfiguration`] followed by a `ReconstructionScore`.
 pub struct ReconstructionScore {
     /// Number of test frames that were reconstructed.
     n_frames: usize => Note "test frames": Linear;
@@ -82,7 +82,7 @@ pub struct ReconstructionScore {
 } }
 
 row! {
-/// Computing time of a configuration. A row of `timing.csv` is a [`ReconstructionCell`] followed by a `ReconstructionTime`.
+/// Computing time of a configuration. A row of `timing.csv` is a [`ReconstructionConfiguration`] followed by a `ReconstructionTime`.
 pub struct ReconstructionTime {
     /// Time to prepare the solver, s, without the computation of ΦΨ.
     prepare_s: f64 => Cost "time to prepare" in "s": Log;
@@ -93,7 +93,7 @@ pub struct ReconstructionTime {
 } }
 
 row! {
-/// Error and computing time of a configuration. A row of `pareto.csv` is a [`ReconstructionCell`] followed by a `ReconstructionPareto`.
+/// Error and computing time of a configuration. A row of `pareto.csv` is a [`ReconstructionConfiguration`] followed by a `ReconstructionPareto`.
 pub struct ReconstructionPareto {
     /// Relative reconstruction error, as in `reconstruction.csv`.
     error: f64 => Value(Less): Log;
@@ -145,7 +145,11 @@ pub struct EnsembleStatistics {
 } }
 
 /// Configuration of a work item, with its score and computing time.
-pub type ReconstructionRow = (ReconstructionCell, ReconstructionScore, ReconstructionTime);
+pub type ReconstructionRow = (
+    ReconstructionConfiguration,
+    ReconstructionScore,
+    ReconstructionTime,
+);
 
 /// Rows of work items: configurations and isometry statistics.
 pub type ReconstructionRows = (Vec<ReconstructionRow>, Vec<EnsembleStatistics>);

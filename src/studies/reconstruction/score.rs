@@ -1,7 +1,7 @@
 //! Errors of reconstructed frames, and the Pareto front of the configurations.
 
 use crate::studies::reconstruction::rows::{
-    ReconstructionCell, ReconstructionPareto, ReconstructionRow, ReconstructionScore,
+    ReconstructionConfiguration, ReconstructionPareto, ReconstructionRow, ReconstructionScore,
 };
 use crate::table::front;
 use ndarray::{Array2, ArrayView2};
@@ -83,7 +83,7 @@ impl Truth {
 pub(super) fn pareto(
     rows: &[ReconstructionRow],
     levels: &[f64],
-) -> Vec<(ReconstructionCell, ReconstructionPareto)> {
+) -> Vec<(ReconstructionConfiguration, ReconstructionPareto)> {
     let row = |(configuration, score, time): &ReconstructionRow| {
         let row = ReconstructionPareto {
             error: score.error,

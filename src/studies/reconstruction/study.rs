@@ -16,7 +16,7 @@ use crate::studies::reconstruction::measured::measure_cells;
 use crate::studies::reconstruction::plan::ReconstructionPlan;
 use crate::studies::reconstruction::plan::reconstruction_keys;
 use crate::studies::reconstruction::rows::{
-    EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionRows,
+    EnsembleStatistics, ReconstructionConfiguration, ReconstructionPareto, ReconstructionRows,
     ReconstructionScore, ReconstructionTime,
 };
 use crate::studies::reconstruction::score::pareto;
@@ -37,7 +37,7 @@ pub struct ReconstructionStudy {
     frames: Shared<Touches>,
 }
 
-const CELLS: File<(ReconstructionCell, ReconstructionScore)> = File::new(
+const CONFIGURATIONS: File<(ReconstructionConfiguration, ReconstructionScore)> = File::new(
     "reconstruction.csv",
     "Every configuration",
     "Errors are relative to the clean frames: 0 is perfect, 1 is as wrong as an empty frame.",
@@ -47,9 +47,9 @@ const ENSEMBLES: File<EnsembleStatistics> = File::new(
     "Isometry of ensembles and dictionaries",
     "Squared singular values of supports drawn at random, whose columns have a mean square norm of 1.",
 );
-const TIMING: File<(ReconstructionCell, ReconstructionTime)> =
+const TIMING: File<(ReconstructionConfiguration, ReconstructionTime)> =
     File::new("timing.csv", "Time of every configuration", "").of_times();
-const PARETO: File<(ReconstructionCell, ReconstructionPareto)> = File::new(
+const PARETO: File<(ReconstructionConfiguration, ReconstructionPareto)> = File::new(
     "pareto.csv",
     "Error and time of every configuration",
     "One core, frames in blocks of 64.",
@@ -74,7 +74,7 @@ impl Study for ReconstructionStudy {
             "reconstruction.dictionary",
         ]),
     };
-    const TABLES: TableFiles = TableFiles::always(&[&CELLS, &ENSEMBLES, &TIMING, &PARETO]);
+    const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &ENSEMBLES, &TIMING, &PARETO]);
 
     type Spec = ReconstructionStudySpec;
     type Rows = ReconstructionRows;
@@ -149,7 +149,7 @@ impl Study for ReconstructionStudy {
             configuration.configuration = numbers[&configuration.name()];
         }
         let pareto = pareto(&rows, &self.plan.noise);
-        let [configurations, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
+        let [configurations, timing] = found_and_cost(&CONFIGURATIONS, &TIMING, &rows)?;
         let ensembles = ENSEMBLES.table(&statistics)?;
         Ok(vec![
             configurations,
@@ -176,8 +176,8 @@ impl Study for ReconstructionStudy {
 
 /// Returns the configurations in groups that use the same measurements.
 fn on_measured(
-    configurations: &[ReconstructionCell],
-) -> impl Iterator<Item = &[ReconstructionCell]> {
+    configurations: &[ReconstructionConfiguration],
+) -> impl Iterator<Item = &[ReconstructionConfiguration]> {
     configurations.chunk_by(|a, b| (a.ensemble, a.measurements) == (b.ensemble, b.measurements))
 }
 

@@ -11,9 +11,9 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::studies::median_time::median_s;
 use crate::studies::stability::rows::{
-    Outcome, StabilityCell, StabilityScore, StabilityTime, TOLERANCE,
+    Outcome, StabilityConfiguration, StabilityScore, StabilityTime, TOLERANCE,
 };
-use crate::studies::stability::scene::{CellScene, GRAVITY};
+use crate::studies::stability::scene::{ConfigurationScene, GRAVITY};
 use crate::studies::stability::spec::{ContactMethod, StabilityScene};
 use crate::world::{Taxel, VelocityPlan};
 use glam::DVec3;
@@ -42,10 +42,10 @@ const N_REPEATS: usize = 9;
 
 /// Simulates and evaluates a configuration, given its taxel parameters without damper.
 pub(super) fn measure(
-    configuration: &StabilityCell,
+    configuration: &StabilityConfiguration,
     undamped: Taxel,
 ) -> Result<(StabilityScore, StabilityTime)> {
-    let scene = CellScene::new(configuration, undamped)?;
+    let scene = ConfigurationScene::new(configuration, undamped)?;
     let tries = match configuration.method {
         ContactMethod::SemiImplicit => contact_stiffnesses(configuration, &scene)?
             .map(Some)
@@ -88,7 +88,10 @@ pub(super) fn measure(
 const SAFETY: f64 = 4.0;
 
 /// Returns the two contact stiffnesses to try: the lowest that meets the tolerance, and the highest that is stable for the time step.
-fn contact_stiffnesses(configuration: &StabilityCell, scene: &CellScene) -> Result<[f64; 2]> {
+fn contact_stiffnesses(
+    configuration: &StabilityConfiguration,
+    scene: &ConfigurationScene,
+) -> Result<[f64; 2]> {
     let (taxel, truth) = (&scene.taxel, &scene.truth);
     let deepest = truth.deflection.iter().copied().fold(0.0, f64::max);
     let n_at_least = |least: f64| truth.deflection.iter().filter(|d| **d >= least).count();
@@ -104,8 +107,8 @@ fn contact_stiffnesses(configuration: &StabilityCell, scene: &CellScene) -> Resu
 }
 
 fn simulate(
-    configuration: &StabilityCell,
-    scene: &CellScene,
+    configuration: &StabilityConfiguration,
+    scene: &ConfigurationScene,
     contact_stiffness: Option<f64>,
 ) -> Result<Answer> {
     if configuration.method == ContactMethod::QuasiStatic {
@@ -151,7 +154,7 @@ fn simulate(
 }
 
 fn integrator(
-    configuration: &StabilityCell,
+    configuration: &StabilityConfiguration,
     system: &System,
     contact_stiffness: Option<f64>,
 ) -> Result<Box<dyn Integrator>> {
@@ -183,7 +186,7 @@ fn integrator(
 }
 
 /// Solves the equilibrium of one free ball, or of several balls stacked in a tube, with the quasi-static method. The balls may rotate and move sideways.
-fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
+fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<Answer> {
     let cradle = &scene.cradle;
     let spheres = cradle.ball.spheres().expect("a ball is a sphere");
     let ball = FreeObject::new(spheres, mass, DVec3::ZERO)?;
@@ -217,7 +220,7 @@ fn put_to_rest(scene: &CellScene, mass: f64, n_balls: usize) -> Result<Answer> {
 }
 
 /// Lowers a plunger with the quasi-static method until the springs carry its weight.
-fn press_to_weight(scene: &CellScene) -> Result<Answer> {
+fn press_to_weight(scene: &ConfigurationScene) -> Result<Answer> {
     let (cradle, weight) = (&scene.cradle, scene.force);
     let ball = from_ref(&cradle.ball);
     let above = [Pose::from_translation(
@@ -236,8 +239,8 @@ fn press_to_weight(scene: &CellScene) -> Result<Answer> {
 
 /// Simulates a ball with imposed motion on damped taxels with the quasi-static method.
 fn press_and_release(
-    configuration: &StabilityCell,
-    scene: &CellScene,
+    configuration: &StabilityConfiguration,
+    scene: &ConfigurationScene,
     plan: &VelocityPlan,
 ) -> Answer {
     let (dt, patch) = (configuration.dt_s, &scene.cradle.patch);
@@ -262,7 +265,11 @@ fn press_and_release(
     answer
 }
 
-fn judge(configuration: &StabilityCell, scene: &CellScene, answer: &Answer) -> StabilityScore {
+fn judge(
+    configuration: &StabilityConfiguration,
+    scene: &ConfigurationScene,
+    answer: &Answer,
+) -> StabilityScore {
     let wanted = &scene.truth.deflection;
     let all: f64 = wanted.iter().sum();
     let pairs = || answer.deflection.iter().zip(wanted);

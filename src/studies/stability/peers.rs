@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::report::csv_tables::read_rows;
 use crate::studies::stability::plan::StabilityPlan;
-use crate::studies::stability::rows::{PeerSource, StabilityCell, StabilityRow};
+use crate::studies::stability::rows::{PeerSource, StabilityConfiguration, StabilityRow};
 
 /// Returns the rows of other programs whose configuration differs from the plan only in the method, and their source, such as `MuJoCo 4.0.0, 2026-11-22`. The
 /// result is empty if there is no file.
@@ -15,7 +15,7 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
         return Ok(Default::default());
     };
     // Each line is read once for each struct, because serde's flattening reads an empty field as an empty text.
-    let configurations = read_rows::<StabilityCell>(path)?.into_iter();
+    let configurations = read_rows::<StabilityConfiguration>(path)?.into_iter();
     let found = configurations.zip(read_rows(path)?).zip(read_rows(path)?);
     let mut sources: Vec<String> = Vec::new();
     let mut rows = Vec::new();
@@ -32,9 +32,9 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
 }
 
 /// Returns whether the plan has a configuration that differs from the given one only in the method.
-fn is_asked(plan: &StabilityPlan, configuration: &StabilityCell) -> bool {
-    let is_like = |(other, _): &(StabilityCell, _)| {
-        let of_method = StabilityCell {
+fn is_asked(plan: &StabilityPlan, configuration: &StabilityConfiguration) -> bool {
+    let is_like = |(other, _): &(StabilityConfiguration, _)| {
+        let of_method = StabilityConfiguration {
             method: configuration.method,
             solver_iterations: configuration.solver_iterations,
             ..other.clone()

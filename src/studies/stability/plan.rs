@@ -7,7 +7,7 @@ use crate::inputs::range::COUNT;
 use crate::inputs::range::Range::{Any, Positive, Unchecked};
 use crate::inputs::units::MM;
 use crate::studies::recognition::sweep::configurations::nested;
-use crate::studies::stability::rows::StabilityCell;
+use crate::studies::stability::rows::StabilityConfiguration;
 use crate::studies::stability::spec::{
     ContactMethod, StabilityPartSpec, StabilityScene, StabilityStudySpec,
 };
@@ -20,7 +20,7 @@ pub struct StabilityPlan {
     /// Specification as written in the study file.
     pub spec: StabilityStudySpec,
     /// Configurations, ordered by part, each with its taxel parameters without damper. Methods that this build does not contain are omitted.
-    pub configurations: Vec<(StabilityCell, Taxel)>,
+    pub configurations: Vec<(StabilityConfiguration, Taxel)>,
     /// Path of the table of other programs.
     pub peers: Option<PathBuf>,
 }
@@ -58,7 +58,7 @@ impl StabilityPlan {
         check.list("stability.parts", wanted.parts.clone())?;
         let mut configurations = Vec::new();
         for (number, part) in wanted.parts.iter().enumerate() {
-            let taxel = |configuration: &StabilityCell| Taxel {
+            let taxel = |configuration: &StabilityConfiguration| Taxel {
                 radius: 0.5 * wanted.pitch_mm * MM,
                 stiffness: configuration.stiffness_n_per_m,
                 damping: 0.0,
@@ -82,7 +82,7 @@ impl Check<'_> {
         &self,
         part: usize,
         wanted: &StabilityPartSpec,
-    ) -> Result<Vec<StabilityCell>> {
+    ) -> Result<Vec<StabilityConfiguration>> {
         let name = format!("stability.parts[{part}]");
         let error =
             |[key, given, allowed]: [&str; 3]| self.error(&format!("{name}.{key}"), given, allowed);
@@ -129,7 +129,7 @@ impl Check<'_> {
                     Some(_) => taxels * taxels,
                     None => 1,
                 };
-                configurations.push(StabilityCell {
+                configurations.push(StabilityConfiguration {
                     part,
                     scene: wanted.scene,
                     method,

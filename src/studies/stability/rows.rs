@@ -18,7 +18,7 @@ const METHODS: &[(&str, &str)] = &[
 
 row! {
 /// Configuration of a simulation; each row of `stability.csv` and `timing.csv` begins with these columns.
-pub struct StabilityCell {
+pub struct StabilityConfiguration {
     /// Number of the part of the study, from 1.
     part: usize => Subject "part of the study": Linear;
     /// Simulated scene.
@@ -39,7 +39,7 @@ pub struct StabilityCell {
     dt_s: f64 => Choice "time step" in "s": Log;
 } }
 
-impl StabilityCell {
+impl StabilityConfiguration {
     /// Returns the number of taxels of the square array.
     pub fn n_taxels(&self) -> usize {
         self.taxels * self.taxels
@@ -52,7 +52,7 @@ impl StabilityCell {
 }
 
 row! {
-/// Result of a simulation. A row of `stability.csv` is a [`StabilityCell`] followed by a `StabilityScore`.
+/// Result of a simulation. A row of `stability.csv` is a [`StabilityConfiguration`] followed by a `StabilityScore`.
 pub struct StabilityScore {
     /// Mass ratio M / m of a free ball and a taxel; empty if the ball's motion is imposed.
     mass_ratio: Option<f64> => Note "mass ratio, ball to taxel": Log;
@@ -77,7 +77,7 @@ pub struct StabilityScore {
 } }
 
 row! {
-/// Computing time of a simulation. A row of `timing.csv` is a [`StabilityCell`] followed by a `StabilityTime`.
+/// Computing time of a simulation. A row of `timing.csv` is a [`StabilityConfiguration`] followed by a `StabilityTime`.
 pub struct StabilityTime {
     /// Wall-clock time of the whole simulation, s, on one thread while other threads run other simulations.
     wall_s: f64 => Cost "time" in "s": Log;
@@ -134,7 +134,7 @@ pub struct Joints {
 } }
 
 /// Configuration of a work item, with its result and computing time.
-pub type StabilityRow = (StabilityCell, StabilityScore, StabilityTime);
+pub type StabilityRow = (StabilityConfiguration, StabilityScore, StabilityTime);
 
 /// Source of a row that another program computed; the row ends with these columns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

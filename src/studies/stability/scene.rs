@@ -5,7 +5,7 @@ use crate::dynamics::{Drive, Rest, System, rest, skin_sim};
 use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::{Model, Sphere, SphereUnion};
-use crate::studies::stability::rows::StabilityCell;
+use crate::studies::stability::rows::StabilityConfiguration;
 use crate::studies::stability::spec::StabilityScene;
 use crate::world::{Grid, Layout, Patch, Phase, Taxel, Taxels, VelocityPlan};
 use glam::DVec3;
@@ -39,7 +39,7 @@ pub(super) struct TestBed {
 
 /// Scene of a configuration; it does not depend on the simulation method.
 #[derive(Clone, Debug)]
-pub(super) struct CellScene {
+pub(super) struct ConfigurationScene {
     pub cradle: TestBed,
     pub taxel: Taxel,
     /// Motion of the ball: imposed, or free under gravity.
@@ -120,7 +120,7 @@ impl TestBed {
     /// Returns the dynamic system: the taxels within `reach` metres of the ball's start, and the balls stacked on the first one.
     fn system(
         &self,
-        configuration: &StabilityCell,
+        configuration: &StabilityConfiguration,
         drive: &Drive,
         reach: f64,
     ) -> Result<System<'_>> {
@@ -137,9 +137,9 @@ impl TestBed {
     }
 }
 
-impl CellScene {
+impl ConfigurationScene {
     /// Creates the scene of a configuration, given its taxel parameters without damper.
-    pub fn new(configuration: &StabilityCell, undamped: Taxel) -> Result<Self> {
+    pub fn new(configuration: &StabilityConfiguration, undamped: Taxel) -> Result<Self> {
         let cradle = TestBed::new(configuration.taxels, undamped)?;
         let mut scene = match configuration.object_mass_kg {
             Some(mass) => Self::of_free(configuration, cradle, undamped, mass)?,
@@ -151,7 +151,7 @@ impl CellScene {
     }
 
     /// Returns the dynamic system for methods that step through time.
-    pub fn system(&self, configuration: &StabilityCell) -> Result<System<'_>> {
+    pub fn system(&self, configuration: &StabilityConfiguration) -> Result<System<'_>> {
         let reach = APPROACH + REACH * self.taxel.stroke;
         self.cradle.system(configuration, &self.drive, reach)
     }
@@ -166,7 +166,7 @@ impl CellScene {
     }
 
     fn of_free(
-        configuration: &StabilityCell,
+        configuration: &StabilityConfiguration,
         cradle: TestBed,
         taxel: Taxel,
         mass: f64,
@@ -203,7 +203,11 @@ impl CellScene {
         })
     }
 
-    fn of_imposed(configuration: &StabilityCell, cradle: TestBed, taxel: Taxel) -> Result<Self> {
+    fn of_imposed(
+        configuration: &StabilityConfiguration,
+        cradle: TestBed,
+        taxel: Taxel,
+    ) -> Result<Self> {
         let (k, m) = (taxel.stiffness, configuration.taxel_mass_kg);
         let ratio = skin_sim::DAMPING / (2.0 * (skin_sim::STIFFNESS * skin_sim::TAXEL_MASS).sqrt());
         let damping = 2.0 * ratio * (k * m).sqrt();
@@ -267,7 +271,7 @@ mod tests {
     fn the_ball_meets_the_innermost_taxels_where_it_starts_and_all_within_a_quarter_of_the_stroke()
     {
         for taxels in [2, 8, 16] {
-            let configuration = StabilityCell {
+            let configuration = StabilityConfiguration {
                 part: 1,
                 scene: StabilityScene::Rest,
                 method: ContactMethod::QuasiStatic,
@@ -284,7 +288,7 @@ mod tests {
                 damping: 0.0,
                 stroke: 2e-3,
             };
-            let scene = CellScene::new(&configuration, undamped).unwrap();
+            let scene = ConfigurationScene::new(&configuration, undamped).unwrap();
             let system = scene.system(&configuration).unwrap();
             let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
             for &start in system.starts() {

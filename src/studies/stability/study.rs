@@ -12,7 +12,8 @@ use crate::studies::stability::peers::peer_rows;
 use crate::studies::stability::plan::STABILITY_KEYS;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{
-    Joints, Outcome, StabilityCell, StabilityRow, StabilityScore, StabilitySummary, StabilityTime,
+    Joints, Outcome, StabilityConfiguration, StabilityRow, StabilityScore, StabilitySummary,
+    StabilityTime,
 };
 use crate::studies::stability::spec::{StabilityScene, StabilityStudySpec};
 use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
@@ -21,7 +22,7 @@ use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-const CELLS: File<(StabilityCell, StabilityScore)> =
+const CONFIGURATIONS: File<(StabilityConfiguration, StabilityScore)> =
     File::new("stability.csv", "Every configuration", "");
 const SUMMARY: File<StabilitySummary> = File::new(
     "stability_summary.csv",
@@ -29,7 +30,7 @@ const SUMMARY: File<StabilitySummary> = File::new(
     "Right: force balance and deflections within 1 %. Imbalance, deflection: the worst errors of what came to an end, as shares.",
 )
 .summary();
-const TIMING: File<(StabilityCell, StabilityTime)> =
+const TIMING: File<(StabilityConfiguration, StabilityTime)> =
     File::new("timing.csv", "Time of every configuration", "").of_times();
 const JOINTS: File<Joints> = File::new(
     "joints.csv",
@@ -45,7 +46,7 @@ impl Study for StabilityPlan {
         words: "a study of where contact methods break",
         resumes: Resumes::ButFor(&["question", "expected", "stability.parts"]),
     };
-    const TABLES: TableFiles = TableFiles::always(&[&CELLS, &SUMMARY, &TIMING, &JOINTS]);
+    const TABLES: TableFiles = TableFiles::always(&[&CONFIGURATIONS, &SUMMARY, &TIMING, &JOINTS]);
 
     type Spec = StabilityStudySpec;
     type Rows = Vec<StabilityRow>;
@@ -63,7 +64,7 @@ impl Study for StabilityPlan {
 
     fn facts(&self) -> Result<Facts> {
         Ok(Facts {
-            notes: vec![(CELLS.name(), peer_rows(self)?.1)],
+            notes: vec![(CONFIGURATIONS.name(), peer_rows(self)?.1)],
             ..Facts::new(&self.spec, BTreeMap::new())
         })
     }
@@ -90,7 +91,7 @@ impl Study for StabilityPlan {
         let items = self.configurations.iter().enumerate();
         let items = items.map(|(group, (configuration, taxel))| {
             let settings = format!("{configuration:?}");
-            let settings = settings.trim_start_matches("StabilityCell ");
+            let settings = settings.trim_start_matches("StabilityConfiguration ");
             let stroke_mm = millimetres(taxel.stroke);
             let name = format!("{settings} and a stroke of {stroke_mm} mm");
             WorkItem::new(name, group)
@@ -119,7 +120,7 @@ impl Study for StabilityPlan {
                 rows.partition_point(|(configuration, ..)| configuration.part <= row.0.part);
             rows.insert(behind, row);
         }
-        let [configurations, timing] = found_and_cost(&CELLS, &TIMING, &rows)?;
+        let [configurations, timing] = found_and_cost(&CONFIGURATIONS, &TIMING, &rows)?;
         let summary = SUMMARY.table(&summary(&rows))?;
         let joints = JOINTS.table(&joints(&rows))?;
         Ok(vec![configurations, summary, timing, joints])
@@ -198,7 +199,7 @@ fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
 }
 
 /// Returns the ball's mass divided by the number of taxels, kg, rounded so that equal loads compare equal.
-fn carried(configuration: &StabilityCell) -> f64 {
+fn carried(configuration: &StabilityConfiguration) -> f64 {
     let load = configuration.object_mass_kg.unwrap_or(0.0) / configuration.n_taxels() as f64;
     let digits = format!("{load:.9e}");
     digits.parse().expect("a number is written as one")

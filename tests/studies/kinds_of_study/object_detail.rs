@@ -4,7 +4,7 @@ use crate::command::Case;
 use crate::mesh_shapes::{cuboid, icosphere};
 use bubbletouch::kinds;
 use bubbletouch::kinds::object_detail::rows::{
-    DetailCell, DetailRecognition, DetailScore, DetailSummary, DetailTime,
+    DetailConfiguration, DetailRecognition, DetailScore, DetailSummary, DetailTime,
 };
 use bubbletouch::kinds::object_detail::{DetailMethod, ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::mesh::TriangleMesh;
@@ -203,7 +203,8 @@ fn detail_tables_obey_their_laws() {
         said.contains("most exact model of spheres is packing"),
         "{said}"
     );
-    let configurations: Vec<DetailCell> = read_rows(&case.path("1/object_detail.csv")).unwrap();
+    let configurations: Vec<DetailConfiguration> =
+        read_rows(&case.path("1/object_detail.csv")).unwrap();
     let scores: Vec<DetailScore> = read_rows(&case.path("1/object_detail.csv")).unwrap();
     assert_eq!(configurations.len(), 2 * (1 + 1 + 3 + 3 + 3));
     for (configuration, score) in configurations.iter().zip(&scores) {

@@ -3,7 +3,7 @@
 use crate::command::Case;
 use bubbletouch::kinds;
 use bubbletouch::kinds::reconstruction::rows::{
-    EnsembleStatistics, ReconstructionCell, ReconstructionPareto, ReconstructionScore,
+    EnsembleStatistics, ReconstructionConfiguration, ReconstructionPareto, ReconstructionScore,
     ReconstructionTime,
 };
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
@@ -59,7 +59,7 @@ fn the_tables_hold_every_cell_and_the_written_study_gives_them_again() {
     case.succeeds(&["run", "1/study.toml", "--out", "again"]);
     assert!(read("1", "reconstruction.csv") == read("again", "reconstruction.csv"));
 
-    let configurations: Vec<ReconstructionCell> = rows(&case, "1/reconstruction.csv");
+    let configurations: Vec<ReconstructionConfiguration> = rows(&case, "1/reconstruction.csv");
     let scores: Vec<ReconstructionScore> = rows(&case, "1/reconstruction.csv");
     // Two ensembles at two m and the identity at one m; two noise levels, three dictionaries, three solvers.
     assert_eq!(configurations.len(), 5 * 2 * 3 * 3);

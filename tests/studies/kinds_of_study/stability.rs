@@ -3,7 +3,7 @@
 use crate::command::Case;
 use bubbletouch::kinds;
 use bubbletouch::kinds::stability::rows::{
-    Joints, StabilityCell, StabilityScore, StabilitySummary,
+    Joints, StabilityConfiguration, StabilityScore, StabilitySummary,
 };
 use bubbletouch::kinds::stability::{
     ContactMethod, Outcome, StabilityPlan, StabilityScene, StabilityStudySpec, TOLERANCE,
@@ -50,7 +50,7 @@ fn ours_is_right_everywhere_and_the_others_break_where_they_must() {
     let (said, _) = case.succeeds(&["run", "study.toml", "--out", "1"]);
     assert!(said.contains("quasi-static"), "{said}");
     let path = case.path("1/stability.csv");
-    let configurations: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let configurations: Vec<StabilityConfiguration> = read_rows(&path).unwrap();
     let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
     assert_eq!(configurations.len(), 3 * (16 + 4 + 4));
     for (configuration, score) in configurations.iter().zip(&scores) {
@@ -132,7 +132,7 @@ fn stacked_balls_come_to_rest_with_the_weight_of_all_on_the_skin() {
     case.file("study.toml", STACKS);
     case.succeeds(&["run", "study.toml", "--out", "out"]);
     let path = case.path("out/stability.csv");
-    let configurations: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let configurations: Vec<StabilityConfiguration> = read_rows(&path).unwrap();
     let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
     for (configuration, score) in configurations.iter().zip(&scores) {
         let about = format!("{configuration:?} {score:?}");
@@ -184,7 +184,7 @@ fn a_ladder_of_joints_carries_the_same_on_each_and_is_charted() {
     case.file("study.toml", JOINTS);
     case.succeeds(&["run", "study.toml", "--out", "out"]);
     let path = case.path("out/stability.csv");
-    let configurations: Vec<StabilityCell> = read_rows(&path).unwrap();
+    let configurations: Vec<StabilityConfiguration> = read_rows(&path).unwrap();
     let scores: Vec<StabilityScore> = read_rows(&path).unwrap();
     for (configuration, score) in configurations.iter().zip(&scores) {
         let about = format!("{configuration:?} {score:?}");
@@ -311,7 +311,8 @@ fn rows_of_other_programs_stand_in_the_parts_that_ask_for_such_cells() {
     case.file("peers.csv", format!("{header}{asked}{foreign}"));
     let (with, _) = case.succeeds(&["run", "study.toml", "--out", "with"]);
     assert!(with.contains("MuJoCo"), "{with}");
-    let configurations: Vec<StabilityCell> = read_rows(&case.path("with/stability.csv")).unwrap();
+    let configurations: Vec<StabilityConfiguration> =
+        read_rows(&case.path("with/stability.csv")).unwrap();
     let peers = configurations
         .iter()
         .filter(|configuration| configuration.method.is_peer());

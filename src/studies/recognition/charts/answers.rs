@@ -7,7 +7,7 @@ use crate::report::swept::{Setting, Swept, without};
 use crate::report::terminal::paragraph;
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::robustness::robustness_words;
-use crate::studies::recognition::charts::tables::CELLS;
+use crate::studies::recognition::charts::tables::CONFIGURATIONS;
 use crate::table::{Table, Value, short_number};
 
 /// Maximum number of values listed in a sentence, and of conditions described by a sentence.
@@ -15,7 +15,7 @@ const MAX_LISTED: usize = 8;
 
 /// Returns the findings as sentences: the best configuration in each condition, the cheapest one within its interval, the effect of each setting, and remarks.
 pub fn answers(tables: &[Table]) -> Vec<String> {
-    let Some(configurations) = filled(tables, CELLS) else {
+    let Some(configurations) = filled(tables, CONFIGURATIONS) else {
         return vec!["No configuration has been computed.".to_owned()];
     };
     let mut sentences = bests(configurations).unwrap_or_default();
@@ -29,7 +29,7 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
 /// Returns the terminal text at the end of a run: configurations, findings, comparison with published accuracies, and the most frequent confusions.
 pub fn words(tables: &[Table], width: usize) -> String {
     let shown = [
-        CELLS,
+        CONFIGURATIONS,
         "published.csv",
         "confused.csv",
         "variance.csv",
@@ -151,7 +151,7 @@ fn remarks(tables: &[Table]) -> Vec<String> {
     };
     let n_left_out = numbers("accuracy.csv", "n_left_out").iter();
     let n_left_out = n_left_out.copied().fold(0.0, f64::max);
-    let n_capped: f64 = numbers(CELLS, "n_capped").iter().sum();
+    let n_capped: f64 = numbers(CONFIGURATIONS, "n_capped").iter().sum();
     let too_few = Value::from("too_few_trials");
     let is_short = |row| {
         filled(tables, "comparison.csv").is_some_and(|t| t.has_setting("p_status", row, &too_few))

@@ -10,4 +10,6 @@ pub(crate) mod tables;
 pub use crate::studies::recognition::charts::answers::{answers, words};
 pub use crate::studies::recognition::charts::sections::sections;
 pub use crate::studies::recognition::charts::table_charts::charts;
-pub use crate::studies::recognition::charts::tables::{CELLS, TABLE_NAMES, read_tables, tables_of};
+pub use crate::studies::recognition::charts::tables::{
+    CONFIGURATIONS, TABLE_NAMES, read_tables, tables_of,
+};

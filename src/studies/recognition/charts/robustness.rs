@@ -417,7 +417,7 @@ mod tests {
     use crate::statistics::interval::Interval;
     use crate::studies::recognition::rows::configuration::Configuration;
     use crate::studies::recognition::rows::configuration::tests::configuration;
-    use crate::studies::recognition::rows::table_rows::{CellScore, Confusion};
+    use crate::studies::recognition::rows::table_rows::{ConfigurationScore, Confusion};
     use rand_distr::Binomial;
 
     fn curve(values: &[f64], accuracy: &[f64], n_test: f64, chance: f64) -> Curve {
@@ -442,7 +442,7 @@ mod tests {
             };
             let n_correct = (accuracy * n_test as f64) as usize;
             let interval = Interval::wilson(n_correct, n_test, 0.95).unwrap();
-            let score = CellScore {
+            let score = ConfigurationScore {
                 n_trials: 1,
                 n_test,
                 accuracy,
@@ -463,7 +463,7 @@ mod tests {
             predicted: "object 0".to_owned(),
             count: 1,
         });
-        let summary = File::<(Configuration, CellScore)>::new("summary.csv", "", "");
+        let summary = File::<(Configuration, ConfigurationScore)>::new("summary.csv", "", "");
         let summary = summary.table(&configurations.collect::<Vec<_>>()).unwrap();
         let confusion = File::<Confusion>::new("confusion.csv", "", "");
         let confusion = confusion.table(&rows.collect::<Vec<_>>()).unwrap();

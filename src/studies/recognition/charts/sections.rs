@@ -7,7 +7,7 @@ use crate::report::pictures::drawing::escape;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::report::swept::Swept;
 use crate::studies::recognition::charts::filled::filled;
-use crate::studies::recognition::charts::tables::CELLS;
+use crate::studies::recognition::charts::tables::CONFIGURATIONS;
 use crate::table::{Table, short_number};
 
 /// Returns the page sections for sample touches, settings and reached limits.
@@ -33,7 +33,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     let mut html: String = settings
         .map(|(name, value)| definition(&escape(name), value))
         .collect();
-    if let Some(configurations) = filled(tables, CELLS) {
+    if let Some(configurations) = filled(tables, CONFIGURATIONS) {
         let rows: Vec<usize> = (0..configurations.n_rows).collect();
         let Swept { free, fixed, .. } = Swept::new(configurations, &rows);
         let free = free

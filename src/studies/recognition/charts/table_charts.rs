@@ -8,7 +8,7 @@ use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::{
-    CELLS, CHANCE, OVER_FOLDS, OVER_TRIAL, note_of_groups,
+    CHANCE, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, note_of_groups,
 };
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
 use std::cmp::Reverse;
@@ -19,7 +19,7 @@ const MANY_CLASSIFIERS: usize = 3;
 /// Returns the charts of a study: accuracy by each varying setting, accuracy against time, and the confusions of the best configuration. Accuracy against time
 /// is included if classifiers are compared or the study requests it.
 pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
-    let Some(configurations) = filled(tables, CELLS) else {
+    let Some(configurations) = filled(tables, CONFIGURATIONS) else {
         return Vec::new();
     };
     let confusion = filled(tables, "confusion.csv");
@@ -31,7 +31,7 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     };
     let chart = ChartSpec {
         note: format!("Points are means over trials. {over}"),
-        table: CELLS,
+        table: CONFIGURATIONS,
         y: "accuracy".to_owned(),
         rules: chance(configurations, confusion).into_iter().collect(),
         ..ChartSpec::default()

@@ -9,8 +9,8 @@ use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::recognition::charts::robustness::{ObjectCounts, ROBUSTNESS, robustness};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
-    CellScore, Comparison, Confused, Confusion, Limit, Pareto, Published, StageTime, Tables,
-    TrialScore, TrialTime, Variance,
+    Comparison, ConfigurationScore, Confused, Confusion, Limit, Pareto, Published, StageTime,
+    Tables, TrialScore, TrialTime, Variance,
 };
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
@@ -18,14 +18,14 @@ use serde::Serialize;
 use std::path::Path;
 
 /// Combined table of all results of each configuration; it is not written to a file.
-pub const CELLS: &str = "configurations.csv";
+pub const CONFIGURATIONS: &str = "configurations.csv";
 
 const ACCURACY: File<(Configuration, TrialScore)> = File::new(
     "accuracy.csv",
     "Every trial",
     "Intervals are 95 % Wilson intervals of the test decisions of the trial.",
 );
-const SUMMARY: File<(Configuration, CellScore)> = File::new(
+const SUMMARY: File<(Configuration, ConfigurationScore)> = File::new(
     "summary.csv",
     "Configurations over their trials",
     "Means over trials.",
@@ -81,7 +81,7 @@ pub const TABLE_NAMES: [&str; 12] = [
     ROBUSTNESS.name(),
 ];
 
-/// Returns every table of a run, in the order of their files, followed by [`CELLS`].
+/// Returns every table of a run, in the order of their files, followed by [`CONFIGURATIONS`].
 ///
 /// # Errors
 /// If a row cannot be written to a file.
@@ -94,7 +94,7 @@ pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
     From::Rows(tables).all(axes.collect(), tables.has_folds)
 }
 
-/// Reads every table of a folder, in the order of their files, followed by [`CELLS`].
+/// Reads every table of a folder, in the order of their files, followed by [`CONFIGURATIONS`].
 ///
 /// # Errors
 /// If a table cannot be read; the error names its file, line and column.
@@ -236,7 +236,7 @@ fn note_of_few_trials(table: &Table) -> Option<String> {
     ))
 }
 
-/// Column of [`CELLS`] with the chance level, if configurations differ in it.
+/// Column of [`CONFIGURATIONS`] with the chance level, if configurations differ in it.
 pub(crate) const CHANCE: &str = "chance";
 
 /// Returns 1 / the number of objects of each configuration, if configurations differ in it and all confusion matrices are stored.
@@ -288,7 +288,10 @@ fn cells_of(tables: &[Table]) -> Option<Table> {
     let note = "All that is known of each configuration, from summary.csv, comparison.csv and pareto.csv. Costs of time are of this machine.";
     Some(
         summary
-            .with((CELLS, "All configurations"), more.into_iter().flatten())
+            .with(
+                (CONFIGURATIONS, "All configurations"),
+                more.into_iter().flatten(),
+            )
             .noted(note),
     )
 }

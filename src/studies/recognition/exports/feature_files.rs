@@ -21,7 +21,7 @@ use crate::inputs::arrays::whole_numbers::{
 use crate::inputs::npy::{write_integers, write_npy};
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::{Measurements, measure_group};
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::spec::study::RecognitionSpec;
 use crate::studies::recognition::sweep::configurations::{StudyPart, Sweep};
@@ -131,7 +131,7 @@ impl StudyPart {
     /// Simulates the touches of a group in memory, and computes their measurements in a trial.
     pub(crate) fn measured(
         &self,
-        (group, n_measurements): (&Group, usize),
+        (group, n_measurements): (&MeasurementGroup, usize),
         trial: usize,
         (stage, progress): (&str, &dyn Progress),
     ) -> Result<Measurements> {
@@ -151,7 +151,7 @@ impl StudyPart {
     /// fitted to the training touches of the whole split, even if a configuration trains on fewer.
     pub(crate) fn measure(
         &self,
-        group: &Group,
+        group: &MeasurementGroup,
         [frames, tested]: [&Frames; 2],
         (trial, n_measurements): (usize, usize),
     ) -> Result<Measurements> {
@@ -323,7 +323,7 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
 }
 
 /// Returns the configuration with a given number, and its group.
-pub(crate) fn find(sweep: &Sweep, number: usize) -> Result<(&Group, &Configuration)> {
+pub(crate) fn find(sweep: &Sweep, number: usize) -> Result<(&MeasurementGroup, &Configuration)> {
     let groups = sweep.groups.iter();
     let mut configurations = groups.flat_map(|group| {
         group

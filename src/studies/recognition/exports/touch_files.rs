@@ -29,7 +29,7 @@ use crate::studies::recognition::exports::feature_files::find;
 use crate::studies::recognition::frames::array_press::{ArrayPress, ArrayWorkspace};
 use crate::studies::recognition::frames::human_touches::HumanTouches;
 use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::sensed::Sensed;
 use crate::studies::recognition::plan::study_plan::{Plan, as_written};
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
@@ -107,7 +107,7 @@ impl ReadFrames {
         let (group, _) = find(&part.sweep, configuration)?;
         part.sweep.trial(&part.plan, trial)?;
         // Measurements with the identity matrix are the frames themselves.
-        let identity = Group {
+        let identity = MeasurementGroup {
             ensemble: Ensemble::Identity,
             ..group.clone()
         };

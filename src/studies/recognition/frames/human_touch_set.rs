@@ -9,7 +9,7 @@ use crate::studies::recognition::frames::human_samples::human_samples;
 use crate::studies::recognition::frames::human_touches::{HumanTouches, record_touch};
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use ndarray::ArrayViewMut2;
@@ -42,7 +42,7 @@ impl TouchSet for HumanTouches {
         touches
     }
 
-    fn samples(&self, plan: &Plan, _groups: &[Group]) -> Result<Samples> {
+    fn samples(&self, plan: &Plan, _groups: &[MeasurementGroup]) -> Result<Samples> {
         human_samples(plan, self)
     }
 

@@ -10,7 +10,7 @@ use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read}
 use crate::studies::recognition::frames::samples::sample_frames;
 use crate::studies::recognition::frames::simulation::press_objects;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::pose_groups::KeepTogether;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
@@ -56,7 +56,7 @@ impl TouchSet for Vec<TouchedObject> {
         touches
     }
 
-    fn samples(&self, plan: &Plan, groups: &[Group]) -> Result<Samples> {
+    fn samples(&self, plan: &Plan, groups: &[MeasurementGroup]) -> Result<Samples> {
         sample_frames(plan, groups, self)
     }
 

@@ -22,7 +22,7 @@ use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
 use crate::studies::recognition::frames::samples::spread_samples;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec, ZeroSpec};
@@ -586,7 +586,7 @@ impl TouchSet for RecordedFrames {
     }
 
     /// The samples are the last frames of the first touch of each class.
-    fn samples(&self, plan: &Plan, _groups: &[Group]) -> Result<Samples> {
+    fn samples(&self, plan: &Plan, _groups: &[MeasurementGroup]) -> Result<Samples> {
         let array = &plan.arrays[0];
         let (configurations, stroke) = (array.picture_cells(), array.taxel().stroke);
         let mut first = 0;

@@ -11,7 +11,7 @@ use crate::signal::{Chain, SensorError, SignalStep, Strength};
 use crate::studies::recognition::frames::reading::{ReadSkin, Reading, measure, touches_to_read};
 use crate::studies::recognition::frames::simulation::simulate_array;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::skin;
 use crate::studies::recognition::spec::signal::StepSpec;
@@ -28,7 +28,11 @@ const N_SAMPLES: usize = 4;
 ///
 /// # Errors
 /// If a signal step is invalid.
-pub fn sample_frames(plan: &Plan, groups: &[Group], touched: &[TouchedObject]) -> Result<Samples> {
+pub fn sample_frames(
+    plan: &Plan,
+    groups: &[MeasurementGroup],
+    touched: &[TouchedObject],
+) -> Result<Samples> {
     let group = loudest_group(plan, groups)
         .ok_or_else(|| Error::input("study", "no configurations", "at least one value an axis"))?;
     let on = &plan.arrays[group.array];
@@ -85,7 +89,7 @@ pub fn sample_frames(plan: &Plan, groups: &[Group], touched: &[TouchedObject]) -
 /// Returns the normal readings of each object's first touch, shape (ny, nx). If the skin has memory, one of the objects has touched it before.
 fn read(
     plan: &Plan,
-    group: &Group,
+    group: &MeasurementGroup,
     (touched, before): (&[TouchedObject], usize),
 ) -> Result<Vec<Array2<f64>>> {
     let array = &plan.arrays[group.array];
@@ -123,7 +127,7 @@ fn read(
 }
 
 /// Returns the signal chain of each channel without smoothing, because smoothing would hide the other steps.
-fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
+fn chains(plan: &Plan, group: &MeasurementGroup) -> Result<Vec<Chain>> {
     let array = &plan.arrays[group.array];
     let skin = skin(&Seed::new(plan.spec.seed), array);
     array.chains(&skin, |skin| {
@@ -137,9 +141,9 @@ fn chains(plan: &Plan, group: &Group) -> Result<Vec<Chain>> {
 /// each error. Scan errors are omitted, because they do not change a touch that is read once.
 fn imperfect_groups<'a>(
     plan: &Plan,
-    groups: &'a [Group],
+    groups: &'a [MeasurementGroup],
     array: usize,
-) -> Vec<(String, &'a Group)> {
+) -> Vec<(String, &'a MeasurementGroup)> {
     let signal = &plan.spec.signal;
     if signal.combine != CombineSpec::OneAtATime {
         return Vec::new();
@@ -155,7 +159,7 @@ fn imperfect_groups<'a>(
         let shows = |(error, own, value): (SensorError, &Strength, f64)| {
             own.key == *key && value == last && !error.about().needs_motion
         };
-        let has_it = |group: &&Group| group.condition.strengths.given().any(shows);
+        let has_it = |group: &&MeasurementGroup| group.condition.strengths.given().any(shows);
         if let Some(group) = groups().find(has_it)
             && values.len() > 1
         {
@@ -172,8 +176,8 @@ fn imperfect_groups<'a>(
 }
 
 /// Returns the group with the largest noise among the groups with the most taxels.
-fn loudest_group<'a>(plan: &Plan, groups: &'a [Group]) -> Option<&'a Group> {
-    let n_taxels = |group: &Group| plan.arrays[group.array].n_taxels();
+fn loudest_group<'a>(plan: &Plan, groups: &'a [MeasurementGroup]) -> Option<&'a MeasurementGroup> {
+    let n_taxels = |group: &MeasurementGroup| plan.arrays[group.array].n_taxels();
     groups.iter().max_by(|a, b| {
         let by_size = n_taxels(a).cmp(&n_taxels(b));
         by_size.then(a.condition.noise.total_cmp(&b.condition.noise))

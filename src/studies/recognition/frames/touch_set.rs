@@ -7,7 +7,7 @@ use crate::random::Seed;
 use crate::report::pictures::snapshots::Snapshots;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::TouchToRead;
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::pose_groups::KeepTogether;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
@@ -72,7 +72,7 @@ pub trait TouchSet: Sync {
     ///
     /// # Errors
     /// If a picture cannot be made.
-    fn samples(&self, plan: &Plan, groups: &[Group]) -> Result<Samples>;
+    fn samples(&self, plan: &Plan, groups: &[MeasurementGroup]) -> Result<Samples>;
 
     /// Returns the number of touches whose depth past first contact exceeds a stroke (metres).
     fn n_deeper_than(&self, _stroke: f64) -> usize {

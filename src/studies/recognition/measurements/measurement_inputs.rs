@@ -8,7 +8,7 @@ use crate::inputs::sensor_errors::{Strengths, TestSensor, all_strengths};
 use crate::random::Seed;
 use crate::sensing::Ensemble;
 use crate::signal::{Noise, NoiseUnit, SignalStep, Strength};
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::signal::Condition;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
@@ -182,7 +182,7 @@ fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
     }
 }
 
-impl Group {
+impl MeasurementGroup {
     /// Returns the signal inputs of the group.
     pub fn signal(&self, plan: &Plan) -> SignalInputs {
         signal_inputs(plan, self.condition)

@@ -9,7 +9,7 @@ use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 
 /// Group of configurations that are computed from the same measurements.
 #[derive(Clone, Debug)]
-pub struct Group {
+pub struct MeasurementGroup {
     /// Index of the array in the plan.
     pub array: usize,
     /// Number of frames per touch.
@@ -24,7 +24,7 @@ pub struct Group {
     pub configurations: Vec<Configuration>,
 }
 
-impl Group {
+impl MeasurementGroup {
     /// Returns the configurations by family. The configurations of a family share the rows of features: only C, the number of touches per decision and the
     /// choice of the next touch differ. Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {

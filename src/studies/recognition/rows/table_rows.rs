@@ -71,8 +71,8 @@ impl TrialScore {
 }
 
 row! {
-/// Score of one configuration over all its trials. A row of `summary.csv` is a [`Configuration`] followed by a `CellScore`.
-pub struct CellScore {
+/// Score of one configuration over all its trials. A row of `summary.csv` is a [`Configuration`] followed by a `ConfigurationScore`.
+pub struct ConfigurationScore {
     /// Number of trials of the configuration.
     n_trials: usize => Note "trials": Linear;
     /// Number of test rows of one trial. A test row is a group of `touches_per_decision` test touches.
@@ -274,7 +274,7 @@ pub struct Tables {
     /// Rows of `accuracy.csv`: one per configuration and trial, ordered by configuration.
     pub accuracy: Vec<(Configuration, TrialScore)>,
     /// Rows of `summary.csv`: one per configuration.
-    pub summary: Vec<(Configuration, CellScore)>,
+    pub summary: Vec<(Configuration, ConfigurationScore)>,
     /// Rows of `confusion.csv`: non-zero counts, ordered by configuration.
     pub confusion: Vec<Confusion>,
     /// Rows of `comparison.csv`: one per configuration.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::Measurements;
 use crate::studies::recognition::study::recognition_study::{RecognitionStudy, in_frames};
-use crate::studies::recognition::study::rows::{CellRow, RecognitionRows, TouchRow};
+use crate::studies::recognition::study::rows::{ConfigurationRow, RecognitionRows, TouchRow};
 use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
 use crate::studies::recognition::training::trial::Trial;
 use rayon::prelude::*;
@@ -225,7 +225,11 @@ impl Job<'_> {
         part.measure(group, frames, (self.trial, self.n_measurements))
     }
 
-    fn evaluate(&self, family: usize, measurements: &Measurements) -> Result<Vec<CellRow>> {
+    fn evaluate(
+        &self,
+        family: usize,
+        measurements: &Measurements,
+    ) -> Result<Vec<ConfigurationRow>> {
         let (part, configurations) = self.study.family(family);
         let trial = Trial {
             inputs: part.sweep.trial(&part.plan, self.trial)?,
@@ -233,7 +237,7 @@ impl Job<'_> {
         };
         let family = FamilyInputs::new(&part.plan, &part.sweep, configurations);
         let evaluations = trial.evaluate(&family)?.into_iter();
-        let rows = evaluations.map(|evaluation| CellRow {
+        let rows = evaluations.map(|evaluation| ConfigurationRow {
             at: (0, 0),
             evaluation,
         });

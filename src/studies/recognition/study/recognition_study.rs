@@ -10,7 +10,7 @@ use crate::inputs::object_files::objects_content;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::millimetres;
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::rows::configuration::Configuration;
@@ -261,7 +261,7 @@ impl RecognitionStudy {
     }
 
     /// Returns the group with this number and its part.
-    pub(crate) fn group(&self, number: usize) -> (&StudyPart, &Group) {
+    pub(crate) fn group(&self, number: usize) -> (&StudyPart, &MeasurementGroup) {
         let PlacedGroup { part, place, .. } = self.groups[number];
         let part = &self.parts[part];
         (part, &part.sweep.groups[place])
@@ -290,7 +290,7 @@ impl RecognitionStudy {
     /// Returns the index of the part and of the array on which a set of touches is simulated, and the number of frames per touch.
     pub(crate) fn made_on(&self, touches: usize) -> (usize, usize, usize) {
         let group = self.touch_sets[touches].group;
-        let (_, Group { array, frames, .. }) = self.group(group);
+        let (_, MeasurementGroup { array, frames, .. }) = self.group(group);
         (self.groups[group].part, *array, *frames)
     }
 

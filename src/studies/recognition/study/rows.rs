@@ -4,11 +4,11 @@ use crate::studies::recognition::training::trial::Evaluation;
 use serde::{Deserialize, Serialize};
 
 /// Results of work items: of configurations in trials, and of sets of touches that were simulated or measured.
-pub type RecognitionRows = (Vec<CellRow>, Vec<TouchRow>);
+pub type RecognitionRows = (Vec<ConfigurationRow>, Vec<TouchRow>);
 
 /// Result of one configuration in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CellRow {
+pub struct ConfigurationRow {
     /// Index of the configuration's group and its index within the group, in the current study.
     #[serde(skip)]
     pub at: (usize, usize),

@@ -3,7 +3,7 @@
 use crate::engine::work_items::scale::Scale;
 use crate::sensing::N_COMPONENTS;
 use crate::studies::recognition::measurements::measurement::UNTOUCHED;
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::study::recognition_study::RecognitionStudy;
@@ -24,10 +24,10 @@ const SCORE_BYTES: f64 = 16.0;
 
 /// Returns the size of a recognition study: work items, memory and disk space.
 pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
-    type Placed<'a> = (&'a StudyPart, &'a Group);
+    type Placed<'a> = (&'a StudyPart, &'a MeasurementGroup);
     let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
     let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
-    let m = |group: &Group| group.projected().into_iter().max().unwrap_or(0) as f64;
+    let m = |group: &MeasurementGroup| group.projected().into_iter().max().unwrap_or(0) as f64;
     let n_read = |on: Placed| n_frames(on) * on.1.n_readings(&on.0.plan) as f64;
     let measured = |on: Placed| {
         let matrix = on.1.ensemble.about().bytes;
@@ -70,7 +70,7 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
 }
 
 /// Returns the memory of learned ensembles and estimators, bytes: the frames for fitting (n values each, original and centred) and the fitted estimators.
-fn learned_bytes(group: &Group, n: f64) -> f64 {
+fn learned_bytes(group: &MeasurementGroup, n: f64) -> f64 {
     let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
     let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
     match group.learns() {

@@ -18,7 +18,7 @@ use crate::learning::evaluation::next_touch::Poses;
 use crate::random::Seed;
 use crate::studies::recognition::frames::samples::named_samples;
 use crate::studies::recognition::frames::touch_set::TouchSet;
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::skin;
 use crate::studies::recognition::rows::configuration::Configuration;
@@ -47,7 +47,7 @@ pub(crate) use nested;
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// Groups of configurations, ordered by array.
-    pub groups: Vec<Group>,
+    pub groups: Vec<MeasurementGroup>,
     /// Split of all touches for each trial.
     pub splits: Vec<Hashed<Split>>,
     /// Number of the first trial with the same split, for each trial; the trial's own number if there is no earlier one.
@@ -121,7 +121,7 @@ impl Sweep {
             test_sensor in Axis::optional_values(&plan.spec.signal.test_sensor);
             ensemble in plan.spec.sensing.ensemble.values();
             {
-                let group = Group {
+                let group = MeasurementGroup {
                     array,
                     frames,
                     condition,
@@ -161,7 +161,7 @@ impl Sweep {
     }
 
     /// Checks that a learned ensemble has enough frames of training touches: the frames minus their mean must span more directions than there are measurements.
-    fn check_learned(&self, plan: &Plan, group: &Group) -> Result<()> {
+    fn check_learned(&self, plan: &Plan, group: &MeasurementGroup) -> Result<()> {
         if !group.ensemble.is_learned() {
             return Ok(());
         }
@@ -188,7 +188,12 @@ impl Sweep {
         }
     }
 
-    fn add_group(&mut self, plan: &Plan, mut group: Group, train_touches: &[usize]) -> Result<()> {
+    fn add_group(
+        &mut self,
+        plan: &Plan,
+        mut group: MeasurementGroup,
+        train_touches: &[usize],
+    ) -> Result<()> {
         let array = &plan.arrays[group.array];
         self.check_learned(plan, &group)?;
         let (ny, nx) = array.shape();

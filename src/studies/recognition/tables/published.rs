@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::inputs::toml_value::number;
 use crate::studies::recognition::rows::conditions::{by_condition, most_accurate, settings_of};
 use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::table_rows::{CellScore, Published};
+use crate::studies::recognition::rows::table_rows::{ConfigurationScore, Published};
 use crate::studies::recognition::spec::study::PublishedSpec;
 use crate::table::{Table, Value, column_name};
 use std::fmt::Display;
@@ -81,7 +81,7 @@ fn is_about(claim: &PublishedSpec, configurations: &Table, row: usize) -> bool {
 /// If a configuration cannot be written as a row of a table.
 pub fn compare_with_published(
     published: &[PublishedSpec],
-    summary: &[(Configuration, CellScore)],
+    summary: &[(Configuration, ConfigurationScore)],
 ) -> Result<Vec<(Configuration, Published)>> {
     let configurations = || summary.iter().map(|(configuration, _)| configuration);
     let settings = settings_of(&configurations().collect::<Vec<_>>())?;
@@ -122,7 +122,7 @@ mod tests {
     }
 
     /// Returns a summary of two classifiers × two ratios × noise of 0 or 10 %; accuracies increase with the number of the configuration.
-    fn summary() -> Vec<(Configuration, CellScore)> {
+    fn summary() -> Vec<(Configuration, ConfigurationScore)> {
         let mut rows = Vec::new();
         for noise_std in [0.0, 0.1] {
             for classifier in [ClassifierKind::LinearSvm, ClassifierKind::KNearest] {
@@ -137,7 +137,7 @@ mod tests {
                         ..crate::studies::recognition::rows::configuration::tests::configuration()
                     };
                     let accuracy = 0.5 + 0.05 * rows.len() as f64;
-                    let score = CellScore {
+                    let score = ConfigurationScore {
                         n_trials: 1,
                         n_test: 100,
                         accuracy,

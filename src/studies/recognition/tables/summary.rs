@@ -9,7 +9,7 @@ use crate::statistics::repeats::{Paired, Repeat, scores};
 use crate::studies::recognition::rows::conditions::{by_condition, most_accurate};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
-    CellScore, Comparison, Confused, Confusion, Pareto, TrialScore, TrialTime,
+    Comparison, ConfigurationScore, Confused, Confusion, Pareto, TrialScore, TrialTime,
 };
 use crate::table::front;
 use bubbletouch_sim::statistics::interval::{Interval, RowTest};
@@ -27,7 +27,7 @@ pub fn summarise(
     rows: &[Row],
     mut groups: &[Vec<GroupCount>],
     n_folds: impl Fn(&Configuration) -> usize,
-) -> Result<Vec<(Configuration, CellScore)>> {
+) -> Result<Vec<(Configuration, ConfigurationScore)>> {
     let mut bootstrap = Bootstrap::default();
     let is_grouped = rows.iter().any(|(_, score)| score.n_groups.is_some());
     rows.chunk_by(|a, b| a.0 == b.0)
@@ -61,7 +61,7 @@ fn score(
     trials: &[&TrialScore],
     (groups, n_folds): (&[Vec<GroupCount>], usize),
     bootstrap: &mut Bootstrap,
-) -> Result<CellScore> {
+) -> Result<ConfigurationScore> {
     let mean = |value: fn(&TrialScore) -> f64| {
         trials.iter().map(|trial| value(trial)).sum::<f64>() / trials.len() as f64
     };
@@ -89,7 +89,7 @@ fn score(
         Some(scores) => bootstrap.mean(scores.view(), CONFIDENCE)?,
         None => None,
     };
-    Ok(CellScore {
+    Ok(ConfigurationScore {
         n_trials: trials.len(),
         n_test,
         accuracy,

@@ -12,7 +12,7 @@ use crate::learning::classifiers::parameters::PARAMETERS;
 use crate::learning::data::spoiled::{mislabelled, with_imbalance};
 use crate::learning::evaluation::next_touch::{NextTouch, Poses};
 use crate::random::Seed;
-use crate::studies::recognition::plan::group::Group;
+use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
@@ -246,7 +246,7 @@ impl TrainingInputs {
 /// Returns the name of a family of configurations; different inputs give different names. The name contains the measurements that the family alone would need.
 pub fn family_name(
     plan: &Plan,
-    (group, touches): (&Group, &str),
+    (group, touches): (&MeasurementGroup, &str),
     inputs: &FamilyInputs,
     family: &[Configuration],
 ) -> String {
