@@ -1,5 +1,6 @@
 //! `bubbletouch classify`: one classifier on one folder of features, timed.
 
+use crate::command::classify_parameters::ParameterOptions;
 use crate::command::options::study_args::set_threads;
 use crate::command::options::unused::check_used;
 use crate::command::terminal::streams::say;
@@ -8,7 +9,7 @@ use bubbletouch::quantile::quantile;
 use bubbletouch::random::Seed;
 use bubbletouch::recognition::ClassifierKind;
 use bubbletouch::recognition::classifiers::classifier::{Classifier, Cost, TrainedClassifier};
-use bubbletouch::recognition::classifiers::parameters::PARAMETERS;
+use bubbletouch::recognition::classifiers::parameters;
 use bubbletouch::recognition::data::dataset::Dataset;
 use bubbletouch::recognition::data::scaling::Scaling;
 use bubbletouch::recognition::data::split::{Split, group_k_fold, stratified_k_fold};
@@ -16,7 +17,6 @@ use bubbletouch::recognition::statistics::grouped::{
     FEW_GROUPS, GroupedTest, count_groups, interval_of,
 };
 use bubbletouch::recognition::svm::cross_validation::choice::{Candidates, Chosen};
-use bubbletouch::recognition::svm::kernel::Gamma;
 use bubbletouch::recognition::svm::{Multiclass, Solver};
 use bubbletouch::study::{CONFIDENCE, FeatureSet, KeyValue, read_features, write_npy, write_texts};
 use bubbletouch::{Error, Result};
@@ -73,17 +73,8 @@ pub struct Args {
     /// Train an SVM by smo or coordinate_descent [default: smo]
     #[arg(long, value_name = "NAME", value_parser = word::<Solver>, help_heading = "Classifier")]
     solver: Option<Solver>,
-    /// Set γ of the kernel: a number, or scale [default: scale]
-    ///
-    /// γ is for scaled features; scale is 1 / (m · variance) of m features.
-    #[arg(long, value_name = "GAMMA", value_parser = gamma, help_heading = "Classifier")]
-    gamma: Option<Gamma>,
-    /// Set the degree d of the polynomial kernel [default: 3]
-    #[arg(long, value_name = "D", help_heading = "Classifier")]
-    degree: Option<u32>,
-    /// Set the constant c₀ of the polynomial kernel [default: 1]
-    #[arg(long, value_name = "C0", help_heading = "Classifier")]
-    coef0: Option<f64>,
+    #[command(flatten)]
+    parameters: ParameterOptions,
     /// Combine two-class SVMs by one_vs_one, one_vs_rest, … [default: one_vs_one]
     #[arg(long, value_name = "HOW", value_parser = word::<Multiclass>, help_heading = "Classifier")]
     multiclass: Option<Multiclass>,
@@ -216,8 +207,8 @@ pub fn classify(args: &Args) -> Result<()> {
 
 impl Args {
     fn train_and_test(&self, set: &FeatureSet) -> Result<(Findings, Array1<usize>)> {
-        let classifier = self.classifier();
-        let is_svm = self.classifier.about().kernel.is_some();
+        let classifier = self.classifier()?;
+        let is_svm = self.classifier.is_kernel_svm();
         let (training, test) = (set.training(self.train_rows)?, set.test()?);
         let groups_of = |rows: &[usize]| Some(set.groups.as_ref()?.select(Axis(0), rows));
         let n_train = training.targets.len();
@@ -302,29 +293,25 @@ impl Args {
         let given = [
             ("c", self.c.is_some()),
             ("c_grid", chooses),
-            ("gamma", self.gamma.is_some()),
             ("gamma_grid", chooses_gamma),
-            ("degree", self.degree.is_some()),
-            ("coef0", self.coef0.is_some()),
             ("multiclass", self.multiclass.is_some()),
             ("solver", self.solver.is_some()),
             ("tolerance", self.tolerance.is_some()),
         ];
-        for parameter in &PARAMETERS {
-            let can_act = (parameter.is_used)(self.classifier);
-            let user = format!("--classifier {}", parameter.users());
-            for (key, is_given) in given {
-                let is_given = is_given && parameter.keys.contains(&key);
-                let option = format!("--{}", key.replace('_', "-"));
-                check_used(&option, is_given, can_act, &user)?;
-            }
+        for key in parameters::keys() {
+            let is_given = given.contains(&(key, true)) || self.parameters.has(key);
+            let user = format!("--classifier {}", parameters::users(key));
+            let option = format!("--{}", key.replace('_', "-"));
+            check_used(&option, is_given, self.classifier.uses(key), &user)?;
         }
         Ok(())
     }
 
-    fn classifier(&self) -> Classifier {
-        let usual = Classifier::new(self.classifier);
-        Classifier {
+    fn classifier(&self) -> Result<Classifier> {
+        let usual = self
+            .parameters
+            .applied_to(Classifier::new(self.classifier))?;
+        Ok(Classifier {
             scaling: self.scaling,
             multiclass: self.multiclass.unwrap_or(usual.multiclass),
             solver: self.solver.unwrap_or(usual.solver),
@@ -335,12 +322,9 @@ impl Args {
                     gamma_scales: self.gamma_grid.clone(),
                 }),
             },
-            gamma: self.gamma.unwrap_or(usual.gamma),
-            coef0: self.coef0.unwrap_or(usual.coef0),
-            degree: self.degree.unwrap_or(usual.degree),
             tolerance: self.tolerance.unwrap_or(usual.tolerance),
             ..usual
-        }
+        })
     }
 }
 
@@ -409,14 +393,4 @@ pub fn word<T: for<'a> Deserialize<'a>>(text: &str) -> std::result::Result<T, St
     let deserializer: serde::de::value::StrDeserializer<serde::de::value::Error> =
         text.into_deserializer();
     T::deserialize(deserializer).map_err(|error| error.to_string())
-}
-
-fn gamma(text: &str) -> std::result::Result<Gamma, String> {
-    match text {
-        "scale" => Ok(Gamma::Scale),
-        _ => text
-            .parse()
-            .map(Gamma::Value)
-            .map_err(|_| "expected a number, or scale".to_owned()),
-    }
 }

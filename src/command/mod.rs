@@ -3,6 +3,7 @@
 mod advise;
 mod calibrate;
 mod classify;
+mod classify_parameters;
 mod compare;
 mod features;
 mod merge;

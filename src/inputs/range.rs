@@ -2,6 +2,7 @@
 
 use crate::inputs::units::MAX_SIDE;
 use crate::world::MAX_TOUCHES;
+use bubbletouch_svm::classifiers::parameters::Parameter;
 use std::borrow::Cow;
 
 /// Smallest positive value of a key. Squares and reciprocals of smaller values approach the limits of f64; no quantity is measured in such small values.
@@ -38,6 +39,8 @@ pub enum Range {
     Between(f64, f64, &'static str),
     /// Zero and the numbers between two positive bounds, including both, with a description in words.
     ZeroOrBetween(f64, f64, &'static str),
+    /// Numbers that a classifier declares for its parameter.
+    Declared(&'static Parameter),
     /// Numbers that a predicate allows, with a description in words.
     Of(fn(f64) -> bool, &'static str),
     /// Texts and truth values. A list of them contains each value once.
@@ -59,6 +62,7 @@ impl Range {
             Self::Count(least, most) => (least as f64..=most as f64).contains(&value),
             Self::Between(low, high, _) => (low..=high).contains(&value),
             Self::ZeroOrBetween(low, high, _) => value == 0.0 || (low..=high).contains(&value),
+            Self::Declared(parameter) => parameter.allows(value),
             Self::Of(is_allowed, _) => is_allowed(value),
             Self::Any | Self::Unchecked => true,
         }
@@ -76,6 +80,7 @@ impl Range {
             Self::Count(least, most) => {
                 return format!("at least {least} and at most {most}").into();
             }
+            Self::Declared(parameter) => return parameter.allowed().into(),
             Self::Between(.., words) | Self::ZeroOrBetween(.., words) | Self::Of(_, words) => words,
             Self::Any | Self::Unchecked => "any value",
         };
@@ -94,6 +99,7 @@ impl Range {
             Self::Count(least, most) => [least as f64, most as f64],
             Self::Between(low, high, _) => [low, high],
             Self::ZeroOrBetween(_, high, _) => [0.0, high],
+            Self::Declared(parameter) => parameter.range,
             Self::Of(..) | Self::Any | Self::Unchecked => return None,
         })
     }

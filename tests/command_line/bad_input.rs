@@ -573,6 +573,21 @@ fn keys_of_single_classifiers_are_checked_and_belong_to_one_of_the_study() {
         "degree = 21",
         &["recognition.degree", "at most 20"],
     );
+    refuses(
+        "polynomial_svm",
+        "degree = 2.5",
+        &["study.toml:", "2.5", "a whole number"],
+    );
+    refuses(
+        "k_nearest",
+        "n_neighbors = 3",
+        &[
+            "study.toml:",
+            "`n_neighbors`",
+            "`features`",
+            "`n_neighbours`",
+        ],
+    );
 }
 
 #[test]

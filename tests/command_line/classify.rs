@@ -124,6 +124,19 @@ fn options_reach_the_classifier() {
             "{option:?}"
         );
     }
+    let forest = ["--classifier", "random_forest"];
+    let neighbours = ["--classifier", "k_nearest"];
+    let correct = |arguments: &[&str]| json(&case, arguments)["n_correct"].clone();
+    for (usual, option) in [
+        (forest, ["--max-depth", "1"]),
+        (forest, ["--n-trees", "1"]),
+        (neighbours, ["--n-neighbours", "39"]),
+    ] {
+        let changed = correct(&[&usual[..], &option].concat());
+        assert_ne!(changed, correct(&usual), "{option:?}");
+    }
+    let pure = [&forest[..], &["--max-depth", "pure"]].concat();
+    assert_eq!(correct(&pure), correct(&forest));
     let said = json(&case, &["--classifier", "linear_svm", "--repeat", "3"]);
     assert_eq!(said["fit_s"].as_array().unwrap().len(), 3);
     assert_eq!(said["predict_s"].as_array().unwrap().len(), 3);
@@ -439,6 +452,25 @@ fn groups_that_do_not_fit_the_rows_or_the_split_are_refused() {
 #[test]
 fn options_out_of_range_are_refused() {
     let case = folder();
+    for (classifier, option, value, word) in [
+        (
+            "polynomial_svm",
+            "--degree",
+            "21",
+            "at least 1 and at most 20",
+        ),
+        ("polynomial_svm", "--degree", "2.5", "a whole number"),
+        ("polynomial_svm", "--coef0=-1", "", "0 to 1e6"),
+        ("rbf_svm", "--gamma", "0", "1e-12 to 1e9"),
+        ("rbf_svm", "--gamma", "NaN", "1e-12 to 1e9"),
+        ("random_forest", "--n-trees", "0", "at least 1"),
+        ("random_forest", "--max-depth", "deep", "pure"),
+        ("k_nearest", "--n-neighbours", "40", "39 training rows"),
+    ] {
+        let mut options = vec!["--classifier", classifier, option, value];
+        options.retain(|option| !option.is_empty());
+        refused(&case, &options, &[word]);
+    }
     for (option, value, word) in [
         ("--classifier", "forest of trees", "linear_svm"),
         ("--gamma", "wide", "scale"),

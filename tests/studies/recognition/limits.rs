@@ -70,7 +70,9 @@ fn every_classifier_learns_from_two_rows_a_class_and_from_a_hundred_to_one() {
         for kind in KINDS {
             let mut classifier = Classifier::new(kind);
             classifier.c = Cost::Fixed(1e3);
-            classifier.n_neighbours = 1;
+            if kind == ClassifierKind::KNearest {
+                classifier = classifier.with("n_neighbours", 1.0).unwrap();
+            }
             let model = classifier.train(&train, &Seed::new(1));
             let model = model.unwrap_or_else(|error| panic!("{name}, {kind:?}: {error}"));
             let labels = model.labels(test.records.view()).unwrap();

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::class_model::ClassModel;
 use crate::classifiers::ClassifierKind;
+use crate::classifiers::parameters::Parameters;
 use crate::classifiers::trained_classifier::Model;
 use crate::cross_validation::choice::{Candidates, Chosen, choose, choose_c};
 use crate::dataset::{Dataset, rows};
@@ -40,8 +41,8 @@ pub enum Cost {
 /// Number of cross-validation folds for the choice of C and γ, if no folds are given; equals scikit-learn's default.
 const FOLDS: usize = 5;
 
-/// Kind of classifier and its parameters. Parameters that the kind does not use are ignored, for example γ of a linear SVM. Only SVMs and logistic regression
-/// use C.
+/// Kind of classifier and its parameters. Fields that the kind does not use are ignored, for example the solver of a random forest. Only SVMs and logistic
+/// regression use C.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classifier {
     /// Kind of classifier.
@@ -54,20 +55,10 @@ pub struct Classifier {
     pub solver: Solver,
     /// Penalty C: a fixed value, or candidates to choose from.
     pub c: Cost,
-    /// Kernel parameter γ: inverse squared units of the scaled features (inverse units for a Laplacian kernel).
-    pub gamma: Gamma,
-    /// Constant c₀ ≥ 0 of the polynomial kernel, dimensionless.
-    pub coef0: f64,
-    /// Degree of the polynomial kernel, 1 to 20.
-    pub degree: u32,
+    /// Values of the parameters that the kind declares; see [`with`](Self::with).
+    pub parameters: Parameters,
     /// Stopping tolerance of the solver, above 0, in units of the decision value. Logistic regression uses one tenth of this tolerance.
     pub tolerance: f64,
-    /// Number k of nearest neighbours, 1 to the number of training rows.
-    pub n_neighbours: usize,
-    /// Number of trees of a random forest, at least 1.
-    pub n_trees: usize,
-    /// Maximum depth of the trees of a random forest, at least 1; with `None`, trees grow until their leaves are pure.
-    pub max_depth: Option<usize>,
     /// Maximum size of the kernel values that an SVM's solver keeps in memory, bytes.
     pub memory_bytes: usize,
 }
@@ -82,15 +73,39 @@ impl Classifier {
             multiclass: Multiclass::OneVsOne,
             solver: Solver::Smo,
             c: Cost::Fixed(1.0),
-            gamma: Gamma::Scale,
-            coef0: 1.0,
-            degree: 3,
+            parameters: Parameters::new(kind),
             tolerance: 1e-3,
-            n_neighbours: 5,
-            n_trees: 100,
-            max_depth: None,
             memory_bytes: DEFAULT_MEMORY_BYTES,
         }
+    }
+
+    /// Returns a copy with another value of a parameter that the kind declares.
+    ///
+    /// ```
+    /// # use bubbletouch_svm::classifiers::{ClassifierKind, classifier::Classifier};
+    /// let forest = Classifier::new(ClassifierKind::RandomForest).with("n_trees", 10.0)?;
+    /// assert_eq!(forest.parameters.get("n_trees"), Some(10.0));
+    /// # Ok::<(), bubbletouch_svm::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the kind has no such parameter, or if the value is not allowed.
+    pub fn with(&self, key: &str, value: f64) -> Result<Self> {
+        let mut changed = self.clone();
+        changed.parameters.set(self.kind, key, value)?;
+        Ok(changed)
+    }
+
+    /// Returns a copy with another γ of the kernel. γ is in inverse squared units of the scaled features.
+    pub fn with_gamma(&self, gamma: Gamma) -> Self {
+        let mut changed = self.clone();
+        changed.parameters.set_gamma(gamma);
+        changed
+    }
+
+    /// Returns γ of the kernel.
+    pub fn gamma(&self) -> Gamma {
+        self.parameters.gamma()
     }
 
     /// Trains the classifier on the training rows. All random draws use `seed`: the five stratified folds that choose C, the trees of a forest, and the order
@@ -162,8 +177,10 @@ impl Classifier {
     pub fn with_choice(&self, chosen: &Chosen) -> Self {
         Self {
             c: Cost::Fixed(chosen.best.c),
-            gamma: chosen.best.gamma.map_or(self.gamma, Gamma::Value),
-            ..self.clone()
+            ..match chosen.best.gamma {
+                Some(gamma) => self.with_gamma(Gamma::Value(gamma)),
+                None => self.clone(),
+            }
         }
     }
 
@@ -257,7 +274,7 @@ impl Classifier {
 
     /// Returns the parameters of the kernel SVM; `None` if the classifier is not a kernel SVM or uses coordinate descent.
     fn kernel_svm(&self, c: f64) -> Option<SvmParams> {
-        let kernel = self.kind.about().kernel?(self);
+        let kernel = self.kind.about().kernel?(&self.parameters);
         (self.solver != Solver::CoordinateDescent).then_some(SvmParams {
             kernel,
             multiclass: self.multiclass,
@@ -275,7 +292,7 @@ impl Classifier {
     pub fn check_solver(&self) -> Result<()> {
         let is_linear = self.kind == ClassifierKind::LinearSvm;
         let is_possible = is_linear && self.multiclass == Multiclass::OneVsRest;
-        let is_svm = self.kind.about().kernel.is_some();
+        let is_svm = self.kind.is_kernel_svm();
         if self.solver != Solver::CoordinateDescent || !is_svm || is_possible {
             return Ok(());
         }

@@ -3,6 +3,7 @@
 use crate::class_model::ClassModel;
 use crate::classifiers::ClassifierKind;
 use crate::classifiers::classifier::Classifier;
+use crate::classifiers::parameters::{GAMMA, Parameter, Parameters};
 use crate::dataset::Dataset;
 use crate::error::Result;
 use crate::kernel::Kernel;
@@ -16,18 +17,10 @@ pub struct ClassifierAbout {
     pub words: &'static str,
     /// Whether the classifier has a soft-margin penalty C.
     pub has_c: bool,
-    /// Whether the classifier has a kernel with a parameter γ.
-    pub has_gamma: bool,
-    /// Whether the classifier has a kernel with a degree and a constant.
-    pub has_degree: bool,
-    /// Whether the classifier has a number of neighbours as a parameter.
-    pub has_neighbours: bool,
-    /// Whether the classifier has a number of trees as a parameter.
-    pub has_trees: bool,
-    /// Whether the classifier has a maximum tree depth as a parameter.
-    pub has_depth: bool,
+    /// Parameters of the classifier. Classifiers with an equal key share its declaration.
+    pub parameters: &'static [Parameter],
     /// Kernel of a kernel SVM; `None` for other kinds. Kernel SVMs solve several values of C together and keep kernel values in memory.
-    pub kernel: Option<fn(&Classifier) -> Kernel>,
+    pub kernel: Option<fn(&Parameters) -> Kernel>,
     /// Function that trains the classifier on scaled rows, with C if the kind has one; random draws use the given seed.
     pub train: Train,
 }
@@ -36,26 +29,26 @@ pub struct ClassifierAbout {
 pub type Train = fn(&Classifier, &Dataset, f64, &dyn Streams) -> Result<Arc<dyn ClassModel>>;
 
 impl ClassifierAbout {
-    /// Creates the descriptor of a classifier without parameters.
+    /// Creates the descriptor of a classifier without C and without parameters.
     pub(crate) const fn new(words: &'static str, train: Train) -> Self {
         Self {
             words,
             has_c: false,
-            has_gamma: false,
-            has_degree: false,
-            has_neighbours: false,
-            has_trees: false,
-            has_depth: false,
+            parameters: &[],
             kernel: None,
             train,
         }
     }
 
-    /// Creates the descriptor of an SVM with the given kernel.
-    pub(crate) const fn svm(words: &'static str, kernel: fn(&Classifier) -> Kernel) -> Self {
+    /// Creates the descriptor of an SVM with a kernel and the parameters of the kernel.
+    pub(crate) const fn svm(
+        words: &'static str,
+        parameters: &'static [Parameter],
+        kernel: fn(&Parameters) -> Kernel,
+    ) -> Self {
         Self {
             has_c: true,
-            has_gamma: true,
+            parameters,
             kernel: Some(kernel),
             ..Self::new(words, |classifier, scaled, c, seed| {
                 classifier.train_kernel_free(scaled, c, seed)
@@ -76,9 +69,14 @@ impl ClassifierKind {
         self.about().has_c
     }
 
+    /// Returns whether the kind is a kernel SVM of this crate.
+    pub fn is_kernel_svm(self) -> bool {
+        self.about().kernel.is_some()
+    }
+
     /// Returns whether the kind has a kernel with a parameter γ.
     pub fn has_gamma(self) -> bool {
-        self.about().has_gamma
+        self.uses(GAMMA.key)
     }
 }
 

@@ -8,6 +8,7 @@
 //! result equals an exact pairwise search. Far from the origin there are many candidates; scale the features.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
+use crate::classifiers::parameters::{DefaultValue, MAX_COUNT, Parameter};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
 use std::sync::Arc;
 
@@ -146,9 +147,17 @@ fn squared_distance(a: ArrayView1<f64>, b: ArrayView1<f64>) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
+const N_NEIGHBOURS: Parameter = Parameter::integer(
+    "n_neighbours",
+    "number k of nearest neighbours",
+    [1.0, MAX_COUNT],
+    DefaultValue::Number(5.0),
+);
+
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
-    has_neighbours: true,
+    parameters: &[N_NEIGHBOURS],
     ..ClassifierAbout::new("k nearest neighbours", |classifier, scaled, _, _| {
-        Ok(Arc::new(KNearest::train(scaled, classifier.n_neighbours)?))
+        let n_neighbours = N_NEIGHBOURS.count(&classifier.parameters);
+        Ok(Arc::new(KNearest::train(scaled, n_neighbours)?))
     })
 };

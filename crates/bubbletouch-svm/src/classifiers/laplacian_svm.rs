@@ -1,9 +1,10 @@
 //! Soft-margin SVM with a Laplacian kernel ([crate documentation](crate)).
 
 use crate::classifiers::classifier_about::ClassifierAbout;
+use crate::classifiers::parameters::GAMMA;
 use crate::kernel::Kernel;
 
 pub(crate) const ABOUT: ClassifierAbout =
-    ClassifierAbout::svm("Laplacian SVM", |classifier| Kernel::Laplacian {
-        gamma: classifier.gamma,
+    ClassifierAbout::svm("Laplacian SVM", &[GAMMA], |parameters| Kernel::Laplacian {
+        gamma: parameters.gamma(),
     });

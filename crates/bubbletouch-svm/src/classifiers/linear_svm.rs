@@ -5,7 +5,5 @@ use crate::kernel::Kernel;
 
 pub use crate::linear_svm::{Convergence, LinearSvm, LinearSvmParams, MAX_PASSES};
 
-pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
-    has_gamma: false,
-    ..ClassifierAbout::svm("linear SVM", |_| Kernel::Linear)
-};
+pub(crate) const ABOUT: ClassifierAbout =
+    ClassifierAbout::svm("linear SVM", &[], |_| Kernel::Linear);

@@ -6,6 +6,7 @@
 //! once per node.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
+use crate::classifiers::parameters::{DefaultValue, MAX_COUNT, Parameter};
 use ndarray::{Array2, ArrayView2};
 use rand::Rng;
 use std::sync::Arc;
@@ -95,11 +96,26 @@ impl ClassModel for RandomForest {
     }
 }
 
+const N_TREES: Parameter = Parameter::integer(
+    "n_trees",
+    "number of trees of a random forest",
+    [1.0, MAX_COUNT],
+    DefaultValue::Number(100.0),
+);
+
+const MAX_DEPTH: Parameter = Parameter::integer(
+    "max_depth",
+    "maximum depth of the trees of a random forest",
+    [1.0, MAX_COUNT],
+    DefaultValue::Rule("pure", "trees grow until their leaves are pure"),
+);
+
 pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
-    has_trees: true,
-    has_depth: true,
+    parameters: &[N_TREES, MAX_DEPTH],
     ..ClassifierAbout::new("random forest", |classifier, scaled, _, seed| {
-        let (n_trees, depth) = (classifier.n_trees, classifier.max_depth);
+        let n_trees = N_TREES.count(&classifier.parameters);
+        let depth = MAX_DEPTH.value(&classifier.parameters);
+        let depth = depth.map(|depth| depth as usize);
         let forest = RandomForest::train(scaled, n_trees, depth, &*seed.named("forest"))?;
         Ok(Arc::new(forest))
     })

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::inputs::check::Check;
 use crate::inputs::units::MM;
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::parameters::PARAMETERS;
+use crate::learning::classifiers::parameters;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::Ensemble;
@@ -124,14 +124,11 @@ impl Check<'_> {
     fn parameters(&self, recognition: &RecognitionSpec, given: &toml::Table) -> Result<()> {
         let usual: toml::Table = RecognitionSpec::usual();
         let kinds = recognition.classifier.values();
-        for parameter in &PARAMETERS {
-            let is_set =
-                |key: &&&str| given.contains_key(**key) && given.get(**key) != usual.get(**key);
-            let key = parameter.keys.iter().find(is_set);
-            let is_used = kinds.iter().any(|&kind| (parameter.is_used)(kind));
-            if let (Some(key), false) = (key, is_used) {
-                let given = format!("{}, but no classifier of the study uses it", given[*key]);
-                let users = parameter.users();
+        for key in parameters::keys() {
+            let is_set = given.contains_key(key) && given.get(key) != usual.get(key);
+            if is_set && !kinds.iter().any(|kind| kind.uses(key)) {
+                let given = format!("{}, but no classifier of the study uses it", given[key]);
+                let users = parameters::users(key);
                 let allowed = format!("{users} among recognition.classifier, or no such key");
                 return Err(self.error(&format!("recognition.{key}"), given, allowed));
             }

@@ -12,7 +12,9 @@ use crate::inputs::sensor_errors::strength_keys;
 use crate::inputs::toml_value::is_at;
 use crate::inputs::units::MAX_FRAMES;
 use crate::learning::classifiers::ClassifierKind;
+use crate::learning::classifiers::parameters::{Parameter, declared};
 use crate::sensing::Ensemble;
+use crate::table::Role;
 use crate::table::Scale::{Linear, Log, Share, Words};
 use bubbletouch_sim::features::Features;
 use serde::Serialize;
@@ -32,10 +34,8 @@ const SLIDE: Range = Between(0.0, 1e6, "0 to 1000000");
 const NOISE: Range = ZeroOrBetween(1e-12, 1000.0, "0, or 1e-12 to 1000");
 /// Penalty C. At the bounds, no margin or no slack remains.
 const PENALTY: Range = Between(1e-12, 1e12, "above 0, 1e-12 to 1e12");
-/// Kernel width γ. At the upper bound, a kernel of degree 20 over 10,000 features is finite in f64.
+/// Multiples of the default kernel parameter γ.
 const GAMMA: Range = Between(1e-12, 1e9, "above 0, 1e-12 to 1e9");
-/// Constant c₀ of the polynomial kernel; the largest degree is 20.
-const COEF0: Range = Between(0.0, 1e6, "0 to 1e6");
 
 const OVER_TIME: &[(&str, &str)] = &[
     ("", "all frames"),
@@ -44,7 +44,7 @@ const OVER_TIME: &[(&str, &str)] = &[
 ];
 const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
 
-/// Keys of a recognition study, except the strengths of sensor errors.
+/// Keys of a recognition study, except the strengths of sensor errors and the parameters of classifiers.
 ///
 /// Roles: depth, slide, number and speed of presses are choices; pose and friction of the object are conditions. The split, its groups and recorded data are
 /// conditions of the experiment: as a choice, the easiest split would always win.
@@ -136,16 +136,10 @@ const KEYS: &[KeyAbout] = keys! {
     "recognition.scaling": Axes, Choice, Any;
     "recognition.c": Table, Choice, PENALTY, title: "C", scale: Log, names: CHOSEN;
     "recognition.c_grid": Axes, Choice, PENALTY;
-    "recognition.gamma": Axes, Choice, GAMMA;
     "recognition.gamma_grid": Axes, Choice, GAMMA;
     "recognition.cv_folds": Axes, Choice, Count(2, MAX_COUNTED);
     "recognition.cv_touches": Axes, Choice, COUNT;
     "recognition.readings_per_touch": Axes, Choice, Count(1, MAX_READINGS);
-    "recognition.degree": Axes, Choice, Count(1, 20);
-    "recognition.coef0": Axes, Choice, COEF0;
-    "recognition.n_neighbours": Axes, Choice, COUNT;
-    "recognition.n_trees": Axes, Choice, COUNT;
-    "recognition.max_depth": Axes, Choice, COUNT;
     "recognition.solver_memory_gib": Axes, Choice, Positive;
     "recognition.train_touches": Table, Choice, COUNT, title: "training touches", scale: Log;
     "recognition.mislabelled_fraction": Table, Condition, Fraction, title: "mislabelled", unit: "%", scale: Share;
@@ -170,9 +164,21 @@ const KEYS: &[KeyAbout] = keys! {
 pub fn recognition_keys() -> &'static [KeyAbout] {
     static ALL: LazyLock<Vec<KeyAbout>> = LazyLock::new(|| {
         let (before, after) = KEYS.split_at(place_after("signal."));
-        [before, strength_keys(), after].concat()
+        let place = place_after("recognition.readings_per_touch") - before.len();
+        let (between, after) = after.split_at(place);
+        [before, strength_keys(), between, &parameter_keys(), after].concat()
     });
     &ALL
+}
+
+/// Returns the descriptions of the parameters that classifiers declare.
+fn parameter_keys() -> Vec<KeyAbout> {
+    let about = |parameter: &'static Parameter| {
+        let path = format!("recognition.{}", parameter.key).leak();
+        let range = Range::Declared(parameter);
+        KeyAbout::new(path, AxisPlace::Axes, Role::Choice, range)
+    };
+    declared().map(about).collect()
 }
 
 /// Returns the index after the last key with a prefix.

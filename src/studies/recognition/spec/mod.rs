@@ -1,5 +1,6 @@
 //! Specification of a recognition study: the keys of its TOML file.
 
+pub mod classifier_parameters;
 pub mod human;
 pub mod keys;
 pub mod pose_split;

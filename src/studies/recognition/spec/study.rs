@@ -7,7 +7,7 @@ use crate::engine::axes;
 use crate::engine::axes::StudyAxes;
 use crate::engine::axis::{Axis, one_value};
 use crate::error::Result;
-use crate::inputs::defaults::{count, is_default, number};
+use crate::inputs::defaults::{count, is_default};
 use crate::inputs::keys::AxisPlace;
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::schema_types::{FeatureNames, Names};
@@ -18,6 +18,9 @@ use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::Ensemble;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::TrialScore;
+use crate::studies::recognition::spec::classifier_parameters::{
+    ClassifierParameters, OtherKeys, with_parameters,
+};
 pub use crate::studies::recognition::spec::human::*;
 use crate::studies::recognition::spec::keys::recognition_keys;
 use crate::studies::recognition::spec::pose_split::GroupSpec;
@@ -30,7 +33,10 @@ use bubbletouch_sim::features::Features;
 use bubbletouch_svm::scaling::Scaling;
 use bubbletouch_svm::{Multiclass, Solver};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
 
 /// Contents of a recognition study file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -97,7 +103,8 @@ pub struct SensingSpec {
 
 /// Keys of `[recognition]`: features, classifiers, and the split into training and test touches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, remote = "Self")]
+#[schemars(transform = with_parameters)]
 pub struct RecognitionSpec {
     /// Axis: features of a touch, before scaling. Default: `raw`. Transformations of the measurements: `raw`, `centred`, `unit_norm`, `centred_unit_norm`.
     /// Features of images: `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features
@@ -135,10 +142,8 @@ pub struct RecognitionSpec {
     pub c: Option<Axis<f64>>,
     /// Candidate values of C; replaces `c`. Each fit chooses one of them by cross-validation within its training rows.
     pub c_grid: Option<Vec<f64>>,
-    /// Kernel parameter γ of the RBF, Laplacian and polynomial kernels. Default: 'scale', which is 1 / (F · m · variance). The Laplacian kernel has the
-    /// standard deviation instead of the variance.
-    pub gamma: Option<f64>,
-    /// Candidate values of γ as multiples of 'scale'; replaces `gamma`. Each fit chooses one of them together with C.
+    /// Candidate values of γ as multiples of 'scale'; replaces `gamma`. 'scale' is 1 / (F · m · variance); the Laplacian kernel has the standard deviation
+    /// instead of the variance. Each fit chooses one of them together with C.
     pub gamma_grid: Option<Vec<f64>>,
     /// Number of folds of the inner cross-validation, which chooses C and γ, and estimates decisions on unseen touches for `most_informative`. Default: 5.
     /// Folds do not divide groups that the split does not divide.
@@ -148,18 +153,10 @@ pub struct RecognitionSpec {
     /// Number of readings of each training touch, each with its own noise. Default: 1. Without noise, drift or pink noise, all readings of a touch are equal,
     /// and one is used. C and γ are chosen on the first readings.
     pub readings_per_touch: Option<usize>,
-    /// Degree d of the polynomial kernel, 1 to 20. Default: 3.
-    #[serde(default = "default_degree")]
-    pub degree: u32,
-    /// Constant c₀ ≥ 0 of the polynomial kernel. Default: 1.
-    #[serde(default = "number::<1>")]
-    pub coef0: f64,
-    /// Number k of nearest neighbours, at least 1. Default: 5.
-    pub n_neighbours: Option<usize>,
-    /// Number of trees of a random forest, at least 1. Default: 100.
-    pub n_trees: Option<usize>,
-    /// Maximum depth of the trees of a random forest, at least 1. Default: unlimited. Trees then grow until their leaves are pure.
-    pub max_depth: Option<usize>,
+    /// Keys that [classifiers declare](crate::learning::classifiers::parameters): `degree`, `n_trees` and others.
+    #[serde(flatten, skip_deserializing)]
+    #[schemars(skip)]
+    pub parameters: ClassifierParameters,
     /// Maximum size of the kernel values that an SVM solver keeps in memory, GiB. Default: 2. Above the limit, values are recomputed; this takes longer and may
     /// change the last digits.
     pub solver_memory_gib: Option<f64>,
@@ -239,6 +236,43 @@ pub struct PublishedSpec {
     pub at: toml::Table,
 }
 
+impl Serialize for RecognitionSpec {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        // The derived function of the same name, which `remote = "Self"` makes.
+        Self::serialize(self, serializer)
+    }
+}
+
+/// Reads the fields by the derived function, and the keys of parameters by their declarations.
+impl<'de> Deserialize<'de> for RecognitionSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_map(RecognitionVisitor)
+    }
+}
+
+struct RecognitionVisitor;
+
+impl<'de> Visitor<'de> for RecognitionVisitor {
+    type Value = RecognitionSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("struct RecognitionSpec")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(
+        self,
+        map: M,
+    ) -> std::result::Result<RecognitionSpec, M::Error> {
+        let mut parameters = ClassifierParameters::default();
+        let others = OtherKeys {
+            map,
+            parameters: &mut parameters,
+        };
+        let spec = RecognitionSpec::deserialize(MapAccessDeserializer::new(others))?;
+        Ok(RecognitionSpec { parameters, ..spec })
+    }
+}
+
 impl StudySpec {
     /// Parses a study from the text of its file.
     ///
@@ -304,8 +338,4 @@ fn default_features() -> Axis<Features> {
 
 fn default_ensemble() -> Axis<Ensemble> {
     Axis::One(Ensemble::Gaussian)
-}
-
-fn default_degree() -> u32 {
-    3
 }

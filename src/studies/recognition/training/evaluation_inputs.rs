@@ -8,7 +8,6 @@ use crate::inputs::content_hash::{Hashed, short_hash};
 use crate::inputs::memory::GIB;
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::classifier::Classifier;
-use crate::learning::classifiers::parameters::PARAMETERS;
 use crate::learning::data::spoiled::{mislabelled, with_imbalance};
 use crate::learning::evaluation::next_touch::{NextTouch, Poses};
 use crate::random::Seed;
@@ -19,7 +18,6 @@ use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::spec::study::RecognitionSpec;
 use crate::studies::recognition::sweep::configurations::Sweep;
 use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
-use bubbletouch_svm::kernel::Gamma;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
 
@@ -196,11 +194,8 @@ impl Decision {
 
 impl TrainingInputs {
     fn new(recognition: &RecognitionSpec, kind: ClassifierKind, is_informed: bool) -> Self {
-        let is_used = |key: &str| {
-            let mut parameters = PARAMETERS.iter().filter(|known| known.keys.contains(&key));
-            parameters.any(|parameter| (parameter.is_used)(kind))
-        };
-        let usual = Classifier::new(kind);
+        let is_used = |key: &str| kind.uses(key);
+        let usual = recognition.parameters.applied_to(Classifier::new(kind));
         macro_rules! used {
             ($key:ident = $value:expr) => {
                 match is_used(stringify!($key)) {
@@ -214,14 +209,6 @@ impl TrainingInputs {
             scaling: recognition.scaling,
             multiclass: used!(multiclass = recognition.multiclass),
             solver: used!(solver = recognition.solver),
-            gamma: used!(gamma = recognition.gamma.map_or(Gamma::Scale, Gamma::Value)),
-            coef0: used!(coef0 = recognition.coef0),
-            degree: used!(degree = recognition.degree),
-            n_neighbours: used!(
-                n_neighbours = recognition.n_neighbours.unwrap_or(usual.n_neighbours)
-            ),
-            n_trees: used!(n_trees = recognition.n_trees.unwrap_or(usual.n_trees)),
-            max_depth: used!(max_depth = recognition.max_depth),
             memory_bytes: match is_used("solver_memory_gib") {
                 true => solver_memory,
                 false => usual.memory_bytes,

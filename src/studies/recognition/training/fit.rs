@@ -86,7 +86,7 @@ impl Training<'_> {
             };
             let (c, classifier) = self.choose(classifier.clone(), &candidates)?;
             let mut trained = classifier.train_path(&self.data, &[c], &self.seed)?;
-            let gamma = number(classifier.gamma).filter(|_| kind.has_gamma());
+            let gamma = number(classifier.gamma()).filter(|_| kind.has_gamma());
             (trained.swap_remove(0), gamma)
         } else {
             (classifier.train(&self.data, &self.seed)?, None)
@@ -103,21 +103,15 @@ impl Training<'_> {
     /// only some of the rows. A single candidate gives the same result as a given value.
     fn choose(&self, classifier: Classifier, candidates: &Candidates) -> Result<(f64, Classifier)> {
         let unit = self.gamma()?;
-        let classifier = Classifier {
-            gamma: unit.map_or(classifier.gamma, Gamma::Value),
-            ..classifier
+        let scaled_by = |scale: f64| match unit {
+            Some(unit) => classifier.with_gamma(Gamma::Value(scale * unit)),
+            None => classifier.clone(),
         };
         if let ([c], [] | [_]) = (&candidates.c[..], &candidates.gamma_scales[..]) {
             let scale = candidates.gamma_scales.first().copied().unwrap_or(1.0);
-            let gamma = unit.map_or(classifier.gamma, |unit| Gamma::Value(scale * unit));
-            return Ok((
-                *c,
-                Classifier {
-                    gamma,
-                    ..classifier
-                },
-            ));
+            return Ok((*c, scaled_by(scale)));
         }
+        let classifier = scaled_by(1.0);
         let chosen_on = self.choosing_rows();
         let folds = self.folds(&chosen_on)?;
         let data = rows(&self.data, &chosen_on)?;
@@ -132,10 +126,13 @@ impl Training<'_> {
     pub(crate) fn held_out_answers(&self, like: &Fitted) -> Result<Vec<usize>> {
         let n_first = self.n_first;
         let usual = &self.inputs.classifier;
+        let usual = match like.gamma {
+            Some(gamma) => usual.with_gamma(Gamma::Value(gamma)),
+            None => usual.clone(),
+        };
         let classifier = Classifier {
             c: like.c.map_or(usual.c.clone(), Cost::Fixed),
-            gamma: like.gamma.map_or(usual.gamma, Gamma::Value),
-            ..usual.clone()
+            ..usual
         };
         let mut answers = vec![0; n_first];
         let first: Vec<usize> = (0..n_first).collect();
@@ -158,13 +155,13 @@ impl Training<'_> {
         let classifier = &self.inputs.classifier;
         let kernel = classifier.kind.about().kernel;
         let kernel = kernel.filter(|_| classifier.kind.has_gamma());
-        let Some(kernel) = kernel.map(|kernel| kernel(classifier)) else {
+        let Some(kernel) = kernel.map(|kernel| kernel(&classifier.parameters)) else {
             return Ok(None);
         };
         let records = self.data.records.view();
         let scaled = classifier.scaling.fit(records)?.apply(records)?;
         let scale = || kernel.gamma_scale(scaled.view());
-        Ok(Some(number(classifier.gamma).unwrap_or_else(scale)))
+        Ok(Some(number(classifier.gamma()).unwrap_or_else(scale)))
     }
 
     /// Returns the training rows for the choice of C and γ: first readings only, and at most the given number per object. With further readings, a fold could
