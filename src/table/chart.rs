@@ -1,6 +1,6 @@
 //! Specification of a chart: the columns that it shows, and the form of its marks.
 
-use super::{Column, Table, Value};
+use super::{Column, Table, Value, for_each_mark};
 
 /// Specification of a chart. One renderer draws it as SVG and PNG, and the result page contains the SVG.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,21 +73,26 @@ pub struct Shown {
     pub value: Value,
 }
 
-/// Form of a chart's marks.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub enum Mark {
-    /// Points joined by lines along x; only points if the x column contains words.
-    #[default]
-    Line,
-    /// Points that are not joined by lines.
-    Points,
-    /// One coloured tile for each pair of x and y values.
-    Tiles {
-        /// Column that determines the tile's colour: an outcome by colour and letter, or a number by a sequential colour scale.
-        fill: String,
-        /// Column whose value is written on the tile. If the value is absent, the letter or number of `fill` is written.
-        sign: Option<String>,
-    },
+macro_rules! declare_mark {
+    ($($(#[$doc:meta])* $name:ident $({ $($columns:tt)* })? $file:ident;)*) => {
+        /// Form of a chart's marks.
+        #[derive(Clone, Debug, Default, PartialEq)]
+        pub enum Mark {
+            $($(#[$doc])* $name $({ $($columns)* })?,)*
+        }
+    };
+}
+
+for_each_mark!(declare_mark);
+
+impl Mark {
+    /// Returns the column that fills the marks, if they have one.
+    pub fn fill(&self) -> Option<&str> {
+        match self {
+            Self::Tiles { fill, .. } => Some(fill),
+            _ => None,
+        }
+    }
 }
 
 /// Reference line across the chart.

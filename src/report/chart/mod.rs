@@ -1,7 +1,7 @@
 //! Charts: a [`ChartSpec`] and a table are converted to a [`Drawing`].
 //!
 //! All charts have one renderer. `view` selects rows, lines and panels of the table. `scale` maps values to fractions of an axis. `layout` computes the pixel
-//! positions of the panels. `marks` and `tiles` draw the data. The page embeds the drawings: each mark is a group with its row number, so that the page's
+//! positions of the panels. `marks` and `series` draw the data. The page embeds the drawings: each mark is a group with its row number, so that the page's
 //! script finds the row's values.
 
 mod front;
@@ -10,14 +10,14 @@ mod legend;
 mod marks;
 mod rules;
 mod scale;
-mod tiles;
+mod series;
 mod view;
 
 pub use view::Place;
 
 use crate::error::{Error, Result};
 use crate::report::pictures::drawing::Drawing;
-use crate::table::{ChartSpec, Mark, Table};
+use crate::table::{ChartSpec, Table};
 use view::View;
 
 /// Draws a chart of one of the given tables.
@@ -34,10 +34,7 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
             "one at least",
         ));
     }
-    match &spec.mark {
-        Mark::Tiles { fill, sign } => tiles::draw(&view, fill, sign.as_deref()),
-        Mark::Line | Mark::Points => Ok(marks::draw(&view)),
-    }
+    (spec.mark.about().draw)(&view)
 }
 
 /// Returns the positions of all drawn rows, as fractions of the width (from the left) and height (from below) of their panels.

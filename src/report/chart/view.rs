@@ -4,7 +4,7 @@ use super::scale::Scale;
 use crate::error::{Error, Result};
 use crate::report::pictures::drawing::Drawing;
 use crate::report::swept::Setting;
-use crate::table::{Along, At, ChartSpec, Data, Mark, Role, Scale as Spacing, Table, Value};
+use crate::table::{Along, At, ChartSpec, Data, Role, Scale as Spacing, Table, Value};
 use std::collections::{HashMap, HashSet};
 
 /// Maximum number of lines with confidence bands. Bands of more lines would hide each other, so error bars replace them.
@@ -89,7 +89,8 @@ impl<'a> View<'a> {
             Ok(Groups::new(table, &settings?, &rows))
         };
         let (lines, panels) = (groups(&spec.lines)?, groups(spec.panels.as_slice())?);
-        let is_tiles = matches!(spec.mark, Mark::Tiles { .. });
+        let mark = spec.mark.about();
+        let is_tiles = mark.is_tiled;
         let (mut titles, mut row_titles) = (panels.titles.clone(), Vec::new());
         if is_tiles && lines.names.len() > 1 {
             titles.resize(titles.len() * lines.names.len(), String::new());
@@ -132,7 +133,7 @@ impl<'a> View<'a> {
             rows,
             x: x_scale,
             y: scale(&y, &y_values, &along[1], Along::Y),
-            is_joined: spec.mark == Mark::Line && !is_broken,
+            is_joined: mark.path.is_some() && !is_broken,
             places: Vec::new(),
         };
         view.places = view.place_all((&x_values.0, &y_values.0), interval);
@@ -167,7 +168,7 @@ impl<'a> View<'a> {
 
     /// Returns the horizontal offset of a line on a word axis, so that error bars of several lines do not overlap.
     fn beside(&self, line: usize) -> f64 {
-        if !self.x.is_words || self.spec.mark != Mark::Line {
+        if !self.x.is_words || self.spec.mark.about().path.is_none() {
             return 0.0;
         }
         let n = self.lines.names.len() as f64;
@@ -177,7 +178,7 @@ impl<'a> View<'a> {
 
     /// Returns whether the chart shows tiles.
     pub fn is_tiles(&self) -> bool {
-        matches!(self.spec.mark, Mark::Tiles { .. })
+        self.spec.mark.about().is_tiled
     }
 
     /// Returns whether intervals are drawn as bands, which is the case for charts with few lines.
@@ -187,7 +188,8 @@ impl<'a> View<'a> {
 
     /// Returns whether intervals are drawn, as bands or as error bars.
     pub fn has_interval(&self) -> bool {
-        let is_many = self.spec.mark == Mark::Points && self.places.len() > MAX_WHISKERS;
+        let is_joinable = self.spec.mark.about().path.is_some();
+        let is_many = !is_joinable && self.places.len() > MAX_WHISKERS;
         !is_many && self.places.iter().any(|place| place.interval.is_some())
     }
 
@@ -222,7 +224,7 @@ impl<'a> View<'a> {
         if let Some((y, [low, high])) = ends {
             data.push(("interval", format!("{} to {}", y.tick(low), y.tick(high))));
         }
-        if let Mark::Tiles { fill, .. } = &spec.mark {
+        if let Some(fill) = spec.mark.fill() {
             data.push(("fill", words(fill)));
         }
         let panel = &self.titles[self.panel_of(place)];
@@ -255,11 +257,8 @@ impl<'a> View<'a> {
         if n_drawn == n {
             return String::new();
         }
-        let fill = match &self.spec.mark {
-            Mark::Tiles { fill, .. } => Some(fill),
-            Mark::Line | Mark::Points => None,
-        };
-        let axes = [&self.spec.x, &self.spec.y].into_iter().chain(fill);
+        let axes = [&self.spec.x[..], &self.spec.y];
+        let axes = axes.into_iter().chain(self.spec.mark.fill());
         let axes: Vec<Setting> = axes.filter_map(|name| self.column(name).ok()).collect();
         let lacks = |one: &&Setting| self.rows.iter().any(|&row| one.data.value(row).is_none());
         let lacking = axes.iter().filter(lacks);
@@ -287,7 +286,7 @@ impl<'a> View<'a> {
 
     /// Returns the visible rows; a tile hides earlier tiles at the same position.
     pub fn drawn(&self) -> Vec<usize> {
-        let Mark::Tiles { fill, .. } = &self.spec.mark else {
+        let Some(fill) = self.spec.mark.fill() else {
             return self.places.iter().map(|place| place.row).collect();
         };
         let is_filled = |place: &&Place| {

@@ -9,7 +9,7 @@ use super::table::table_html;
 use crate::report::chart_format::ChartFormat;
 use crate::report::pictures::drawing::escape;
 use crate::report::study_content::{Beyond, Found, NamedPicture};
-use crate::table::{ChartSpec, Mark, Table, short_number};
+use crate::table::{ChartSpec, Table, short_number};
 use std::collections::HashMap;
 
 /// Maximum size of all charts on a page, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become links.
@@ -81,9 +81,9 @@ fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
             Some(column) => escape(&column.words),
             None => words(&chart.x),
         };
-        let kind = match &chart.mark {
-            Mark::Tiles { .. } => "card chart tiles",
-            Mark::Line | Mark::Points => "card chart",
+        let kind = match chart.mark.about().is_tiled {
+            true => "card chart tiles",
+            false => "card chart",
         };
         let attributes = format!(
             "class=\"{kind}\" data-table=\"{}\" data-x=\"{x}\" data-y=\"{}\"",

@@ -1,15 +1,16 @@
 //! Tile charts: a tile for each x and y, coloured by an outcome or a number.
 
-use super::layout::{Layout, TICK};
-use super::legend::LegendEntry;
-use super::rules;
-use super::view::{Place, View};
+use super::MarkAbout;
 use crate::error::Result;
+use crate::report::chart::layout::{Layout, TICK};
+use crate::report::chart::legend::LegendEntry;
+use crate::report::chart::rules;
+use crate::report::chart::view::{Place, View};
 use crate::report::pictures::colours::{INK, LINES, PAPER, Rgb, text_on, tint};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
-use crate::table::{Data, Role, Scale, Value};
+use crate::table::{Data, Mark, Role, Scale, Value};
 
 /// Colours of outcomes, in the order of first occurrence. The colours also differ in lightness.
 const OUTCOMES: [Rgb; 8] = [
@@ -27,13 +28,19 @@ struct Look<'a> {
     ends: (f64, f64),
 }
 
-/// Draws a tile chart. `fill` and `sign` are column names.
-pub(super) fn draw(view: &View, fill: &str, sign: Option<&str>) -> Result<Drawing> {
-    let look = Look::new(
-        view,
-        view.column(fill)?,
-        sign.map(|sign| view.column(sign)).transpose()?,
-    );
+pub(super) const ABOUT: MarkAbout = MarkAbout {
+    draw,
+    path: None,
+    is_tiled: true,
+};
+
+/// Draws a chart of tiles.
+fn draw(view: &View) -> Result<Drawing> {
+    let Mark::Tiles { fill, sign } = &view.spec.mark else {
+        unreachable!("the descriptor of a mark draws this mark");
+    };
+    let sign = sign.as_ref().map(|sign| view.column(sign));
+    let look = Look::new(view, view.column(fill)?, sign.transpose()?);
     let (across, down) = (view.x.n_levels, view.y.n_levels);
     let columns = view.panels.names.len();
     let is_many = across.min(down) >= MANY;

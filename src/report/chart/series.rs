@@ -1,4 +1,4 @@
-//! Lines and points of a chart.
+//! Series of a chart: points with markers and intervals, joined by the path of the mark.
 
 use super::front::{self, Front};
 use super::layout::Layout;
@@ -13,7 +13,7 @@ const MANY: usize = 400;
 /// Line height in the list of a front, pixels.
 const LINE: f64 = 17.0;
 
-/// Draws a chart of lines or points.
+/// Draws a chart of series.
 pub(super) fn draw(view: &View) -> Drawing {
     let (columns, width, height) = match view.titles.len() {
         1 => (1, 660.0, 340.0),
@@ -160,7 +160,9 @@ impl Panel<'_> {
     fn draw_points(&self, drawing: &mut Drawing, line: usize, places: &[&Place]) {
         let view = self.view;
         if view.is_joined && places.len() > 1 {
-            let path: Vec<Point> = places.iter().map(|place| self.at(place)).collect();
+            let points: Vec<Point> = places.iter().map(|place| self.at(place)).collect();
+            let path = view.spec.mark.about().path;
+            let path = path.map_or(Vec::new(), |path| path(&points));
             drawing.polyline(&path, line_stroke(line));
         }
         let is_on_front = |place: &&Place| self.front.has(place.row);

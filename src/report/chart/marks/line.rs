@@ -1,0 +1,10 @@
+//! Points joined by straight lines.
+
+use super::MarkAbout;
+use crate::report::chart::series;
+
+pub(super) const ABOUT: MarkAbout = MarkAbout {
+    draw: |view| Ok(series::draw(view)),
+    path: Some(|points| points.to_vec()),
+    is_tiled: false,
+};

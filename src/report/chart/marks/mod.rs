@@ -1,0 +1,33 @@
+//! Marks of charts. Each file describes one mark; `table/marks.rs` lists the files.
+
+use super::view::View;
+use crate::error::Result;
+use crate::report::pictures::drawing::{Drawing, Point};
+use crate::table::{Mark, for_each_mark};
+
+/// Descriptor of a mark.
+pub(in crate::report) struct MarkAbout {
+    /// Draws a chart with this mark.
+    pub(super) draw: fn(&View) -> Result<Drawing>,
+    /// Path through the points of a line, from left to right. `None` if points are not joined.
+    pub path: Option<fn(&[Point]) -> Vec<Point>>,
+    /// Whether the values of x and y are rows and columns of tiles.
+    pub is_tiled: bool,
+}
+
+macro_rules! declare_marks {
+    ($($(#[$doc:meta])* $name:ident $({ $($columns:tt)* })? $file:ident;)*) => {
+        $(mod $file;)*
+
+        impl Mark {
+            /// Returns the descriptor of the mark.
+            pub(in crate::report) fn about(&self) -> &'static MarkAbout {
+                match self {
+                    $(Self::$name { .. } => &$file::ABOUT,)*
+                }
+            }
+        }
+    };
+}
+
+for_each_mark!(declare_marks);

@@ -1,0 +1,10 @@
+//! Points without lines.
+
+use super::MarkAbout;
+use crate::report::chart::series;
+
+pub(super) const ABOUT: MarkAbout = MarkAbout {
+    draw: |view| Ok(series::draw(view)),
+    path: None,
+    is_tiled: false,
+};

@@ -1,0 +1,23 @@
+//! List of the marks of charts. Each mark is a variant of [`Mark`](super::Mark) and a file in `report/chart/marks` that draws it.
+
+/// Calls a macro with all marks: documentation, variant with its columns, and file.
+macro_rules! for_each_mark {
+    ($declare:ident) => {
+        $declare! {
+            /// Points joined by lines along x; only points if the x column contains words.
+            #[default]
+            Line line;
+            /// Points that are not joined by lines.
+            Points points;
+            /// One coloured tile for each pair of x and y values.
+            Tiles {
+                /// Column that determines the tile's colour: an outcome by colour and letter, or a number by a sequential colour scale.
+                fill: String,
+                /// Column whose value is written on the tile. If the value is absent, the letter or number of `fill` is written.
+                sign: Option<String>,
+            } tiles;
+        }
+    };
+}
+
+pub(crate) use for_each_mark;
