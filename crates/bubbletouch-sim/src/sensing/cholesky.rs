@@ -3,10 +3,10 @@
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, s};
 
-/// Number of columns factorised together: large enough that matrix products do most of the work, small enough for the cache.
+/// Number of matrix columns factorised together: large enough that matrix products do most of the work, small enough for the cache.
 const BLOCK: usize = 64;
 
-/// Lower triangular factor L of A = L Lᵀ.
+/// Lower triangular Cholesky factor L of a symmetric matrix A = L Lᵀ.
 #[derive(Clone, Debug)]
 pub(super) struct Cholesky(Array2<f64>);
 
@@ -43,7 +43,7 @@ impl Cholesky {
         Some(Self(a))
     }
 
-    /// Solves A X = B for all columns of B, shape (n, number of right-hand sides).
+    /// Returns the solution X of A X = B, where A is the factorised matrix; B has shape (n, number of right-hand sides).
     pub(super) fn solve(&self, b: ArrayView2<f64>) -> Array2<f64> {
         let mut x = b.as_standard_layout().into_owned();
         let n = self.0.nrows();
@@ -87,7 +87,7 @@ impl Cholesky {
     }
 }
 
-/// Factorises one diagonal block in place.
+/// Computes the Cholesky factor of one diagonal block in place; returns `None` if the block is not positive definite.
 fn factorise(mut a: ArrayViewMut2<f64>) -> Option<()> {
     for i in 0..a.nrows() {
         for j in 0..=i {

@@ -15,18 +15,18 @@ use crate::error::{Error, Result};
 use crate::random::Seed;
 use ndarray::Array2;
 
-/// Mutual coherence of a sensed dictionary.
+/// Mutual coherence of the measured atoms of a dictionary, with its lower bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coherence {
-    /// Mutual coherence μ of the atoms with nonzero columns; 0 if there are fewer than two.
+    /// Mutual coherence of the measured atoms that are not zero; 0 if there are fewer than two such atoms.
     pub mutual: f64,
-    /// Welch's bound for the atoms with nonzero columns and m measurements; 0 if there are at most m such atoms.
+    /// Welch's lower bound of the mutual coherence. 0 if the number of measured atoms that are not zero is at most the number of measurements.
     pub welch_bound: f64,
-    /// Number of atoms with a zero column, which the projection cannot measure.
+    /// Number of atoms whose measurements are all zero, so that the projection cannot detect them.
     pub n_invisible: usize,
 }
 
-/// Extreme squared singular values of one random choice of s columns, scaled so that the mean over all columns is 1.
+/// Extreme squared singular values of a random subset of the measured atoms, scaled so that the mean over all atoms is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
     /// Smallest squared singular value σ²_min, 0 or more.
@@ -36,14 +36,14 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Returns max(1 − σ²_min, σ²_max − 1), the isometry constant of this choice of columns.
+    /// Returns max(1 − σ²_min, σ²_max − 1), the isometry constant of this subset, where σ²_min is `low` and σ²_max is `high`.
     pub fn deviation(&self) -> f64 {
         (1.0 - self.low).max(self.high - 1.0)
     }
 }
 
 impl SensedDictionary<'_> {
-    /// Returns the mutual coherence and its lower bound.
+    /// Returns the mutual coherence of the measured atoms and its lower bound.
     pub fn coherence(&self) -> Coherence {
         let (gram, norms) = (self.gram(), self.norms());
         let largest = norms.iter().copied().fold(0.0, f64::max);
@@ -64,7 +64,7 @@ impl SensedDictionary<'_> {
         }
     }
 
-    /// Returns the extremes of `n_subsets` random choices of `sparsity` atoms, each from its own stream of `seed`.
+    /// Returns the extreme singular values of `n_subsets` random subsets of `sparsity` measured atoms. Each subset has its own random stream of `seed`.
     ///
     /// # Errors
     /// If the sparsity is 0 or above the number of atoms, or if all columns of the sensed dictionary are zero.

@@ -2,7 +2,7 @@
 
 use super::projection::Projection;
 
-/// Column-wise storage of a [`Projection`], which measures frames given only their touched taxels.
+/// Projection y = Φx with Φ stored by columns, which measures a frame from its touched taxels only.
 ///
 /// The memory is 4 bytes per taxel and 16 per nonzero entry of Φ. The numbers of entries are m · 32 for scrambled blocks, m√n for very sparse
 /// rows, n for averages, and m · n for dense ensembles.
@@ -21,12 +21,12 @@ use super::projection::Projection;
 #[derive(Clone, Debug)]
 pub struct Columns {
     n_measurements: usize,
-    /// Index of the first entry of each taxel, followed by the total number of entries: n_taxels + 1 values.
+    /// Index of the first matrix entry of each taxel, followed by the total number of entries: n_taxels + 1 values.
     starts: Vec<u32>,
     entries: Vec<Entry>,
 }
 
-/// Nonzero entry of Φ.
+/// Nonzero entry of the matrix Φ of a projection.
 #[derive(Clone, Copy, Debug, Default)]
 struct Entry {
     measurement: u32,
@@ -34,7 +34,7 @@ struct Entry {
 }
 
 impl Projection {
-    /// Returns the projection stored by columns.
+    /// Returns this projection with its matrix stored by columns.
     ///
     /// # Panics
     /// If Φ has 2³² or more nonzero entries.
@@ -78,18 +78,18 @@ impl Columns {
         self.n_measurements
     }
 
-    /// Returns the number of nonzero entries of Φ.
+    /// Returns the number of nonzero entries of the matrix Φ.
     pub fn n_entries(&self) -> usize {
         self.entries.len()
     }
 
-    /// Returns the number of taxels that at least one measurement uses.
+    /// Returns the number of taxels that at least one measurement depends on.
     pub fn n_read(&self) -> usize {
         let columns = self.starts.windows(2);
         columns.filter(|ends| ends[0] < ends[1]).count()
     }
 
-    /// Returns the size in memory, bytes.
+    /// Returns the memory that the stored matrix uses, bytes.
     pub fn n_bytes(&self) -> usize {
         size_of_val(&self.starts[..]) + size_of_val(&self.entries[..])
     }

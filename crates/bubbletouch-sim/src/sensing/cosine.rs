@@ -12,7 +12,7 @@ pub(super) fn cosines(n: usize) -> Array2<f64> {
     })
 }
 
-/// Returns W_y X W_xᵀ, the coefficients of one ny × nx array X.
+/// Returns W_y X W_xᵀ, the cosine coefficients of one ny × nx array X, for the cosine matrices W_y and W_x.
 pub(super) fn analyse(
     x: ndarray::ArrayView2<f64>,
     wy: &Array2<f64>,
@@ -21,7 +21,7 @@ pub(super) fn analyse(
     wy.dot(&x).dot(&wx.t())
 }
 
-/// Returns W_yᵀ A W_x, the inverse of [`analyse`], since both matrices are orthonormal.
+/// Returns W_yᵀ A W_x, the array with the cosine coefficients A. The function inverts [`analyse`], because both cosine matrices are orthonormal.
 pub(super) fn synthesise(
     a: ndarray::ArrayView2<f64>,
     wy: &Array2<f64>,

@@ -17,11 +17,11 @@ const PCA_ATOMS: usize = 256;
 pub enum Basis {
     /// Products of cosines (DCT-II), for any array size.
     Dct,
-    /// Haar wavelet pyramid; the sides must be powers of two.
+    /// Pyramid of Haar wavelets; the sides of the array must be powers of two.
     Haar,
-    /// Pyramid of Daubechies' wavelet with two vanishing moments, periodic; the sides must be powers of two.
+    /// Pyramid of Daubechies' wavelets with two vanishing moments, periodic at the edges; the sides of the array must be powers of two.
     Daubechies4,
-    /// Principal components of training frames about their mean.
+    /// Principal components of training frames after subtraction of the mean frame.
     Pca,
 }
 
@@ -48,28 +48,28 @@ pub struct Dictionary {
     energy: Option<Energy>,
 }
 
-/// Statistics of training frames in a dictionary.
+/// Energy of training frames in a dictionary: mean squares of their coefficients and of their residual.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Energy {
-    /// Mean over training frames of αⱼ², shape (k,).
+    /// Mean square of the coefficient of each of the k atoms over the training frames, shape (k,).
     pub of_atoms: Array1<f64>,
-    /// Mean square per taxel of the part of the frames outside the span of the atoms.
+    /// Mean square, per taxel, of the residual that remains when the atoms approximate the training frames.
     pub rest: f64,
 }
 
 /// Method that computes the coefficients of frames in a dictionary.
 #[derive(Clone, Debug)]
 enum Form {
-    /// Cosine transforms along y and x, and the indices of the chosen coefficients.
+    /// Cosine transforms along y and x, and the indices of the coefficients that belong to the dictionary.
     Cosine([Array2<f64>; 2], Vec<usize>),
-    /// Wavelet pyramid, and the indices of the chosen coefficients.
+    /// Wavelet pyramid, and the indices of the coefficients that belong to the dictionary.
     Wavelet(Wavelet, Vec<usize>),
-    /// Stored atoms, shape (k, n).
+    /// Stored atoms, one per row, shape (number of atoms, number of taxels).
     Stored(Array2<f64>),
 }
 
 impl Dictionary {
-    /// Returns all n atoms of a fixed basis of an ny × nx array, with origin zero.
+    /// Returns the dictionary of all atoms of a fixed basis for an ny × nx array. The origin is zero.
     ///
     /// # Errors
     /// If the basis is PCA (which needs training frames), if a wavelet basis has sides that are not powers of two, or if there are no taxels.
@@ -106,8 +106,8 @@ impl Dictionary {
         })
     }
 
-    /// Returns the atoms with the largest energy in the training frames (n_frames × n), at most `n_atoms`, in the order of the basis. For PCA they are the
-    /// first components. `None` selects all atoms (for PCA at most 256).
+    /// Returns the atoms with the largest energy in the training frames (n_frames × n_taxels), at most `n_atoms`, in the order of the basis. For PCA they are
+    /// the first components. `None` selects all atoms (for PCA at most 256).
     ///
     /// # Errors
     /// If `complete` fails, if there are no frames, if frames have another length, if a value is not finite, or if `n_atoms` is 0.
@@ -159,7 +159,7 @@ impl Dictionary {
         }
     }
 
-    /// Returns the basis of the atoms.
+    /// Returns the basis that contains the atoms.
     pub fn basis(&self) -> Basis {
         self.basis
     }
@@ -169,7 +169,7 @@ impl Dictionary {
         self.origin.len()
     }
 
-    /// Returns the number of atoms k ≤ n.
+    /// Returns the number k of atoms, at most the number of taxels.
     pub fn n_atoms(&self) -> usize {
         match &self.form {
             Form::Cosine(_, chosen) | Form::Wavelet(_, chosen) => chosen.len(),
@@ -177,7 +177,7 @@ impl Dictionary {
         }
     }
 
-    /// Returns the origin x₀, shape (n,).
+    /// Returns the origin of the dictionary: the frame whose coefficients are all zero, shape (n_taxels,).
     pub fn origin(&self) -> &Array1<f64> {
         &self.origin
     }
@@ -227,7 +227,7 @@ impl Dictionary {
         frames
     }
 
-    /// Returns the linear combinations Σⱼ αⱼ ψⱼ of atoms, without the origin x₀.
+    /// Returns the linear combinations of the atoms for rows of coefficients, without the origin of the dictionary.
     pub(super) fn combine(&self, coefficients: ArrayView2<f64>) -> Array2<f64> {
         assert_eq!(coefficients.ncols(), self.n_atoms(), "atoms in a row");
         if let Form::Stored(atoms) = &self.form {
@@ -256,7 +256,7 @@ impl Dictionary {
         frames
     }
 
-    /// Returns the atoms `range` as frames, one per row.
+    /// Returns the atoms with indices in `range` as frames, one per row.
     pub(super) fn atoms(&self, range: std::ops::Range<usize>) -> Array2<f64> {
         if let Form::Stored(atoms) = &self.form {
             return atoms.slice(s![range, ..]).to_owned();

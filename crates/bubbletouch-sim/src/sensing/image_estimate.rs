@@ -23,22 +23,22 @@ use super::{Lmmse, Projection, SensedDictionary};
 use crate::error::Result;
 use ndarray::{Array2, ArrayView2};
 
-/// Estimator of images from measurements, prepared for any number of frames.
+/// Estimator of images (frames) from compressed measurements, prepared for any number of frames.
 #[derive(Clone, Debug)]
 pub struct ImageEstimate {
-    /// Linear estimate and projection; `None` if measurements are complete frames.
+    /// Linear estimator of frames, with the projection; `None` if the measurements are complete frames.
     lmmse: Option<(Lmmse, Projection)>,
-    /// Transpose of Φ⁺, shape (m, n); `None` if the steps to a nonnegative image are omitted.
+    /// Transposed pseudoinverse of the projection matrix, shape (n_measurements, n_taxels); `None` if the image may contain negative values.
     nearest: Option<Array2<f64>>,
     noise_std: f64,
 }
 
-/// Number of steps that make the image nonnegative. With fewer steps, larger oscillations remain; each step costs one linear estimate and one measurement of
-/// the image.
+/// Number of iterations that make the image nonnegative. With fewer iterations, larger oscillations remain. Each iteration costs one linear estimate and one
+/// measurement of the image.
 pub const N_STEPS: usize = 20;
 
 impl ImageEstimate {
-    /// Creates the estimator for complete frames; the noise is computed from untouched readings.
+    /// Creates the estimator for complete frames; the noise level is computed from readings of the untouched skin.
     pub fn of_frames(untouched: ArrayView2<f64>) -> Self {
         Self {
             lmmse: None,
@@ -47,7 +47,7 @@ impl ImageEstimate {
         }
     }
 
-    /// Prepares the estimate for a projection.
+    /// Prepares the estimator for the measurements of a projection.
     ///
     /// # Errors
     /// If all training readings, or all entries of the projection, are zero.
@@ -66,12 +66,12 @@ impl ImageEstimate {
         })
     }
 
-    /// Returns the noise standard deviation of an image per taxel, from the untouched readings, in the unit of the images.
+    /// Returns the noise standard deviation of an image per taxel, computed from readings of the untouched skin, in the unit of the images.
     pub fn noise_std(&self) -> f64 {
         self.noise_std
     }
 
-    /// Estimates images, shape (n_frames, n), from measurements, shape (n_frames, m).
+    /// Estimates images, shape (n_frames, n_taxels), from measurements, shape (n_frames, n_measurements).
     ///
     /// # Panics
     /// If a row does not have m values.
@@ -109,7 +109,7 @@ pub(super) mod tests {
 
     pub(in crate::sensing) const GRID: (usize, usize) = (12, 12);
 
-    /// Returns frames of bumps at random positions.
+    /// Returns test frames of n taxels that contain bumps at random positions.
     pub(in crate::sensing) fn bumps(n: usize, name: &str) -> Array2<f64> {
         let mut rng = Seed::new(3).named(name).rng();
         let mut frames = Array2::zeros((n, 144));

@@ -9,8 +9,8 @@ use crate::random::Seed;
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 use rand::Rng;
 
-/// Maximum number of principal components; others belong to the remainder. More components take longer to compute and rarely help, because there are usually
-/// fewer measurements.
+/// Maximum number of principal components; the variance of other components counts as noise. More components take longer to compute and rarely help, because
+/// there are usually fewer measurements.
 pub const N_COMPONENTS: usize = 512;
 
 /// Readings from which the statistics are learned, one row of n taxels each; all have passed one signal chain.
@@ -22,22 +22,22 @@ pub struct Readings<'a> {
     pub untouched: ArrayView2<'a, f64>,
 }
 
-/// Statistics of images, independent of the projection.
+/// Statistics of images that an estimator needs, independent of the projection.
 #[derive(Clone, Debug)]
 pub struct ImagePrior {
-    /// Principal components ψⱼ with mean squares λⱼ.
+    /// Dictionary of the principal components, with the mean square of each coefficient.
     pub(super) dictionary: Dictionary,
-    /// Wiener factors max(0, 1 − νⱼ / λⱼ) of the components.
+    /// Wiener factors max(0, 1 − νⱼ / λⱼ) of the components j, where λⱼ is the mean square of the coefficient and νⱼ the mean square of its noise.
     pub(super) shrinkage: Array1<f64>,
     pub(super) untouched: Array2<f64>,
 }
 
-/// Largest shift of copies of training frames, relative to the sides of the array. If larger, contacts leave the array; if smaller, some positions are covered
-/// by few frames.
+/// Largest shift of copies of training frames, relative to the sides of the array. If larger, contacts leave the array; if smaller, few frames cover some
+/// positions.
 const MOVED: f64 = 0.25;
 
 impl ImagePrior {
-    /// Learns the statistics of an ny × nx array from about `n_frames` frames: training readings and, if these are too few, shifted copies.
+    /// Learns the statistics of images of an ny × nx array from about `n_frames` frames: training readings and, if these are too few, shifted copies.
     ///
     /// # Errors
     /// If there are no training readings, if they have another length, or if readings are not finite.

@@ -11,30 +11,31 @@ use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut1, Axis, s};
 use ndarray_rand::RandomExt;
 use rand_distr::StandardNormal;
 
-/// Number of directions computed in addition to the requested components. If smaller, the last components are inaccurate; if larger, only the time increases.
+/// Number of directions computed in addition to the requested components. If the number is smaller, the last components are inaccurate; if larger, only the
+/// time increases.
 const OVERSAMPLING: usize = 16;
-/// Number of products with the covariance matrix; each product squares the ratio of kept to discarded variances.
+/// Number of power iterations; each product with the covariance matrix squares the ratio of retained to discarded variances.
 const ITERATIONS: usize = 3;
-/// Smallest variance of a direction relative to the largest; smaller variances are rounding errors.
+/// Smallest variance of a component relative to the largest variance; smaller variances are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-12;
-/// Smallest norm of a row after orthogonalisation; a row with a smaller norm depends linearly on earlier rows.
+/// Smallest norm of a row after orthogonalisation; a row with a smaller norm is linearly dependent on earlier rows.
 const DEPENDENT: f64 = 1e-10;
 
 /// Mean frame and principal components.
 #[derive(Clone, Debug)]
 pub(super) struct Pca {
-    /// Mean frame, shape (n,).
+    /// Mean of the training frames, shape (n_taxels,).
     pub mean: Array1<f64>,
-    /// Orthonormal components, shape (k, n), in order of decreasing variance; the largest entry of each is positive.
+    /// Orthonormal components, shape (n_components, n_taxels), in order of decreasing variance; the largest entry of each component is positive.
     pub components: Array2<f64>,
     /// Mean square of the frames along each component (divisor: number of frames).
     pub variance: Array1<f64>,
-    /// Mean square of the frames about their mean, summed over all directions.
+    /// Mean square distance of the frames from their mean, summed over all taxels.
     pub total_variance: f64,
 }
 
 impl Pca {
-    /// Computes at most k principal components of frames (n_frames × n); fewer if the rank of the frames is lower.
+    /// Computes at most k principal components of frames (n_frames × n_taxels), or fewer if the rank of the frames is lower.
     pub(super) fn new(frames: ArrayView2<f64>, k: usize, seed: &Seed) -> Self {
         let (n_frames, n) = frames.dim();
         let mean = frames

@@ -8,7 +8,7 @@ use crate::random::Seed;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use std::sync::Arc;
 
-/// Linear map y = Φx from frames of n taxels to m measurements, drawn once and applied to any number of frames.
+/// Linear map y = Φx from a frame of n taxels to m measurements, drawn once and applied to any number of frames.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -50,7 +50,7 @@ impl Projection {
         })
     }
 
-    /// Prepares the projection of any ensemble. Learned ensembles use the frames of training touches (n_frames × n).
+    /// Prepares the projection of any ensemble. Learned ensembles use the frames of training touches (n_frames × n_taxels).
     ///
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the frames differ in fewer than m directions.
@@ -102,12 +102,12 @@ impl Projection {
         self.ensemble
     }
 
-    /// Returns n, the length of a frame.
+    /// Returns the number of taxels in a frame.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
 
-    /// Returns m, the length of a row of measurements.
+    /// Returns the number of measurements of a frame.
     pub fn n_measurements(&self) -> usize {
         self.n_measurements
     }
@@ -133,17 +133,17 @@ impl Projection {
         self.operator.measure(frames, measurements);
     }
 
-    /// Calls `visit` with measurement, taxel and value of each entry of Φ that can be nonzero, always in one order.
+    /// Calls `visit(measurement, taxel, value)` for each entry of the matrix Φ that can be nonzero, always in one order.
     pub(super) fn each_entry(&self, mut visit: impl FnMut(usize, usize, f64)) {
         self.operator.each_entry(&mut visit);
     }
 
-    /// Returns the root mean square norm of the rows of Φ, the gain from the noise of taxels to the noise of measurements.
+    /// Returns the root mean square norm of the rows of the matrix Φ, which is the gain from the noise of taxels to the noise of measurements.
     pub fn row_norm(&self) -> f64 {
         self.operator.row_norm()
     }
 
-    /// Returns ΦΦᵀ (m × m), the covariance of measurements of independent noise of variance 1 on every taxel.
+    /// Returns ΦΦᵀ (m × m), the covariance matrix of measurements whose taxels have independent noise of variance 1.
     pub fn row_gram(&self) -> Array2<f64> {
         let of_matrix = |matrix: &Array2<f64>| matrix.dot(&matrix.t());
         self.operator.known_gram().unwrap_or_else(|| {
@@ -170,7 +170,7 @@ impl Projection {
     }
 }
 
-/// Returns the number of taxels, or an error if the grid is empty or m is out of range.
+/// Returns the number of taxels of the grid, or an error if the grid is empty or m is not from 1 to this number.
 fn check_size(grid: (usize, usize), m: usize) -> Result<usize> {
     let n = grid.0 * grid.1;
     if n == 0 || m == 0 || m > n {

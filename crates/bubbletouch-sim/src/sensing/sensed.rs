@@ -5,24 +5,24 @@ use crate::error::{Error, Result};
 use ndarray::{Array1, Array2, ArrayView2, Axis, s};
 use std::sync::OnceLock;
 
-/// Number of atoms synthesised and measured at a time, which bounds the memory.
+/// Number of atoms synthesised and measured at a time. A larger number needs more memory.
 const BLOCK: usize = 256;
 
-/// Matrix A = ΦΨ, shape (m, k), stored by columns, with derived quantities.
+/// Measured atoms of a dictionary: the matrix ΦΨ of a projection Φ and a dictionary Ψ, stored by columns, with derived quantities.
 #[derive(Clone, Debug)]
 pub struct SensedDictionary<'a> {
     projection: &'a Projection,
     dictionary: &'a Dictionary,
-    /// Measured atoms Φψⱼ, one per row, shape (k, m).
+    /// Measured atoms, one per row, shape (number of atoms, number of measurements).
     atoms: Array2<f64>,
-    /// Measured origin Φx₀, shape (m,).
+    /// Measured origin of the dictionary, shape (n_measurements,).
     origin: Array1<f64>,
-    /// Gram matrix AᵀA, shape (k, k), computed on first use.
+    /// Gram matrix of the measured atoms, shape (k, k) for k atoms, computed on first use.
     gram: OnceLock<Array2<f64>>,
 }
 
 impl<'a> SensedDictionary<'a> {
-    /// Measures every atom of the dictionary.
+    /// Measures every atom of the dictionary with the projection.
     ///
     /// # Errors
     /// If projection and dictionary belong to different arrays, or if the dictionary has no atoms.
@@ -51,32 +51,32 @@ impl<'a> SensedDictionary<'a> {
         })
     }
 
-    /// Returns the projection Φ.
+    /// Returns the projection that measures the atoms.
     pub fn projection(&self) -> &'a Projection {
         self.projection
     }
 
-    /// Returns the dictionary Ψ.
+    /// Returns the dictionary of the atoms before measurement.
     pub fn dictionary(&self) -> &'a Dictionary {
         self.dictionary
     }
 
-    /// Returns Aᵀ, the measured atoms Φψⱼ, one per row, shape (k, m).
+    /// Returns the measured atoms, one per row, shape (number of atoms, number of measurements).
     pub fn atoms(&self) -> ArrayView2<'_, f64> {
         self.atoms.view()
     }
 
-    /// Returns the Gram matrix AᵀA, shape (k, k), computed on first use and then stored.
+    /// Returns the Gram matrix of the measured atoms, shape (k, k) for k atoms, computed on first use and then stored.
     pub fn gram(&self) -> &Array2<f64> {
         self.gram.get_or_init(|| self.atoms.dot(&self.atoms.t()))
     }
 
-    /// Returns the norms ‖aⱼ‖ of the columns, shape (k,).
+    /// Returns the norms of the measured atoms, shape (number of atoms,).
     pub fn norms(&self) -> Array1<f64> {
         self.atoms.map_axis(Axis(1), |atom| atom.dot(&atom).sqrt())
     }
 
-    /// Returns the centred measurements y − Φx₀ for each row of measurements (n_frames × m).
+    /// Returns the centred measurements: each row of measurements (n_frames × m) minus the measured origin of the dictionary.
     ///
     /// # Panics
     /// If a row does not have m values.

@@ -8,7 +8,7 @@ use ndarray::{Array1, Array2, ArrayView2};
 /// Maximum number of QL steps per eigenvalue; EISPACK allows 30, and 3 are typical.
 const MAX_STEPS: usize = 60;
 
-/// Returns the eigenvalues, ascending, and the orthonormal eigenvectors, one per row in this order.
+/// Returns the eigenvalues of a symmetric matrix, ascending, and the orthonormal eigenvectors, one per row in this order.
 pub(super) fn symmetric_eigen(a: ArrayView2<f64>) -> (Array1<f64>, Array2<f64>) {
     let mut vectors = a.as_standard_layout().into_owned();
     let (mut diagonal, mut beside) = tridiagonalise(&mut vectors);
@@ -20,7 +20,8 @@ pub(super) fn symmetric_eigen(a: ArrayView2<f64>) -> (Array1<f64>, Array2<f64>) 
     (values, vectors.select(ndarray::Axis(0), &order))
 }
 
-/// Reduces A = Qᵀ T Q to tridiagonal form. Returns the diagonal of T and its off-diagonal (entry i is T[i, i + 1], the last is 0); writes Q to `a`.
+/// Reduces a symmetric matrix A = Qᵀ T Q to tridiagonal form. Returns the diagonal of T and its off-diagonal (entry i is T[i, i + 1], the last is 0); writes
+/// Q to `a`.
 fn tridiagonalise(a: &mut Array2<f64>) -> (Vec<f64>, Vec<f64>) {
     let n = a.nrows();
     // Reflections H = 1 − v vᵀ·2/vᵀv, one per step, which clear row `step` to the right of its off-diagonal.
@@ -66,7 +67,8 @@ fn tridiagonalise(a: &mut Array2<f64>) -> (Vec<f64>, Vec<f64>) {
     (diagonal, beside)
 }
 
-/// Applies the QL iteration with implicit Wilkinson shifts, and rotates the rows of `vectors`.
+/// Computes the eigenvalues of a tridiagonal matrix with diagonal `d` and off-diagonal `e`, and rotates the rows of `vectors` to the eigenvectors. The method
+/// is the QL iteration with implicit Wilkinson shifts.
 fn diagonalise(d: &mut [f64], e: &mut [f64], vectors: &mut Array2<f64>) {
     let n = d.len();
     for l in 0..n {
@@ -81,7 +83,7 @@ fn diagonalise(d: &mut [f64], e: &mut [f64], vectors: &mut Array2<f64>) {
     }
 }
 
-/// Performs one QL step on the unreduced block l ..= m.
+/// Performs one QL step on rows l to m of the tridiagonal matrix with diagonal `d` and off-diagonal `e`.
 fn ql_step(l: usize, m: usize, d: &mut [f64], e: &mut [f64], vectors: &mut Array2<f64>) {
     let g = (d[l + 1] - d[l]) / (2.0 * e[l]);
     let mut g = d[m] - d[l] + e[l] / (g + g.hypot(1.0).copysign(g));

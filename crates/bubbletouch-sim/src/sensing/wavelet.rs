@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use ndarray::{Array1, ArrayViewMut1, ArrayViewMut2, Axis, s};
 
-/// Low-pass filter of an orthonormal wavelet; its high-pass filter is gₖ = (−1)ᵏ h₍L₋₁₋ₖ₎.
+/// Orthonormal wavelet, given by its low-pass filter h of length L; the high-pass filter is gₖ = (−1)ᵏ h₍L₋₁₋ₖ₎.
 #[derive(Clone, Debug)]
 pub(super) struct Wavelet {
     low: Vec<f64>,
@@ -45,7 +45,7 @@ impl Wavelet {
         ))
     }
 
-    /// Computes the pyramid of averages and details of a frame in place; each level halves every side longer than one.
+    /// Computes the wavelet pyramid of a frame in place: averages and details. Each level halves every side longer than one.
     pub(super) fn analyse(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()) {
             let mut corner = frame.slice_mut(s![..ny, ..nx]);
@@ -60,7 +60,7 @@ impl Wavelet {
         }
     }
 
-    /// Computes the inverse of `analyse` in place.
+    /// Computes the frame from its wavelet pyramid in place; the function inverts `analyse`.
     pub(super) fn synthesise(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()).into_iter().rev() {
             let mut corner = frame.slice_mut(s![..ny, ..nx]);
@@ -75,7 +75,7 @@ impl Wavelet {
         }
     }
 
-    /// Replaces a lane of even length by its averages, followed by its details.
+    /// Replaces a row or column of even length by its averages, followed by its details.
     fn split(&self, mut lane: ArrayViewMut1<f64>) {
         let n = lane.len();
         let mut parts = Array1::zeros(n);
@@ -101,7 +101,7 @@ impl Wavelet {
     }
 }
 
-/// Returns the sides of the corner that each level splits, finest level first.
+/// Returns the sides (rows, columns) of the corner that each level of the pyramid splits, finest level first.
 fn levels((mut ny, mut nx): (usize, usize)) -> Vec<(usize, usize)> {
     let mut levels = Vec::new();
     while ny > 1 || nx > 1 {

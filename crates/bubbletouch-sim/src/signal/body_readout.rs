@@ -18,10 +18,10 @@ use crate::world::Taxel;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Minimum number of taxels for which a reading uses several threads. With fewer taxels, starting a second thread takes longer than the reading.
+/// Minimum number of taxels for which several threads compute a reading. With fewer taxels, starting a second thread takes longer than the computation.
 pub const WORTH_THREADS: usize = 4 * CHUNK;
 
-/// Signal steps of a whole body, checked and prepared for its patches.
+/// Signal steps for the taxels of a whole body. The constructor checks the steps and prepares them for each patch.
 ///
 /// ```
 /// use bubbletouch_sim::geometry::Pose;
@@ -61,23 +61,23 @@ pub const WORTH_THREADS: usize = 4 * CHUNK;
 #[derive(Clone, Debug)]
 pub struct BodyReadout {
     begins: Quantity,
-    /// Prepared steps, one list per patch.
+    /// Prepared signal steps, one list per patch, in the order of application.
     steps: Vec<Vec<Arc<dyn TaxelEffect>>>,
     /// Index of the first taxel of each patch, followed by the total number of taxels.
     firsts: Vec<usize>,
 }
 
-/// Readings of selected taxels of a body. A reused instance allocates no memory if no touch is larger than earlier ones.
+/// Indices and readings of selected taxels of a body. A reused instance allocates no memory if no touch deflects more taxels than earlier touches.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodyReading {
-    /// Taxel indices in the body, ascending.
+    /// Indices of the taxels in the body, ascending.
     pub taxels: Vec<usize>,
     /// Readings of the taxels in `taxels`, metres or newtons.
     pub values: Vec<f64>,
 }
 
 impl BodyReading {
-    /// Returns pairs of taxel index and reading.
+    /// Returns the pairs (index of a taxel, reading of this taxel), ascending by index.
     pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
         let values = self.values.iter().copied();
         self.taxels.iter().copied().zip(values)
@@ -108,13 +108,13 @@ impl BodyReadout {
         })
     }
 
-    /// Returns the quantity of the readings.
+    /// Returns the physical quantity of the readings: deflection or force.
     pub fn quantity(&self) -> Quantity {
         self.begins
     }
 
-    /// Reads the taxels that the last press deflected, in ascending order. Other taxels also have noise, zeros and faults; use
-    /// `read_patch` or `read` to obtain their readings.
+    /// Computes the readings of the taxels that the last press deflected, in ascending order. Other taxels also have noise, zero offsets and faults;
+    /// `read_patch` and `read` return their readings.
     ///
     /// # Panics
     /// If `body` has another number of taxels, or the time is not from 0 to 1.
@@ -169,7 +169,7 @@ impl BodyReadout {
         self.read(&numbers.collect::<Vec<_>>(), moment, values);
     }
 
-    /// Replaces true values (metres or newtons, 0 on untouched taxels) by readings, for any taxels in any order. The result does
+    /// Replaces the true values of the listed taxels (metres or newtons, 0 on untouched taxels) by readings. The taxels may have any order. The result does
     /// not depend on the number of threads.
     ///
     /// # Panics
@@ -215,7 +215,7 @@ impl BodyReadout {
     }
 }
 
-/// Prepares the steps in the units of one patch; steps of zero strength are omitted.
+/// Prepares the signal steps in the units of one patch; steps of zero strength are omitted.
 fn prepare(
     steps: &[SignalStep],
     quantity: Quantity,
@@ -251,7 +251,7 @@ fn prepare(
     Ok(prepared)
 }
 
-/// Reason in the error message for a step that needs other taxels or frames.
+/// Reason in the error message for a signal step whose result for one taxel depends on other taxels or other frames.
 const OF_OTHERS: &str = "which needs other taxels or other frames";
 
 fn refused(step: &str, why: &str) -> Error {

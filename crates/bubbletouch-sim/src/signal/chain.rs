@@ -7,7 +7,7 @@ use crate::random::Seed;
 use crate::world::{Patch, Taxel};
 use std::sync::Arc;
 
-/// Checked signal steps, prepared for one patch of any layout. An empty chain leaves deflections unchanged.
+/// Checked signal steps (force, noise, sensor errors, smoothing), prepared for one patch of any layout. An empty chain leaves deflections unchanged.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -27,38 +27,38 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Chain {
     steps: Vec<Prepared>,
-    /// Number of leading steps that also process the history of a touch; the last of them depends on earlier frames. 0 if no step depends on
-    /// history.
+    /// Number of leading signal steps that also process the frames before a touch. The last of these steps depends on earlier frames. 0 if no step depends on
+    /// earlier frames.
     n_remembering: usize,
     n_taxels: usize,
     taxel: Taxel,
     quantity: Quantity,
-    /// Whether values have a sign, as shear forces do; otherwise they are zero or positive.
+    /// Whether the values of a frame can be negative, as shear forces can; otherwise they are zero or positive.
     is_signed: bool,
     scratch_len: usize,
 }
 
-/// Input of the signal chain: the deflections of one touch, with the metadata that its steps need.
+/// Input of a signal chain: the deflections of one touch, and the metadata that the signal steps need.
 #[derive(Debug)]
 pub struct Recording<'a> {
     /// Deflections, metres, shape (n_frames, n_taxels), frames in the order of time. The chain replaces them by the readings.
     pub frames: &'a mut [f64],
-    /// Rates of deflection δ̇, m/s, one per deflection; `None` if the patch is at rest. Only the force step uses them.
+    /// Rates of deflection δ̇, m/s, one per deflection; `None` if the patch does not move. Only the force step uses the rates.
     pub rates: Option<&'a [f64]>,
-    /// Number of leading frames that came before the touch. If the chain depends on history, these frames change the readings of the touch.
-    /// Their own values have no meaning after the chain.
+    /// Number of leading frames recorded before the touch. If the chain depends on history, these frames change the readings of the touch. Their own values
+    /// have no meaning after the chain.
     pub n_before: usize,
     /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
     pub interval: Option<f64>,
-    /// Elapsed fraction of the session, 0 to 1. If `None`, the touch has a random time that depends on its seed.
+    /// Time of the touch, as a fraction of the session from 0 to 1. If `None`, the time is random and depends on the seed of the touch.
     pub time: Option<f64>,
 }
 
-/// Working memory of a chain: one per thread, usable with any chain. The memory grows to the size that the largest chain needs.
+/// Scratch memory of a chain: one per thread, usable with any chain. The memory grows to the size that the largest chain needs.
 #[derive(Clone, Debug, Default)]
 pub struct SignalWorkspace(Vec<f64>);
 
-/// Signal step with resolved units and computed weights.
+/// Signal step, prepared for one patch: units are resolved and weights are computed.
 #[derive(Clone, Debug)]
 enum Prepared {
     Force,
@@ -66,7 +66,7 @@ enum Prepared {
         std: f64,
         place: u64,
     },
-    /// Smoothing or sensor error.
+    /// Smoothing or a sensor error.
     Effect(Arc<dyn Effect>),
 }
 
@@ -132,7 +132,7 @@ impl Chain {
         Ok(chain)
     }
 
-    /// Returns the quantity of the output frames.
+    /// Returns the physical quantity of the output frames: deflection or force.
     pub fn quantity(&self) -> Quantity {
         self.quantity
     }
@@ -230,12 +230,12 @@ impl Chain {
         }
     }
 
-    /// Returns the number of values in a frame.
+    /// Returns the number of values in a frame, which is the number of taxels.
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
 
-    /// Prepares one step for the current quantity of the frames; returns `None` if all its strengths are zero.
+    /// Prepares one signal step for the current quantity of the frames. Returns `None` if all strengths of the step are zero.
     fn prepare(
         &mut self,
         step: &SignalStep,
@@ -295,7 +295,7 @@ impl Chain {
     }
 }
 
-/// Returns the common properties of a patch's taxels; the radii may differ.
+/// Returns the stroke, stiffness and damping that all taxels of a patch have in common; the radii may differ.
 ///
 /// # Errors
 /// If taxels differ in stroke, stiffness or damping, because a fraction of the full scale would then differ between them.
@@ -313,7 +313,7 @@ fn read_alike(patch: &Patch) -> Result<Taxel> {
     }
 }
 
-/// Returns the seed of a frame of a touch; the last frame has the seed of the touch.
+/// Returns the seed of one frame of a touch; the last frame has the seed of the touch.
 fn frame_seed(touch: &Seed, frame: usize, n_frames: usize) -> Seed {
     match frame + 1 == n_frames {
         true => *touch,

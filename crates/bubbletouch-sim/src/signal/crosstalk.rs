@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::text::in_range::fraction;
 use crate::world::{Grid, Neighbours};
 
-/// Crosstalk between grid neighbours, prepared for one grid.
+/// Crosstalk between neighbouring taxels of one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crosstalk {
     nx: usize,
@@ -20,7 +20,7 @@ pub struct Crosstalk {
 }
 
 impl Crosstalk {
-    /// Prepares crosstalk with the leaking fraction κ, 0 to 1.
+    /// Prepares crosstalk. `leak` is the fraction of a taxel's value that leaks to its neighbours, 0 to 1.
     ///
     /// # Errors
     /// If the fraction is not from 0 to 1.
@@ -32,7 +32,7 @@ impl Crosstalk {
         })
     }
 
-    /// Applies the crosstalk to a frame of ny × nx values in place.
+    /// Applies the crosstalk in place to a frame of ny × nx values.
     ///
     /// # Panics
     /// If the frame has another size, or the scratch is shorter than the frame.
@@ -70,7 +70,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// Crosstalk between neighbours on a skin that is not a grid.
+/// Crosstalk between neighbouring taxels on a skin that is not a grid.
 #[derive(Debug)]
 struct SurfaceLeak {
     leak: f64,

@@ -25,19 +25,19 @@ use std::f64::consts::{PI, SQRT_2};
 /// time and memory increase.
 const N_MODES: usize = 64;
 
-/// Drifting zeros of a skin, which can be computed for any time of its session.
+/// Drifting zero offsets of the taxels of a skin. The offsets can be computed for any time of a session.
 #[derive(Clone, Debug)]
 struct Zeros {
     n_taxels: usize,
-    /// Coefficients ξ of the expansion, mode after mode, one per taxel.
+    /// Coefficients ξ of the Karhunen–Loève expansion, mode after mode, one per taxel.
     coefficients: Vec<f64>,
-    /// Amplitude of each mode, in the unit of the frame.
+    /// Amplitude of each mode of the Karhunen–Loève expansion, in the unit of the frame.
     amplitudes: Vec<f64>,
 }
 
 impl Zeros {
-    /// Draws the drift of a skin. `full_scale` is in the unit of the frames. `std` is the standard deviation of the zeros at the end of the session,
-    /// relative to the full scale. The pattern does not depend on `std`. Returns an error if `std` is negative or not finite.
+    /// Draws the drift of a skin. `full_scale` is in the unit of the frames. `std` is the standard deviation of the zero offsets at the end of the session,
+    /// relative to the full scale. The random pattern over the taxels does not depend on `std`. Returns an error if `std` is negative or not finite.
     fn new(std: f64, skin: &Seed, n_taxels: usize, full_scale: f64) -> Result<Self> {
         not_negative("drift std", std, "")?;
         let usual: Vec<f64> = (0..N_MODES).map(|mode| SQRT_2 / frequency(mode)).collect();
@@ -55,7 +55,7 @@ impl Zeros {
         })
     }
 
-    /// Writes the zero of each taxel at a time of the session (0 is the beginning, 1 the end).
+    /// Writes the zero offset of each taxel at a time of the session (0 is the beginning, 1 the end).
     fn at(&self, time: f64, zeros: &mut [f64]) {
         zeros.fill(0.0);
         let modes = self.coefficients.chunks_exact(self.n_taxels);
@@ -73,7 +73,7 @@ fn time_of(touch: &Seed) -> f64 {
     touch.named("time").rng().r#gen()
 }
 
-/// Returns the angular frequency (k − ½) π for the mode with the index k − 1.
+/// Returns the angular frequency (k − ½) π of mode k of the Karhunen–Loève expansion, where k = `mode` + 1.
 fn frequency(mode: usize) -> f64 {
     (mode as f64 + 0.5) * PI
 }
@@ -120,10 +120,10 @@ impl Effect for Zeros {
     }
 }
 
-/// Number of times that counter-based draws halve the session: 2⁶ intervals, with as many random numbers per taxel as [`N_MODES`].
+/// Number of times that Lévy's construction halves the session: 2⁶ intervals, with as many random numbers per taxel as [`N_MODES`].
 const N_HALVINGS: u32 = 6;
 
-/// Drift with counter-based random numbers: zeros σ W(t), σ in the unit of the frame.
+/// Drifting zero offsets σ W(t), where W is a random walk made of counter-based random numbers and σ has the unit of the frame.
 #[derive(Debug)]
 struct ZerosByNumber {
     key: CounterKey,
@@ -138,8 +138,8 @@ impl TaxelEffect for ZerosByNumber {
     }
 }
 
-/// Returns the indices and weights of those normal numbers whose weighted sum is a Wiener process at a time from 0 to 1, by Lévy's construction. Number 0 is
-/// the value at the end, and number 2ˡ + k displaces the middle of interval k of 2ˡ equal intervals.
+/// Returns the indices and weights of those normal numbers whose weighted sum is a Wiener process at a `time` from 0 to 1, by Lévy's construction. Number 0
+/// is the value at the end, and number 2ˡ + k displaces the middle of interval k of 2ˡ equal intervals.
 fn walk(time: f64) -> [(u64, f64); 1 + N_HALVINGS as usize] {
     let mut terms = [(0, time); 1 + N_HALVINGS as usize];
     for (halving, term) in terms[1..].iter_mut().enumerate() {

@@ -18,8 +18,8 @@ use rand::seq::SliceRandom;
 struct Levels(Vec<(usize, f64)>);
 
 impl Levels {
-    /// Draws the faults of a skin: dead taxels, then stuck taxels with levels uniform between the lowest and the largest value.
-    /// The fractions are rounded to whole taxels. Returns an error if a fraction is not from 0 to 1, or their sum exceeds 1.
+    /// Draws the faulty taxels of a skin: dead taxels, then stuck taxels with levels uniform between `least` and `largest`. The fractions `dead` and `stuck`
+    /// are rounded to whole taxels. Returns an error if a fraction is not from 0 to 1, or their sum exceeds 1.
     fn draw(
         [dead, stuck]: [f64; 2],
         skin: &Seed,
@@ -45,7 +45,7 @@ impl Levels {
     }
 }
 
-/// Returns an error if the sum of the fractions exceeds 1; a taxel cannot be both dead and stuck.
+/// Returns an error if `dead + stuck` exceeds 1; a taxel cannot be both dead and stuck.
 fn check_together(dead: f64, stuck: f64) -> Result<()> {
     if dead + stuck <= 1.0 {
         return Ok(());
@@ -91,7 +91,8 @@ impl Effect for Levels {
     }
 }
 
-/// Faults with counter-based random numbers: a taxel reads 0 with probability `dead`, and a level up to `full_scale` with probability `stuck`.
+/// Faulty taxels from counter-based random numbers: a taxel reads 0 with probability `dead`, and a constant level up to `full_scale` with probability
+/// `stuck`.
 #[derive(Debug)]
 struct FaultsByNumber {
     key: CounterKey,

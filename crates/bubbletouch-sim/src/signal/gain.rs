@@ -11,7 +11,7 @@ use crate::text::in_range::not_negative;
 use rand::Rng;
 use rand_distr::StandardNormal;
 
-/// Returns one gain per taxel of a skin, constant over all touches. The pattern does not depend on `std`.
+/// Returns one random gain per taxel of a skin, constant over all touches. The random pattern over the taxels does not depend on `std`.
 ///
 /// Returns an error if `std` is negative or not finite.
 fn gains(std: f64, skin: &Seed, n_taxels: usize) -> Result<Vec<f64>> {
@@ -60,7 +60,7 @@ impl Effect for Gains {
     }
 }
 
-/// Gains exp(s z − s²/2) with counter-based random numbers z.
+/// Gains exp(s z − s²/2) of the taxels, where s sets the spread and z is a counter-based normal random number.
 #[derive(Debug)]
 struct GainsByNumber {
     key: CounterKey,

@@ -13,22 +13,24 @@
 use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::{Error, Result};
 
-/// Number of play operators in the hysteresis model. If the value is smaller, the loop has visible corners; if the value is larger, the cost increases.
+/// Number of play operators in the hysteresis model. If the value is smaller, the hysteresis loop has visible corners; if the value is larger, the cost
+/// increases.
 const N_PLAYS: usize = 8;
-/// Largest loop width for which all weights are positive. Above it, the reading would fall while the load increases.
+/// Largest width of the hysteresis loop for which all weights of the model are positive. Above this width, the reading would fall while the load increases.
 const MAX_WIDTH: f64 = 0.25;
 
-/// Hysteresis with one loop width, prepared for frames with one full scale.
+/// Hysteresis with one loop width, for frames with one full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hysteresis {
-    /// Loop width w, a fraction of the full scale.
+    /// Width of the hysteresis loop, a fraction of the full scale.
     width: f64,
-    /// Thresholds rⱼ of the play operators, in the unit of the frame.
+    /// Thresholds of the play operators, in the unit of the frame.
     thresholds: [f64; N_PLAYS],
 }
 
 impl Hysteresis {
-    /// Prepares a hysteresis loop of a width (fraction of the full scale, 0 to 0.25). `full_scale` is in the unit of the frames.
+    /// Prepares a hysteresis model. `width` is the width of the loop, as a fraction of the full scale from 0 to 0.25. `full_scale` is in the unit of the
+    /// frames.
     ///
     /// # Errors
     /// If the width is not from 0 to 0.25.
@@ -44,7 +46,7 @@ impl Hysteresis {
         })
     }
 
-    /// Replaces true values by the readings of previously unloaded taxels. `frames` has n_taxels values per frame, frames in the order of time.
+    /// Replaces true values by readings with hysteresis, starting with unloaded taxels. `frames` has n_taxels values per frame, frames in the order of time.
     ///
     /// # Panics
     /// If `n_taxels` is zero or a frame is incomplete.
@@ -94,7 +96,7 @@ mod tests {
 
     const FULL_SCALE: f64 = 5e-3;
 
-    /// Returns the readings of one taxel for a sequence of deflections.
+    /// Returns the readings with hysteresis of one taxel for a sequence of deflections.
     fn read(width: f64, felt: &[f64]) -> Vec<f64> {
         let mut frames = felt.to_vec();
         let hysteresis = Hysteresis::new(width, FULL_SCALE).unwrap();
@@ -102,7 +104,7 @@ mod tests {
         frames
     }
 
-    /// Returns equally spaced values from a to b, both included.
+    /// Returns `steps` + 1 equally spaced values from `a` to `b`, both included.
     fn ramp(a: f64, b: f64, steps: usize) -> Vec<f64> {
         (0..=steps)
             .map(|i| a + (b - a) * i as f64 / steps as f64)

@@ -18,20 +18,20 @@ use crate::error::{Error, Result};
 use crate::text::in_range::not_negative;
 use crate::world::Grid;
 
-/// Matrix readout with one line resistance, prepared for one grid and full scale.
+/// Readout of a grid through its row and column lines, for one line resistance, one grid and one full scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixReadout {
     nx: usize,
     ny: usize,
-    /// Line resistance ε, relative to the resistance of a fully pressed taxel.
+    /// Resistance of a line, relative to the resistance of a fully pressed taxel.
     resistance: f64,
-    /// Full scale X of the frames, in their unit.
+    /// Full scale of the frames, in the unit of the frames.
     full_scale: f64,
 }
 
 impl MatrixReadout {
-    /// Prepares a readout with line resistance ε (zero or more, relative to the resistance of a fully pressed taxel).
-    /// `full_scale` is in the unit of the frames.
+    /// Prepares a readout. `resistance` is the resistance of a line, zero or more, relative to the resistance of a fully pressed taxel. `full_scale` is in
+    /// the unit of the frames.
     ///
     /// # Errors
     /// If the resistance is negative or not finite.
@@ -44,7 +44,7 @@ impl MatrixReadout {
         })
     }
 
-    /// Replaces the true values of a frame of ny × nx taxels by readings, in place.
+    /// Replaces the true values of a frame of ny × nx taxels by the readings through the lines, in place.
     ///
     /// # Panics
     /// If the frame has another size, or the scratch has fewer than nx (nx + 2) numbers.
@@ -95,8 +95,8 @@ impl MatrixReadout {
     }
 }
 
-/// Computes the Cholesky factor L of a symmetric, diagonally dominant matrix, in place of its lower triangle.
-/// There is one nx × nx matrix per frame, so a linear-algebra crate is not needed.
+/// Computes the Cholesky factor L of a symmetric, diagonally dominant n × n matrix, in place of its lower triangle. There is one nx × nx matrix per frame, so
+/// a linear-algebra crate is not needed.
 fn factorise(matrix: &mut [f64], n: usize) {
     for a in 0..n {
         let (above, row) = matrix.split_at_mut(a * n);
@@ -108,7 +108,7 @@ fn factorise(matrix: &mut [f64], n: usize) {
     }
 }
 
-/// Solves L Lᵀ x = b in place.
+/// Solves L Lᵀ x = b in place, where L is the Cholesky factor `factor`.
 fn solve(factor: &[f64], b: &mut [f64]) {
     let n = b.len();
     for a in 0..n {
@@ -123,7 +123,7 @@ fn solve(factor: &[f64], b: &mut [f64]) {
     }
 }
 
-/// Returns the dot product over the length of the shorter slice.
+/// Returns the dot product of two slices over the length of the shorter slice.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -190,7 +190,7 @@ mod tests {
         (0..n).map(value).collect()
     }
 
-    /// Solves Kirchhoff's law at every line by elimination, row by row, for the currents of the columns while one row is driven.
+    /// Returns the currents of the columns while one row is driven, for each row. The function solves Kirchhoff's law at every line by elimination.
     fn network(frame: &[f64], (nx, ny): (usize, usize), resistance: f64) -> Vec<f64> {
         let line = 1.0 / resistance;
         let mut out = Vec::new();

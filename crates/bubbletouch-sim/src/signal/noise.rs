@@ -10,11 +10,11 @@ use rand::Rng;
 use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 
-/// Unit of the standard deviation of noise.
+/// Unit of the standard deviation of the noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoiseUnit {
-    /// Fraction of the full scale: the stroke for deflections, the stroke times the stiffness for forces.
+    /// Fraction of the full scale. The full scale is the stroke for deflections, and the stroke times the stiffness for forces.
     FullScale,
     /// Millimetres of deflection.
     Mm,
@@ -59,8 +59,8 @@ impl Noise {
     }
 }
 
-/// Adds normal noise σ zᵢ with standard deviation σ = `std` to the values of a frame. The normal numbers z are drawn from the start of the stream and do not
-/// depend on σ. If σ = 0, nothing is drawn.
+/// Adds normal noise of standard deviation `std` to the values of a frame. The normal numbers are drawn from the start of the stream and do not depend on
+/// `std`. If `std` is 0, no number is drawn.
 pub(super) fn add_normal(frame: &mut [f64], std: f64, stream: &Seed) {
     if std == 0.0 {
         return;
@@ -72,7 +72,7 @@ pub(super) fn add_normal(frame: &mut [f64], std: f64, stream: &Seed) {
     }
 }
 
-/// Noise with counter-based random numbers, indexed by taxel and frame; σ in the unit of the frame.
+/// Gaussian noise from counter-based random numbers, indexed by taxel and frame; its standard deviation has the unit of the frame.
 #[derive(Debug)]
 pub(super) struct NoiseByNumber {
     pub key: CounterKey,

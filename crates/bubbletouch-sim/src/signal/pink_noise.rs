@@ -16,7 +16,7 @@ use crate::text::in_range::not_negative;
 use rand::Rng;
 use rand_distr::StandardNormal;
 
-/// Number K of random sources whose sum is the pink noise. The slowest source is constant for half a million readings, longer than a touch of most arrays. If
+/// Number of random sources whose sum is the pink noise. The slowest source is constant for half a million readings, longer than a touch of most arrays. If
 /// the value is smaller, slow noise is missing.
 const N_SOURCES: usize = 20;
 
@@ -36,7 +36,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// Pink noise with one standard deviation σ, in the unit of the frame.
+/// Pink noise with one standard deviation, in the unit of the frame.
 #[derive(Debug)]
 struct PinkNoise {
     std: f64,
@@ -56,7 +56,8 @@ fn stream(touch: &Seed, source: usize) -> Seed {
     touch.named("pink noise").numbered(source as u64)
 }
 
-/// Adds the noise of one source, redrawn every `hold` readings counted back from the end. The last hold has a random length of 1 to `hold` readings.
+/// Adds the noise of one random source, whose value changes after every `hold` readings, counted back from the end. The last value lasts for a random number
+/// of readings, 1 to `hold`.
 fn add_held(readings: &mut [f64], scale: f64, hold: usize, stream: &Seed) {
     let mut rng = stream.rng();
     let first = rng.gen_range(1..=hold);

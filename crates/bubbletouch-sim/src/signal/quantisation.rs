@@ -7,20 +7,20 @@ use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use super::taxel_effect::{Chunk, Moment, TaxelEffect};
 use crate::error::{Error, Result};
 
-/// Maximum number of bits of a converter. A finer step is smaller than any effect of a touch.
+/// Maximum number of bits of an analogue-to-digital converter. A finer step would be smaller than any effect of a touch.
 const MAX_BITS: u32 = 24;
 
-/// Analogue-to-digital converter, prepared for frames of one range.
+/// Model of an analogue-to-digital converter, for frames whose values lie in one range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantisation {
     least: f64,
     span: f64,
-    /// Largest code, 2ᵇ − 1.
+    /// Largest code of the converter, 2ᵇ − 1 for b bits.
     last: f64,
 }
 
 impl Quantisation {
-    /// Prepares a converter of 1 to 24 bits. `least` and `largest` are the limits of the range, in the unit of the frames.
+    /// Prepares a converter of 1 to 24 bits. `least` and `largest` are the limits of the input range, in the unit of the frames.
     ///
     /// # Errors
     /// If the number of bits is not from 1 to 24.
@@ -37,7 +37,7 @@ impl Quantisation {
         })
     }
 
-    /// Clips each value to the range and rounds it to the nearest code.
+    /// Clips each value to the range of the converter and rounds it to the nearest code.
     pub fn convert(&self, frame: &mut [f64]) {
         for value in frame {
             let share = (*value - self.least) / self.span;

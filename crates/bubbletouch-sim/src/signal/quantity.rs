@@ -13,7 +13,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// Returns the factor from stored to displayed values: 1000 for deflections (metres to millimetres), 1 for forces.
+    /// Returns the factor that converts stored values to displayed values: 1000 for deflections (metres to millimetres), 1 for forces.
     pub fn factor(self) -> f64 {
         match self {
             Self::Deflection => 1e3,
@@ -21,7 +21,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the value of a taxel at its stroke: metres or newtons.
+    /// Returns the value of a taxel pressed to the end of its stroke: its deflection in metres or its force in newtons.
     pub fn full_scale(self, taxel: &Taxel) -> f64 {
         match self {
             Self::Deflection => taxel.stroke,
@@ -29,7 +29,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the unit of displayed values.
+    /// Returns the unit of displayed values: mm for deflections, N for forces.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Deflection => "mm",

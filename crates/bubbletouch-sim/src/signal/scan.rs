@@ -9,14 +9,14 @@ use super::sensor_error::{Effect, ErrorAbout, Strength, TouchRead};
 use crate::error::Result;
 use crate::text::in_range::not_negative;
 
-/// Scan that reads the taxels one after another within a given duration.
+/// Scan of an array: the taxels are read one after another within a given duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scan {
     seconds: f64,
 }
 
 impl Scan {
-    /// Prepares a scan with a duration in seconds, zero or more.
+    /// Prepares a scan with the given duration in seconds, zero or more.
     ///
     /// # Errors
     /// If the time is negative or not finite.
@@ -25,7 +25,7 @@ impl Scan {
         Ok(Self { seconds })
     }
 
-    /// Applies the scan to frames of n_taxels values each, `interval` seconds apart, in place.
+    /// Replaces frames of simultaneous values by the readings of a scan, in place. The frames have n_taxels values each and are `interval` seconds apart.
     ///
     /// # Panics
     /// If `n_taxels` is zero or a frame is incomplete.

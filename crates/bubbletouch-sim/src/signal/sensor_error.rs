@@ -9,23 +9,23 @@ use std::fmt::Debug;
 /// Strength parameter of a sensor error; zero disables the error.
 #[derive(Debug)]
 pub struct Strength {
-    /// Key in `[signal]` and name of the table column.
+    /// Key of the strength in the table `[signal]` of a study, and name of the column in result tables.
     pub key: &'static str,
-    /// Display name of the strength, written before a value: `gain mismatch`.
+    /// Display name of the strength, written before a value, such as `gain mismatch`.
     pub words: &'static str,
-    /// Unit of the value, such as `ms`; `%` for a fraction.
+    /// Unit of the strength, such as `ms`; `%` for a fraction.
     pub unit: &'static str,
-    /// Whether the value must be an integer.
+    /// Whether the strength must be an integer.
     pub is_whole: bool,
-    /// Function that returns whether a value is allowed.
+    /// Function that returns whether a value of the strength is allowed.
     pub is_allowed: fn(f64) -> bool,
-    /// Allowed values, in words.
+    /// Allowed values of the strength, in words.
     pub allowed: &'static str,
-    /// Names of special values: a number and its name, such as `0` and `none`.
+    /// Special values of the strength with their names, such as `0` and `none`.
     pub names: &'static [(&'static str, &'static str)],
 }
 
-/// Constructor of a sensor error: checks the strengths, at least one of them nonzero, and prepares the effect on the signal of a skin.
+/// Constructor of a sensor error. The function checks the strengths (at least one of them is nonzero) and prepares the effect for a skin.
 pub type Prepare = fn(&[f64; MAX_STRENGTHS], &Skin) -> Result<Box<dyn Effect>>;
 
 /// Constructor of a sensor error for the taxels of a whole body. Its arguments are allowed strengths (at least one of them nonzero), the full scale in metres
@@ -36,23 +36,23 @@ pub type PrepareByTaxel =
 /// Description of a sensor error: strengths, dependencies, and constructors.
 #[derive(Debug)]
 pub struct ErrorAbout {
-    /// Name of the error's step in `signal.steps`.
+    /// Name of the sensor error in the list `signal.steps` of a study.
     pub step: &'static str,
-    /// Strength parameters: one, or [two](MAX_STRENGTHS) fractions whose sum is at most 1.
+    /// Strength parameters of the sensor error: one, or [two](MAX_STRENGTHS) fractions whose sum is at most 1.
     pub strengths: &'static [Strength],
-    /// Whether the error is a fixed property of a skin; another skin of the same type has different random values.
+    /// Whether the sensor error is a fixed property of a skin; another skin of the same type has different random values.
     pub is_of_skin: bool,
-    /// Whether two readings of one touch on one skin differ.
+    /// Whether repeated readings of one touch on one skin differ because of the error.
     pub is_random_by_reading: bool,
     /// Whether the readings of a touch depend on the touches before it.
     pub remembers: bool,
-    /// Whether the error is visible only if frames are read while the press moves.
+    /// Whether the sensor error has an effect only if frames are read while the press moves.
     pub needs_motion: bool,
-    /// Whether the error depends on the positions of the taxels: on their neighbours, or on rows and columns.
+    /// Whether the sensor error depends on the positions of the taxels: on their neighbours, or on rows and columns.
     pub needs_places: bool,
-    /// Function that checks the strengths, at least one of them nonzero, and prepares the effect.
+    /// Constructor of the error for whole frames: checks the strengths (at least one of them is nonzero) and prepares the effect.
     pub prepare: Prepare,
-    /// Function that prepares the error for a `BodyReadout`; `None` if the error depends on other taxels or on other frames.
+    /// Constructor of the error for a `BodyReadout`; `None` if the error depends on other taxels or on other frames.
     pub by_taxel: Option<PrepareByTaxel>,
 }
 
@@ -62,19 +62,19 @@ pub const MAX_STRENGTHS: usize = 2;
 /// Skin for which a sensor error is prepared, with its full scale and seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Skin<'a> {
-    /// Patch with the taxels of the skin.
+    /// Patch of the skin.
     pub patch: &'a Patch,
-    /// Value of a taxel at its stroke, metres or newtons.
+    /// Value of a taxel at the end of its stroke, metres or newtons.
     pub full_scale: f64,
     /// Lowest possible reading: zero, or minus the full scale if values have a sign.
     pub least: f64,
-    /// Seed of this piece of hardware, constant over all touches.
+    /// Seed of this specimen of the skin, constant over all touches.
     pub name: Seed,
 }
 
 /// Prepared sensor error or smoothing, applied to frames.
 pub trait Effect: Debug + Send + Sync {
-    /// Number of values of working memory that `apply` needs.
+    /// Returns the number of scratch values that `apply` needs.
     fn scratch_len(&self) -> usize {
         0
     }
@@ -83,16 +83,16 @@ pub trait Effect: Debug + Send + Sync {
     fn apply(&self, frames: &mut [f64], touch: &TouchRead, scratch: &mut [f64]);
 }
 
-/// Metadata of a touch that determine how its frames are read.
+/// Metadata of a touch that affect the readings of its frames.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchRead<'a> {
     /// Number of values in a frame.
     pub n_taxels: usize,
-    /// Number of leading frames that came before the touch.
+    /// Number of leading frames recorded before the touch.
     pub n_before: usize,
     /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
     pub interval: Option<f64>,
-    /// Elapsed fraction of the session, 0 to 1; if `None`, the time is random and depends on `seed`.
+    /// Time of the touch, as a fraction of the session from 0 to 1; if `None`, the time is random and depends on `seed`.
     pub time: Option<f64>,
     /// Seed of the touch.
     pub seed: &'a Seed,
@@ -106,7 +106,7 @@ impl PartialEq for Strength {
 }
 
 impl ErrorAbout {
-    /// Describes an error with default properties: not a property of a skin, not random between readings, and independent of history.
+    /// Describes a sensor error with default properties: not a property of a skin, not random between readings, and independent of earlier touches.
     pub(super) const fn new(
         step: &'static str,
         strengths: &'static [Strength],
@@ -127,7 +127,7 @@ impl ErrorAbout {
 }
 
 impl Strength {
-    /// Describes a strength that is a fraction from 0 to 1.
+    /// Describes a strength that is a fraction from 0 to 1, with its key and its display name.
     pub(super) const fn fraction(key: &'static str, words: &'static str) -> Self {
         Self {
             key,
@@ -140,7 +140,7 @@ impl Strength {
         }
     }
 
-    /// Describes a strength that is a fraction without an upper bound.
+    /// Describes a strength that is a fraction without an upper bound, with its key, its display name and the allowed values in words.
     pub(super) const fn share(
         key: &'static str,
         words: &'static str,
@@ -154,7 +154,7 @@ impl Strength {
     }
 }
 
-/// Declares the sensor errors and the module of each; their order is the order of the table columns.
+/// Declares the sensor errors and the module of each error; their order is the order of the table columns.
 macro_rules! sensor_errors {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(mod $file;)*

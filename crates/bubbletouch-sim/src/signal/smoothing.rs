@@ -10,19 +10,19 @@ use crate::error::{Error, Result};
 use crate::world::Grid;
 use multiversion::multiversion;
 
-/// Radius of the kernel, in multiples of the width.
+/// Radius at which the Gaussian kernel is cut off, in multiples of its width σ.
 const TRUNCATE: f64 = 4.0;
-/// Largest width, in taxel pitches. The limit is far above the size of any array and bounds the time to sum the kernel (about 50 ms).
+/// Largest width of the Gaussian kernel, in taxel pitches. The limit is far above the size of any array and bounds the time to sum the kernel (about 50 ms).
 const MAX_WIDTH_PITCHES: f64 = 1e6;
 
-/// Gaussian smoothing with one width, prepared for one grid.
+/// Gaussian smoothing with one width, for one grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Smoothing {
     nx: usize,
     ny: usize,
-    /// Kernel weights at distances 0, 1, … along x, with the mirrored parts added; at most nx + 1 weights.
+    /// Kernel weights at distances of 0, 1, … taxels along x, including the weights of mirrored taxels; at most nx + 1 weights.
     taps_x: Vec<f64>,
-    /// Kernel weights at distances 0, 1, … along y, with the mirrored parts added; at most ny + 1 weights.
+    /// Kernel weights at distances of 0, 1, … taxels along y, including the weights of mirrored taxels; at most ny + 1 weights.
     taps_y: Vec<f64>,
 }
 
@@ -86,8 +86,8 @@ impl Effect for Smoothing {
     }
 }
 
-/// Smooths a frame along y. Each output row is a weighted sum of input rows, added in mirrored pairs, so that a flipped frame gives the flipped result bit by
-/// bit.
+/// Smooths a frame along y. Each output row is a weighted sum of input rows. Rows at equal distances are added first, so that a flipped frame gives the
+/// flipped result bit by bit.
 fn smooth_columns(frame: &[f64], out: &mut [f64], nx: usize, taps: &[f64]) {
     let ny = frame.len() / nx;
     let row = |y: isize| {
@@ -126,7 +126,7 @@ fn start(out: &mut [f64], values: &[f64], tap: f64) {
     }
 }
 
-/// Adds `tap` times the sum of two rows at equal distances on either side.
+/// Adds `tap` times the sum of the rows `a` and `b` to `out`; both rows have the same distance from the output row.
 #[multiversion(targets("x86_64+avx512f", "x86_64+avx2"))]
 fn add_pair(out: &mut [f64], (a, b): (&[f64], &[f64]), tap: f64) {
     let n = out.len();
@@ -136,14 +136,14 @@ fn add_pair(out: &mut [f64], (a, b): (&[f64], &[f64]), tap: f64) {
     }
 }
 
-/// Returns the index of the taxel at any integer position of a line of n taxels that is mirrored and repeated endlessly.
+/// Returns the index of the taxel at an integer `position`, in a line of `n` taxels that is continued endlessly by mirroring.
 fn mirrored(position: isize, n: usize) -> usize {
     let wrapped = position.rem_euclid(2 * n as isize) as usize;
     wrapped.min(2 * n - 1 - wrapped)
 }
 
-/// Returns the kernel weights at distances 0, 1, …, folded to at most n + 1 weights. The mirrored line repeats every 2n taxels, so
-/// the weight at distance t is added to the weight at t mod 2n.
+/// Returns the kernel weights at distances of 0, 1, … taxels, at most n + 1 weights. The mirrored line repeats every 2n taxels, so the weight at distance t
+/// is added to the weight at t mod 2n.
 fn folded_taps(width_pitches: f64, n: usize) -> Vec<f64> {
     let reach = (TRUNCATE * width_pitches + 0.5) as usize;
     let weight = |t: usize| (-0.5 * (t as f64 / width_pitches).powi(2)).exp();

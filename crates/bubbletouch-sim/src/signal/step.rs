@@ -3,14 +3,14 @@
 use super::{MAX_STRENGTHS, Noise, SENSOR_ERRORS, SensorError};
 use crate::random::Seed;
 
-/// Step of a signal chain, as listed in a study.
+/// Step of a signal chain, as listed in the file of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SignalStep {
     /// Converts deflections to forces.
     Force,
     /// Adds Gaussian noise.
     Noise(Noise),
-    /// Smooths the frame.
+    /// Smooths the frame with a Gaussian kernel.
     Smoothing {
         /// Standard deviation σ of the Gaussian, metres, zero or positive.
         width: f64,
@@ -19,9 +19,9 @@ pub enum SignalStep {
     Error {
         /// Type of the sensor error.
         error: SensorError,
-        /// Values of the error's strengths, zero or positive.
+        /// Strengths of the sensor error, zero or positive.
         strengths: [f64; MAX_STRENGTHS],
-        /// Seed of the skin that has the error.
+        /// Seed of the skin that has the sensor error.
         skin: Seed,
     },
 }
@@ -34,7 +34,7 @@ impl SignalStep {
 }
 
 impl SensorError {
-    /// Returns the signal step of this error with the strengths `given`; missing strengths are zero. `skin` is the seed of the skin.
+    /// Returns the signal step of this sensor error with the strengths `given`; missing strengths are zero. `skin` is the seed of the skin.
     pub fn step(self, given: &[f64], skin: Seed) -> SignalStep {
         let mut strengths = [0.0; MAX_STRENGTHS];
         strengths[..given.len()].copy_from_slice(given);
@@ -45,7 +45,7 @@ impl SensorError {
         }
     }
 
-    /// Returns the sensor error whose step has the name `word`.
+    /// Returns the sensor error whose signal step has the name `word`; `None` if there is none.
     pub fn of_step(word: &str) -> Option<Self> {
         let mut all = SENSOR_ERRORS.iter().copied();
         all.find(|error| error.about().step == word)

@@ -7,18 +7,18 @@ use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};
 use crate::world::{Neighbours, Patch};
 
-/// Radius of the kernel, in multiples of the width.
+/// Radius at which the Gaussian kernel is cut off, in multiples of its width σ.
 const TRUNCATE: f64 = 4.0;
-/// Maximum number of weights of a kernel; this many weights need one gigabyte.
+/// Maximum number of smoothing weights of a skin; this many weights need one gigabyte.
 const MAX_WEIGHTS: usize = 1 << 26;
 
-/// Gaussian smoothing with one width, prepared for one skin.
+/// Gaussian smoothing with one width, for one skin that is not a grid.
 #[derive(Debug)]
 pub(super) struct SurfaceSmoothing {
-    /// Index of the first weight of each taxel, followed by the total number of weights.
+    /// Index in `weights` of the first weight of each taxel, followed by the total number of weights.
     starts: Vec<usize>,
     taxels: Vec<u32>,
-    /// Weights, taxel by taxel; the weights of each taxel have sum 1.
+    /// Smoothing weights, taxel by taxel; the weights of each taxel have sum 1.
     weights: Vec<f64>,
 }
 

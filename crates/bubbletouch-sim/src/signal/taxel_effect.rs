@@ -7,34 +7,34 @@ use crate::contact::{Instructions, for_instructions};
 use crate::random::{CounterKey, GROUP};
 use std::fmt::Debug;
 
-/// Number of taxels that are read together. If larger, the data leave the processor's cache; if smaller, blocks of counters are only partly used.
+/// Number of taxels that are processed together. If larger, the data leave the processor's cache; if smaller, blocks of counters are only partly used.
 pub(super) const CHUNK: usize = 512;
-/// Number of counters that are computed together: eight f64 values in a vector of 512 bits.
+/// Number of random-number counters that are computed together: eight f64 values in a vector of 512 bits.
 const LANES: usize = 8;
 
 /// Time at which a whole body is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Index of the frame; the noise depends on it.
+    /// Index of the frame, which selects the noise.
     pub frame: u64,
-    /// Elapsed fraction of the session, 0 to 1; the drift depends on it.
+    /// Elapsed fraction of the session, 0 to 1, which determines the drift.
     pub time: f64,
 }
 
 /// Step of a `BodyReadout`, prepared for one patch. The step acts on each taxel independently.
 pub trait TaxelEffect: Debug + Send + Sync {
-    /// Replaces the true values of the taxels in `chunk` by readings, in the unit of their patch.
+    /// Replaces the true values of the taxels in `chunk` by readings, in the unit of the frames of the patch.
     fn apply(&self, chunk: &mut Chunk, moment: Moment, values: &mut [f64]);
 }
 
-/// Random draws of eight counters; the first index is the item within its group of four.
+/// Random numbers of eight counters, four numbers per counter. The first index is the number within the counter, the second is the counter.
 type Block = [[f64; LANES]; GROUP];
 
-/// Block of up to [`CHUNK`] taxels, with the counters of their random draws.
+/// Block of up to [`CHUNK`] taxels, with the counters of their random numbers.
 pub struct Chunk {
     groups: [[u64; LANES]; CHUNK / LANES],
     n_blocks: usize,
-    /// Flattened index of each taxel's draw in `draws`.
+    /// Flattened index in `draws` of each taxel's random number.
     places: [u16; CHUNK],
     draws: [Block; CHUNK / LANES],
 }
@@ -51,7 +51,7 @@ impl Default for Chunk {
 }
 
 impl Chunk {
-    /// Sets the taxels, at most [`CHUNK`], by their indices. Consecutive taxels of one group of four share a counter.
+    /// Stores the indices of the taxels, at most [`CHUNK`]. Consecutive taxels of one group of four share a random-number counter.
     pub(super) fn lay(&mut self, taxels: &[usize]) {
         let mut n_groups = 0;
         let mut last = u64::MAX;
@@ -68,7 +68,7 @@ impl Chunk {
         self.n_blocks = n_groups.div_ceil(LANES);
     }
 
-    /// Draws one number per taxel, as the weighted sum of the normal numbers at the indices of `terms`.
+    /// Draws one random number per taxel: the weighted sum of its normal numbers. `terms` lists the indices of these numbers and their weights.
     pub(super) fn draw_sum<const N: usize>(&mut self, key: CounterKey, terms: [(u64, f64); N]) {
         let draws = &mut self.draws[..self.n_blocks];
         draws.fill([[0.0; LANES]; GROUP]);
@@ -78,14 +78,14 @@ impl Chunk {
         }
     }
 
-    /// Draws one number per taxel, uniform in [0, 1).
+    /// Draws one random number per taxel, uniform in [0, 1).
     pub(super) fn draw_uniforms(&mut self, key: CounterKey, index: u64) {
         let groups = &self.groups[..self.n_blocks];
         let draws = &mut self.draws[..self.n_blocks];
         lay_uniforms(Instructions::Best, key, index, groups, draws);
     }
 
-    /// Replaces each value by `read(value, draw)`, where `draw` is the taxel's number from the last draw.
+    /// Replaces each value by `read(value, draw)`, where `draw` is the random number that was last drawn for the taxel.
     pub(super) fn each(&self, values: &mut [f64], mut read: impl FnMut(f64, f64) -> f64) {
         let draws = self.draws.as_flattened().as_flattened();
         for (value, &place) in values.iter_mut().zip(&self.places) {
@@ -95,7 +95,7 @@ impl Chunk {
 }
 
 for_instructions! {
-    /// Adds `weight` times the normal numbers at an index to `sums`.
+    /// Adds `weight` times the normal numbers at `index` to `sums`, for all groups of taxels.
     fn add_normals(
         key: CounterKey,
         index: u64,
@@ -118,7 +118,7 @@ fn add_each(key: CounterKey, index: u64, weight: f64, groups: &[[u64; LANES]], s
 }
 
 for_instructions! {
-    /// Writes the uniform random numbers at an index.
+    /// Writes the uniform random numbers at `index` to `uniforms`, for all groups of taxels.
     fn lay_uniforms(
         key: CounterKey,
         index: u64,

@@ -6,12 +6,12 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-/// Rectangular block of taxels.
+/// Rectangular block of taxels in a grid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Block {
-    /// Row range, along patch y.
+    /// Range of grid rows, along patch y.
     pub rows: Range<usize>,
-    /// Column range, along patch x.
+    /// Range of grid columns, along patch x.
     pub columns: Range<usize>,
 }
 
@@ -41,7 +41,7 @@ impl Block {
     }
 }
 
-/// Divides an ny × nx array into m blocks, ordered by their first taxels in reading order.
+/// Divides an ny × nx array into m blocks, ordered row by row by the first taxel of each block.
 fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
     let equal = equal_squares(grid, m).or_else(|| equal_halves(grid, m));
     let mut blocks = equal.unwrap_or_else(|| rows_of_blocks(grid, m));
@@ -49,7 +49,7 @@ fn blocks(grid: (usize, usize), m: usize) -> Vec<Block> {
     blocks
 }
 
-/// Returns m equal squares that tile the array; `None` if no such tiling exists.
+/// Returns m squares of equal size that tile the array; `None` if no such tiling exists.
 fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
     let side = (ny * nx / m).isqrt();
     let tiles = side * side * m == ny * nx && ny % side == 0 && nx % side == 0;
@@ -65,7 +65,7 @@ fn equal_squares((ny, nx): (usize, usize), m: usize) -> Option<Vec<Block>> {
     })
 }
 
-/// Returns m blocks by repeated halving; `None` if they differ in size.
+/// Returns m blocks of equal size, obtained by repeated halving of the array; `None` if the blocks would differ in size.
 fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
     let blocks = split_blocks(grid, m);
     let area = blocks[0].area();
@@ -73,7 +73,7 @@ fn equal_halves(grid: (usize, usize), m: usize) -> Option<Vec<Block>> {
     is_equal.then_some(blocks)
 }
 
-/// Divides the array into rows of nearly square blocks, with about equally many blocks in each row.
+/// Divides the array into m nearly square blocks, arranged in rows with about equally many blocks.
 fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     let square = (m as f64 * ny as f64 / nx as f64).sqrt().round() as usize;
     let n_rows = square.clamp(m.div_ceil(nx), ny.min(m));
@@ -89,7 +89,7 @@ fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     rows.collect()
 }
 
-/// Halves the largest block (the oldest among equals) until there are m blocks.
+/// Divides the array into m blocks by repeated halving of the largest block (the oldest among equally large blocks).
 fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     let whole = Block {
         rows: 0..ny,
@@ -114,7 +114,7 @@ fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     blocks
 }
 
-/// Returns the squared norm ‖φᵢ‖² of each row of Φ; the rows are orthogonal.
+/// Returns the squared norm of each row of the averaging matrix; the rows are orthogonal.
 fn row_squares(blocks: &[Block]) -> Array1<f64> {
     blocks
         .iter()
@@ -122,7 +122,7 @@ fn row_squares(blocks: &[Block]) -> Array1<f64> {
         .collect()
 }
 
-/// Calls `visit` with the measurement, taxel and value of each nonzero entry of Φ.
+/// Calls `visit(measurement, taxel, value)` for each nonzero entry of the averaging matrix.
 fn each_entry(blocks: &[Block], visit: &mut dyn FnMut(usize, usize, f64)) {
     let nx = width(blocks);
     for (measurement, block) in blocks.iter().enumerate() {
@@ -134,12 +134,12 @@ fn each_entry(blocks: &[Block], visit: &mut dyn FnMut(usize, usize, f64)) {
     }
 }
 
-/// Returns the number of columns nx of the array.
+/// Returns the number of columns of the array that the blocks tile.
 fn width(blocks: &[Block]) -> usize {
     blocks.iter().map(|b| b.columns.end).max().unwrap_or(1)
 }
 
-/// Writes the mean of each block of each frame.
+/// Writes to `out` the mean of each block for each frame.
 fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
     let nx = width(blocks);
     for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
@@ -165,7 +165,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     })
 };
 
-/// Block of each measurement.
+/// Blocks of taxels whose means are the measurements, one block per measurement.
 #[derive(Debug)]
 struct Blocks(Vec<Block>);
 

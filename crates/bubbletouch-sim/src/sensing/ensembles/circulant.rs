@@ -17,9 +17,9 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 
 #[derive(Debug)]
 struct Circulant {
-    /// Random signs g, stored twice, so that every cyclic shift is a slice.
+    /// Random signs, stored twice in a row, so that every cyclic shift of the signs is a slice.
     signs: Vec<f64>,
-    /// Cyclic shift s of each measurement.
+    /// Cyclic shift of the signs for each measurement.
     shifts: Vec<usize>,
 }
 
@@ -38,7 +38,7 @@ impl Circulant {
         }
     }
 
-    /// Returns the row of Φ of one measurement.
+    /// Returns the row of the circulant matrix that gives one measurement.
     fn row(&self, measurement: usize) -> ArrayView1<'_, f64> {
         let n = self.signs.len() / 2;
         let start = n - self.shifts[measurement];

@@ -6,7 +6,7 @@ use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView2, ArrayViewMut2, s};
 use rand_chacha::ChaCha8Rng;
 
-/// Stored matrix Φ, shape (m, n).
+/// Stored matrix Φ of a projection, shape (number of measurements, number of taxels).
 #[derive(Debug)]
 pub(crate) struct Dense(pub(crate) Array2<f64>);
 
@@ -39,7 +39,8 @@ pub(crate) const fn about(words: &'static str, draw: Draw) -> EnsembleAbout {
     }
 }
 
-/// Returns rows of n random numbers of variance 1, divided by √n. Row r depends only on child r of the stream, so a larger m keeps the rows of a smaller one.
+/// Returns a matrix of m rows of n random numbers of variance 1, divided by √n. Row r depends only on child r of the stream, so a larger m keeps the rows of
+/// a smaller m.
 pub(crate) fn by_rows(
     m: usize,
     n: usize,
@@ -55,13 +56,14 @@ pub(crate) fn by_rows(
     matrix * scale
 }
 
-/// Number of taxels that the matrix product sums in one block (`D_KC` of matrixmultiply). Omitting zeros within a block does not change the bits of the result.
+/// Number of taxels that the matrix product sums in one block (`D_KC` of matrixmultiply). Omitting zeros within a block does not change the bits of the
+/// result.
 const SUMMED_TOGETHER: usize = 256;
-/// Fraction of touched taxels above which all taxels are used, because copying the touched ones would take longer than it saves.
+/// Fraction of nonzero taxels above which the product uses all taxels. Above this fraction, copying the nonzero taxels would take longer than it saves.
 const MOSTLY_TOUCHED: f64 = 0.8;
 
-/// Computes Y = X Φᵀ by the blocked matrix product. Each entry is summed over the taxels in one fixed order for any number of frames or measurements (tested as
-/// a law). Taxels that are zero in all frames are omitted, which does not change the bits of the result.
+/// Writes the measurements X Φᵀ of the frames X, computed by a blocked matrix product. Each measurement is summed over the taxels in one fixed order for any
+/// number of frames or measurements (tested as a law). Taxels that are zero in all frames are omitted, which does not change the bits of the result.
 fn measure(matrix: &Array2<f64>, frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64>) {
     let touched = touched(frames);
     if touched.len() as f64 > MOSTLY_TOUCHED * frames.ncols() as f64 {
@@ -84,7 +86,7 @@ fn touched(frames: ArrayView2<f64>) -> Vec<usize> {
     (0..any.len()).filter(|&taxel| any[taxel]).collect()
 }
 
-/// Copies columns of a matrix, in order, to adjacent columns.
+/// Returns the columns `picked` of a matrix, in this order, as a new matrix.
 fn columns(matrix: ArrayView2<f64>, picked: &[usize]) -> Array2<f64> {
     let mut columns = Array2::zeros((matrix.nrows(), picked.len()));
     for (row, mut to) in matrix.outer_iter().zip(columns.outer_iter_mut()) {

@@ -6,13 +6,13 @@ use crate::sensing::Ensemble;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
 
-/// Function that draws the map from an ny × nx array to m measurements, 1 ≤ m ≤ n, with its own random stream.
+/// Function that draws the linear map from an ny × nx array to m measurements, 1 ≤ m ≤ ny · nx, with its own random stream.
 pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
 
-/// Function that learns the map from frames (n_frames × n, at least one frame).
+/// Function that learns the linear map to m measurements from training frames (n_frames × n_taxels, at least one frame).
 pub type Learn = fn(ArrayView2<f64>, usize, &Seed) -> Result<Box<dyn Operator>>;
 
-/// Origin of a measurement map: drawn or learned.
+/// Origin of a measurement map: drawn at random, or learned from frames.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
     /// The map is drawn at random or fixed.
@@ -26,20 +26,20 @@ pub enum Source {
 pub struct EnsembleAbout {
     /// Display name of the ensemble.
     pub words: &'static str,
-    /// Whether the first m measurements of a larger projection are the measurements of the projection of size m.
+    /// Whether the projection to m measurements gives the first m measurements of any larger projection with the same seed.
     pub is_prefix_nested: bool,
-    /// Whether the ensemble measures the whole frame for any m.
+    /// Whether the ensemble measures every taxel separately for any requested number of measurements.
     pub is_whole_frame: bool,
-    /// Whether the ensemble needs rows and columns; other layouts do not support it.
+    /// Whether the ensemble requires a grid of taxels with rows and columns.
     pub needs_rows: bool,
-    /// Function that returns the memory of a map from n taxels to m measurements, bytes; its arguments are m and n.
+    /// Function that returns the memory of a projection, bytes. Its arguments are the numbers of measurements and of taxels.
     pub bytes: fn(f64, f64) -> f64,
-    /// Origin of the map: drawn or learned.
+    /// Origin of the measurement map: drawn at random, or learned from frames.
     pub source: Source,
 }
 
 impl EnsembleAbout {
-    /// Describes an ensemble with nested rows and little memory that works on any layout.
+    /// Describes an ensemble with default properties: nested measurements, little memory, and any layout. The map is drawn by `draw`.
     pub(crate) const fn new(words: &'static str, draw: Draw) -> Self {
         Self {
             words,
@@ -52,30 +52,31 @@ impl EnsembleAbout {
     }
 }
 
-/// Linear map y = Φx from frames to measurements.
+/// Linear map y = Φx from a frame x to its measurements y.
 pub trait Operator: Debug + Send + Sync {
-    /// Measures frames (n_frames × n) and overwrites `out` (n_frames × m). The measurements of a frame have equal bits in any batch.
+    /// Measures frames (n_frames × n_taxels) and overwrites `out` (n_frames × n_measurements). The measurements of a frame have equal bits in any batch of
+    /// frames.
     fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>);
 
-    /// Calls `visit` with measurement, taxel and value of each entry of Φ that can be nonzero, always in one order.
+    /// Calls `visit(measurement, taxel, value)` for each entry of Φ that can be nonzero, always in one order.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64));
 
     /// Returns the root mean square norm of the rows of Φ.
     fn row_norm(&self) -> f64;
 
-    /// Returns the matrix Φ if it is stored.
+    /// Returns the matrix Φ if it is stored, otherwise `None`.
     fn stored(&self) -> Option<&Array2<f64>> {
         None
     }
 
-    /// Returns the Gram matrix ΦΦᵀ if it is known without computing Φ.
+    /// Returns the Gram matrix ΦΦᵀ if a formula gives it without Φ, otherwise `None`.
     fn known_gram(&self) -> Option<Array2<f64>> {
         None
     }
 }
 
 impl Ensemble {
-    /// Returns whether the first m measurements of a larger projection are the measurements of the projection of size m.
+    /// Returns whether the projection to m measurements gives the first m measurements of any larger projection with the same seed.
     pub fn is_prefix_nested(self) -> bool {
         self.about().is_prefix_nested
     }
@@ -85,7 +86,7 @@ impl Ensemble {
         matches!(self.about().source, Source::Learned(_))
     }
 
-    /// Returns the number of measurements for n taxels and a requested m: n for whole-frame ensembles, otherwise m.
+    /// Returns the number of measurements for n taxels and a requested number m. The result is n if the ensemble measures every taxel, otherwise m.
     pub fn n_measurements(self, m: usize, n: usize) -> usize {
         match self.about().is_whole_frame {
             true => n,
@@ -94,12 +95,12 @@ impl Ensemble {
     }
 }
 
-/// Declares the ensembles, and the module that contains each.
+/// Declares the ensembles, and the module that contains each ensemble.
 macro_rules! ensembles {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(mod $file;)*
 
-        /// Ensemble of measurements, by which a frame is compressed.
+        /// Family of linear maps that compress a frame to measurements.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum Ensemble {
@@ -110,7 +111,7 @@ macro_rules! ensembles {
             /// List of all ensembles.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// Names of the ensembles in a study, and their display names.
+            /// Names of the ensembles in the file of a study, with their display names.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
             /// Returns the description of the ensemble.

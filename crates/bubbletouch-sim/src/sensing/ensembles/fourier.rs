@@ -16,7 +16,8 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     })
 };
 
-/// Returns the frequencies (u, v), one of each pair ± (u, v), lowest first. Each has a cosine, and a sine unless this is 0 on every taxel.
+/// Returns the waves (u, v, whether it is a sine) of an ny × nx array, lowest frequency first. Each pair of opposite frequencies has a cosine, and a sine
+/// unless the sine is 0 on every taxel.
 fn waves((ny, nx): (usize, usize)) -> Vec<(usize, usize, bool)> {
     let mut waves = Vec::with_capacity(ny * nx);
     for v in 0..ny {

@@ -42,7 +42,7 @@ mod tests {
     use crate::sensing::{Ensemble, Projection};
     use ndarray::Array2;
 
-    /// Returns frames of three patterns; the first has the largest variance.
+    /// Returns test frames that combine three patterns; the first pattern has the largest variance.
     fn frames() -> Array2<f64> {
         Array2::from_shape_fn((40, 12), |(i, j)| {
             let pattern = |k: usize| ((j * (k + 1)) as f64 * 0.7 + k as f64).sin();

@@ -9,23 +9,23 @@ use super::subsample::permutation;
 use crate::random::Seed;
 use ndarray::{ArrayView2, ArrayViewMut2};
 
-/// Block size B, a power of two: 32 as in \[SBHE\]. Larger blocks mix more taxels into each measurement and are slower; with 1 the ensemble is
-/// a subsample. For arrays of fewer taxels, B is the next power of two above their number.
+/// Block size of the transform, a power of two: 32 as in \[SBHE\]. Larger blocks mix more taxels into each measurement and are slower; with 1 the ensemble is
+/// a subsample. For arrays of fewer taxels, the block size is the next power of two above their number.
 pub(crate) const BLOCK: usize = 32;
 /// Number of frames transformed at a time, one per lane of a vector register.
 const LANES: usize = 8;
 
-/// Values of one taxel or coefficient in several frames.
+/// Values of one taxel or one coefficient in several frames.
 type Lanes = [f64; LANES];
 
-/// Permutation P and selection Q, with Q sorted so that each required block is transformed once.
+/// Scrambled block Hadamard ensemble: a random permutation of the taxels, and a sorted selection of coefficients. Each required block is transformed once.
 #[derive(Clone, Debug)]
 pub(crate) struct ScrambledHadamard {
     n_taxels: usize,
     block: usize,
-    /// Taxel at each position before W; indices n and above denote added zeros.
+    /// Index of the taxel at each position before the transform; indices of at least the number of taxels denote added zeros.
     taxels: Vec<usize>,
-    /// Pairs of indices, ascending: a coefficient of the transform W, and the measurement that uses it.
+    /// Pairs of indices, ascending: a coefficient of the Hadamard transform, and the measurement that uses this coefficient.
     picks: Vec<(usize, usize)>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 };
 
 impl ScrambledHadamard {
-    /// Draws the ensemble with blocks of `block` taxels, a power of two.
+    /// Draws the ensemble of m measurements of n taxels, with blocks of `block` taxels, a power of two.
     pub(crate) fn new(m: usize, n: usize, block: usize, stream: &Seed) -> Self {
         let block = block.min(n.next_power_of_two());
         let n_padded = n.next_multiple_of(block);
@@ -60,7 +60,7 @@ impl ScrambledHadamard {
         a.0 / self.block == b.0 / self.block
     }
 
-    /// Copies the taxels of one block from each frame; lanes without a frame stay zero.
+    /// Copies the values of the listed taxels from each frame to `values`; lanes without a frame stay zero.
     fn gather(&self, frames: &[f64], taxels: &[usize], values: &mut [Lanes]) {
         for (lane, frame) in frames.chunks_exact(self.n_taxels).enumerate() {
             for (value, &taxel) in values.iter_mut().zip(taxels) {
@@ -93,7 +93,7 @@ impl Operator for ScrambledHadamard {
         }
     }
 
-    /// Calls `visit` with measurement, taxel and value of each entry.
+    /// Calls `visit(measurement, taxel, value)` for each entry of the matrix that can be nonzero.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
         let scale = 1.0 / (self.block as f64).sqrt();
         for &(coefficient, measurement) in &self.picks {
@@ -110,7 +110,7 @@ impl Operator for ScrambledHadamard {
         }
     }
 
-    /// Returns the root mean square norm of the rows of Φ, which is below 1 if zeros were added to the taxels.
+    /// Returns the root mean square norm of the rows of Φ. The norm is below 1 if zeros were added to the taxels.
     fn row_norm(&self) -> f64 {
         let in_block = |coefficient: usize| {
             let first = coefficient / self.block * self.block;
@@ -125,7 +125,7 @@ impl Operator for ScrambledHadamard {
     }
 }
 
-/// Applies the unscaled Walsh–Hadamard transform in natural order, in place, to 2^k values per lane.
+/// Applies the unscaled Walsh–Hadamard transform in natural order, in place, to a power of two of values per lane.
 fn transform(values: &mut [Lanes]) {
     let mut half = 1;
     while half < values.len() {

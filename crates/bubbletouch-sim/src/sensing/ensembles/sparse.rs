@@ -11,20 +11,20 @@ use rand::Rng;
 
 /// Number of frames measured at a time, one per lane of a vector register.
 const LANES: usize = 8;
-/// Minimum number of taxels for which only nonzero entries are drawn. Drawing every entry takes a minute on a body with millions of taxels. Smaller arrays keep
-/// this method for compatibility with earlier results.
+/// Minimum number of taxels for which only the nonzero matrix entries are drawn. Drawing every entry takes a minute on a body with millions of taxels.
+/// Smaller arrays draw every entry for compatibility with earlier results.
 const BY_GAPS_FROM: usize = 1 << 17;
 
 /// Matrix Φ with entries ±√(s/n) at a density of 1/s, s = √n.
 #[derive(Clone, Debug)]
 pub(crate) struct VerySparse {
     n_taxels: usize,
-    /// Magnitude √(s/n) of the nonzero entries, which makes the mean square of an entry 1/n.
+    /// Magnitude √(s/n) of the nonzero entries, s = √n for n taxels, so that the mean square of all entries is 1/n.
     scale: f64,
     rows: Vec<Row>,
 }
 
-/// Taxels that one measurement adds, and taxels that it subtracts, ascending.
+/// Indices of the taxels that one measurement adds, and of the taxels that it subtracts, ascending.
 #[derive(Clone, Debug, Default)]
 struct Row {
     plus: Vec<usize>,
@@ -40,7 +40,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 };
 
 impl VerySparse {
-    /// Draws m rows of Φ. Row r depends only on child r of the stream, so a larger m keeps the rows of a smaller one.
+    /// Draws a matrix of m rows for n taxels. Row r depends only on child r of the stream, so a larger m keeps the rows of a smaller m.
     pub(crate) fn new(m: usize, n: usize, stream: &Seed) -> Self {
         let s = (n as f64).sqrt();
         let rows = (0..m as u64).map(|row| Row::draw(n, 1.0 / s, &stream.numbered(row)));
@@ -62,7 +62,7 @@ impl Operator for VerySparse {
         self.scale * (n_entries as f64 / self.rows.len() as f64).sqrt()
     }
 
-    /// Calls `visit` with measurement, taxel and value of each nonzero entry.
+    /// Calls `visit(measurement, taxel, value)` for each nonzero matrix entry.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
         for (measurement, row) in self.rows.iter().enumerate() {
             let plus = row.plus.iter().map(|&taxel| (taxel, self.scale));
@@ -99,7 +99,7 @@ impl Row {
         }
     }
 
-    /// Draws for every taxel whether the measurement adds, subtracts or ignores it.
+    /// Draws the matrix row of one measurement: each taxel is added or subtracted with probability `density` / 2 each, otherwise ignored.
     fn draw_each(n: usize, density: f64, stream: &Seed) -> Self {
         let mut rng = stream.rng();
         let mut row = Self::default();
@@ -114,8 +114,8 @@ impl Row {
         row
     }
 
-    /// Draws only the nonzero entries, with the distribution of `draw_each`. The number of zeros before the next entry is geometric: it is at least g with
-    /// probability (1 − density)^g.
+    /// Draws the matrix row of one measurement with the distribution of `draw_each`, but only its nonzero entries. The number of zeros before the next entry
+    /// is geometric: it is at least g with probability (1 − density)^g.
     fn draw_by_gaps(n: usize, density: f64, stream: &Seed) -> Self {
         let mut rng = stream.rng();
         let log_zero = (-density).ln_1p();
@@ -136,7 +136,7 @@ impl Row {
         }
     }
 
-    /// Returns the signed sum of the row's taxels in each lane.
+    /// Returns, for each lane, the sum of the added taxels minus the sum of the subtracted taxels.
     fn sums(&self, values: &[[f64; LANES]]) -> [f64; LANES] {
         let mut sums = [0.0; LANES];
         for &taxel in &self.plus {

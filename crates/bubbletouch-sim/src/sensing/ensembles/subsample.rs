@@ -38,7 +38,7 @@ impl Operator for Taxels {
     }
 }
 
-/// Returns the numbers 0 … n − 1 in random order; every order is equally likely.
+/// Returns the numbers 0 … n − 1 in random order; every order is equally probable.
 pub(crate) fn permutation(n: usize, stream: &Seed) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
     order.shuffle(&mut stream.rng());

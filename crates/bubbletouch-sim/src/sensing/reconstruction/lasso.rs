@@ -10,27 +10,28 @@ use crate::sensing::{SensedDictionary, Solved};
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Axis, Zip};
 
-/// Number of steps between two checks of the duality gap; a check costs about a quarter of a step.
+/// Number of solver steps between two checks of the duality gap; a check costs about a quarter of a step.
 const CHECK_EVERY: usize = 5;
-/// Number of power iterations that estimate the largest eigenvalue L. With this number the error of the estimate is far smaller than the safety margin
+/// Number of power iterations that estimate the largest eigenvalue of AᵀA. With this number the error of the estimate is far smaller than the safety margin
 /// (Kuczyński and Woźniakowski 1992).
 const POWER_STEPS: usize = 60;
 const MARGIN: f64 = 1.02;
 
-/// The ℓ1 problem and its stopping rule.
+/// Parameters of the ℓ1 problem: minimise ½‖Aα − y‖² + λ‖α‖₁ for each frame, with a stopping rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lasso {
-    /// Penalty λ, positive, in the unit of the measurements times the norm of an atom.
+    /// Penalty λ of the ℓ1 norm, positive, in the unit of the measurements times the norm of an atom.
     pub lambda: f64,
-    /// Largest duality gap of a solved frame, as a fraction of ½‖y‖²; positive.
+    /// Largest duality gap of a solved frame, as a fraction of half its squared norm of measurements; positive.
     pub tolerance: f64,
-    /// Maximum number of steps per frame; at least 1.
+    /// Maximum number of solver steps per frame; at least 1.
     pub most_steps: usize,
 }
 
 impl Lasso {
-    /// Returns λ = σ a √(2 ln k), where a is the root mean square norm of the k columns of A. Noise of standard deviation σ on each measurement alone then
-    /// almost surely gives no nonzero coefficient. This is the universal threshold of Donoho and Johnstone (1994), as used by Chen, Donoho and Saunders (1998).
+    /// Returns λ = σ a √(2 ln k), where a is the root mean square norm of the k measured atoms and σ is `noise_std`. Measurements that consist only of noise
+    /// of standard deviation σ then almost surely give no nonzero coefficient. This is the universal threshold of Donoho and Johnstone (1994), as used by
+    /// Chen, Donoho and Saunders (1998).
     pub fn universal_lambda(sensed: &SensedDictionary, noise_std: f64) -> f64 {
         let atoms = sensed.atoms();
         let k = atoms.nrows() as f64;
@@ -38,9 +39,9 @@ impl Lasso {
         noise_std * (square * 2.0 * k.ln()).sqrt()
     }
 
-    /// Computes the coefficients of each row of measurements (n_frames × m).
+    /// Computes the dictionary coefficients of each frame from rows of measurements (n_frames × m).
     ///
-    /// A frame is marked as capped if its gap is above the tolerance after `most_steps`.
+    /// A frame is marked as capped if its duality gap is above the tolerance after `most_steps`.
     ///
     /// # Errors
     /// If λ or the tolerance is not a positive number, or if `most_steps` is 0.
@@ -55,7 +56,7 @@ impl Lasso {
         self.solve_with(&Curvature::new(sensed), sensed, measurements)
     }
 
-    /// Computes the coefficients of each row of measurements with a [`Curvature`] that was computed before.
+    /// Computes the dictionary coefficients of each frame from its row of measurements, with a [`Curvature`] that was computed before.
     pub(crate) fn solve_with(
         &self,
         curvature: &Curvature,
@@ -92,7 +93,7 @@ impl Lasso {
     }
 }
 
-/// Upper bound L of the largest eigenvalue of AᵀA.
+/// Upper bound of the largest eigenvalue of AᵀA, where A is the matrix of measured atoms.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Curvature(f64);
 
@@ -113,21 +114,21 @@ impl Curvature {
     }
 }
 
-/// Frames that have not converged yet, one per row of each matrix.
+/// Solver state of the frames that have not converged yet, one frame per row of each matrix.
 struct Open<'a> {
     sensed: &'a SensedDictionary<'a>,
-    /// Upper bound L of the largest eigenvalue of AᵀA.
+    /// Upper bound of the largest eigenvalue of AᵀA, where A is the matrix of measured atoms.
     curvature: f64,
-    /// Indices of the unsolved frames.
+    /// Indices of the frames that have not converged.
     frames: Vec<usize>,
-    /// Squared norm ‖y‖² of each frame.
+    /// Squared norm ‖y‖² of each frame's measurements y.
     square: Vec<f64>,
-    /// Momentum parameter t of each frame.
+    /// Momentum parameter of the FISTA iteration for each frame.
     momentum: Vec<f64>,
-    /// Products Aᵀy, one row per frame.
+    /// Products Aᵀy of the measured atoms A with the measurements y, one row per frame.
     b: Array2<f64>,
     alpha: Array2<f64>,
-    /// Extrapolated points, one row per frame.
+    /// Extrapolated coefficients of the FISTA iteration, one row per frame.
     ahead: Array2<f64>,
 }
 
@@ -147,7 +148,7 @@ impl<'a> Open<'a> {
         }
     }
 
-    /// Returns the gradient AᵀAα − Aᵀy, using the smaller of AᵀA and A.
+    /// Returns the gradient AᵀAα − Aᵀy at the coefficients `alpha`, computed with the smaller of the matrices AᵀA and A.
     fn gradient(&self, alpha: &Array2<f64>) -> Array2<f64> {
         let atoms = self.sensed.atoms();
         let mut gradient = self.b.clone();
@@ -176,7 +177,7 @@ impl<'a> Open<'a> {
         }
     }
 
-    /// Stores the frames whose duality gap is small enough (all frames at the last step) and keeps the others.
+    /// Moves the converged frames to `solved` (all frames if `is_last`), and keeps the others.
     fn retire(&mut self, rule: &Lasso, is_last: bool, solved: &mut Solved) {
         let gradient = self.gradient(&self.alpha);
         let mut kept = Vec::new();
@@ -204,7 +205,7 @@ impl<'a> Open<'a> {
     }
 }
 
-/// Performs one proximal gradient step from the extrapolated point `ahead`, and computes the next extrapolated point.
+/// Performs one proximal gradient step for one frame from the extrapolated coefficients `ahead`, and computes the next extrapolated coefficients.
 fn step_row(
     alpha: ArrayViewMut1<f64>,
     mut ahead: ArrayViewMut1<f64>,
@@ -240,7 +241,7 @@ fn step_row(
     });
 }
 
-/// Returns the duality gap at α, the objective minus the dual value; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
+/// Returns the duality gap (objective minus dual value) at the coefficients α; b = Aᵀy, gradient = AᵀAα − b, square = ‖y‖².
 fn duality_gap(
     alpha: ArrayView1<f64>,
     b: ArrayView1<f64>,

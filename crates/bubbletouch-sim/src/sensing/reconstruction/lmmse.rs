@@ -13,28 +13,28 @@ use crate::sensing::SensedDictionary;
 use crate::sensing::cholesky::Cholesky;
 use ndarray::{Array1, Array2, ArrayView2};
 
-/// Smallest noise variance relative to the mean variance of the measurements; without noise A E Aᵀ may be singular.
+/// Smallest noise variance relative to the mean variance of the measurements. Without noise, the matrix to be inverted may be singular.
 const LEAST_NOISE: f64 = 1e-12;
 
-/// Linear map of the LMMSE estimate, prepared for any number of frames.
+/// Linear minimum mean square error estimator of frames, prepared for any number of frames.
 #[derive(Clone, Debug)]
 pub struct Lmmse {
     form: Form,
-    /// Constant part x₀ − M Φx₀, shape (n,), where M is the linear map. The estimate for y is this constant plus M y.
+    /// Estimate for zero measurements, shape (n_taxels,). The estimate for measurements y is this constant plus a linear map of y.
     constant: Array1<f64>,
 }
 
-/// Factorisation of the linear map with fewer operations per frame.
+/// Representation of the linear map as one matrix or a product of two; the constructor chooses the one with fewer operations per frame.
 #[derive(Clone, Debug)]
 enum Form {
-    /// Matrix from measurements to frames, shape (m, n).
+    /// Matrix from measurements to frames, shape (n_measurements, n_taxels).
     Direct(Array2<f64>),
     /// Matrices from measurements to coefficients (m × k) and from coefficients to frames (k × n).
     Through(Array2<f64>, Array2<f64>),
 }
 
 impl Lmmse {
-    /// Prepares the estimate for noise of standard deviation σ on each taxel (zero or positive, in the unit of the frames).
+    /// Prepares the estimator for taxel noise of standard deviation `noise_std` (zero or positive, in the unit of the frames).
     ///
     /// # Errors
     /// If the dictionary has no training frames, if σ is negative or not finite, or if the training frames or the projection are zero.
@@ -42,7 +42,7 @@ impl Lmmse {
         Self::shrunk(sensed, noise_std, None)
     }
 
-    /// Prepares the estimate with each of the k coefficients multiplied by a factor from 0 to 1.
+    /// Prepares the estimator; each of the k coefficients is multiplied by its factor in `shrinkage`, from 0 to 1, if given.
     ///
     /// # Errors
     /// If `new` would fail for these arguments.
@@ -105,7 +105,7 @@ impl Lmmse {
         lmmse
     }
 
-    /// Estimates frames from rows of measurements (n_frames × m), shape (n_frames, n).
+    /// Estimates frames, shape (n_frames, n_taxels), from rows of measurements, shape (n_frames, n_measurements).
     ///
     /// # Panics
     /// If a row does not have m values.

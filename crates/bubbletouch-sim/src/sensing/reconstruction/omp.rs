@@ -9,9 +9,9 @@ use crate::error::{Error, Result};
 use crate::sensing::{SensedDictionary, Solved};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, ArrayViewMut1, Zip};
 
-/// Smallest squared norm of an atom's part outside the span of the chosen atoms; an atom with a smaller norm is linearly dependent.
+/// Smallest squared norm of the component of an atom orthogonal to the chosen atoms. An atom with a smaller norm counts as linearly dependent.
 const DEPENDENT: f64 = 1e-10;
-/// Smallest correlation relative to ‖y‖; smaller correlations are rounding errors.
+/// Smallest correlation of an atom with the residual, relative to the norm of the measurements; smaller correlations are rounding errors.
 const ROUNDING: f64 = 1e-13;
 
 /// Stopping rule of orthogonal matching pursuit.
@@ -19,12 +19,12 @@ const ROUNDING: f64 = 1e-13;
 pub struct Omp {
     /// Maximum number of atoms per frame; at least 1.
     pub most_atoms: usize,
-    /// Norm of the residual ‖y − Aα‖ at which the pursuit stops; zero or positive, in the unit of the measurements.
+    /// Norm of the residual at which the pursuit stops; zero or positive, in the unit of the measurements.
     pub residual: f64,
 }
 
 impl Omp {
-    /// Creates the rule that stops at the residual σ√m, which noise of standard deviation σ on each measurement causes.
+    /// Creates the rule that stops at the residual norm σ√m, which noise of standard deviation σ on each of the m measurements causes.
     pub fn for_noise(most_atoms: usize, noise_std: f64, n_measurements: usize) -> Self {
         Self {
             most_atoms,
@@ -32,7 +32,7 @@ impl Omp {
         }
     }
 
-    /// Computes the coefficients of each row of measurements (n_frames × m).
+    /// Computes the dictionary coefficients of each frame from rows of measurements (n_frames × m).
     ///
     /// A frame is marked as capped if it has `most_atoms` atoms and a residual above the limit.
     ///
@@ -81,25 +81,25 @@ fn inverse_norms(sensed: &SensedDictionary) -> Array1<f64> {
     norms.mapv(|norm| if norm > least { 1.0 / norm } else { 0.0 })
 }
 
-/// State of the pursuit of one frame, in units of atoms of norm 1.
+/// State of the matching pursuit for one frame; atoms are scaled to norm 1.
 struct Pursuit<'a> {
     gram: &'a Array2<f64>,
-    /// Scale 1 / ‖aⱼ‖; 0 for atoms with zero columns, so that their correlation is always 0.
+    /// Reciprocal norm of each measured atom; 0 for zero atoms, so that their correlation is always 0.
     scale: &'a Array1<f64>,
-    /// Correlations aⱼ·y / ‖aⱼ‖ of the atoms with the measurements.
+    /// Correlations of the measured atoms, scaled to norm 1, with the measurements.
     b: Array1<f64>,
-    /// Correlations aⱼ·(residual) / ‖aⱼ‖ of the atoms with the residual.
+    /// Correlations of the measured atoms, scaled to norm 1, with the residual.
     correlation: Array1<f64>,
-    /// Squared norm ‖residual‖² of the residual.
+    /// Squared norm of the residual.
     left: f64,
     rounding: f64,
     chosen: Vec<usize>,
     is_chosen: Vec<bool>,
-    /// Rows of the Cholesky factor L, one after the other: row i has i + 1 entries.
+    /// Rows of the Cholesky factor L of the chosen atoms' Gram matrix, one after the other: row i has i + 1 entries.
     factor: Vec<f64>,
-    /// Solution L⁻¹ b of the forward substitution for the chosen atoms.
+    /// Forward substitution L⁻¹ b for the chosen atoms, where b are their correlations with the measurements.
     forward: Vec<f64>,
-    /// Coefficients α of the chosen atoms, scaled to norm 1.
+    /// Coefficients of the chosen atoms, scaled to norm 1.
     solution: Vec<f64>,
 }
 
@@ -121,7 +121,7 @@ impl<'a> Pursuit<'a> {
         }
     }
 
-    /// Runs the pursuit. Returns whether it stopped at the maximum number of atoms with a residual above the limit.
+    /// Runs the matching pursuit. Returns whether it stopped at the maximum number of atoms with a residual above the limit.
     fn run(&mut self, rule: &Omp) -> bool {
         let enough = rule.residual * rule.residual;
         while self.left > enough {
@@ -151,7 +151,7 @@ impl<'a> Pursuit<'a> {
         best.1
     }
 
-    /// Adds a row to L and an entry to L⁻¹b. Returns false if the atom depends linearly on the chosen atoms.
+    /// Adds an atom: a row of the Cholesky factor L, and an entry of L⁻¹b. Returns false if the atom depends linearly on the chosen atoms.
     fn add(&mut self, atom: usize) -> bool {
         let start = self.factor.len();
         let mut square = 1.0;
@@ -179,7 +179,7 @@ impl<'a> Pursuit<'a> {
         true
     }
 
-    /// Solves Lᵀα = L⁻¹b for the coefficients by back substitution.
+    /// Solves Lᵀα = L⁻¹b for the coefficients α of the chosen atoms by back substitution.
     fn solve_chosen(&mut self) {
         self.solution.clone_from(&self.forward);
         for i in (0..self.solution.len()).rev() {

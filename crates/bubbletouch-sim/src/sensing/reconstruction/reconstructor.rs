@@ -6,24 +6,24 @@ use crate::sensing::{Lasso, Lmmse, Omp, SensedDictionary};
 use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 
-/// Method that computes the coefficients of measurements.
+/// Method that computes dictionary coefficients from measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Solver {
     /// Orthogonal matching pursuit: greedy, one atom after the other ([`Omp`]).
     Omp,
-    /// The ℓ1 problem by FISTA ([`Lasso`]).
+    /// The ℓ1 problem, solved by the FISTA algorithm ([`Lasso`]).
     L1,
-    /// Linear estimate of least mean square error ([`Lmmse`]).
+    /// Linear estimate with the smallest mean square error ([`Lmmse`]).
     Lmmse,
 }
 
-/// Limits of the solvers' work.
+/// Limits and tolerances of the solvers, which bound the computing time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
     /// Maximum number of atoms per frame in orthogonal matching pursuit.
     pub most_atoms: usize,
-    /// Factor between the universal threshold ([`Lasso::universal_lambda`]) and λ of the ℓ1 problem; positive.
+    /// Ratio of the ℓ1 penalty to the universal threshold ([`Lasso::universal_lambda`]); positive.
     pub lambda_scale: f64,
     /// Relative duality gap at which an ℓ1 problem counts as solved; positive.
     pub tolerance: f64,
@@ -31,14 +31,14 @@ pub struct Effort {
     pub most_steps: usize,
 }
 
-/// Reconstructed frames, with convergence information.
+/// Reconstructed frames, with the number of atoms and the convergence of each frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reconstruction {
-    /// Reconstructed frames, shape (n_frames, n).
+    /// Reconstructed frames, shape (n_frames, n_taxels).
     pub frames: Array2<f64>,
-    /// Number of nonzero coefficients of each frame; k for the linear estimate.
+    /// Number of nonzero coefficients of each frame; for the linear estimate, the number of atoms of the dictionary.
     pub n_atoms: Vec<usize>,
-    /// Whether the solver stopped at its limit before convergence, for each frame.
+    /// Whether the solver stopped at its limit of atoms or steps before convergence, for each frame.
     pub capped: Vec<bool>,
 }
 
@@ -80,8 +80,8 @@ enum Prepared {
     Lmmse(Box<Lmmse>),
 }
 
-/// Minimum noise of the ℓ1 problem, relative to the root mean square of the training frames; with λ = 0 the solver would
-/// not converge.
+/// Minimum noise for which the ℓ1 problem is solved, relative to the root mean square of the training frames. With a penalty of 0 the solver would not
+/// converge.
 const LEAST_NOISE: f64 = 1e-3;
 
 impl<'a> Reconstructor<'a> {
@@ -123,7 +123,7 @@ impl<'a> Reconstructor<'a> {
         Ok(Self { sensed, prepared })
     }
 
-    /// Reconstructs frames from rows of measurements (n_frames × m).
+    /// Reconstructs frames from rows of measurements (n_frames × n_measurements).
     ///
     /// # Errors
     /// If a limit in `effort` is out of its range.
@@ -171,7 +171,7 @@ impl Default for Effort {
     }
 }
 
-/// Returns the root mean square of a taxel over training frames about x₀; 1 for a dictionary without training frames.
+/// Returns the root mean square of a taxel over the training frames after subtraction of their mean; 1 for a dictionary without training frames.
 fn frame_scale(sensed: &SensedDictionary) -> f64 {
     let dictionary = sensed.dictionary();
     dictionary.energy().map_or(1.0, |energy| {

@@ -2,10 +2,10 @@
 
 use ndarray::Array2;
 
-/// Coefficients of frames, and whether a solver stopped at a limit.
+/// Dictionary coefficients of frames, and whether the solver stopped at a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solved {
-    /// Coefficients, shape (n_frames, k).
+    /// Dictionary coefficients, shape (n_frames, number of atoms).
     pub coefficients: Array2<f64>,
     /// Whether the solver stopped at its limit of atoms or steps before convergence, for each frame.
     pub capped: Vec<bool>,
