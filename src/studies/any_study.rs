@@ -13,25 +13,25 @@ use std::path::Path;
 
 /// Type-erased study: a loaded and checked study of any kind.
 pub trait AnyStudy: Send {
-    /// Returns the identity of the study: all content on which its results depend.
+    /// Returns the identity of the study: hashes of all content on which its results depend.
     fn identity(&self) -> &Identity;
 
     /// Returns the number of work items of the study.
     fn n_all(&self) -> usize;
 
-    /// Returns a description of the study: its question, its size and the memory that it needs.
+    /// Returns a text that describes the study before it runs: its question, its size and the memory that it needs.
     ///
     /// # Errors
     /// If the study does not fit into the memory limit.
     fn plan(&self) -> Result<String>;
 
-    /// Returns the number of work items in `part` that have no result in the journal.
+    /// For one part of a divided study, returns the number of work items that have no result in the journal (the file of finished work items).
     fn n_pending(&self, part: Part, journal: &Journal) -> usize;
 
-    /// Returns the number of work items in `part` without a successful result in the journal.
+    /// For one part of a divided study, returns the number of work items that have no successful result in the journal (the file of finished work items).
     fn n_without_success(&self, part: Part, journal: &Journal) -> usize;
 
-    /// Runs the pending work items.
+    /// Runs the work items that have no result in the journal.
     ///
     /// # Errors
     /// If the journal cannot be written, if an item fails and the first failure ends the run, or if the memory does not suffice for a single item.
@@ -52,14 +52,14 @@ pub trait AnyStudy: Send {
     /// Returns the summary for the terminal, wrapped at `width` characters.
     fn words(&self, outcome: &Outcome, width: usize) -> String;
 
-    /// Re-runs `n` randomly drawn work items (seed `draw`), and compares them with the stored results. Returns a description of these items.
+    /// Re-runs `n` work items, drawn at random with the seed `draw`, and compares their results with the stored ones. Returns a text that lists these items.
     ///
     /// # Errors
     /// If a recomputed row differs from the row in the folder.
     fn verify(&self, folder: &Path, n: usize, draw: u64, progress: &dyn Progress)
     -> Result<String>;
 
-    /// Rewrites the charts, pictures and page of a result folder from its tables. The question and the answers come from the study.
+    /// Redraws the charts, pictures and page of a result folder from the tables in the folder. The question and the answers come from the study.
     ///
     /// # Errors
     /// If a table cannot be read or a file cannot be written.

@@ -4,7 +4,8 @@ use crate::engine::work_items::scale::Scale;
 use crate::error::{Error, Result};
 use crate::inputs::memory::GIB;
 
-/// Returns the number of threads for which a study stays within the memory limit; all threads if there is no limit.
+/// Returns the largest number of threads for which the memory of a study stays within the limit `ceiling`, bytes. If there is no limit, returns the number of
+/// all threads.
 ///
 /// # Errors
 /// If even one work item at a time exceeds the limit.

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::table::{Columns, File, Table};
 use serde::Serialize;
 
-/// Groups elements with equal keys, in the order in which the keys first occur.
+/// Groups elements that have equal keys; the groups are in the order in which their keys first occur.
 pub(super) fn grouped<'a, T, K: PartialEq>(
     things: impl IntoIterator<Item = &'a T>,
     key: impl Fn(&T) -> K,
@@ -20,7 +20,7 @@ pub(super) fn grouped<'a, T, K: PartialEq>(
     groups
 }
 
-/// Returns two tables of the same configurations: one with the results, one with the costs.
+/// Returns two tables with the rows of the same configurations: one table with their results, the other with their costs.
 pub(super) fn found_and_cost<C, F, T>(
     found: &File<(C, F)>,
     cost: &File<(C, T)>,

@@ -30,7 +30,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Table of failed work items.
+/// File of the table that lists the failed work items, with the cause of each failure.
 pub(super) const FAILURES: File<ItemFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
 
 /// Loaded and checked study, with all content on which its results depend.
@@ -79,7 +79,7 @@ impl<K: Study> Loaded<K> {
         StudyRun::<K::Rows>::new(&self.items, &options).n_pending()
     }
 
-    /// Adds the notes of the study to its tables.
+    /// Adds to each table the notes that the study has about it.
     fn note(&self, tables: &mut [Table]) {
         for (file, note) in &self.facts.notes {
             if let Some(table) = tables.iter_mut().find(|table| table.file == *file) {
@@ -88,7 +88,7 @@ impl<K: Study> Loaded<K> {
         }
     }
 
-    /// Returns the charts, pictures and page of a result folder without writing them. `of_run` describes the run.
+    /// Returns the charts, pictures and page of a result folder as files in memory, without writing them. `of_run` describes the run.
     fn files_of(&self, of_run: StudyAbout, tables: &[Table]) -> Result<Vec<NamedFile>> {
         let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
         let about = StudyAbout {
@@ -274,7 +274,7 @@ fn write_results(
 }
 
 impl<K: Study> Loaded<K> {
-    /// Returns the numbers of `n` work items that did not fail, drawn at random with `seed`.
+    /// Returns the numbers of `n` work items, drawn at random with `seed` from those that did not fail.
     pub(crate) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
         let failed: Vec<ItemFailure> = read_rows(&folder.join(FAILURES_FILE))?;
         let has_failed = |number: usize| {

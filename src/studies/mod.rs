@@ -81,23 +81,24 @@ pub(crate) fn schemas(generator: fn() -> SchemaGenerator) -> Vec<(About, serde_j
 /// Name of the table that only recognition studies have.
 pub(crate) const RECOGNITION_TABLE: &str = RECOGNITION.about.table;
 
-/// Returns the kind of a study file; `None` if the file has no table of a kind.
+/// Returns the kind of a study, given the text of its file. Returns `None` if the file has no table that identifies a kind.
 pub fn about(text: &str) -> Option<About> {
     find(text).map(|entry| entry.about)
 }
 
-/// Returns the descriptions of all keys of a kind of study, such as `recognition` or `stability`. Returns `None` if there is no such kind.
+/// Returns the descriptions of all keys that study files of a kind may have; `kind` is a name such as `recognition` or `stability`. Returns `None` if there is
+/// no such kind.
 pub fn keys(kind: &str) -> Option<Vec<KeyAbout>> {
     let entry = KINDS.iter().find(|entry| entry.about.table == kind)?;
     Some((entry.keys)())
 }
 
-/// Returns the tables that identify the kinds of study, for [`keys`].
+/// Returns the names of the tables that identify the kinds of study, such as `stability`. Each is a valid argument of [`keys`].
 pub fn kinds() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|entry| entry.about.table)
 }
 
-/// Reads and checks a study of any kind. A file without a table of a kind is read as a recognition study.
+/// Reads and checks a study of any kind. If its file has no table that identifies a kind, the file is read as a recognition study.
 ///
 /// # Errors
 /// If a key is unknown or out of its range, or a file cannot be read.
@@ -107,7 +108,7 @@ pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
     with_folder(source.folder.clone(), || (entry.load)(source))
 }
 
-/// Reads and checks the plans of a recognition study, one for each combination of the values in `[axes]`.
+/// Reads and checks the plans of a recognition study: one plan for each combination of the values in the table `[axes]`.
 ///
 /// # Errors
 /// If the study is of another kind, or a key is unknown or out of its range.
@@ -137,7 +138,7 @@ fn check_recognition(source: &Source) -> Result<()> {
     }
 }
 
-/// Checks before loading a study that a folder can take its results without replacing files of other programs or users.
+/// Checks before a study is loaded that its results can be written to a folder without replacing files that another program or a user wrote.
 ///
 /// # Errors
 /// If the folder contains such a file, or a file that this command has read; the error names the file.
@@ -147,7 +148,7 @@ pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
     OwnedFiles::read(folder, RUN)?.check_results(tables)
 }
 
-/// Reads the tables of a result folder of any kind; also returns the kind. Files that the study refers to are not loaded.
+/// Reads all tables of a result folder, which may be of any kind of study; also returns the kind. Files to which the study refers are not loaded.
 ///
 /// # Errors
 /// If the folder has no study, or a table cannot be read or has other columns.
@@ -167,7 +168,7 @@ pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
     Ok(found.filter(|failures| failures.n_rows > 0))
 }
 
-/// Tables of kinds of studies that were removed, each with its replacement.
+/// Names of the tables that identified kinds of studies which no longer exist, each with an advice on what replaces it.
 const REMOVED: [(&str, &str); 2] = [
     (
         "speed_accuracy",
@@ -181,7 +182,7 @@ const REMOVED: [(&str, &str); 2] = [
     ),
 ];
 
-/// Returns an error if the study is of a removed kind.
+/// Returns an error if the text is a study of a kind that no longer exists.
 fn check_removed(place: &str, text: &str) -> Result<()> {
     let table = toml_text::table(text).unwrap_or_default();
     match REMOVED.iter().find(|(key, _)| table.contains_key(*key)) {

@@ -10,7 +10,7 @@ use bubbletouch_svm::dataset::{Dataset, dataset};
 use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
 use std::ops::Range;
 
-/// Returns an error about `place` if there are fewer than two objects to distinguish.
+/// Returns an error that names `place` (the study file) if there are fewer than two objects.
 pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
     match n_objects {
         0 | 1 => {
@@ -21,7 +21,8 @@ pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
     }
 }
 
-/// Returns a data set of some touches of every object (n_touches × m each), labelled with the object's number.
+/// Returns a data set with the selected touches of every object, labelled with the object's number. The measurements of each object have the shape (n_touches,
+/// m).
 pub(super) fn touches_of<'a>(
     objects: impl Iterator<Item = ArrayView2<'a, f64>>,
     touches: Range<usize>,

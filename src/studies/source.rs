@@ -16,13 +16,13 @@ pub struct Source {
     pub text: String,
     /// Folder to which paths in the study file are relative.
     pub folder: PathBuf,
-    /// Path of meshes or of a file of objects that replaces the study's objects.
+    /// Path of meshes, or of a file that lists objects, from the command line; `None` keeps the study's objects.
     pub objects: Option<PathBuf>,
-    /// Random seed that replaces the study's seed.
+    /// Random seed from the command line; `None` keeps the study's seed.
     pub seed: Option<u64>,
-    /// Cache folder of packed meshes.
+    /// Folder in which packings (sphere models of meshes) are stored for later runs; `None` for no such cache.
     pub packings: Option<PathBuf>,
-    /// Result folder; it also stores temporary data that exceed the memory.
+    /// Folder to which results are written. Temporary data that exceed the memory are also stored there.
     pub results: PathBuf,
     /// Memory limit, bytes; `None` for no limit.
     pub memory: Option<u64>,

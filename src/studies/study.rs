@@ -20,7 +20,7 @@ use std::path::Path;
 pub struct About {
     /// Name of the table in a study file that only this kind has.
     pub table: &'static str,
-    /// Description of the kind in words, of the form `a study that …`.
+    /// Phrase of the form `a study that …` that describes what studies of this kind compare or measure.
     pub words: &'static str,
     /// Rule that decides which studies of this kind may resume each other's runs.
     pub resumes: Resumes,
@@ -29,10 +29,10 @@ pub struct About {
 /// Rule that decides which studies of a kind may resume each other's runs.
 #[derive(Clone, Copy, Debug)]
 pub enum Resumes {
-    /// Studies that differ only in these keys and the keys below them may resume each other. The keys are texts, or select work items without changing their
-    /// results.
+    /// Two studies may resume each other's runs if they differ only in these keys and in keys of the tables below them. Each such key is a text, or selects
+    /// work items without changing their results.
     ButFor(&'static [&'static str]),
-    /// Studies that share work items with results may resume each other; the name of an item is derived from all its inputs.
+    /// Two studies may resume each other's runs if they have work items in common. The name of a work item is derived from all inputs of the item.
     SharedWork,
 }
 
@@ -47,11 +47,11 @@ pub struct Facts {
     pub expected: String,
     /// Seed of all random numbers; 0 if nothing is random.
     pub seed: u64,
-    /// SHA-256 hash of content outside the study file, such as objects and other files, by name.
+    /// SHA-256 hashes of all content outside the study file, such as meshes: by name, the hash of each file or object.
     pub content: BTreeMap<String, String>,
-    /// Methods that compute the intervals and p-values, by table and columns.
+    /// Statistical methods of the intervals and p-values: pairs of the table columns and the method that computes them.
     pub methods: Vec<(&'static str, &'static str)>,
-    /// Notes about the tables, by the name of the table's file.
+    /// Pairs of the file name of a table and a note about the table.
     pub notes: Vec<(&'static str, String)>,
 }
 
@@ -77,7 +77,7 @@ impl Facts {
     }
 }
 
-/// Type-erased [`File`], with rows of any type.
+/// Table file whose type of rows is erased, so that files of different tables can be in one list.
 pub trait AnyFile: Sync {
     /// Returns the name of the table file.
     fn name(&self) -> &'static str;
@@ -109,7 +109,7 @@ impl<R: Columns> AnyFile for File<R> {
     }
 }
 
-/// Table files that a kind of study writes.
+/// Table files that studies of a kind write.
 #[derive(Clone, Copy)]
 pub enum TableFiles {
     /// Table files that every study of the kind writes, followed by files of optional parts.
@@ -121,7 +121,7 @@ pub enum TableFiles {
     },
     /// Table files whose columns depend on the study.
     Own {
-        /// Names of all table files that a study may write.
+        /// Names of all table files that a study of the kind may write.
         names: &'static [&'static str],
         /// Function that reads all tables of a folder.
         read: fn(&Path) -> Result<Vec<Table>>,
@@ -129,7 +129,7 @@ pub enum TableFiles {
 }
 
 impl TableFiles {
-    /// Creates a list of table files that every study of the kind writes.
+    /// Creates a list of table files without files of optional parts: every study of the kind writes all files.
     pub const fn always(always: &'static [&'static dyn AnyFile]) -> Self {
         Self::Listed {
             always,
@@ -183,14 +183,14 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Table files to which the result tables are written.
     const TABLES: TableFiles;
 
-    /// Function that returns the text at the end of a run, wrapped at a number of characters. With `None`, the text contains the first table with a value, and
-    /// the answers.
+    /// Function that returns the text shown at the end of a run, wrapped at the given number of characters. If it is `None`, the text consists of the first
+    /// table that has a value column, and the answers.
     const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
 
     /// Specification: the keys of a study file of the kind.
     type Spec: JsonSchema;
 
-    /// Rows that a work item returns.
+    /// Type of the result rows of a work item.
     type Rows: ItemRows;
 
     /// Returns the descriptions of all keys of the kind's study files, in the order of a file.
@@ -220,8 +220,8 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// If the journal cannot be written, a work item fails and the first failure ends the run, or data that all items need cannot be computed.
     fn measure(&self, pending: &PendingItems<Self::Rows>) -> Result<()>;
 
-    /// Sets the values in a work item's rows that depend on its number, such as numbers of configurations. Rows in the journal may come from a study with other
-    /// axes.
+    /// Sets the values in a work item's rows that depend on the item's number, such as configuration numbers. This is needed because rows in the journal may
+    /// come from a run with other axes, in which the item had another number.
     fn place(&self, _number: usize, _rows: &mut Self::Rows) {}
 
     /// Describes the work item with the given number for failure messages.
@@ -238,7 +238,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Returns the charts and answers for the result tables.
     fn findings(&self, tables: &[Table]) -> Findings;
 
-    /// Returns pictures other than charts, and additional sections of the page.
+    /// Returns pictures other than charts, and additional sections for the page of the results.
     ///
     /// # Errors
     /// If a picture cannot be drawn.
@@ -247,7 +247,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     }
 }
 
-/// Computes the work items of a study that the options select.
+/// Computes those work items of a study that the options select.
 ///
 /// # Errors
 /// If the journal cannot be written, a work item fails and the first failure ends the run, or the computation fails as a whole.

@@ -5,8 +5,8 @@ use crate::table::Table;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Compares recomputed rows with the rows of a result folder; returns the number of equal rows, not counting tables of times. If `is_whole` is set, all work
-/// items were recomputed, and whole tables are compared. Missing or additional rows and different summaries are then errors.
+/// Compares recomputed rows with the rows of a result folder; returns the number of equal rows, without rows of time tables. If `is_whole` is set, all work
+/// items were recomputed; missing rows, additional rows and different summaries are then also errors.
 ///
 /// # Errors
 /// If a row differs; the error names file and line.
@@ -47,8 +47,8 @@ pub fn same_rows(folder: &Path, again: &[Table], is_whole: bool) -> Result<usize
     Ok(n_rows)
 }
 
-/// Returns a table restricted to the columns of `header`. Some columns (such as the number of groups) exist only if a row of the table has a value, so tables
-/// of few work items may lack them. Returns `None` if the table lacks a column of `header`.
+/// Returns a table restricted to the columns of `header`, or `None` if the table lacks one of them. The restriction is needed because some columns exist only
+/// if a row has a value. For example, a table without groups has no column of group counts.
 fn columns_of(text: &str, header: &str) -> Option<String> {
     let mut reader = csv::ReaderBuilder::new();
     let mut reader = reader.has_headers(false).from_reader(text.as_bytes());
@@ -69,7 +69,7 @@ fn columns_of(text: &str, header: &str) -> Option<String> {
     String::from_utf8(writer.into_inner().ok()?).ok()
 }
 
-/// Returns the number of leading bytes that two rows have in common. Rows begin with their configuration.
+/// Returns the number of bytes at the start of two rows that are equal. Rows begin with their configuration, so similar configurations have long equal starts.
 fn n_alike(a: &str, b: &str) -> usize {
     let pairs = a.bytes().zip(b.bytes());
     pairs.take_while(|(a, b)| a == b).count()

@@ -4,10 +4,10 @@ use crate::studies::object_detail::study::{ObjectDetailStudy, RECOGNITION};
 use crate::studies::object_detail::variants::within;
 use crate::table::{ChartSpec, Table, short_number};
 
-/// Chart axis: a part of the chart's file name, the words of its title, and a column.
+/// Chart axis: a part of the chart's file name, the words for the title, and the name of the table column.
 type Named = (&'static str, &'static str, &'static str);
 
-/// Chart axes of deflection errors.
+/// Chart axes that show deflection errors.
 const FELT: [Named; 2] = [
     (
         "deflection_error",
@@ -33,11 +33,11 @@ const SURFACE: [Named; 2] = [
     ),
 ];
 
-/// Chart axes of costs.
+/// Chart axis that shows the number of spheres of a model.
 const SPHERES: Named = ("spheres", "number of spheres", "n_spheres_median");
 const TIME: Named = ("time", "time of a touch", "us_per_touch_median");
 
-/// Chart axes of accuracies, plotted against the error of the models used in training.
+/// Chart axes that show the deflection error of the models with which a classifier was trained.
 const LEARNED: [Named; 2] = [
     (
         "recognition",
@@ -52,7 +52,7 @@ const LEARNED: [Named; 2] = [
 ];
 
 impl ObjectDetailStudy {
-    /// Returns the charts of errors by cost; also the charts of accuracies if classifiers were trained.
+    /// Returns charts of the deflection error by cost. If classifiers were trained, charts of their accuracy follow.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let by_cost = [(FELT, SPHERES), (FELT, TIME), (SURFACE, SPHERES)];
         let errors = by_cost.into_iter().flat_map(|(errors, (by, of, x))| {
@@ -107,7 +107,7 @@ fn learned(tables: &[Table]) -> Option<&Table> {
     tables.iter().find(|table| table.file == RECOGNITION.name())
 }
 
-/// Methods whose models consist of spheres.
+/// Names of the methods that replace a mesh by spheres.
 const OF_SPHERES: [&str; 4] = [
     "packing",
     "vertex_spheres",
@@ -115,7 +115,8 @@ const OF_SPHERES: [&str; 4] = [
     "medial_spheres",
 ];
 
-/// Returns a sentence on the classifier whose accuracy on its own models exceeds its accuracy on the meshes the most; `None` if there is none.
+/// Returns a sentence on the classifier whose accuracy on its training models exceeds its accuracy on the exact meshes the most. Returns `None` if no
+/// classifier has a higher accuracy on its models.
 fn misled_most(learned: &Table) -> Option<String> {
     let shares = |row: usize| {
         ["accuracy_on_mesh", "accuracy_on_itself"].map(|share| learned.number(share, row))
@@ -135,10 +136,10 @@ fn model_words(table: &Table, row: usize) -> String {
     table.words("method", row) + &within(tolerance_mm)
 }
 
-/// Deflection error that counts as small, mm.
+/// Deflection error below which a model counts as exact enough, mm.
 const SMALL_MM: f64 = 0.5;
 
-/// Returns a description of the model with the smallest value in a column.
+/// Returns a description of the model, among `models` (rows of the table), that has the smallest value in the column `of`.
 fn least(costs: &Table, models: impl Iterator<Item = usize>, of: &str) -> Option<String> {
     let number = |column: &str, row: usize| costs.number(column, row);
     let row = models.min_by(|&a, &b| number(of, a).total_cmp(&number(of, b)))?;

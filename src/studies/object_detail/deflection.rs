@@ -11,7 +11,7 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::touches::drawn_touches::draw_touches;
 use crate::world::Placement;
 
-/// Difference between the deflections δ on a model and the exact deflections δ\*, mm.
+/// Summary of |δ − δ\*| over taxels, where δ is the deflection on a model and δ\* the exact deflection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DeflectionError {
     /// Mean of |δ − δ\*| over all taxels that the mesh or the model touches, mm.
@@ -21,7 +21,7 @@ pub(super) struct DeflectionError {
 }
 
 impl DeflectionError {
-    /// Computes the mean and the 95th percentile of the errors of single taxels (metres); 0 if there are none.
+    /// Computes the mean and the 95th percentile of the errors of single taxels, given in metres. Both are 0 if there are no taxels.
     pub fn new(mut errors: Vec<f64>) -> Self {
         Self {
             mean_mm: in_mm(mean(&errors)),
@@ -42,28 +42,28 @@ fn mean(errors: &[f64]) -> f64 {
 /// Touches of the exact object, with their deflections.
 pub(super) struct Truth {
     array: TaxelArray,
-    /// Touches that reached the object, with their deflections.
+    /// Touches that reached the exact object, with the deflections of their taxels.
     pub readings: Vec<Reading>,
     /// Number of touches that missed the object.
     pub n_missed: usize,
-    /// Number of touched taxels, summed over all touches.
+    /// Number of touched taxels, summed over all touches of the exact object.
     pub n_touched: usize,
 }
 
 /// Touch of the exact object, with its deflections.
 pub(super) struct Reading {
     patch_from_object: Pose,
-    /// Depth past first contact, metres.
+    /// Distance that the patch travels past its first contact with the exact object, metres.
     pub depth: f64,
     travel: f64,
     deflections: Vec<f64>,
 }
 
-/// Number of offsets evaluated before the best one is refined. With a smaller value, the search may end in a local minimum.
+/// Number of offsets of the patch that are tried on a coarse grid before the best one is refined. With a smaller value, the search may end in a local minimum.
 const N_OFFSETS: usize = 48;
-/// Approximate number of golden-section steps around the best offset.
+/// Approximate number of golden-section steps that refine the best offset of the coarse grid.
 const N_STEPS: usize = 30;
-/// Number of times that each timed touch is repeated.
+/// Number of repetitions of each touch whose computing time is measured.
 const N_REPEATS: usize = 3;
 
 impl Truth {
@@ -103,13 +103,13 @@ impl Truth {
         Ok(truth)
     }
 
-    /// Returns the deflection error of a model in the pose of the exact object, with the patch retracted by `offset` metres.
+    /// Returns the deflection error of a model that is pressed in the poses of the exact object. The patch is retracted by `offset` metres along its axis.
     pub fn error(&self, model: &Model, offset: f64) -> DeflectionError {
         DeflectionError::new(self.errors(model, offset))
     }
 
-    /// Returns the deflection error of a model that is pressed to the same depth past its own first contact. A study that has only this model of the object
-    /// makes this error.
+    /// Returns the deflection error of a model that is pressed to an equal depth past its own first contact. A study that knows only the model makes this
+    /// error.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::new(self.errors_of(|pose, reading, workspace| {
@@ -117,7 +117,8 @@ impl Truth {
         }))
     }
 
-    /// Returns the constant offset that minimises the deflection error, metres; its error is at most the error of offset 0.
+    /// Returns the retraction of the patch that minimises the deflection error over all touches of a model, metres. The error there is at most the error
+    /// without retraction.
     pub fn best_offset(&self, model: &Model) -> f64 {
         let cost = |offset| mean(&self.errors(model, offset));
         let Some((low, high)) = self.offset_range(model) else {
@@ -145,7 +146,8 @@ impl Truth {
         median_s((0..N_REPEATS).flat_map(|_| &self.readings), press)
     }
 
-    /// Returns |δ − δ\*| of each taxel that the mesh or the model touches, over all touches, metres, with the patch retracted by `offset`.
+    /// Returns |δ − δ\*| in metres for each taxel that the mesh (deflection δ\*) or the model (δ) touches, over all touches. The patch is retracted by `offset`
+    /// metres.
     fn errors(&self, model: &Model, offset: f64) -> Vec<f64> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         self.errors_of(|pose, reading, workspace| {
@@ -153,7 +155,8 @@ impl Truth {
         })
     }
 
-    /// Returns |δ − δ\*| of each touched taxel, metres, for presses that are performed by `press`.
+    /// Returns |δ − δ\*| in metres for each taxel that the mesh (deflection δ\*) or the model (δ) touches. The function `press` computes the deflections on the
+    /// model.
     fn errors_of(&self, press: impl Fn(&[Pose], &Reading, &mut Workspace)) -> Vec<f64> {
         let mut workspace = Workspace::new();
         let mut errors = Vec::new();
@@ -164,7 +167,8 @@ impl Truth {
         errors
     }
 
-    /// Returns the range of useful offsets, metres. Outside of it, every touch either has no contact or is deeper at every taxel than on the mesh.
+    /// Returns the smallest and largest useful retraction of the patch, metres. Outside of this range, every touch misses the model, or is deeper on the model
+    /// than on the mesh at every taxel.
     fn offset_range(&self, model: &Model) -> Option<(f64, f64)> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();
@@ -179,7 +183,8 @@ impl Truth {
 }
 
 impl Reading {
-    /// Returns |δ − δ\*| of each taxel that the mesh or the model touches, metres; `felt` contains the deflections δ, metres, shape (n_taxels,).
+    /// Returns |δ − δ\*| in metres for each taxel that the mesh (deflection δ\*) or the model (δ) touches. The slice `felt` contains the deflections δ, metres,
+    /// shape (n_taxels,).
     pub fn errors<'a>(&'a self, felt: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let pairs = felt.iter().zip(&self.deflections);
         let touched = pairs.filter(|(model, mesh)| **model > 0.0 || **mesh > 0.0);

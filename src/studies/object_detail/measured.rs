@@ -17,7 +17,7 @@ pub(super) struct Measured<'a> {
     pub mesh: &'a NamedMesh,
     surface: Surface,
     pub truth: Truth,
-    /// Models of the object; the first is the mesh itself.
+    /// Models of the object; the first one is the mesh itself.
     pub variants: Vec<Variant>,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Measured<'a> {
         })
     }
 
-    /// Returns one row per model of the object.
+    /// For each model of the object, returns its configuration and the result of `row`.
     fn rows<T>(&self, row: impl Fn(&Variant) -> T) -> Vec<(DetailConfiguration, T)> {
         let configuration = |variant: &Variant| DetailConfiguration {
             object: self.mesh.name.clone(),
@@ -65,7 +65,7 @@ impl<'a> Measured<'a> {
         })
     }
 
-    /// Returns the deviation of a model from its mesh, measured at `n_points` points of the mesh.
+    /// Returns the distances between the surfaces of a model and its mesh, measured at `n_points` points, and the deflection errors of the model.
     fn score(&self, variant: &Variant, n_points: usize) -> DetailScore {
         let (surface, truth) = (&self.surface, &self.truth);
         let model = &variant.model;

@@ -26,7 +26,7 @@ pub struct ObjectDetailPlan {
     pub placement: Placement,
 }
 
-/// Maximum number of measured points of a mesh; all points are in memory together.
+/// Maximum number of points of a mesh at which distances are measured; all points are in memory together.
 const MAX_POINTS: usize = 10_000_000;
 
 /// Keys of `[object_detail]`.

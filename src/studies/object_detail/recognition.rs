@@ -22,16 +22,17 @@ use crate::world::Placement;
 use ndarray::Array2;
 use std::ops::Range;
 
-/// Classifier that is trained on one kind of model.
+/// Classifier that is trained on models of one method and tolerance.
 pub(super) struct Learned {
-    /// Index of the method and tolerance of the models.
+    /// Index of the method and tolerance of the models with which the classifier is trained.
     number: usize,
     level: Level,
     classifier: ClassifierKind,
 }
 
 impl Learned {
-    /// Returns all classifiers for each method and tolerance; an empty list if the study has no recognition.
+    /// Returns all classifiers of the study: one per kind of classifier, for each method and tolerance of models. Returns an empty list if the study has no
+    /// recognition.
     pub fn all(plan: &ObjectDetailPlan) -> Vec<Self> {
         let kinds = plan.recognition().map_or(&[][..], |spec| &spec.classifiers);
         let of_level = |(number, level)| {
@@ -68,12 +69,12 @@ pub(super) struct Sensor<'a> {
 pub(super) struct ModelMeasurements {
     /// Measurements, shape (n_touches, m).
     measurements: Array2<f64>,
-    /// Mean deflection error past the model's own contact, mm.
+    /// Mean deflection error if the model and the mesh are pressed to equal depths past their own first contact, mm.
     own_contact_error_mm: f64,
 }
 
 impl<'a> Sensor<'a> {
-    /// Creates the sensor of a study with recognition.
+    /// Creates the sensor of a study that has a table `[object_detail.recognition]`.
     pub fn new(plan: &'a ObjectDetailPlan, spec: &'a DetailRecognitionSpec) -> Result<Self> {
         let seed = Seed::new(plan.spec.seed);
         let grid = plan.array.shape();
@@ -86,8 +87,8 @@ impl<'a> Sensor<'a> {
         })
     }
 
-    /// Returns the measurements of each model of an object, in order; the first is the mesh. All models are touched in the same poses, in the object's resting
-    /// poses.
+    /// Returns the measurements of touches for each model of an object; the first model is the mesh. All models are touched in equal poses, while the object
+    /// lies in its stable poses.
     pub fn measure(&self, made: &Measured) -> Result<Vec<ModelMeasurements>> {
         let object =
             |variant: &Variant| Object::of_one_part(&made.mesh.name, variant.model.clone());
@@ -107,7 +108,8 @@ impl<'a> Sensor<'a> {
         measured.collect()
     }
 
-    /// Trains a classifier on one kind of model, given the measurements of all models of each object; returns the row with its accuracy.
+    /// Trains a classifier on models of one method and tolerance, and tests it on the meshes. The argument contains the measurements of all models of each
+    /// object; the result is a row with the accuracies.
     pub fn row(
         &self,
         objects: &[Vec<ModelMeasurements>],

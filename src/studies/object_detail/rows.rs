@@ -4,7 +4,7 @@ use crate::learning::classifiers::ClassifierKind;
 use crate::row;
 use crate::studies::object_detail::spec::DetailMethod;
 
-/// Display names of the methods.
+/// Display names of the methods that replace a mesh by a model.
 const METHODS: &[(&str, &str)] = &[("mesh", "exact mesh")];
 
 row! {
@@ -12,9 +12,10 @@ row! {
 pub struct DetailConfiguration {
     /// Name of the touched object.
     object: String => Subject;
-    /// Method that replaces the mesh by a model.
+    /// Method that makes the model from the mesh.
     method: DetailMethod => Choice "model" named METHODS;
-    /// Tolerance of the packing, mm. Methods without a tolerance have the tolerance of the packing with the same number of spheres.
+    /// Tolerance of the packing (spheres that fill the mesh), mm. Methods without a tolerance have the tolerance of the packing with the same number of
+    /// spheres; empty if there is none.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
     /// Number of spheres of the model; 0 for the mesh.
     n_spheres: usize => Cost "spheres": Log;
@@ -23,17 +24,17 @@ pub struct DetailConfiguration {
 row! {
 /// Deviation of a model from its mesh. A row of `object_detail.csv` is a [`DetailConfiguration`] followed by a `DetailScore`.
 pub struct DetailScore {
-    /// Mean distance between the surfaces of model and mesh, measured at points of the mesh, mm: `protrusion_mean_mm` + `gap_mean_mm`.
+    /// Mean distance between the surfaces of model and mesh, mm, measured at points of the mesh: the sum of `protrusion_mean_mm` and `gap_mean_mm`.
     surface_error_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log;
-    /// Mean distance by which the spheres protrude from the mesh, mm.
+    /// Mean distance by which the spheres of the model protrude from the mesh, mm.
     protrusion_mean_mm: f64 => Value(Less) "mean protrusion" in "mm": Log;
-    /// 95th percentile of the protrusion, mm.
+    /// 95th percentile of the distance by which the spheres of the model protrude from the mesh, mm.
     protrusion_p95_mm: f64 => Value(Less) "protrusion, 95th percentile" in "mm": Log;
     /// Largest distance by which the spheres protrude from the mesh, mm.
     protrusion_max_mm: f64 => Value(Less) "largest protrusion" in "mm": Log;
-    /// Mean distance by which the mesh protrudes from the spheres, mm.
+    /// Mean distance by which the mesh protrudes from the spheres of the model, mm.
     gap_mean_mm: f64 => Value(Less) "mean gap" in "mm": Log;
-    /// 95th percentile of the gap, mm.
+    /// 95th percentile of the distance by which the mesh protrudes from the spheres of the model, mm.
     gap_p95_mm: f64 => Value(Less) "gap, 95th percentile" in "mm": Log;
     /// Largest distance by which the mesh protrudes from the spheres, mm.
     gap_max_mm: f64 => Value(Less) "largest gap" in "mm": Log;
@@ -47,13 +48,13 @@ pub struct DetailScore {
     error_mm: f64 => Value(Less) "deflection error" in "mm": Log;
     /// 95th percentile of |δ − δ*| over the taxels that the mesh or the model touches, mm.
     error_p95_mm: f64 => Value(Less) "deflection error, 95th percentile" in "mm": Log;
-    /// Distance by which the patch is retracted for `error_after_offset_mm`, mm; negative if it is advanced.
+    /// Distance by which the patch is retracted to minimise `error_after_offset_mm`, mm; negative if the patch is advanced.
     offset_mm: f64 => Note "best constant offset" in "mm": Linear;
-    /// Deflection error `error_mm` with the constant offset that minimises it, mm.
+    /// Deflection error, defined as `error_mm`, while the patch is retracted by `offset_mm`, mm. This constant offset minimises the error.
     error_after_offset_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log;
-    /// 95th percentile of the deflection error with the offset `offset_mm`, mm.
+    /// 95th percentile of |δ − δ*| over taxels while the patch is retracted by `offset_mm`, mm. Here δ is the deflection on the model and δ* on the mesh.
     error_after_offset_p95_mm: f64 => Value(Less) "deflection error after offset, 95th percentile" in "mm": Log;
-    /// Deflection error if mesh and model are each pressed to the same depth past their own first contact, as in other studies, mm.
+    /// Deflection error if mesh and model are pressed to equal depths past their own first contact, as other studies do, mm.
     error_own_contact_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
 } }
 
@@ -69,53 +70,56 @@ pub struct DetailTime {
 } }
 
 row! {
-/// Summary of a method and tolerance over all objects: a row of `object_detail_summary.csv`.
+/// Results of one method and tolerance over all objects: a row of `object_detail_summary.csv`.
 pub struct DetailSummary {
     /// Method that replaces the meshes by models.
     method: DetailMethod => Choice "model" named METHODS;
     /// Tolerance of the packing, mm; empty for methods without tolerances.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
-    /// Number of objects.
+    /// Number of objects over which the results are summarised.
     n_objects: usize => Note "objects": Linear;
-    /// Lower quartile of the number of spheres per object.
+    /// Lower quartile, over all objects, of the number of spheres of an object's model.
     n_spheres_q1: f64 => Note "quartiles of spheres, lower": Log;
-    /// Median of the number of spheres per object.
+    /// Median, over all objects, of the number of spheres of an object's model.
     n_spheres_median: f64 => Cost "spheres an object": Log between [n_spheres_q1, n_spheres_q3];
-    /// Upper quartile of the number of spheres per object.
+    /// Upper quartile, over all objects, of the number of spheres of an object's model.
     n_spheres_q3: f64 => Note "quartiles of spheres, upper": Log;
-    /// Lower quartile over objects of `surface_error_mm`, mm.
+    /// Lower quartile, over all objects, of `surface_error_mm`: the mean distance between the surfaces of model and mesh, mm.
     surface_error_q1_mm: f64 => Note "quartiles of mean distance of the surfaces, lower" in "mm": Log;
-    /// Median over objects of `surface_error_mm`, mm.
+    /// Median, over all objects, of `surface_error_mm`: the mean distance between the surfaces of model and mesh, mm.
     surface_error_median_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log between [surface_error_q1_mm, surface_error_q3_mm];
-    /// Upper quartile over objects of `surface_error_mm`, mm.
+    /// Upper quartile, over all objects, of `surface_error_mm`: the mean distance between the surfaces of model and mesh, mm.
     surface_error_q3_mm: f64 => Note "quartiles of mean distance of the surfaces, upper" in "mm": Log;
-    /// Lower quartile over objects of the larger of `protrusion_max_mm` and `gap_max_mm`, mm.
+    /// Lower quartile, over all objects, of the largest distance between the surfaces of model and mesh, mm: the larger of `protrusion_max_mm` and
+    /// `gap_max_mm`.
     surface_error_max_q1_mm: f64 => Note "quartiles of largest distance of the surfaces, lower" in "mm": Log;
-    /// Median over objects of the larger of `protrusion_max_mm` and `gap_max_mm`, mm.
+    /// Median, over all objects, of the largest distance between the surfaces of model and mesh, mm: the larger of `protrusion_max_mm` and `gap_max_mm`.
     surface_error_max_median_mm: f64 => Value(Less) "largest distance of the surfaces" in "mm": Log between [surface_error_max_q1_mm, surface_error_max_q3_mm];
-    /// Upper quartile over objects of the larger of `protrusion_max_mm` and `gap_max_mm`, mm.
+    /// Upper quartile, over all objects, of the largest distance between the surfaces of model and mesh, mm: the larger of `protrusion_max_mm` and
+    /// `gap_max_mm`.
     surface_error_max_q3_mm: f64 => Note "quartiles of largest distance of the surfaces, upper" in "mm": Log;
-    /// Lower quartile over objects of `error_mm`, mm.
+    /// Lower quartile, over all objects, of `error_mm`: the mean deflection error of a model, mm.
     error_q1_mm: f64 => Note "quartiles of deflection error, lower" in "mm": Log;
-    /// Median over objects of `error_mm`, mm.
+    /// Median, over all objects, of `error_mm`: the mean deflection error of a model, mm.
     error_median_mm: f64 => Value(Less) "deflection error" in "mm": Log between [error_q1_mm, error_q3_mm];
-    /// Upper quartile over objects of `error_mm`, mm.
+    /// Upper quartile, over all objects, of `error_mm`: the mean deflection error of a model, mm.
     error_q3_mm: f64 => Note "quartiles of deflection error, upper" in "mm": Log;
-    /// Largest `error_mm` of any object, mm.
+    /// Largest mean deflection error (`error_mm`) of any object's model, mm.
     error_worst_mm: f64 => Value(Less) "deflection error of the worst object" in "mm": Log;
-    /// Lower quartile over objects of `error_after_offset_mm`, mm.
+    /// Lower quartile, over all objects, of `error_after_offset_mm`: the deflection error with the best constant offset of the patch, mm.
     error_after_offset_q1_mm: f64 => Note "quartiles of deflection error after offset, lower" in "mm": Log;
-    /// Median over objects of `error_after_offset_mm`, mm.
+    /// Median, over all objects, of `error_after_offset_mm`: the deflection error with the best constant offset of the patch, mm.
     error_after_offset_median_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
-    /// Upper quartile over objects of `error_after_offset_mm`, mm.
+    /// Upper quartile, over all objects, of `error_after_offset_mm`: the deflection error with the best constant offset of the patch, mm.
     error_after_offset_q3_mm: f64 => Note "quartiles of deflection error after offset, upper" in "mm": Log;
-    /// Largest `error_after_offset_mm` of any object, mm.
+    /// Largest deflection error with the best constant offset of the patch (`error_after_offset_mm`) of any object's model, mm.
     error_after_offset_worst_mm: f64 => Value(Less) "deflection error after offset of the worst object" in "mm": Log;
-    /// Median over objects of `error_own_contact_mm`, mm.
+    /// Median, over all objects, of `error_own_contact_mm`: the deflection error at equal depths past each model's own first contact, mm.
     error_own_contact_median_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
-    /// Largest `error_own_contact_mm` of any object, mm.
+    /// Largest deflection error at equal depths past each model's own first contact (`error_own_contact_mm`) of any object, mm.
     error_own_contact_worst_mm: f64 => Value(Less) "deflection error past own contact of the worst object" in "mm": Log;
-    /// Ratio of `error_after_offset_mm` to the error after offset of the packing with the same tolerance, median over objects; empty without such a packing.
+    /// Ratio of two values of `error_after_offset_mm`, dimensionless, median over all objects: this method's error divided by the error of the packing with
+    /// equal tolerance. Empty if there is no such packing.
     times_packing: Option<f64> => Value(Less) "times the error of the packing": Log;
 } }
 
@@ -128,7 +132,7 @@ pub struct DetailRecognition {
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
     /// Kind of classifier.
     classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
-    /// Number of objects to distinguish.
+    /// Number of objects that the classifier distinguishes.
     n_objects: usize => Note "objects": Linear;
     /// Number of training rows, summed over all objects.
     n_training: usize => Note "training touches": Linear;
@@ -136,27 +140,28 @@ pub struct DetailRecognition {
     n_test: usize => Note "test touches": Linear;
     /// Number of measurements per touch.
     n_measurements: usize => Note "measurements": Linear;
-    /// Median over objects of `error_own_contact_mm`, mm; training touches are also pressed past the model's own contact.
+    /// Median, over all objects, of `error_own_contact_mm`, mm: the deflection error of the training models. Training touches are also pressed past each
+    /// model's own first contact.
     error_own_contact_median_mm: f64 => Value(Less) "median deflection error past own contact" in "mm": Log;
-    /// Accuracy on test touches of the meshes, 0 to 1.
+    /// Fraction of the test touches of the exact meshes that are recognised correctly, 0 to 1.
     accuracy_on_mesh: f64 => Value(More) "accuracy on the exact meshes": Share between [accuracy_on_mesh_low, accuracy_on_mesh_high];
     /// Lower end of the 95 % Wilson interval of `accuracy_on_mesh`.
     accuracy_on_mesh_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % Wilson interval of `accuracy_on_mesh`.
     accuracy_on_mesh_high: f64 => Note "95 % interval, upper end": Share;
-    /// Accuracy on the same test touches of the models used in training, 0 to 1.
+    /// Fraction of correctly recognised test touches, 0 to 1, if the models of the training are touched in place of the exact meshes.
     accuracy_on_itself: f64 => Value(More) "accuracy on the models learned from": Share between [accuracy_on_itself_low, accuracy_on_itself_high];
     /// Lower end of the 95 % Wilson interval of `accuracy_on_itself`.
     accuracy_on_itself_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % Wilson interval of `accuracy_on_itself`.
     accuracy_on_itself_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of optimisation problems that stopped at the solver's iteration cap.
+    /// Number of the classifier's optimisation problems that stopped at the solver's maximum number of iterations.
     n_capped: usize => Note "fits stopped at the iteration cap": Linear;
 } }
 
 row! {
 /// Computing time per touch for a method and tolerance. A row of `object_detail_cost.csv` is a [`DetailSummary`] followed by a `LevelTime`.
 pub struct LevelTime {
-    /// Computing time per touch on one thread, median over objects, µs.
+    /// Computing time per touch of a model on one thread, median over objects, µs.
     us_per_touch_median: f64 => Cost "time of a touch, one thread" in "µs": Log;
 } }

@@ -26,7 +26,7 @@ pub struct ObjectDetailStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectDetailSpec {
-    /// Tolerances of the packing, mm, at least 1e-6: maximum distances between the spheres and the mesh.
+    /// Tolerances of the packing, mm, each at least 1e-6: maximum distance between the surface of the spheres and the mesh.
     pub tolerances_mm: Vec<f64>,
     /// Methods that replace the mesh by a model.
     pub methods: Vec<DetailMethod>,
@@ -52,7 +52,7 @@ pub struct DetailRecognitionSpec {
     pub ensemble: Ensemble,
     /// Number m of measurements per frame, at least 1.
     pub measurements: usize,
-    /// Kinds of classifiers, each with its default parameters.
+    /// Kinds of classifiers to train, each with its default parameters.
     #[schemars(with = "Vec<Names<ClassifierKind>>")]
     pub classifiers: Vec<ClassifierKind>,
 }
@@ -68,11 +68,11 @@ impl DetailRecognitionSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DetailMethod {
-    /// Exact mesh, the reference for all other methods; always measured.
+    /// Exact mesh, which is the reference for all other methods and is always measured.
     Mesh,
-    /// Spheres packed within each tolerance.
+    /// Spheres that fill the mesh (packing); one model for each tolerance.
     Packing,
-    /// One sphere per vertex \[BT\].
+    /// One sphere at each vertex of the mesh \[BT\].
     VertexSpheres,
     /// One sphere at each of n evenly spread vertices. For each packing, n is the number of its spheres, or the number of all vertices if that is smaller.
     DecimatedVertexSpheres,

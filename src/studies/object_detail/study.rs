@@ -23,13 +23,13 @@ use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// Object-detail study with its meshes.
+/// Object-detail study that is ready to run: its plan and its meshes.
 pub struct ObjectDetailStudy {
     /// Plan of the study: checked keys in SI units.
     pub plan: ObjectDetailPlan,
     /// Meshes of the study, one per object.
     pub meshes: Vec<NamedMesh>,
-    /// Cache folder of packings; `None` for no cache.
+    /// Folder in which packings (sphere models of meshes) are stored for later runs; `None` for no such cache.
     pub packings: Option<PathBuf>,
 }
 
@@ -40,7 +40,7 @@ pub type DetailRows = (
     Vec<DetailRecognition>,
 );
 
-/// Files of the result tables.
+/// File of the table of deflection errors, one row per object and model.
 const DETAIL: File<(DetailConfiguration, DetailScore)> =
     File::new("object_detail.csv", "Models of each object", "");
 const SUMMARY: File<DetailSummary> = File::new(
@@ -62,18 +62,19 @@ pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
     "",
 );
 
-/// Returns the number of the work item for an object's models. The index after the last object gives the number of the first classifier's item.
+/// Returns the number of the work item that computes an object's models. For an index past the last object, returns the number of the first classifier's item.
 fn models_item(object: usize) -> usize {
     2 * object
 }
 
-/// Returns the number of the work item for the computing times of an object's models.
+/// Returns the number of the work item that measures the computing times of an object's models.
 fn times_item(object: usize) -> usize {
     models_item(object) + 1
 }
 
 impl ObjectDetailStudy {
-    /// Computes an object's models and stores their errors. If they cannot be computed, all work items that need them fail, including `learners`.
+    /// Computes an object's models and stores their errors. If the computation fails, all work items that need these models fail, including those in
+    /// `learners`.
     fn object(
         &self,
         object: usize,
@@ -161,7 +162,8 @@ impl Study for ObjectDetailStudy {
         }
     }
 
-    /// Each object has one work item for its models and one for their times. The work items of classifiers follow; they need all objects.
+    /// Returns all work items. For each object, one item computes its models, and one item measures their computing times. The items of classifiers follow;
+    /// they need the models of all objects.
     fn work_items(&self) -> Vec<WorkItem> {
         let mut items = Vec::new();
         for (group, NamedMesh { name, .. }) in self.meshes.iter().enumerate() {

@@ -14,7 +14,7 @@ fn level(configuration: &DetailConfiguration) -> Level {
     (configuration.method, configuration.tolerance_mm)
 }
 
-/// Returns one summary row per method and tolerance, in the order of first occurrence.
+/// For each method and tolerance, returns one row that summarises all objects, in the order of first occurrence.
 pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
     let levels = grouped(rows, |(configuration, _)| level(configuration)).into_iter();
     levels
@@ -68,7 +68,7 @@ fn summary_row((method, tolerance_mm): Level, of_level: &[&Row], rows: &[Row]) -
     }
 }
 
-/// Returns the computing time per touch for each method and tolerance.
+/// For each method and tolerance, returns the computing time per touch.
 pub(super) fn costs(
     summary: &[DetailSummary],
     timing: &[(DetailConfiguration, DetailTime)],

@@ -6,7 +6,7 @@ use crate::studies::reconstruction::study::ReconstructionStudy;
 use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
 
 impl ReconstructionStudy {
-    /// Returns the charts for each noise level: error by measurements for each ensemble, then error against time.
+    /// Returns two charts for each noise level: reconstruction error by number of measurements for each ensemble, and reconstruction error by computing time.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (configurations, pareto) = (&tables[0], &tables[3]);
         let mut charts = Vec::new();
@@ -40,7 +40,8 @@ impl ReconstructionStudy {
         self.sample_frames(tables)
     }
 
-    /// Returns the answers for each noise level: the best configuration, and the fewest measurements that are as good as full sampling.
+    /// For each noise level, returns two answers: the most accurate configuration, and the smallest number of measurements with which a reconstruction is as
+    /// accurate as reading all taxels.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (configurations, timing) = (&tables[0], &tables[2]);
         let error = |row: usize| configurations.number("error", row);
@@ -79,7 +80,8 @@ impl ReconstructionStudy {
     }
 }
 
-/// Returns a chart with one panel per dictionary and one line per solver; a reference line shows the error of the noisy frame.
+/// Returns a chart of the reconstruction error by number of measurements, with one panel per dictionary and one line per solver. A reference line shows the
+/// error of the noisy frame.
 fn by_measurements(configurations: &Table, rows: &[usize]) -> ChartSpec {
     let (code, ensemble) = (
         configurations.word("ensemble", rows[0]),

@@ -12,7 +12,7 @@ use crate::table::Table;
 use ndarray::Array2;
 
 impl ReconstructionStudy {
-    /// Returns the picture of test frames at the largest noise; an empty list without results.
+    /// Returns the picture of test frames at the largest noise level; returns an empty list if there are no results.
     pub(super) fn sample_frames(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
         let Some(configurations) = tables
             .first()
@@ -82,7 +82,8 @@ impl ReconstructionStudy {
     }
 }
 
-/// Returns the rows to show: the best configuration at the m nearest to a quarter of the taxels, and the best one at the fewest measurements.
+/// Returns two table rows to show for a noise level: the best configuration whose m is nearest to a quarter of the taxels, and the best one with the smallest
+/// m, where m is the number of measurements.
 fn shown_rows(configurations: &Table, level: f64) -> Vec<usize> {
     let of_level: Vec<usize> = (0..configurations.n_rows)
         .filter(|&row| configurations.number("noise_std", row) == level)

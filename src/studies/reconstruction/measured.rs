@@ -20,7 +20,8 @@ use std::time::Instant;
 /// different times.
 const BLOCK: usize = 64;
 
-/// Computes the pending configurations of one ensemble and m, given by index; dictionaries are computed when a work item needs them.
+/// Computes the pending configurations of one ensemble and one number m of measurements; the configurations are given by index. A dictionary is computed when
+/// the first work item needs it.
 pub(super) fn measure_cells(
     (plan, touches): (&ReconstructionPlan, &Touches),
     (group, configurations): (usize, &[ReconstructionConfiguration]),
@@ -67,7 +68,7 @@ pub(super) fn measure_cells(
     Ok(())
 }
 
-/// Returns the reconstruction errors and times of a configuration.
+/// Reconstructs all test frames with a configuration; returns the reconstruction errors and the computing times.
 fn reconstruct(
     (plan, touches): (&ReconstructionPlan, &Touches),
     configuration: &ReconstructionConfiguration,
@@ -110,7 +111,8 @@ fn reconstruct(
     ))
 }
 
-/// Returns the isometry statistics of a projection and a dictionary, one row per support size.
+/// Returns the isometry statistics of the product of a measurement matrix and a dictionary: one row for each number of columns that are drawn together (support
+/// size).
 fn statistics(
     plan: &ReconstructionPlan,
     sensed: &SensedDictionary,

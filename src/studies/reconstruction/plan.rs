@@ -29,7 +29,7 @@ pub struct ReconstructionPlan {
     pub array: TaxelArray,
     /// Distribution of touch poses.
     pub placement: Placement,
-    /// Approach speed of the press at the time of reading, m/s.
+    /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
     /// Unit of the noise axis.
     pub noise_unit: NoiseUnit,
@@ -39,13 +39,14 @@ pub struct ReconstructionPlan {
     pub dictionaries: Vec<Basis>,
 }
 
-/// Maximum number of supports drawn per size; all are in memory together.
+/// Maximum value of the key `isometry_subsets`: supports (sets of atoms) that are randomly drawn for each support size. All are in memory together.
 const MAX_SUBSETS: usize = 1_000_000;
 
-/// Maximum number of atoms of a dictionary, more than any array has taxels. The minimum is two, because λ = √(2 ln k) vanishes for k = 1 atom.
+/// Maximum value of the key `atoms` (number of atoms of a dictionary), more than any array has taxels. The minimum is two, because λ = √(2 ln k) vanishes for k
+/// = 1 atom.
 const MAX_ATOMS: usize = 100_000_000;
 
-/// Keys of `[reconstruction]`.
+/// Descriptions of the keys of the table `[reconstruction]` in a study file.
 const KEYS: &[KeyAbout] = keys! {
     "reconstruction.solver": Table, Choice, Any;
     "reconstruction.dictionary": Table, Choice, Any;
@@ -114,7 +115,7 @@ impl ReconstructionPlan {
         })
     }
 
-    /// Returns the signal steps at a given noise level; `None` omits the noise step.
+    /// Returns the signal steps with the given noise standard deviation, in `noise_unit`. If `noise` is `None`, the noise step is omitted.
     pub fn signal_steps(&self, noise: Option<f64>) -> Vec<SignalStep> {
         let unit = self.noise_unit;
         let steps = self.spec.signal.steps.iter();
@@ -135,7 +136,7 @@ impl ReconstructionPlan {
         }
     }
 
-    /// Returns the numbers m of measurements for an ensemble; the identity always measures all taxels.
+    /// Returns the numbers of measurements per frame that the study uses with an ensemble. The identity ensemble always measures all taxels.
     pub fn measurement_counts(&self, ensemble: Ensemble) -> Vec<usize> {
         let n = self.array.n_taxels();
         if ensemble == Ensemble::Identity {
@@ -147,7 +148,7 @@ impl ReconstructionPlan {
         counts
     }
 
-    /// Returns the projection of an ensemble with m measurements.
+    /// Returns the measurement matrix of an ensemble with `m` measurements per frame.
     pub(super) fn projection(&self, ensemble: Ensemble, m: usize) -> Result<Projection> {
         let seed = Seed::new(self.spec.seed).named("projection").numbered(0);
         Projection::new(ensemble, self.shape(), m, &seed)
@@ -158,7 +159,7 @@ impl ReconstructionPlan {
         self.array.shape()
     }
 
-    /// Returns a list with one shared value per dictionary, in the order of the plan.
+    /// Returns a list with one empty slot per dictionary, in the order of the plan; each slot is computed once and shared by all threads.
     pub(super) fn of_each_dictionary<T>(&self) -> Vec<Shared<T>> {
         let each = self.dictionaries.iter();
         each.map(|_| Shared::default()).collect()
@@ -170,7 +171,7 @@ impl ReconstructionPlan {
         place.expect("configurations have the dictionaries of their plan")
     }
 
-    /// Returns all configurations, ordered by ensemble and m. The numbers of atoms are set when the dictionaries are computed.
+    /// Returns all configurations, ordered by ensemble and number of measurements. The numbers of atoms are set later, when the dictionaries are computed.
     pub fn configurations(&self) -> Vec<ReconstructionConfiguration> {
         let n_taxels = self.array.n_taxels() as f64;
         let mut configurations = Vec::new();
@@ -234,7 +235,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks that each solver limit that differs from its default applies to a solver of the study.
+    /// Returns an error if the study file sets a solver limit that none of its solvers uses.
     fn efforts(&self, wanted: &ReconstructionSpec) -> Result<()> {
         let (given, usual) = (wanted.effort(), Effort::default());
         let pursuit = (Solver::Omp, "omp");

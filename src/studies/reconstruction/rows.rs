@@ -4,7 +4,7 @@ use crate::row;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 
-/// Display names of ensembles, dictionaries and solvers.
+/// Display names of the ensembles (random measurement matrices), by the name in the table.
 const ENSEMBLES: &[(&str, &str)] = &[("sbhe", "SBHE"), ("gaussian", "Gaussian")];
 const DICTIONARIES: &[(&str, &str)] = &[
     ("dct", "DCT"),
@@ -38,7 +38,8 @@ pub struct ReconstructionConfiguration {
 } }
 
 impl ReconstructionConfiguration {
-    /// Returns the name of the configuration's work item. The name contains the settings, because the number changes if an axis has more values.
+    /// Returns the name of the configuration's work item. The name contains the settings, because the configuration's number changes if an axis has more
+    /// values.
     pub(super) fn name(&self) -> String {
         format!(
             "{:?} in {:?} of {:?}, m = {}, noise {} {:?}",
@@ -51,7 +52,7 @@ impl ReconstructionConfiguration {
         )
     }
 
-    /// Returns the name of the work item that computes a dictionary's isometry statistics with the same measurements.
+    /// Returns the name of the work item that computes the isometry statistics of a dictionary with this configuration's measurements.
     pub(super) fn isometry_name(&self, basis: Basis) -> String {
         let (ensemble, m) = (self.ensemble, self.measurements);
         format!("isometry of {ensemble:?}, m = {m}, {basis:?}")
@@ -69,22 +70,23 @@ pub struct ReconstructionScore {
     error_low: f64 => Note "95 % interval over touches, lower end": Log;
     /// Upper end of the 95 % interval of `error` over touches.
     error_high: f64 => Note "95 % interval over touches, upper end": Log;
-    /// Relative error of the noisy frames without compression (all taxels are read), dimensionless.
+    /// Relative error √(Σ‖y − x‖² / Σ‖x‖²) of the noisy frames y with respect to the clean frames x, dimensionless: the error if all taxels are read without
+    /// compression.
     full_sampling_error: f64 => Note: Log;
-    /// Signal-to-noise ratio of the reconstruction, −20 log₁₀ `error`, dB.
+    /// Signal-to-noise ratio of the reconstructed frames, −20 log₁₀ `error`, dB.
     snr_db: f64 => Value(More) "SNR" in "dB": Linear;
-    /// Peak signal-to-noise ratio 20 log₁₀ (full scale / root mean square error of a taxel), dB.
+    /// Peak signal-to-noise ratio of the reconstructed frames, 20 log₁₀ (full scale / root mean square error of a taxel), dB.
     psnr_db: f64 => Value(More) "peak SNR" in "dB": Linear;
-    /// Number of non-zero coefficients per frame, averaged over frames.
+    /// Number of non-zero coefficients of a reconstructed frame, averaged over frames.
     atoms_used: f64 => Note "atoms used": Linear;
-    /// Number of frames for which the solver stopped at its limit of atoms or steps.
+    /// Number of frames for which the solver stopped early, at its limit of atoms or steps.
     n_capped: usize => Note "capped frames": Linear;
 } }
 
 row! {
 /// Computing time of a configuration. A row of `timing.csv` is a [`ReconstructionConfiguration`] followed by a `ReconstructionTime`.
 pub struct ReconstructionTime {
-    /// Time to prepare the solver, s, without the computation of ΦΨ.
+    /// Time to prepare the solver, s, without the time for the product ΦΨ of measurement matrix and dictionary.
     prepare_s: f64 => Cost "time to prepare" in "s": Log;
     /// Reconstruction time per frame on one core, µs; frames are processed in blocks.
     us_per_frame: f64 => Cost "time of a frame" in "us": Log;
@@ -95,20 +97,23 @@ pub struct ReconstructionTime {
 row! {
 /// Error and computing time of a configuration. A row of `pareto.csv` is a [`ReconstructionConfiguration`] followed by a `ReconstructionPareto`.
 pub struct ReconstructionPareto {
-    /// Relative reconstruction error, as in `reconstruction.csv`.
+    /// Relative reconstruction error, dimensionless, equal to the column `error` of `reconstruction.csv`.
     error: f64 => Value(Less): Log;
     /// Reconstruction time per frame on one core, µs, as in `timing.csv`.
     us_per_frame: f64 => Cost "time of a frame on one core" in "us": Log;
     /// Number of frames reconstructed per second on one core, as in `timing.csv`.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
-    /// Whether the configuration is on the Pareto front: no other one with the same noise is both faster and more accurate.
+    /// Whether the configuration is on the Pareto front. If it is, no configuration with equal noise is at least as fast and as accurate, and better in one of
+    /// the two.
     on_front: bool => Outcome "on the front";
 } }
 
 row! {
-/// Isometry statistics of an ensemble and a dictionary: a row of `ensembles.csv`.
+/// Isometry statistics of an ensemble and a dictionary: a row of `ensembles.csv`. A support is a randomly drawn set of s atoms; Φ is the measurement matrix,
+/// and Ψ the dictionary.
 ///
-/// The statistics are squared singular values of s randomly drawn columns of ΦΨ; all columns are scaled to a mean square norm of 1.
+/// For each support, σ_min and σ_max are the smallest and largest singular values of its s columns of ΦΨ. All columns of ΦΨ are scaled to a mean square norm of
+/// 1.
 pub struct EnsembleStatistics {
     /// Ensemble of the measurement matrix.
     ensemble: Ensemble => Choice named ENSEMBLES;
@@ -120,27 +125,28 @@ pub struct EnsembleStatistics {
     dictionary: Basis => Choice named DICTIONARIES;
     /// Number k of atoms of the dictionary.
     atoms: usize => Note "atoms of the dictionary": Linear;
-    /// Mutual coherence over all atoms that Φ does not map to zero, 0 to 1.
+    /// Mutual coherence of the atoms after measurement, 0 to 1: the largest absolute cosine between two columns of ΦΨ. Atoms that Φ maps to zero are excluded.
     coherence: f64 => Value(Less) "mutual coherence": Share;
-    /// Welch bound: the smallest possible mutual coherence of this number of columns in m dimensions.
+    /// Welch bound: the smallest mutual coherence that is possible for this number of columns in m dimensions, 0 to 1.
     welch_bound: f64 => Note "Welch bound": Share;
-    /// Number of atoms that Φ maps to zero.
+    /// Number of atoms that the measurement matrix Φ maps to zero.
     n_invisible: usize => Note "invisible atoms": Linear;
-    /// Number s of atoms in each drawn support.
+    /// Number s of atoms in each support.
     sparsity: usize => Condition: Linear;
-    /// Number of randomly drawn supports.
+    /// Number of randomly drawn supports for this number of atoms.
     n_subsets: usize => Note "supports drawn": Linear;
-    /// Smallest σ²_min over all drawn supports.
+    /// Smallest σ²_min over all drawn supports, where σ_min is the smallest singular value of a support's columns of ΦΨ.
     low_min: f64 => Value(More) "least σ²": Linear;
-    /// Median of σ²_min over all drawn supports.
+    /// Median of σ²_min over all drawn supports, where σ_min is the smallest singular value of a support's columns of ΦΨ.
     low_median: f64 => Value(More) "median of the least σ²": Linear;
-    /// Median of σ²_max over all drawn supports.
+    /// Median of σ²_max over all drawn supports, where σ_max is the largest singular value of a support's columns of ΦΨ.
     high_median: f64 => Value(Less) "median of the largest σ²": Linear;
-    /// Largest σ²_max over all drawn supports.
+    /// Largest σ²_max over all drawn supports, where σ_max is the largest singular value of a support's columns of ΦΨ.
     high_max: f64 => Value(Less) "largest σ²": Linear;
-    /// Median of max(1 − σ²_min, σ²_max − 1) over all drawn supports.
+    /// Median over all drawn supports of max(1 − σ²_min, σ²_max − 1): how much a support's columns of ΦΨ may change the squared norm of a vector.
     deviation_median: f64 => Value(Less) "median deviation": Linear;
-    /// Largest max(1 − σ²_min, σ²_max − 1) over all drawn supports: a lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
+    /// Largest value of max(1 − σ²_min, σ²_max − 1) over all drawn supports. It is a lower bound on the isometry constant δₛ, whose exact value is NP-hard to
+    /// compute.
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
 
@@ -151,5 +157,5 @@ pub type ReconstructionRow = (
     ReconstructionTime,
 );
 
-/// Rows of work items: configurations and isometry statistics.
+/// Results of work items: the configurations with their errors and times, and the isometry statistics.
 pub type ReconstructionRows = (Vec<ReconstructionRow>, Vec<EnsembleStatistics>);

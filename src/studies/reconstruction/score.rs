@@ -9,7 +9,7 @@ use ndarray::{Array2, ArrayView2};
 /// Half width of the central 95 % of a normal distribution, in standard deviations.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
-/// Returns the squared error ‖a − b‖² of each row.
+/// Returns the squared distance ‖aᵢ − bᵢ‖² between row i of `a` and row i of `b`, for each i.
 pub(super) fn square_errors(a: ArrayView2<f64>, b: ArrayView2<f64>) -> Vec<f64> {
     let rows = a.outer_iter().zip(b.outer_iter());
     rows.map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum())
@@ -27,9 +27,9 @@ pub(super) struct Truth {
 
 /// Reconstruction of a block of test frames.
 pub(super) struct Found {
-    /// Squared error ‖x̂ − x‖² of each frame.
+    /// Squared error ‖x̂ − x‖² of each reconstructed frame x̂, where x is the clean frame.
     pub errors: Vec<f64>,
-    /// Number of non-zero coefficients, summed over the frames.
+    /// Number of non-zero dictionary coefficients, summed over the frames of the block.
     pub n_atoms: usize,
     pub n_capped: usize,
     pub seconds: f64,
@@ -45,7 +45,7 @@ impl Truth {
         }
     }
 
-    /// Returns the score over all test frames; `full` contains the squared error ‖noisy − x‖² of each frame.
+    /// Returns the score over all test frames. The slice `full` contains the squared error ‖y − x‖² of each noisy frame y, where x is the clean frame.
     pub(super) fn score(&self, found: &[Found], full: &[f64]) -> ReconstructionScore {
         let n_frames = self.squares.len();
         let errors: Vec<f64> = found.iter().flat_map(|f| f.errors.clone()).collect();
@@ -67,7 +67,8 @@ impl Truth {
         }
     }
 
-    /// Returns Σe / Σ‖x‖² and the half width of its 95 % interval over frames, by linearisation of the ratio of means (delta method).
+    /// Returns Σe / Σ‖x‖² and the half width of its 95 % interval over frames, where e are the `errors` of single frames. The interval is computed by
+    /// linearisation of the ratio of means (delta method).
     fn ratio(&self, errors: &[f64]) -> (f64, f64) {
         let n = errors.len() as f64;
         let mean = self.squares.iter().sum::<f64>() / n;
@@ -79,7 +80,7 @@ impl Truth {
     }
 }
 
-/// Marks the configurations of one noise level that no other configuration dominates in error and rate.
+/// Marks the Pareto-optimal configurations of one noise level: no other configuration has a smaller error and a higher rate of frames.
 pub(super) fn pareto(
     rows: &[ReconstructionRow],
     levels: &[f64],

@@ -18,7 +18,7 @@ pub struct ReconstructionStudySpec {
     pub objects: ObjectsSpec,
     /// Table `[skin]`: a single array of taxels.
     pub skin: SkinSpec,
-    /// Table `[touches]`: poses and depths of the touches.
+    /// Table `[touches]`: random poses and depths of the touches.
     pub touches: TouchesSpec,
     /// Table `[signal]`: noise and processing of frames before compression. Smoothing is not allowed.
     #[serde(default)]
@@ -44,7 +44,8 @@ pub struct ReconstructionSpec {
     /// Maximum number of atoms per frame that matching pursuit may select, at least 1. Default: 128.
     #[serde(default = "default_most_atoms")]
     pub most_atoms: usize,
-    /// Regularisation λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k), positive. Default: 0.3.
+    /// Regularisation parameter λ of the ℓ1 problem, as a multiple of the universal threshold σ a √(2 ln k), positive. Here σ is the noise standard deviation,
+    /// a the root mean square norm of the columns of ΦΨ, and k the number of atoms. Default: 0.3.
     #[serde(default = "default_lambda_scale")]
     pub lambda_scale: f64,
     /// Relative duality gap at which the ℓ1 solver stops, positive. Default: 1e-3.
@@ -53,13 +54,13 @@ pub struct ReconstructionSpec {
     /// Maximum number of steps of the ℓ1 solver per frame, at least 1. Default: 500.
     #[serde(default = "default_most_steps")]
     pub most_steps: usize,
-    /// Fraction of the touches held out for testing, between 0 and 1. Default: 0.25.
+    /// Fraction of the touches that are held out for testing, between 0 and 1. Default: 0.25.
     #[serde(default = "default_test_fraction")]
     pub test_fraction: f64,
-    /// Axis: sizes of the supports for the isometry statistics, in atoms. Default: 8 and 32.
+    /// Axis: number of atoms in each randomly drawn set (support) for which isometry statistics are computed. Default: 8 and 32.
     #[serde(default = "default_isometry_sparsity")]
     pub isometry_sparsity: Axis<usize>,
-    /// Number of randomly drawn supports per size, at least 1. Default: 200.
+    /// Number of randomly drawn sets of atoms (supports) for each size in `isometry_sparsity`, at least 1. Default: 200.
     #[serde(default = "count::<200>")]
     pub isometry_subsets: usize,
 }

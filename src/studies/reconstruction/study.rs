@@ -27,7 +27,7 @@ use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{File, Table};
 use std::collections::BTreeMap;
 
-/// Reconstruction study with its touches.
+/// Reconstruction study that is ready to run: its plan, its objects and their touches.
 pub struct ReconstructionStudy {
     /// Plan of the study: checked keys in SI units.
     pub plan: ReconstructionPlan,
@@ -116,7 +116,7 @@ impl Study for ReconstructionStudy {
         }
     }
 
-    /// For each ensemble and m, the isometry items of all dictionaries are followed by the configurations.
+    /// Returns all work items. For each ensemble and number of measurements, the items for isometry statistics come first, followed by the configurations.
     fn work_items(&self) -> Vec<WorkItem> {
         let mut items = Vec::new();
         for (group, configurations) in on_measured(&self.plan.configurations()).enumerate() {
@@ -174,7 +174,7 @@ impl Study for ReconstructionStudy {
     }
 }
 
-/// Returns the configurations in groups that use the same measurements.
+/// Returns the configurations in groups; all configurations of a group reconstruct from equal measurements.
 fn on_measured(
     configurations: &[ReconstructionConfiguration],
 ) -> impl Iterator<Item = &[ReconstructionConfiguration]> {

@@ -42,7 +42,7 @@ pub(super) struct Noisy {
     /// Noise standard deviation σ of a taxel, in the unit of the frame.
     pub std: f64,
     pub frames: Array2<f64>,
-    /// Squared norm ‖noise‖² of each frame.
+    /// Squared norm ‖y − x‖² of the noise in each test frame, where y is the noisy and x the clean frame.
     pub errors: Vec<f64>,
 }
 
@@ -83,7 +83,7 @@ impl Touches {
         })
     }
 
-    /// Returns a dictionary of the training frames; computes it at the first call.
+    /// Returns a dictionary that is computed from the training frames; computes it at the first call.
     pub(super) fn dictionary(
         &self,
         plan: &ReconstructionPlan,
@@ -96,14 +96,14 @@ impl Touches {
         })
     }
 
-    /// Returns the frames that the picture shows.
+    /// Returns those rows of `frames` that the picture shows.
     pub(super) fn pick(&self, frames: &Array2<f64>) -> Array2<f64> {
         let rows: Vec<usize> = self.shown.iter().map(|(row, _)| *row).collect();
         frames.select(Axis(0), &rows)
     }
 }
 
-/// Returns the frames of some touches after the signal chain, with or without noise.
+/// Simulates the given touches and applies the signal chain; returns one frame per row. The noise step is included on request.
 fn read(
     plan: &ReconstructionPlan,
     frames: &Frames,
@@ -126,7 +126,7 @@ fn read(
     Ok(measure(reading, &touches)?.0)
 }
 
-/// Returns the first test touch of a few objects that are spread over the list.
+/// Selects a few objects that are spread evenly over the list of objects. For each, returns the row of its first test touch and its name.
 fn shown(touched: &[TouchedObject], labels: &Array1<usize>, split: &Split) -> Vec<(usize, String)> {
     let n = N_SAMPLES.min(touched.len());
     let objects = (0..n).map(|sample| sample * touched.len() / n);

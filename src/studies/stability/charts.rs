@@ -5,8 +5,8 @@ use crate::studies::stability::plan::StabilityPlan;
 use crate::table::{Along, At, ChartSpec, Mark, Rule, Table};
 
 impl StabilityPlan {
-    /// Returns the charts: outcome maps for parts with several methods and several time steps or masses, followed by charts of growing arrays. An outcome map
-    /// has time steps along x and taxel masses along y, with one column of panels per method and one row per setting.
+    /// Returns the charts: outcome maps, followed by charts of growing arrays. A part of the study has an outcome map if it has several methods, and several
+    /// time steps or masses. The map has time steps along x and taxel masses along y, one column of panels per method, and one row per setting.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (configurations, joints) = (&tables[0], &tables[3]);
         let mut charts: Vec<ChartSpec> = Vec::new();
@@ -27,7 +27,7 @@ impl StabilityPlan {
         charts
     }
 
-    /// Returns sentences with the number of right results of each method, in descending order.
+    /// Returns one sentence per method with its number of right results, in descending order of this number.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let summary = &tables[1];
         let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);
@@ -90,7 +90,7 @@ fn map(configurations: &Table, rows: &[usize]) -> ChartSpec {
     chart
 }
 
-/// Returns the chart mark that draws outcomes as tiles.
+/// Returns a chart mark that draws outcomes as coloured tiles.
 fn tiles(sign: &str) -> Mark {
     Mark::Tiles {
         fill: "outcome".to_owned(),

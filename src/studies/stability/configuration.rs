@@ -25,19 +25,19 @@ use std::time::Instant;
 struct Answer {
     /// Kind of failure; `None` if the simulation succeeded. After a failure, all other fields are zero or empty.
     broken: Option<Outcome>,
-    /// Relative force error, |Σ f − expected| / expected.
+    /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels.
     force_imbalance: f64,
     /// Deflections at the time of evaluation, metres, shape (n_taxels,).
     deflection: Vec<f64>,
-    /// Sum of the absolute deflections |δ| after the release, metres; 0 if nothing is released.
+    /// Sum of |δ| over all taxels after the ball has been lifted again, metres, where δ is a deflection. 0 if the ball is not lifted.
     left_over: f64,
     /// Number of steps; 0 if the method does not step through time.
     n_steps: usize,
 }
 
-/// Duration below which computing times are medians of several runs, seconds; other load of the machine dominates a single short run.
+/// Duration of a simulation below which it is repeated, and the median time is used, seconds. In a single short run, other load of the machine would dominate.
 const SHORT: f64 = 5e-3;
-/// Number of runs of short simulations.
+/// Number of times that a short simulation is repeated.
 const N_REPEATS: usize = 9;
 
 /// Simulates and evaluates a configuration, given its taxel parameters without damper.
@@ -84,10 +84,10 @@ pub(super) fn measure(
     Ok(best.expect("at least one try"))
 }
 
-/// Safety factor of the contact stiffness over the stiffness that just meets the tolerance. The penetration reduces the deflection of every taxel.
+/// Factor between the contact stiffness that is used and the one that just meets the tolerance. Penetration reduces the deflection of every taxel.
 const SAFETY: f64 = 4.0;
 
-/// Returns the two contact stiffnesses to try: the lowest that meets the tolerance, and the highest that is stable for the time step.
+/// Returns two contact stiffnesses to try, N/m: the lowest that meets the tolerance, and the highest with which the time step is stable.
 fn contact_stiffnesses(
     configuration: &StabilityConfiguration,
     scene: &ConfigurationScene,
@@ -185,7 +185,8 @@ fn integrator(
     }
 }
 
-/// Solves the equilibrium of one free ball, or of several balls stacked in a tube, with the quasi-static method. The balls may rotate and move sideways.
+/// With the quasi-static method, solves the equilibrium of one free ball, or of several balls that are stacked in a tube. The balls may rotate and move
+/// sideways.
 fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<Answer> {
     let cradle = &scene.cradle;
     let spheres = cradle.ball.spheres().expect("a ball is a sphere");
@@ -219,7 +220,7 @@ fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<
     })
 }
 
-/// Lowers a plunger with the quasi-static method until the springs carry its weight.
+/// With the quasi-static method, lowers a ball that can only move vertically until the springs of the taxels carry its weight.
 fn press_to_weight(scene: &ConfigurationScene) -> Result<Answer> {
     let (cradle, weight) = (&scene.cradle, scene.force);
     let ball = from_ref(&cradle.ball);

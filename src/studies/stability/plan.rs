@@ -21,11 +21,11 @@ pub struct StabilityPlan {
     pub spec: StabilityStudySpec,
     /// Configurations, ordered by part, each with its taxel parameters without damper. Methods that this build does not contain are omitted.
     pub configurations: Vec<(StabilityConfiguration, Taxel)>,
-    /// Path of the table of other programs.
+    /// Path of the table with results of other programs; `None` if there is none.
     pub peers: Option<PathBuf>,
 }
 
-/// Maximum number of taxels along a side. Larger arrays take long and give no new information about stability.
+/// Maximum number of taxels along a side of the array. Larger arrays take long and give no new information about stability.
 const MAX_TAXELS: usize = 256;
 
 /// Keys of a stability study.

@@ -19,7 +19,7 @@ const METHODS: &[(&str, &str)] = &[
 row! {
 /// Configuration of a simulation; each row of `stability.csv` and `timing.csv` begins with these columns.
 pub struct StabilityConfiguration {
-    /// Number of the part of the study, from 1.
+    /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
     part: usize => Subject "part of the study": Linear;
     /// Simulated scene.
     scene: StabilityScene => Condition;
@@ -52,22 +52,22 @@ impl StabilityConfiguration {
 }
 
 row! {
-/// Result of a simulation. A row of `stability.csv` is a [`StabilityConfiguration`] followed by a `StabilityScore`.
+/// Accuracy and outcome of a simulation. A row of `stability.csv` is a [`StabilityConfiguration`] followed by a `StabilityScore`.
 pub struct StabilityScore {
     /// Mass ratio M / m of a free ball and a taxel; empty if the ball's motion is imposed.
     mass_ratio: Option<f64> => Note "mass ratio, ball to taxel": Log;
-    /// Stability limit 2 √(m / k) of an explicit spring without a damper, s; larger time steps diverge.
+    /// Largest stable time step 2 √(m / k) of an explicit method for a taxel of mass m on a spring of stiffness k without a damper, s.
     explicit_limit_s: f64 => Note "limit of an explicit spring" in "s": Log;
     /// Damping coefficient c of a taxel, N·s/m.
     damping_n_s_per_m: f64 => Note "taxel damping" in "N s/m": Log;
-    /// Contact stiffness κ, N/m; empty unless contact is modelled by a penalty force.
+    /// Contact stiffness κ, N/m; empty unless the method models contact by a penalty force, which is κ times the penetration.
     contact_stiffness_n_per_m: Option<f64> => Note "contact stiffness" in "N/m": Log;
     /// Outcome: whether the result is right, or else the kind of failure.
     outcome: Outcome => Outcome;
-    /// Relative force error, |Σ f − expected| / expected; empty if the simulation failed.
+    /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels; empty if the simulation failed.
     #[serde(with = "any_number")]
     force_imbalance: Option<f64> => Value(Less): Log;
-    /// Relative deflection error, Σ |δ − δ*| / Σ δ*; empty if the simulation failed.
+    /// Relative deflection error, Σ |δ − δ*| / Σ δ*, where δ are the computed and δ* the exact deflections; empty if the simulation failed.
     #[serde(with = "any_number")]
     deflection_error: Option<f64> => Value(Less): Log;
     /// Number of completed time steps.
@@ -94,7 +94,7 @@ pub struct StabilitySummary {
     method: ContactMethod => Choice named METHODS;
     /// Number of iterations of an engine's solver per step; empty for methods without such a solver.
     solver_iterations: Option<usize> => Choice: Linear;
-    /// Number of configurations.
+    /// Number of simulated configurations of the method in the scene.
     n_configurations: usize => Note "configurations": Linear;
     /// Number of configurations with a right result.
     n_correct: usize => Value(More) "right": Linear;
@@ -113,7 +113,7 @@ pub struct StabilitySummary {
 } }
 
 row! {
-/// Cost of simulating a plunger whose mass per taxel is equal on all arrays: a row of `joints.csv`.
+/// Cost of simulating a ball that moves only vertically on growing arrays with equal loads per taxel: a row of `joints.csv`.
 pub struct Joints {
     /// Method that simulates the contact.
     method: ContactMethod => Choice named METHODS;
@@ -125,7 +125,7 @@ pub struct Joints {
     dt_s: f64 => Choice "time step" in "s": Log;
     /// Number of taxels of the array; each taxel is a body on a joint.
     joints: usize => Condition: Log;
-    /// Mass M of the plunger divided by the number of taxels, kg.
+    /// Load of a taxel, kg: the mass M of the ball divided by the number of taxels.
     load_kg: f64 => Note "load of a taxel" in "kg": Log;
     /// Outcome: whether the result is right, or else the kind of failure.
     outcome: Outcome => Outcome;
@@ -136,7 +136,7 @@ pub struct Joints {
 /// Configuration of a work item, with its result and computing time.
 pub type StabilityRow = (StabilityConfiguration, StabilityScore, StabilityTime);
 
-/// Source of a row that another program computed; the row ends with these columns.
+/// Program, version and date of a result that another program computed: the last columns of its row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PeerSource {
     /// Name of the other program.
@@ -155,13 +155,13 @@ pub enum Outcome {
     Right,
     /// The simulation ended, but an error exceeds [`TOLERANCE`].
     Inaccurate,
-    /// Contact was missed: the sum of deflections is below half or above twice the expected sum, or nothing supports the ball.
+    /// Contact was missed: the sum of all deflections is below half or above twice the exact sum, or nothing supports the ball.
     MissedContact,
-    /// The energy exceeds four times the energy that enters the scene.
+    /// The energy of the simulation exceeds four times the energy that the scene can contain.
     EnergyGrowth,
-    /// A number became infinite or NaN.
+    /// A number of the simulated state became infinite or NaN.
     NotFinite,
 }
 
-/// Maximum relative error of a result that counts as right.
+/// Largest force imbalance and deflection error with which a simulation counts as right, dimensionless.
 pub const TOLERANCE: f64 = 0.01;

@@ -14,16 +14,16 @@ use glam::DVec3;
 pub(super) const GRAVITY: f64 = 9.81;
 /// Speed of a ball with imposed motion, m/s.
 const SPEED: f64 = 0.5;
-/// Distance from the start of an imposed motion to first contact, metres.
+/// Distance between the start of a ball with imposed motion and its first contact, metres.
 const APPROACH: f64 = 2e-3;
-/// Minimum duration of a hold, seconds.
+/// Minimum duration for which a ball with imposed motion rests at its deepest point, seconds.
 const LEAST_HOLD: f64 = 0.2;
-/// Decay exponent: a hold and a run last until the slowest motion has decayed by e^−10 = 5e-5.
+/// Exponent of the decay that ends a hold or a run: its slowest motion has then decayed by the factor e^−10 = 5e-5.
 const DECAY: f64 = 10.0;
-/// Minimum number of steps in a hold.
+/// Minimum number of time steps for which a ball with imposed motion rests at its deepest point.
 const LEAST_HOLD_STEPS: f64 = 5.0;
-/// Travel of the ball within which taxels count as reachable, in strokes. All taxels are reached within 1.25 strokes. If much larger, the ball could be behind
-/// the substrate.
+/// Travel of the ball within which taxels may be touched, as a multiple of the stroke. The ball reaches all taxels within 1.25 strokes. If the value is much
+/// larger, the ball could be behind the substrate.
 const REACH: f64 = 1.5;
 /// Minimum simulated time of a free ball, seconds.
 const LEAST_TIME: f64 = 0.5;
@@ -103,7 +103,7 @@ impl TestBed {
             .map(move |number| Pose::from_translation(self.pose.translation + above(number)))
     }
 
-    /// Returns the walls of a tube that keeps a stack upright: half-spaces that the balls touch without force.
+    /// Returns the walls of a tube that keeps a stack of balls upright: half-spaces that the balls touch without force.
     pub fn tube(&self) -> Vec<HalfSpace> {
         let radius = self
             .ball
@@ -117,7 +117,8 @@ impl TestBed {
         inwards.map(wall).into()
     }
 
-    /// Returns the dynamic system: the taxels within `reach` metres of the ball's start, and the balls stacked on the first one.
+    /// Returns the dynamic system for methods that step through time: taxels and balls. It contains the taxels within `reach` metres below the first ball, and
+    /// the balls that are stacked on it.
     fn system(
         &self,
         configuration: &StabilityConfiguration,
@@ -156,7 +157,8 @@ impl ConfigurationScene {
         self.cradle.system(configuration, &self.drive, reach)
     }
 
-    /// Returns the numbers of steps of `dt` seconds after which the state is evaluated, from 1: at the time of evaluation, and at the end if it differs.
+    /// Returns the numbers of steps, from 1, after which the state is evaluated: at the time of evaluation, and at the end if it is later. A step takes `dt`
+    /// seconds.
     pub fn frames(&self, dt: f64) -> Vec<usize> {
         let end = (self.end / dt).ceil() as usize;
         match self.judged < self.end {
@@ -247,7 +249,7 @@ impl ConfigurationScene {
     }
 }
 
-/// Returns the decay rate of the slower solution of `m ẍ + c ẋ + k x = 0`, per second.
+/// Returns the decay rate of the slowest motion of `m ẍ + c ẋ + k x = 0`, per second.
 fn slowest(k: f64, c: f64, m: f64) -> f64 {
     let half = 0.5 * c / m;
     let inside = half * half - k / m;

@@ -51,14 +51,14 @@ pub struct StabilityPartSpec {
     pub stiffness_n_per_m: Axis<f64>,
     /// Axis: mass m of a taxel, kg, positive. Quasi-static taxels have no mass.
     pub taxel_mass_kg: Axis<f64>,
-    /// Axis: mass M of each ball, kg, positive. Required if the balls are free; not allowed if their motion is imposed.
+    /// Axis: mass M of each ball, kg, positive. Required if the balls are free to move; not allowed if their motion is imposed.
     pub object_mass_kg: Option<Axis<f64>>,
     /// Axis: mass M of the ball divided by the number of taxels, kg, so that each taxel carries the same load on all arrays. Replaces `object_mass_kg`.
     pub object_mass_per_taxel_kg: Option<Axis<f64>>,
     /// Axis: time step Δt, s, positive.
     pub dt_s: Axis<f64>,
-    /// Axis: number of iterations of an engine's solver per step, at least 1. For `rapier_skin_sim`, it is the number of sweeps.
-    /// Default: 4.
+    /// Axis: number of iterations of an engine's contact solver per step, at least 1. For the method `rapier_skin_sim`, it is the number of sweeps over all
+    /// contacts. Default: 4.
     #[serde(default = "default_iterations")]
     pub solver_iterations: Axis<usize>,
 }
@@ -73,7 +73,8 @@ pub enum StabilityScene {
     /// A ball has an imposed motion: from 2 mm above the array, at 0.5 m/s, to half the stroke, a pause, and back at the same speed. The damping of a taxel is
     /// 0.508 of critical, as in SkinSim.
     Press,
-    /// A ball is released as in `rest`, with the dampers of SkinSim: c / k = 0.13 / 16.37 s.
+    /// A ball that can only move vertically is released as in `rest`. The dampers are those of SkinSim: the ratio of damping to stiffness is c / k = 0.13 /
+    /// 16.37 s.
     Plunger,
     /// Two equal balls are stacked in a smooth square tube of their width and released as in `rest`. `object_mass_kg` is the mass of each ball.
     StackOfTwo,

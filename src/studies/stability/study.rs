@@ -86,7 +86,7 @@ impl Study for StabilityPlan {
         }
     }
 
-    /// Work items are named by their settings, because the list of configurations depends on the features of the build.
+    /// Returns all work items. They are named by their settings, because the list of configurations depends on the features of the build.
     fn work_items(&self) -> Vec<WorkItem> {
         let items = self.configurations.iter().enumerate();
         let items = items.map(|(group, (configuration, taxel))| {
@@ -134,7 +134,7 @@ impl Study for StabilityPlan {
     }
 }
 
-/// Returns one summary row per scene, method and number of iterations, in the order of first occurrence.
+/// For each scene, method and number of iterations, returns one row that counts the outcomes, in the order of first occurrence.
 fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     let settings = grouped(rows, |(configuration, ..)| {
         (
@@ -167,10 +167,11 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     settings.into_iter().map(summarise).collect()
 }
 
-/// Minimum number of array sizes in a series of growing arrays.
+/// Minimum number of array sizes with equal load per taxel that form a series of growing arrays.
 const LEAST_RUNGS: usize = 3;
 
-/// Returns the rows of the plunger configurations with the load per taxel that the most array sizes share; empty if fewer than three sizes share a load.
+/// Selects the load per taxel that the plunger configurations have on the most array sizes, and returns their rows. Returns no rows if fewer than three array
+/// sizes share a load.
 fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
     let plungers = rows.iter();
     let plungers =

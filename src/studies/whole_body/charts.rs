@@ -8,7 +8,8 @@ use crate::studies::whole_body::plan::WholeBodyPlan;
 use crate::table::{Along, ChartSpec, Mark, Rule, Shown, Table, short_number};
 
 impl WholeBodyPlan {
-    /// Returns charts of the computing time per step by size of skin, touch and object, and of its stages in each scene.
+    /// Returns charts of the computing time per step. Some show it by the number of taxels, of touched taxels and of spheres; others show the time of each
+    /// stage in each scene.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (recognition, timing, steps) = (&tables[1], &tables[3], &tables[4]);
         let ladder = |series: &str, name: &str, (x, line): (&str, &str), size: &str| {
@@ -55,7 +56,7 @@ impl WholeBodyPlan {
         Ok(picture_of_body(self, &tables[0])?.into_iter().collect())
     }
 
-    /// Returns answers on the time from touch to decision, growth with the skin, steps per second, memory, and recognition.
+    /// Returns answers on the time from touch to decision, the growth of this time with the skin, steps per second, memory, and recognition.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (cases, recognition) = (&tables[0], &tables[1]);
         let (timing, steps) = (&tables[3], &tables[4]);
@@ -100,7 +101,7 @@ impl WholeBodyPlan {
     }
 }
 
-/// Returns the filter for the rows of a series; `None` if it has no rows.
+/// Returns a filter that selects the rows of a scaling series; returns `None` if the table has no such rows.
 fn of_series(table: &Table, series: &str) -> Option<Shown> {
     let mut rows = 0..table.n_rows;
     let row = rows.find(|&row| table.word("series", row) == series)?;

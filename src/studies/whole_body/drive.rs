@@ -8,12 +8,14 @@ use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
 use crate::world::Oscillation;
 use glam::DVec3;
 
-/// Time step after which a damped taxel has fully relaxed, s.
+/// Time step after which a damped taxel without contact has returned to its rest position, seconds. It is longer than any relaxation.
 pub(super) const FORGOTTEN: f64 = 1e9;
-/// Step of the search for the first contact, metres; bisection then refines the contact to `SEARCH_END`.
+/// Distance that the object moves between two tests for contact in the search for the first contact, metres. Bisection then refines the contact to
+/// `SEARCH_END`.
 const SEARCH_STEP: f64 = 1e-3;
+/// Width of the bisection interval at which the search for the first contact ends, metres.
 const SEARCH_END: f64 = 1e-7;
-/// Distance from the target, in addition to the object's size, at which the search for the first contact starts, metres.
+/// Distance between the target and the point at which the search for the first contact starts, metres. The size of the object is added to it.
 const SEARCH_START: f64 = 0.05;
 
 /// Robot covered with skin, with the poses of its patches and links.
@@ -40,7 +42,7 @@ impl Path {
         self.world_from_link.compose(&self.motion.pose_at(time))
     }
 
-    /// Returns the path with its start shifted by a vector in the frame of the link, metres.
+    /// Returns the path with its start shifted by the vector `by`, metres, in the frame of the link.
     pub fn shifted(&self, by: DVec3) -> Self {
         let start = self.motion.start;
         self.starting_at(Pose::new(start.rotation, start.translation + by))
@@ -81,7 +83,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Presses the object against the skin at the start of a path, without history.
+    /// Presses the object against the skin at the start of a path, without deflections from earlier presses.
     pub fn probe(&mut self, path: Path) -> BodyContact {
         let pose = [path.at(0.0)];
         self.state.press(self.body, &self.object, &pose, FORGOTTEN)
@@ -92,7 +94,8 @@ impl<'a> Drive<'a> {
         self.state.touched(self.body)
     }
 
-    /// Moves the start of the path along `from` (unit vector, out of the skin) to `depth` metres past the first contact.
+    /// Moves the start of the path along the unit vector `from`, which points away from the skin. At the new start, the object is `depth` metres past the first
+    /// contact.
     pub fn approach(&mut self, from: DVec3, depth: f64) -> Result<()> {
         let reach = self.object[0].ball().radius + self.object[0].ball().center.length();
         let path = self.path;

@@ -1,5 +1,5 @@
-//! Scaling series: computing time per step by the size of skin, touch and object. The skin consists of equal cylinders ("sleeves") far apart; a cushion of
-//! spheres touches the first one.
+//! Scaling series: computing time per step while the skin, the touch or the object grows. The skin consists of equal cylinders ("sleeves") far apart. A square
+//! of spheres (cushion), bent around the first sleeve, touches it.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -13,20 +13,24 @@ use crate::world::{Extrusion, Oscillation, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Numbers of patches around and along a cylindrical sleeve of skin. Growing skins use ten patches, so that 100,000 taxels are one sleeve with patches of
-/// 10,000. The series of growing touches and of growing objects need a larger area, as large as a trunk.
+/// Numbers of patches around and along a cylindrical sleeve of skin, in the series of growing skins. With ten patches of 10,000 taxels each, 100,000 taxels are
+/// one sleeve. The series of growing touches and of growing objects need a larger area, as large as a trunk.
 const SMALL: (usize, usize) = (5, 2);
+/// Numbers of patches around and along a cylindrical sleeve of skin, in the series of growing touches and of growing objects.
 const LARGE: (usize, usize) = (9, 4);
-/// Maximum fraction of a sleeve's taxels that a touch may cover, so that the cushion has space.
+/// Maximum fraction of a sleeve's taxels that the touching spheres may cover, 0 to 1. With a larger fraction, the square of spheres might not fit around the
+/// sleeve.
 const MAX_TOUCHED: f64 = 0.4;
-/// Amplitudes of the cushion's motion: rotation about the sleeve's axis, radians, and translation as a fraction of its side. The period is half a second.
+/// Amplitude of the rotation of the square of spheres about the sleeve's axis, radians.
 const SWING: f64 = 0.05;
+/// Amplitude of the translation of the square of spheres along the sleeve, as a fraction of the side length of the square.
 const SLIDE: f64 = 0.02;
+/// Period of the oscillation of the square of spheres, seconds.
 const PERIOD: f64 = 0.5;
 /// Number of bisections in the search for the depth at which the required number of taxels is touched.
 const N_HALVINGS: usize = 40;
 
-/// Size in a scaling series: numbers of taxels, touched taxels and spheres.
+/// One size in a scaling series: the numbers of taxels, of touched taxels and of spheres.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ScalingPoint {
     pub series: Series,
@@ -37,7 +41,7 @@ pub(super) struct ScalingPoint {
     n_spheres: usize,
 }
 
-/// Returns all sizes of all scaling series.
+/// Returns all sizes of all scaling series that the specification lists.
 pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
     let small = SMALL.0 * SMALL.1 * 10_000;
     let mut rungs = Vec::new();
@@ -126,7 +130,7 @@ struct Sleeve {
 const APART: f64 = 1.0;
 
 impl Sleeve {
-    /// Returns a sleeve of patches with 100 × 100 taxels each, or with smaller patches if the skin has fewer taxels than such a sleeve.
+    /// Returns a sleeve of patches with 100 × 100 taxels each. If the skin has fewer taxels than such a sleeve, the patches are smaller.
     fn of_body(n_taxels: usize, (n_around, n_along): (usize, usize), pitch: f64) -> Self {
         let a_patch = (n_taxels as f64 / (n_around * n_along) as f64).min(1e4);
         Self {
@@ -136,12 +140,13 @@ impl Sleeve {
         }
     }
 
-    /// Returns the radius of the rest centres of the taxels, metres.
+    /// Returns the distance of the taxels' rest centres from the axis of the sleeve, metres.
     fn radius(&self) -> f64 {
         self.n_around as f64 * self.side / TAU
     }
 
-    /// Returns a skin of about `n_taxels` taxels: sleeves about z in rows of twenty, the first at the origin. The last sleeve may have fewer patches.
+    /// Returns a skin of about `n_taxels` taxels, which covers parallel sleeves along the z axis in rows of twenty. The first sleeve is at the origin, and the
+    /// last one may have fewer patches.
     fn body(&self, n_taxels: usize, taxel: Taxel, pitch: f64) -> Result<(WholeBody, Vec<Pose>)> {
         let (radius, length) = (self.radius(), self.side - pitch);
         let part = Extrusion::cylinder(radius, length, length / radius, pitch)?;

@@ -1,4 +1,4 @@
-//! Sphere models of the objects that touch a body: objects of scenes, built-in objects, and cushions of spheres.
+//! Sphere models of the objects that touch a body: objects of scenes, built-in objects, and squares of spheres (cushions) for scaling series.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -11,7 +11,7 @@ use crate::studies::whole_body::plan::{ScenePlan, WholeBodyPlan};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Returns the spheres of a scene's object, metres.
+/// Returns the object of a scene as a union of spheres, metres, in the frame of the object.
 pub(super) fn of_scene(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<SphereUnion> {
     let reader = Reader {
         check: Check { place: &plan.place },
@@ -35,7 +35,8 @@ pub(super) fn of_scene(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<Sphere
     }
 }
 
-/// Returns the spheres of a built-in object, in metres, with the centre of its bounding box at the origin.
+/// Returns a built-in object as a union of spheres, metres; the centre of its bounding box is the origin. No sphere is farther than `surface_error` from the
+/// surface.
 pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
     let solid = Catalogue::builtin()?.object(name)?.solid.clone();
     let middle = solid.bounds().center();
@@ -43,13 +44,14 @@ pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
     pack(&solid, surface_error)
 }
 
-/// Radius of the spheres of a cushion, divided by their distance. With a larger radius, each taxel is under more spheres.
+/// Radius of the spheres that form a cushion (a square of spheres), divided by the distance between neighbouring spheres. With a larger radius, more spheres
+/// touch each taxel.
 const SPHERE_RADIUS: f64 = 3.0;
-/// Golden ratio: increment of a lattice that is distributed evenly in a square for any number of points.
+/// Golden ratio, which defines the positions of points: multiples of it, modulo 1, spread evenly over a square for any number of points.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Returns a square cushion of n spheres with side length `side`, metres, bent around a cylinder about z, with its centre at +x. Half of the spheres touch the
-/// cylinder from outside. The other half is on the far side of the cushion, half a side length away.
+/// Returns a cushion: a square of `n` spheres with side length `side`, metres, bent around a cylinder about z, with its centre at +x. One half of the spheres
+/// touch the cylinder (radius `cylinder`, metres) from outside. The other half lie farther out by half a side length.
 pub(super) fn cushion(n: usize, side: f64, cylinder: f64) -> Result<SphereUnion> {
     let n_inside = n.div_ceil(2);
     let radius = SPHERE_RADIUS * side / (n_inside as f64).sqrt();

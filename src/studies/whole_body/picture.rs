@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Contents of the picture of a scene, in the world frame.
 struct SceneView {
-    /// Points on the skin, metres, some millimetres apart, each with the mean pressure on its patch (force divided by area), Pa.
+    /// Points on the skin, metres, a few millimetres apart. The second value of each is the mean pressure on its patch (force divided by area), Pa.
     skin: Vec<(DVec3, f64)>,
     /// Positions of touched taxels, metres.
     touched: Vec<DVec3>,
@@ -27,17 +27,20 @@ struct SceneView {
 const PICTURE_PITCH: f64 = 4e-3;
 /// Width and height of a panel, pixels.
 const PANEL: [usize; 2] = [600, 900];
-/// Colours (RGB) of untouched skin and of touched taxels.
+/// Colour of untouched skin, as red, green and blue.
 const BARE: [u8; 3] = [226, 214, 200];
+/// Colour of touched taxels, as red, green and blue.
 const TOUCHED: [u8; 3] = [0xd5, 0x5e, 0x00];
 /// Radius of a drawn point of the skin, metres; neighbouring points overlap. Touched taxels are drawn slightly above the skin.
 const SKIN_RADIUS: f64 = 3.4e-3;
 const TOUCHED_RADIUS: f64 = 3.8e-3;
-/// Viewing direction, radians: azimuth to the right of the robot's front, and elevation.
+/// Azimuth of the viewing direction to the right of the robot's front, radians.
 const AZIMUTH: f64 = 0.7;
+/// Elevation of the viewing direction above the horizontal plane, radians.
 const ELEVATION: f64 = 0.3;
 
-/// Returns the picture of the scene with the most touched patches (the last in a tie); `None` if no scene has a touched taxel.
+/// Returns the picture of the scene with the most touched patches; if several scenes have equally many, the last one is shown. Returns `None` if no scene has a
+/// touched taxel.
 ///
 /// # Errors
 /// If the scene cannot be simulated.

@@ -39,13 +39,14 @@ pub struct WholeBodyPlan {
     pub side: f64,
     /// Duration of a simulated step, seconds.
     pub dt: f64,
-    /// Maximum distance between an object's spheres and its surface, metres.
+    /// Maximum distance between the surface of an object and the surface of its sphere model, metres.
     pub surface_error: f64,
     /// Scenes in the order of the study file.
     pub scenes: Vec<ScenePlan>,
-    /// Compressions by name (`sbhe_32`, `sparse`), each with the number of taxels in a Hadamard block; `None` for very sparse rows.
+    /// Compressions (measurement matrices), each with its name and the number of taxels in a Hadamard block. The name is `sbhe_` and this number, or `sparse`;
+    /// the number is `None` for very sparse rows.
     pub compressions: Vec<(String, Option<usize>)>,
-    /// Target of the objects to recognise.
+    /// Target position and approach direction of the objects that are recognised.
     pub aim: Aim,
 }
 
@@ -54,26 +55,26 @@ pub struct WholeBodyPlan {
 pub struct ScenePlan {
     /// Specification as written in the study file.
     pub spec: BodySceneSpec,
-    /// Target and motion of the object.
+    /// Target position, approach direction and motion of the object.
     pub aim: Aim,
     /// Joint positions of the robot, radians or metres.
     pub positions: Vec<f64>,
 }
 
-/// Target of an object in the frame of a link.
+/// Target position, approach direction and motion of an object in the frame of a robot link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
     /// Index of the robot link.
     pub link: usize,
-    /// Direction from the target to the start of the approach, a unit vector.
+    /// Direction from the target to the point where the approach starts, a unit vector.
     pub from: DVec3,
     /// Motion of the object in the frame of the link.
     pub motion: Oscillation,
 }
 
-/// Maximum number of steps of a scene; the times of all steps are in memory.
+/// Maximum number of measured steps of a scene; the times of all steps are in memory together.
 const MAX_STEPS: usize = 10_000_000;
-/// Maximum number of spheres of a cushion.
+/// Maximum number of spheres of an object in a scaling series.
 const MAX_SPHERES: usize = 10_000_000;
 
 /// Keys of `[whole_body]`.
@@ -179,13 +180,13 @@ impl WholeBodyPlan {
         &self.spec.whole_body.recognition
     }
 
-    /// Returns the number of measured steps for each scene and each size of a scaling series.
+    /// Returns the number of measured steps for each scene, and for each size of a scaling series.
     pub fn n_steps(&self) -> usize {
         self.spec.whole_body.steps
     }
 }
 
-/// Name of the covered robot, for the key `robot` of objects.
+/// Value of the key `robot` of an object in a scene: the name of the robot that is covered with skin.
 const ROBOT: &str = "robot";
 
 fn scene_plan(
@@ -243,7 +244,7 @@ fn scene_plan(
     })
 }
 
-/// Returns the target of the objects to recognise.
+/// Returns the target and approach direction of the objects that are recognised.
 fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot) -> Result<Aim> {
     let key = |name: &str| format!("whole_body.recognition.{name}");
     let at = reader.vector(&key("at_mm"), wanted.at_mm, MM)?;
@@ -254,7 +255,7 @@ fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot)
     })
 }
 
-/// Returns the direction of the approach as a unit vector.
+/// Returns the direction of the approach as a unit vector; an error names the `key` if the vector has no direction.
 fn direction(reader: &Reader, key: &str, from: [f64; 3]) -> Result<DVec3> {
     let direction = reader.vector(key, from, 1.0)?.try_normalize();
     let zero = || {

@@ -26,7 +26,7 @@ pub(super) struct Compression {
     pub score: BodyRecognition,
 }
 
-/// Draws every compression of a robot's skin, and trains a classifier for each on simulated touches.
+/// Draws the measurement matrix of every compression of a robot's skin. For each matrix, trains a classifier on simulated touches.
 pub(super) fn learn(
     plan: &WholeBodyPlan,
     posture: &Posture,
@@ -46,7 +46,7 @@ pub(super) fn learn(
         .collect()
 }
 
-/// Returns the measurement matrix of the sparse ensemble, or of SBHE with Hadamard blocks of `block` taxels.
+/// Returns a measurement matrix for the whole skin: SBHE with Hadamard blocks of `block` taxels, or the sparse ensemble if `block` is `None`.
 fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Result<Columns> {
     let size = (posture.body.n_taxels(), 1);
     let m = plan.spec.whole_body.sensing.measurements;
@@ -58,7 +58,8 @@ fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Res
     Ok(projection.columns())
 }
 
-/// Returns the concatenated measurements of all compressions, one row per touch, ordered by object.
+/// Returns the measurements of all touches with all compressions: one row per touch, ordered by object. In a row, the measurements of the compressions follow
+/// each other.
 fn measure(
     plan: &WholeBodyPlan,
     posture: &Posture,
@@ -97,7 +98,7 @@ fn measure(
     Ok(features)
 }
 
-/// Draws the target pose of an object in a touch (`link_from_object`), and its travel past first contact, metres.
+/// Draws the random pose at which an object touches the skin (`link_from_object`), and how far it travels past the first contact, metres.
 fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
     let wanted = plan.recognition();
     let seed = Seed::new(plan.spec.seed).named("whole_body").named("touch");
@@ -116,7 +117,7 @@ fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
     )
 }
 
-/// Trains a classifier on the first touches of each object and tests it on the other touches.
+/// Trains a classifier on the first touches of each object, and tests it on the object's other touches.
 fn train(
     plan: &WholeBodyPlan,
     name: &str,

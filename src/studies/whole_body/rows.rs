@@ -3,7 +3,7 @@
 use crate::row;
 use serde::{Deserialize, Serialize};
 
-/// Series to which a measured case belongs: scenes, or a scaling series.
+/// Group to which a measured case belongs: the scenes, or one of the scaling series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Series {
@@ -18,11 +18,11 @@ pub enum Series {
 }
 
 row! {
-/// Measured case: a scene, or one size of a scaling series.
+/// Measured case: a scene, or one size in a scaling series.
 pub struct BodyCase {
-    /// Series to which the case belongs.
+    /// Group to which the case belongs: the scenes, or one of the scaling series.
     series: Series => Note;
-    /// Name of the scene or of the size.
+    /// Name of the scene, or of the size in a scaling series.
     name: String => Subject "scene or rung";
     /// Number of taxels of the whole skin.
     n_taxels: usize => Condition "taxels of the body": Log;
@@ -37,21 +37,21 @@ row! {
 pub struct BodyCount {
     /// Number of simulated steps.
     n_steps: usize => Note "steps": Linear;
-    /// Number of deflected taxels, averaged over steps.
+    /// Number of deflected taxels in a step, averaged over steps.
     touched_mean: f64 => Value(Neither) "touched taxels": Log;
     /// Smallest number of deflected taxels in any step.
     touched_min: usize => Note "fewest touched": Linear;
     /// Largest number of deflected taxels in any step.
     touched_max: usize => Note "most touched": Linear;
-    /// Number of taxels at their stroke that the object would push further, averaged over steps.
+    /// Number of saturated taxels, averaged over steps. A saturated taxel has reached its stroke, and the object would push it further.
     saturated_mean: f64 => Value(Neither) "saturated taxels": Linear;
-    /// Number of patches that the contact search visits, averaged over steps.
+    /// Number of patches near the object, for which contact is searched, averaged over steps.
     patches_visited_mean: f64 => Value(Neither) "patches visited": Linear;
     /// Number of patches with a deflected taxel, averaged over steps.
     patches_touched_mean: f64 => Value(Neither) "patches touched": Linear;
-    /// Number of spheres whose taxels were evaluated, summed over patches and averaged over steps.
+    /// Number of pairs of a patch and a sphere for which the deflections of taxels were computed, averaged over steps.
     spheres_evaluated_mean: f64 => Value(Neither) "spheres evaluated": Linear;
-    /// Number of spheres that were rejected before evaluation, summed over patches near the object and averaged over steps.
+    /// Number of pairs of a patch near the object and a sphere that were rejected before deflections were computed, averaged over steps.
     spheres_rejected_mean: f64 => Value(Neither) "spheres rejected": Linear;
     /// Sum of all deflections over taxels and steps, mm.
     deflection_sum_mm: f64 => Note "sum of deflections" in "mm": Linear;
@@ -60,7 +60,7 @@ pub struct BodyCount {
 } }
 
 row! {
-/// Recognition of the object in a scene: a row of `sensed.csv`.
+/// Measured and classified signals of a scene with one compression: a row of `sensed.csv`.
 pub struct BodySensed {
     /// Name of the scene.
     scene: String => Subject;
@@ -68,9 +68,9 @@ pub struct BodySensed {
     compression: String => Choice;
     /// Sum of the magnitudes of all measurements over steps, mm.
     measurement_sum_mm: f64 => Note "sum of measurements" in "mm": Linear;
-    /// Most frequent decision over the steps: the name of an object (the first in a tie).
+    /// Most frequent decision of the classifier over all steps: the name of an object. If two are equally frequent, the one that comes first in the study.
     decision: String => Outcome;
-    /// Fraction of the steps with this decision, 0 to 1.
+    /// Fraction of the steps in which the classifier decides for the object in `decision`, 0 to 1.
     decision_fraction: f64 => Note "share of the steps": Share;
 } }
 
@@ -81,9 +81,9 @@ pub struct BodyRecognition {
     compression: String => Choice;
     /// Number m of measurements per step.
     n_measurements: usize => Choice "measurements": Linear;
-    /// Number of non-zero entries of the measurement matrix Φ per taxel.
+    /// Number of non-zero entries of the measurement matrix Φ, divided by the number of taxels.
     entries_per_taxel: f64 => Cost "entries of a taxel": Log;
-    /// Fraction of the taxels that occur in at least one measurement, 0 to 1.
+    /// Fraction of the taxels whose readings enter at least one measurement, 0 to 1.
     read_fraction: f64 => Note "share of the taxels read": Share;
     /// Memory of the measurement matrix Φ, stored by columns, bytes per taxel.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Log;
@@ -99,11 +99,11 @@ pub struct BodyRecognition {
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the accuracy.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of binary SVMs that stopped at the solver's iteration cap.
+    /// Number of binary SVMs whose training stopped at the solver's maximum number of iterations.
     n_capped: usize => Note "capped SVMs": Linear;
 } }
 
-/// Timed stage of a step.
+/// Part of a step whose computing time is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
@@ -113,14 +113,14 @@ pub enum Stage {
     Compress,
     /// Classification of the measurements by the SVM.
     Classify,
-    /// All three stages together.
+    /// All three stages of a step together: press, compress and classify.
     Whole,
 }
 
 row! {
-/// Timed stage of a step. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
+/// Timed part of a step. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
 pub struct BodyStage {
-    /// Timed stage: press, compress, classify, or all three together.
+    /// Timed part of a step: press, compress, classify, or all three together.
     stage: Stage => Note;
     /// Name of the compression; empty for the stage `press`.
     compression: String => Choice;
@@ -129,7 +129,7 @@ pub struct BodyStage {
 } }
 
 row! {
-/// Number of touched taxels in a step that is timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
+/// Number of touched taxels in steps that are timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
 pub struct BodyTouch {
     /// Number of deflected taxels, averaged over steps and rounded to two digits.
     touched: f64 => Condition "touched taxels, about": Log;
@@ -138,7 +138,7 @@ pub struct BodyTouch {
 } }
 
 row! {
-/// Distribution of the computing time per step.
+/// Median and percentiles of the computing time per step.
 pub struct StepTime {
     /// Median computing time per step, µs.
     us_median: f64 => Cost "time of a step" in "us": Log between [us_p05, us_p95];
@@ -157,7 +157,8 @@ pub struct Driven {
     pub case: BodyCase,
     /// Counts of the simulated case.
     pub count: BodyCount,
-    /// Times of the press, then of all stages of each compression. With several threads, the times of the press on one thread follow.
+    /// Times of the press, followed by the times of all stages for each compression. If a step uses several threads, the times of the press on one thread are
+    /// added at the end.
     pub times: Vec<(BodyStage, StepTime)>,
     /// Recognition results, one for each compression.
     pub sensed: Vec<BodySensed>,

@@ -48,7 +48,7 @@ pub struct WholeBodySpec {
     /// Number of measured steps for each scene and each size of a scaling series, at least 1. Default: 1000.
     #[serde(default = "count::<1000>")]
     pub steps: usize,
-    /// Maximum distance between an object's spheres and its surface, mm, at least 1e-6. Default: 0.25.
+    /// Maximum distance between the surface of an object and the surface of its sphere model, mm, at least 1e-6. Default: 0.25.
     #[serde(default = "default_surface_error_mm")]
     pub surface_error_mm: f64,
     /// Tables `[[whole_body.scenes]]`: the simulated scenes.
@@ -67,8 +67,8 @@ pub struct WholeBodySpec {
 pub struct BodySceneSpec {
     /// Name of the scene.
     pub name: String,
-    /// Constant joint positions of the robot, with the keys of `[robots.joints]` in a scene file and a single time. Joints that are not listed are at 0, or at
-    /// the limit nearest to 0.
+    /// Joint positions of the robot, which stay constant, with the keys of `[robots.joints]` in a scene file and a single time. A joint that is not listed is
+    /// at 0, or at its limit nearest to 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
     /// Object that touches the skin, with the keys of `[[objects]]` in a scene file. Its `link` is a link of the covered robot. Its `motion` can only be an
@@ -91,7 +91,7 @@ pub struct BodySensingSpec {
     /// Ensembles of the measurement matrix to compare: `sbhe` and `sparse`. Only these ensembles have sparse matrices.
     #[schemars(with = "Vec<Names<Ensemble>>")]
     pub ensembles: Vec<Ensemble>,
-    /// Numbers of taxels in a Hadamard block, powers of two; each number defines one compression. Default: 32.
+    /// Numbers of taxels in a Hadamard block, each a power of two. Each number defines one compression of the ensemble `sbhe`. Default: 32.
     #[serde(default = "default_blocks")]
     pub sbhe_blocks: Vec<usize>,
 }
@@ -104,18 +104,18 @@ pub struct BodyRecognitionSpec {
     pub objects: Vec<String>,
     /// Name of the robot link in whose frame the objects are placed.
     pub link: String,
-    /// Target of the approach in the link's frame, mm.
+    /// Position in the link's frame that the objects approach, mm.
     pub at_mm: [f64; 3],
     /// Direction from the target to the start of the approach, in the link's frame. Default: +x.
     #[serde(default = "default_from")]
     pub from: [f64; 3],
-    /// Maximum random offset from the target across the approach, mm, at least 0. Default: 0.
+    /// Maximum random offset of an object from the target, perpendicular to the approach, mm, at least 0. Default: 0.
     #[serde(default)]
     pub offset_mm: f64,
-    /// Maximum random rotation about the link's z axis, degrees, at least 0. Default: 0.
+    /// Maximum random rotation of an object about the link's z axis, degrees, at least 0. Default: 0.
     #[serde(default)]
     pub yaw_deg: f64,
-    /// Lower and upper bound of the random travel past first contact, mm.
+    /// Lower and upper bound of the random distance that an object travels past first contact, mm.
     pub depth_mm: [f64; 2],
     /// Number of training touches per object, at least 1.
     pub training_touches: usize,
@@ -127,14 +127,14 @@ pub struct BodyRecognitionSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LaddersSpec {
-    /// Numbers of taxels of the skins in the series of growing skins.
+    /// Total number of taxels of each skin in the series of growing skins.
     pub taxels: Vec<usize>,
-    /// Approximate numbers of touched taxels for each of these skins, if the skin is large enough.
+    /// Approximate numbers of touched taxels in the series of growing skins. Each skin is timed with each number that it is large enough for.
     pub touched_at_taxels: Vec<usize>,
     /// Approximate numbers of touched taxels in the series of growing touches.
     pub touched: Vec<usize>,
-    /// Numbers of spheres in the series of growing objects; half of the spheres are on the far side. The series of growing skins and of growing touches use the
-    /// first number.
+    /// Number of spheres of each object in the series of growing objects; half of the spheres are on the side away from the skin. The series of growing skins
+    /// and of growing touches use the first number.
     pub spheres: Vec<usize>,
     /// Approximate number of touched taxels in the series of growing objects.
     pub touched_at_spheres: usize,

@@ -37,7 +37,8 @@ struct SensedStep {
 }
 
 impl Drive<'_> {
-    /// Simulates and times the steps of the path after some warm-up steps. With several threads, the path is also simulated on one thread.
+    /// Simulates and times the steps along the path after some warm-up steps. If a step may use several threads, the path is simulated a second time on one
+    /// thread.
     pub fn run(
         &mut self,
         plan: &WholeBodyPlan,
@@ -159,7 +160,7 @@ fn count(steps: &[Step], bytes_per_taxel: f64) -> BodyCount {
     }
 }
 
-/// Returns the most frequent decision over the steps of a scene (the first object in a tie).
+/// Returns the decision that is most frequent over the steps of a scene; if two are equally frequent, the object that comes first.
 fn decision(
     plan: &WholeBodyPlan,
     (scene, compression): (&str, &str),

@@ -119,7 +119,7 @@ impl Study for WholeBodyPlan {
         }
     }
 
-    /// Compressions and scenes depend on all training inputs; scaling series do not.
+    /// Returns all work items. Names of the items for compressions and scenes depend on all training inputs; names of the items for scaling series do not.
     fn work_items(&self) -> Vec<WorkItem> {
         let compressions = self
             .compressions
@@ -219,7 +219,7 @@ impl WholeBodyPlan {
         ladders.map_or_else(Vec::new, rungs)
     }
 
-    /// Returns the robot covered with skin of this pitch (metres).
+    /// Returns the robot covered with skin, whose neighbouring taxels are `pitch` metres apart.
     pub(super) fn cover(&self, pitch: f64) -> Result<CoveredRobot> {
         let cover = match self.spec.whole_body.flat_ends {
             true => CoveredRobot::with_flat_ends,
@@ -244,7 +244,7 @@ impl WholeBodyPlan {
         })
     }
 
-    /// Returns the object of a scene at the start of its path; an error names the scene.
+    /// Returns the object of a scene at the start of its path; an error message names the scene.
     pub(super) fn begin<'a>(
         &self,
         scene: &ScenePlan,
