@@ -5,12 +5,12 @@ use crate::dual::DualSolution;
 /// A binary problem of a multi-class SVM and its solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinaryProblem {
-    /// Positive class: its rows have y = +1.
+    /// Position of the positive class: in this problem, its rows have the label +1.
     pub positive: usize,
-    /// Negative class: its rows have y = −1. `None` if all other classes are negative.
+    /// Position of the negative class, whose rows have the label −1. `None` if all classes except the positive class are negative.
     pub negative: Option<usize>,
-    /// Rows of the problem, as indices of training rows.
+    /// Indices of the training rows that belong to the two classes of the problem.
     pub rows: Vec<usize>,
-    /// Solution of the dual problem; its coefficients are in the order of `rows`.
+    /// Solution of the dual problem, with one coefficient per entry of `rows`.
     pub solution: DualSolution,
 }

@@ -9,8 +9,8 @@ use crate::predict::voting::first_maximum;
 
 /// Trained classifier that computes one score per class.
 ///
-/// Scores are additive: the sum of the scores of k touches of one object is the score of all touches. A probabilistic model therefore returns
-/// `ln p(x | class)` up to a constant per row. The log-prior `ln p(class)` is separate and is added once for all summed touches.
+/// Scores are additive: the sum of the scores of k touches of one object is the score of all k touches together. A probabilistic model therefore returns `ln
+/// p(x | class)` up to a constant per row x. The log-prior `ln p(class)` is separate and is added once for all summed touches.
 pub trait ClassModel: Debug + Send + Sync {
     /// Returns the class labels of the training rows, ascending. Every predicted label is one of them.
     fn classes(&self) -> &[usize];
@@ -26,7 +26,7 @@ pub trait ClassModel: Debug + Send + Sync {
         None
     }
 
-    /// Returns the number of optimisation problems that stopped at their iteration cap before reaching the tolerance.
+    /// Returns how many of the optimisation problems solved in training stopped at their iteration cap before reaching the tolerance.
     fn n_capped(&self) -> usize {
         0
     }
@@ -54,9 +54,9 @@ pub trait ClassModel: Debug + Send + Sync {
     }
 }
 
-/// Returns `ln((votes + 1) / (total votes + n_classes))` for each class and row (Laplace's rule of succession).
+/// Converts vote counts (one per row and class) to scores: `ln((votes + 1) / (total votes + n_classes))` (Laplace's rule of succession).
 ///
-/// A class without votes has a finite score; a score of −∞ would exclude the class in all further touches. The order and ties of the votes are preserved.
+/// A class without votes has a finite score; a score of −∞ would exclude the class in all further touches. Classes keep the order and the ties of their votes.
 pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     for mut row in votes.axis_iter_mut(Axis(0)) {
         let all = row.sum() + row.len() as f64;
@@ -65,7 +65,7 @@ pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     votes
 }
 
-/// Returns the log-prior `ln(n_k / n_rows)` of each class k, where n_k is its number of training rows.
+/// Returns the log-prior of each class: the logarithm of the fraction of training rows that have the label of the class.
 pub fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1<f64> {
     let share = |class: &usize| {
         let n_class = labels.iter().filter(|&label| label == class).count();

@@ -71,7 +71,7 @@ pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
 /// Returns whether all values are finite. The loop has no early exit, so that it runs in vector instructions.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub fn all_finite(values: &[f64]) -> bool {
-    /// Exponent bits of an f64; all of them are set only in NaN and infinities.
+    /// Exponent bits of an f64; all of them are 1 only in NaN and in infinities.
     const EXPONENT: u64 = 0x7ff << 52;
     let mut is_bad = 0;
     for value in values {
@@ -140,7 +140,7 @@ pub fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
     Ok(classes)
 }
 
-/// Returns the position of each row's label in `classes`, which is ascending and contains every label.
+/// For each row, returns the position of its label in the ascending list `classes`, which contains every label.
 pub fn positions(labels: ArrayView1<usize>, classes: &[usize]) -> Vec<usize> {
     labels
         .iter()

@@ -148,7 +148,7 @@ fn variance(features: ArrayView2<f64>) -> f64 {
     features.rows().into_iter().map(of_row).sum::<f64>() / n
 }
 
-/// Returns `Σ (x − mean)²`.
+/// Returns the sum of the squared differences between the values and `mean`.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn squares_about(mean: f64, values: &[f64]) -> f64 {
     let (lanes, last) = values.as_chunks::<8>();
@@ -172,8 +172,8 @@ pub(crate) enum KernelFunction {
 }
 
 impl KernelFunction {
-    /// Returns an error if kernel values can overflow, given the largest squared norm of a row. No kernel value exceeds `K(x, x)` of the row with the largest
-    /// norm, and no squared distance exceeds four times the largest squared norm.
+    /// Returns an error if kernel values can overflow; `norm` is the largest squared norm of a row. No kernel value exceeds `K(x, x)` of the row x with the
+    /// largest norm, and no squared distance exceeds four times this norm.
     fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,
@@ -203,8 +203,8 @@ impl KernelFunction {
         }
     }
 
-    /// Returns the centre that is subtracted from all rows: the mean of the rows if a constant added to all features changes only ρ, otherwise the origin.
-    /// Products of rows about the mean are small and lose fewer digits.
+    /// Returns the centre that is subtracted from all rows. If a constant added to all features changes only the offset ρ, this is the mean of the rows,
+    /// otherwise the origin. Products of rows about the mean are small and lose fewer digits.
     pub fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
         match self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => statistics.mean.clone(),
@@ -212,7 +212,7 @@ impl KernelFunction {
         }
     }
 
-    /// Returns the largest `K(x, x)`, given the largest squared distance of a row from the centre; `None` if f32 is not accurate enough.
+    /// Returns an upper bound of `K(x, x)` over all rows x, given their largest squared distance from the centre. Returns `None` if f32 is not accurate enough.
     pub fn largest_in_single(&self, farthest: f64) -> Option<f64> {
         match *self {
             Self::Linear => Some(farthest),
@@ -258,7 +258,7 @@ impl KernelFunction {
         with_each_other(rows, |left, right, to| self.pairwise(left, right, to))
     }
 
-    /// Returns `K(x, x)`, given the squared norm of x.
+    /// Returns the kernel value `K(x, x)` of a row x with itself, given the squared norm of x.
     pub fn of_norm<T: Scalar>(&self, norm: T) -> T {
         match *self {
             Self::Linear => norm,
@@ -275,7 +275,7 @@ impl KernelFunction {
         }
     }
 
-    /// Replaces pairwise products (or L1 distances) of one row by kernel values, given the squared norms of this row and of the other rows.
+    /// Converts the inner products (or L1 distances) of one row with other rows to kernel values; `norm` and `norms` are their squared norms.
     pub fn of_pairwise<T: Scalar>(&self, pairwise: &mut [T], norm: T, norms: &[T]) {
         match *self {
             Self::Linear => {}
@@ -293,7 +293,7 @@ impl KernelFunction {
     }
 }
 
-/// Replaces each product p by the polynomial kernel value `(γ p + c₀)^d`.
+/// Replaces each inner product p by the value `(γ p + c₀)^d` of a polynomial kernel; `base` is (γ, c₀), and `degree` is d.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn polynomials<T: Scalar>(products: &mut [T], base: (T, T), degree: u32) {
     let (lanes, last) = products.as_chunks_mut::<16>();
@@ -305,7 +305,7 @@ fn polynomials<T: Scalar>(products: &mut [T], base: (T, T), degree: u32) {
     }
 }
 
-/// Computes `(γ p + c₀)^d` for N products p in parallel, by repeated squaring.
+/// Returns the polynomial kernel values `(γ p + c₀)^d` of N inner products p, computed in parallel by repeated squaring.
 #[inline(always)]
 fn powers<T: Scalar, const N: usize>(
     mut values: [T; N],
@@ -327,7 +327,7 @@ fn powers<T: Scalar, const N: usize>(
     powers
 }
 
-/// Replaces each product x·z by the squared distance `|x|² + |z|² − 2 x·z`, at least 0.
+/// Replaces each inner product of a row x with a row z by their squared distance `|x|² + |z|² − 2 x·z`, at least 0.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 fn distances<T: Scalar>(products: &mut [T], norm: T, norms: &[T]) {
     let two = T::one() + T::one();

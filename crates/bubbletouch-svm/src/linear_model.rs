@@ -5,17 +5,17 @@ use ndarray::{Array1, Array2, ArrayView2};
 use crate::Result;
 use crate::dataset::check_width;
 
-/// Linear model with the scores `score_k(x) = w_k·x + b_k`.
+/// Linear model, which computes the score `w_k·x + b_k` of each class k from the features x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearModel {
-    /// Weights w, shape n_classes × m, in inverse feature units.
+    /// Weights of the features per class, shape n_classes × m, in inverse feature units.
     pub weights: Array2<f64>,
-    /// Biases b, shape (n_classes,), dimensionless.
+    /// Constant part of the score of each class, shape (n_classes,), dimensionless.
     pub bias: Array1<f64>,
 }
 
 impl LinearModel {
-    /// Returns the scores `w_k·x + b_k`, shape n_rows × n_classes.
+    /// Returns the score of each class for each row of features, shape n_rows × n_classes.
     ///
     /// # Errors
     /// If the number of columns differs from the weights, or a feature is NaN or infinite.

@@ -8,12 +8,12 @@ use crate::dataset::check_features;
 /// Number of parallel partial sums, so that no addition has to wait for the previous one.
 const LANES: usize = 8;
 
-/// Statistics of training rows (n × m).
+/// Mean and largest norm of the training rows (n × m).
 #[derive(Clone, Debug)]
 pub(crate) struct RowStatistics {
-    /// Mean of the rows (m).
+    /// Mean of all rows (m values).
     pub mean: Array1<f64>,
-    /// Largest squared norm of a row; infinite if it exceeds the range of f64.
+    /// Largest squared norm of a row; infinite if the value exceeds the range of f64.
     pub largest_norm: f64,
 }
 

@@ -21,12 +21,12 @@ pub enum Scaling {
     Overall,
 }
 
-/// Scaling fitted to training rows: `x ↦ (x − offset) / scale`, per feature.
+/// Scaling fitted to training rows: from each feature, its offset is subtracted; the result is divided by the scale of the feature.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedScaling {
     /// Offset subtracted from each feature (m), in feature units.
     pub offset: Array1<f64>,
-    /// Divisor of each feature (m), in feature units; 1 if the feature is constant (its scaled value is 0).
+    /// Divisor of each feature (m), in feature units; 1 if the feature is constant.
     pub scale: Array1<f64>,
 }
 
@@ -72,7 +72,7 @@ impl FittedScaling {
         Ok((&features - &self.offset) / &self.scale)
     }
 
-    /// Returns whether the scaling is the identity.
+    /// Returns whether the scaling leaves all features unchanged.
     pub fn changes_nothing(&self) -> bool {
         self.offset.iter().all(|&offset| offset == 0.0)
             && self.scale.iter().all(|&scale| scale == 1.0)

@@ -15,8 +15,8 @@ use crate::{Error, Result};
 /// Training rows and test rows, by index.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Split {
-    /// Training rows in drawing order: the classes alternate, and the rows of each class are shuffled. A smaller training set is therefore a prefix of a larger
-    /// one.
+    /// Training rows in drawing order: the classes alternate, and the rows of each class are shuffled. A smaller training set is therefore the start of a
+    /// larger one.
     pub train: Vec<usize>,
     /// Test rows, ascending.
     pub test: Vec<usize>,
@@ -64,7 +64,7 @@ impl Split {
     }
 }
 
-/// Assignment of a row in a hold-out split.
+/// Assignment of a row to the training rows, the test rows or neither.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The row is a training row.
@@ -236,7 +236,7 @@ fn check_groups_of_classes(
     }
 }
 
-/// Returns the rows of each class, shuffled by the random stream of the class.
+/// For each class, returns its rows, shuffled by the random stream of the class.
 fn draw_rows(labels: ArrayView1<usize>, seed: &dyn Streams) -> BTreeMap<usize, Vec<usize>> {
     let mut drawn = BTreeMap::<usize, Vec<usize>>::new();
     for (row, &class) in labels.iter().enumerate() {
@@ -248,7 +248,8 @@ fn draw_rows(labels: ArrayView1<usize>, seed: &dyn Streams) -> BTreeMap<usize, V
     drawn
 }
 
-/// Returns the groups of each stratum (groups with equal sets of classes); strata of a single group are pooled into the last stratum.
+/// Returns the groups of each stratum, where a stratum is a set of groups that contain equal sets of classes. Strata of a single group are pooled into the last
+/// stratum.
 fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize>> {
     let mut classes_of = BTreeMap::<usize, Vec<usize>>::new();
     for (&class, &group) in labels.iter().zip(groups) {
@@ -296,7 +297,8 @@ fn side(is_test: bool) -> Side {
     }
 }
 
-/// Creates a split with interleaved training rows and sorted test rows; returns an error if a class has no training or no test row.
+/// Creates a split whose training rows alternate between the classes and whose test rows are sorted. Returns an error if a class has no training or no test
+/// row.
 fn split(
     labels: ArrayView1<usize>,
     drawn: &BTreeMap<usize, Vec<usize>>,

@@ -16,7 +16,7 @@ pub trait Streams {
     fn rng(&self) -> ChaCha8Rng;
 }
 
-/// Streams of a seed: words and numbers are hashed into the seed (FNV-1a).
+/// Random streams of a numeric seed: words and numbers are hashed into the seed (FNV-1a).
 impl Streams for u64 {
     fn named(&self, word: &str) -> Box<dyn Streams> {
         Box::new(hash(*self, word.as_bytes()))

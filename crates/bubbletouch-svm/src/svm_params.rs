@@ -19,7 +19,7 @@ use crate::smo::SolverScalar;
 use crate::training::Goal;
 use crate::{Error, Result};
 
-/// Solver of the binary problems.
+/// Solver that trains the binary classifiers of an SVM.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
@@ -32,16 +32,16 @@ pub enum Solver {
     CoordinateDescent,
 }
 
-/// Number of rows below which kernel values are always f64, because f64 then costs little time.
+/// Number of training rows below which kernel values are always f64, because f64 then costs little time.
 const SINGLE_FROM_ROWS: usize = 1000;
 /// Minimum tolerance for f32 kernel values; smaller tolerances are near the rounding error of f32.
 const SINGLE_TOLERANCE: f64 = 1e-4;
 /// Maximum of C · K(x, x), and of K(x, x), for f32 kernel values. Coefficients of up to C multiply the rounding error of K, which is 6e-8 of K.
 const SINGLE_MOST: f64 = 1e5;
-/// Default memory limit of the kernel values, bytes: one-vs-rest on 16,384 rows in f32.
+/// Default memory limit of the kernel values, bytes: 2 GiB, enough for one-vs-rest on 16,384 rows in f32.
 pub const DEFAULT_MEMORY_BYTES: usize = 2 << 30;
 
-/// Parameters of a soft-margin SVM.
+/// Parameters of a soft-margin SVM, which is trained by [`train`](SvmParams::train).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SvmParams {
     /// Kernel function.
@@ -53,7 +53,7 @@ pub struct SvmParams {
     pub c: f64,
     /// Stopping tolerance, above 0: the largest violation of the optimality (KKT) conditions, in units of the decision value. LIBSVM's default is 1e-3.
     pub tolerance: f64,
-    /// Solver of the binary problems.
+    /// Solver that trains the binary classifiers.
     pub solver: Solver,
     /// Maximum size of the kernel values in memory at one time, bytes. If the kernel values do not fit, rows are computed on demand and the most recent rows
     /// are cached. Training is then slower, with equal solutions.
@@ -74,7 +74,7 @@ impl Default for SvmParams {
     }
 }
 
-/// Training rows, their classes, the kernel, and the centre of the rows.
+/// Training rows, their class labels, the kernel, and the centre that is subtracted from the rows.
 type Sorting<'a> = (
     &'a Dataset,
     &'a [usize],

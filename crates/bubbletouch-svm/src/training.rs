@@ -24,19 +24,19 @@ use crate::screening::near_margin::NearMargin;
 use crate::smo::Smo;
 use crate::smo::SolverScalar;
 
-/// Minimum number of features for screening (one-vs-one linear SVMs solved on the rows near their margins).
+/// Minimum number of features for screening, which solves each one-vs-one linear SVM on the rows near its margin.
 const SCREENING_FROM_FEATURES: usize = 128;
-/// Minimum mean number of rows per class for screening; with fewer rows, screening omits little.
+/// Minimum mean number of rows per class for screening (training on the rows near the margin); with fewer rows, few rows would be omitted.
 const SCREENING_FROM_ROWS: usize = 64;
 
-/// Solved problems of all classes for one C.
+/// Solved binary problems of all classes for one C.
 pub(crate) struct Trained<T> {
     pub problems: Vec<BinaryProblem>,
-    /// Normals of the hyperplanes about the centre (n_problems × m); `None` if the solver did not compute them.
+    /// Normals of the decision hyperplanes for rows minus their centre (n_problems × m); `None` if the solver did not compute them.
     pub normals: Option<Array2<T>>,
 }
 
-/// Goal of training: penalties C, tolerance and memory limit.
+/// Inputs of training besides the rows: penalties C, tolerance and memory limit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal<'a> {
     /// Penalties C, in the order of solution; each solution starts from the previous one.
@@ -68,7 +68,7 @@ impl<T: SolverScalar> Sorted<T> {
         Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory
     }
 
-    /// Returns whether screening is faster than computing the products of all rows.
+    /// Returns whether screening (training on the rows near each margin) is faster than computing the inner products of all rows.
     fn is_worth_screening(&self, memory: usize) -> bool {
         let most = || NearMargin::most_bytes(self);
         self.kernel() == KernelFunction::Linear
@@ -206,7 +206,7 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// Solves one problem on the given sorted rows, for each C of the path.
+    /// For each C of the path, solves one binary problem on the given sorted rows.
     fn solve<G: Gram<T>>(
         &self,
         gram: &mut G,
@@ -222,7 +222,7 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// Creates a problem on the given sorted rows from its solution about the centre of the rows.
+    /// Creates a binary problem with its solution; the solution's offset refers to rows minus their centre and is converted to the original rows.
     fn problem(
         &self,
         rows: &[usize],
@@ -247,7 +247,7 @@ fn without_normals<T>(problems: Vec<Vec<BinaryProblem>>) -> Vec<Trained<T>> {
     problems.into_iter().map(trained).collect()
 }
 
-/// Sorts the problems of each C in the order of their classes.
+/// For each C, sorts the problems in the order of their classes.
 fn in_order(problems: &mut [Vec<BinaryProblem>]) {
     for problems in problems {
         problems.sort_by_key(|problem| (problem.positive, problem.negative));

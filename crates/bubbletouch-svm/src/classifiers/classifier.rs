@@ -38,14 +38,14 @@ pub enum Cost {
     Chosen(Candidates),
 }
 
-/// Number of cross-validation folds for the choice of C and γ, if no folds are given; equals scikit-learn's default.
+/// Default number of cross-validation folds for the choice of C and γ: 5, as in scikit-learn.
 const FOLDS: usize = 5;
 
 /// Kind of classifier and its parameters. Fields that the kind does not use are ignored, for example the solver of a random forest. Only SVMs and logistic
 /// regression use C.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Classifier {
-    /// Kind of classifier.
+    /// Kind of classifier, for example a linear SVM or a random forest.
     pub kind: ClassifierKind,
     /// Scaling of the features, fitted on the training rows.
     pub scaling: Scaling,
@@ -173,7 +173,7 @@ impl Classifier {
         choose_c(train, &scaled, folds, &candidates.c)
     }
 
-    /// Returns a copy of the classifier with the chosen C and γ.
+    /// Returns a copy of the classifier with C and γ fixed to the chosen values.
     pub fn with_choice(&self, chosen: &Chosen) -> Self {
         Self {
             c: Cost::Fixed(chosen.best.c),
@@ -184,7 +184,7 @@ impl Classifier {
         }
     }
 
-    /// Trains the classifier with its fixed C, if the kind has a C.
+    /// Trains the classifier with its fixed penalty C, or without C if the kind of classifier does not use one.
     fn train_without_choice(
         &self,
         training: &Dataset,
@@ -252,7 +252,7 @@ impl Classifier {
         Ok(TrainedClassifier::new(scaling, model, c, chosen))
     }
 
-    /// Trains the model on scaled rows, with penalty C if the kind has one.
+    /// Trains the model on scaled rows; `c` is the penalty C, or `None` if the kind of classifier has no penalty.
     fn train_model(&self, scaled: &Dataset, c: Option<f64>, seed: &dyn Streams) -> Result<Model> {
         let c = c.unwrap_or(1.0);
         Ok(match self.kernel_svm(c) {
@@ -261,7 +261,7 @@ impl Classifier {
         })
     }
 
-    /// Trains a linear SVM by coordinate descent, without a kernel matrix.
+    /// Trains a linear SVM by coordinate descent, which needs no kernel matrix.
     pub(crate) fn train_kernel_free(
         &self,
         scaled: &Dataset,
@@ -342,7 +342,7 @@ where
     Ok(labels)
 }
 
-/// Returns an error of this crate unchanged; converts an error of another crate into an input error of its classifier.
+/// Returns an error of this crate unchanged; converts any other error into an input error that contains its message.
 fn own_or_wrapped(error: impl std::error::Error + 'static) -> Error {
     let error: Box<dyn std::error::Error> = Box::new(error);
     match error.downcast::<Error>() {

@@ -11,9 +11,9 @@ use crate::streams::Streams;
 use std::fmt;
 use std::sync::Arc;
 
-/// Descriptor of a kind of classifier.
+/// Descriptor of a kind of classifier: its name in words, its parameters and its training function.
 pub struct ClassifierAbout {
-    /// Common name of the classifier in words.
+    /// Common name of the kind of classifier, for example in tables and charts.
     pub words: &'static str,
     /// Whether the classifier has a soft-margin penalty C.
     pub has_c: bool,
@@ -25,7 +25,7 @@ pub struct ClassifierAbout {
     pub train: Train,
 }
 
-/// Type of the functions that train a classifier without a kernel matrix.
+/// Type of the functions that train a classifier on scaled rows with a given penalty C and random seed, without a kernel matrix.
 pub type Train = fn(&Classifier, &Dataset, f64, &dyn Streams) -> Result<Arc<dyn ClassModel>>;
 
 impl ClassifierAbout {
@@ -108,10 +108,10 @@ macro_rules! classifiers {
         }
 
         impl ClassifierKind {
-            /// All kinds of classifiers.
+            /// All kinds of classifiers, in the order of their declaration.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// Name in a study and common name in words of each kind of classifier.
+            /// Names of all kinds of classifiers: the name in a study file and the common name in words.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
             /// Returns the descriptor of the kind.

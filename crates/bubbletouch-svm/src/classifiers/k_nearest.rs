@@ -27,7 +27,7 @@ pub struct KNearest {
     classes: Vec<usize>,
     /// Training rows, n_rows × m.
     rows: Array2<f64>,
-    /// Index in `classes` of each training row's label.
+    /// Class of each training row, as an index in `classes`.
     label: Vec<usize>,
     squared_norms: Array1<f64>,
 }
@@ -66,7 +66,7 @@ impl KNearest {
         })
     }
 
-    /// Returns the nearest training rows of each row, nearest first (n_rows × n_neighbours).
+    /// For each row of features, returns the indices of the nearest training rows, nearest first (n_rows × n_neighbours).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.
@@ -94,7 +94,7 @@ impl KNearest {
         Ok(neighbours)
     }
 
-    /// Returns the nearest training rows of one row, given the products of this row with all training rows.
+    /// Returns the indices of the training rows nearest to one row, given the inner products of this row with all training rows.
     fn nearest(&self, row: ArrayView1<f64>, products: ArrayView1<f64>) -> Vec<usize> {
         let norm = row.dot(&row);
         let rough = |other: usize| norm + self.squared_norms[other] - 2.0 * products[other];

@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 
 use ndarray::Array1;
 
-/// Number of stored pairs of steps and gradient changes: 10, as in SciPy. With a larger value, more memory is used; with a smaller value, more iterations are
-/// needed.
+/// Number of recent steps that L-BFGS stores together with their changes of the gradient: 10, as in SciPy. With a larger value, more memory is used; with a
+/// smaller value, more iterations are needed.
 const MEMORY: usize = 10;
 
-/// Minimum decrease of a step as a fraction of the predicted decrease (Armijo's condition).
+/// Minimum decrease of the function in an accepted step, as a fraction of the decrease that the gradient predicts (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
 /// Relative changes of the function value below this limit are rounding errors.
@@ -22,7 +22,7 @@ const MAX_HALVINGS: usize = 40;
 pub(crate) struct Minimum {
     pub at: Array1<f64>,
     pub n_iterations: usize,
-    /// Whether the minimisation stopped before reaching its tolerance: at the iteration cap, or because rounding hides any decrease.
+    /// Whether the minimisation stopped before reaching its tolerance: at the iteration cap, or because rounding errors hide any further decrease.
     pub is_capped: bool,
 }
 
@@ -88,7 +88,8 @@ pub fn minimise(
     unreachable!("the last iteration returns")
 }
 
-/// Returns the search direction `−H g`, where H is the inverse Hessian estimated from the pairs (s, y), by the two-loop recursion.
+/// Returns the L-BFGS search direction `−H g`, where g is the gradient and H the inverse Hessian. The two-loop recursion estimates H from pairs (step, change
+/// of the gradient).
 fn direction(pairs: &VecDeque<(Array1<f64>, Array1<f64>)>, gradient: &Array1<f64>) -> Array1<f64> {
     let mut direction = -gradient;
     let mut factors = Vec::with_capacity(pairs.len());

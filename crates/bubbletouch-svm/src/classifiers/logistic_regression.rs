@@ -28,7 +28,7 @@ pub struct LogisticParams {
     /// Stopping tolerance, above 0: the largest component of the gradient of the mean loss (the objective divided by `C n_rows`). scikit-learn's default is
     /// 1e-4.
     pub tolerance: f64,
-    /// Maximum number of iterations; beyond it, the solver stops and marks the model as capped.
+    /// Maximum number of iterations. If it is reached, the solver stops and the model is marked as capped.
     pub max_iterations: usize,
 }
 
@@ -43,7 +43,7 @@ impl Default for LogisticParams {
     }
 }
 
-/// Trained logistic regression. Scores are `ln p(k | x) − ln p(k)`, where p(k) is the fraction of training rows of class k.
+/// Trained logistic regression. The score of class k for features x is `ln p(k | x) − ln p(k)`, where p(k) is the fraction of training rows of class k.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Logistic {
     classes: Vec<usize>,
@@ -98,7 +98,7 @@ impl Logistic {
         &self.model
     }
 
-    /// Returns the number of iterations that the solver took.
+    /// Returns the number of iterations that training took.
     pub fn n_iterations(&self) -> usize {
         self.n_iterations
     }
@@ -132,7 +132,7 @@ impl ClassModel for Logistic {
     }
 }
 
-/// Splits the solver's parameter vector into weights (n_classes × m) and biases (n_classes).
+/// Splits the solver's parameter vector into the weights (n_classes × m) and the biases (n_classes,) of the model.
 fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayView1<f64>) {
     let (weights, bias) = vector.split_at(Axis(0), vector.len() - n_classes);
     let m = weights.len() / n_classes;
@@ -174,7 +174,7 @@ fn mean_loss(
     (loss, gradient)
 }
 
-/// Normalises rows of log-scores to log-probabilities: subtracts `ln Σ_k exp` from each row, after subtracting the row's maximum.
+/// Normalises each row of log-scores to log-probabilities by subtracting the logarithm of the sum of exponentials of the row.
 fn normalise(values: &mut Array2<f64>) {
     for mut row in values.rows_mut() {
         let max = row.fold(f64::NEG_INFINITY, |max, &value| max.max(value));

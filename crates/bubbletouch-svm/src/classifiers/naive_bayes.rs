@@ -13,10 +13,10 @@ use crate::class_model::{ClassModel, log_priors};
 use crate::dataset::{Dataset, check_width, checked_classes};
 use crate::{Error, Result};
 
-/// Fraction of the largest feature variance that is added to every variance; equals scikit-learn's default.
+/// Smoothing of naive Bayes: this fraction of the largest feature variance is added to every variance; 1e-9 is scikit-learn's default.
 pub const VARIANCE_SMOOTHING: f64 = 1e-9;
 
-/// Trained Gaussian naive Bayes classifier. Scores are `ln p(x | k)`.
+/// Trained Gaussian naive Bayes classifier. The score of class k for features x is `ln p(x | k)`.
 #[derive(Clone, Debug)]
 pub struct NaiveBayes {
     classes: Vec<usize>,
@@ -26,7 +26,7 @@ pub struct NaiveBayes {
 }
 
 impl NaiveBayes {
-    /// Estimates the means and variances of all features per class from labelled rows.
+    /// From labelled rows, estimates the mean and variance of every feature in each class.
     ///
     /// # Errors
     /// If the data are empty, or a feature is NaN or infinite. If the number of labels differs from the number of rows, or there is a single class. If all
@@ -55,7 +55,7 @@ impl NaiveBayes {
         })
     }
 
-    /// Returns the joint log-likelihoods `ln p(x, k)` of all classes (n_rows × n_classes).
+    /// Returns the joint log-likelihood `ln p(x, k)` of each row x of features and each class k (n_rows × n_classes).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.

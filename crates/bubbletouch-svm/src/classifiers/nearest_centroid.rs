@@ -11,7 +11,7 @@ use crate::dataset::{Dataset, check_width, checked_classes};
 use ndarray::{Array2, ArrayView2, Axis};
 use std::sync::Arc;
 
-/// Trained nearest-centroid classifier.
+/// Trained nearest-centroid classifier, which predicts the class whose mean is nearest to the features.
 #[derive(Clone, Debug)]
 pub struct NearestCentroid {
     classes: Vec<usize>,
@@ -41,7 +41,7 @@ impl NearestCentroid {
         Ok(Self { classes, centroids })
     }
 
-    /// Returns the means of the training rows of all classes, ascending by label: n_classes × m.
+    /// Returns the mean of the training rows of each class, in ascending order of the labels (n_classes × m).
     pub fn centroids(&self) -> ArrayView2<'_, f64> {
         self.centroids.view()
     }

@@ -18,7 +18,7 @@ use crate::dataset::{Dataset, check_width, checked_classes, positions};
 use crate::streams::Streams;
 use crate::{Error, Result};
 
-/// Trained random forest. Scores are the logarithms of smoothed vote fractions.
+/// Trained random forest. The score of a class is the logarithm of its smoothed fraction of the trees' votes.
 #[derive(Clone, Debug)]
 pub struct RandomForest {
     classes: Vec<usize>,
@@ -27,8 +27,8 @@ pub struct RandomForest {
 }
 
 impl RandomForest {
-    /// Grows `n_trees` trees until their leaves are pure, or to the depth `max_depth`. Tree t uses the random stream `seed.named("tree").numbered(t)`, so a
-    /// larger forest contains the trees of a smaller forest.
+    /// Grows `n_trees` trees until every leaf contains a single class, or to the depth `max_depth`. Tree t uses the random stream
+    /// `seed.named("tree").numbered(t)`, so a larger forest contains the trees of a smaller forest.
     ///
     /// # Errors
     /// If there are no trees, the depth is 0, the data are empty, or a feature is NaN or infinite. If the number of labels differs from the number of rows, or

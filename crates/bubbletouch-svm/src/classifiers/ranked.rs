@@ -2,10 +2,10 @@
 
 use ndarray::{Array2, ArrayView2, Axis};
 
-/// Distinct values of every feature, ascending, and the rank of each row's value.
+/// Feature values replaced by ranks: the distinct values of each feature in ascending order, and the rank of each row's value.
 #[derive(Clone, Debug)]
 pub(crate) struct Ranked {
-    /// Ranks of the feature values, m × n_rows; the ranks of one feature are contiguous.
+    /// Rank of each row's value among the distinct values of the feature, m × n_rows.
     ranks: Array2<u32>,
     /// Distinct values of each feature, in ascending order.
     values: Vec<Vec<f64>>,
@@ -44,7 +44,8 @@ impl Ranked {
         self.ranks[[feature, row as usize]]
     }
 
-    /// Returns the midpoint between the values of two adjacent ranks; the lower value if the midpoint rounds to the upper value.
+    /// Returns the split threshold between two adjacent ranks of a feature: the midpoint of their values. If the midpoint rounds to the upper value, returns
+    /// the lower value.
     pub(crate) fn threshold(&self, feature: usize, lower: u32, upper: u32) -> f64 {
         let (low, high) = (
             self.values[feature][lower as usize],

@@ -37,7 +37,7 @@ impl Model {
         }
     }
 
-    /// Returns the number of optimisation problems that stopped at their iteration cap.
+    /// Returns the number of optimisation problems of the training that stopped at their iteration cap.
     pub(crate) fn n_capped(&self) -> usize {
         match self {
             Self::Svm(model) => model.n_capped(),
@@ -90,7 +90,7 @@ impl TrainedClassifier {
         }
     }
 
-    /// Returns the label with the best score for each row of scores, including log-priors or votes.
+    /// For each row of scores, returns the label that is predicted from the scores, by votes or with log-priors as the kind of classifier requires.
     pub fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         match &self.model {
             Model::Svm(model) => model.labels_of_values(scores),

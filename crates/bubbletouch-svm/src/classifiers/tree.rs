@@ -34,17 +34,17 @@ enum Node {
     Split {
         feature: usize,
         threshold: f64,
-        /// Node indices of the child for values up to the threshold and the child for larger values.
+        /// Indices of the two child nodes: first for values up to the threshold, then for larger values.
         children: [usize; 2],
     },
     Leaf {
-        /// Pairs (class, number of training rows) of a leaf, classes ascending, without empty classes.
+        /// For a leaf, the number of training rows of each class that reached it, as pairs (class, number) in ascending order of the class.
         counts: Vec<(u32, u32)>,
     },
 }
 
 impl Tree {
-    /// Returns the pairs (class, number of training rows) of the leaf that a row reaches.
+    /// Returns the number of training rows of each class, as pairs (class, number), in the leaf that the given row reaches.
     pub(crate) fn leaf(&self, row: ArrayView1<f64>) -> &[(u32, u32)] {
         let mut at = 0;
         loop {
@@ -63,7 +63,7 @@ impl Tree {
 /// Parameters that limit the growth of a tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Growth {
-    /// Number of non-constant features considered in a node; they are drawn again for each node, unless all are considered.
+    /// Number of non-constant features that are tested for the split of a node. If fewer than all are tested, they are drawn again for each node.
     pub n_candidates: usize,
     pub max_depth: Option<usize>,
 }
@@ -76,19 +76,19 @@ struct Split {
     score: f64,
 }
 
-/// Training data and buffers for splitting nodes.
+/// State of the growth of a tree: the training data and reused buffers.
 struct Grower<'a> {
     ranked: &'a Ranked,
     label: &'a [usize],
     n_classes: usize,
-    /// Sort keys of the node's rows, `rank << 32 | class`.
+    /// Sort keys of the rows of the current node: rank of the feature value (upper 32 bits) and class (lower 32 bits).
     keys: Vec<u64>,
     left: Vec<f64>,
     right: Vec<f64>,
 }
 
 impl Growth {
-    /// Grows a tree on the given rows, which may contain repetitions. `label` contains class indices below `n_classes`.
+    /// Grows a tree on the given training rows, which may contain repetitions. `label` contains the class of each row, below `n_classes`.
     pub(crate) fn grow(
         &self,
         ranked: &Ranked,
@@ -137,7 +137,7 @@ impl Growth {
         Tree { nodes }
     }
 
-    /// Returns the best split of a node's rows over the candidate features; `None` if no feature varies.
+    /// Returns the best split of the node that contains the given rows, among the candidate features; `None` if no feature varies.
     fn best_split(
         &self,
         grower: &mut Grower,
@@ -167,7 +167,7 @@ impl Growth {
 }
 
 impl Grower<'_> {
-    /// Returns the pairs (class, number of rows) of the given rows, classes ascending.
+    /// Counts the given rows by class: pairs (class, number of rows) in ascending order of the class.
     fn counts(&self, rows: &[u32]) -> Vec<(u32, u32)> {
         let mut counts = vec![0; self.n_classes];
         for &row in rows {
@@ -251,7 +251,7 @@ mod tests {
         growth.grow(&ranked, label, n_classes, rows, &(0))
     }
 
-    /// Returns the most frequent class of the leaf of each row; the first, if several are equal.
+    /// For each row, returns the most frequent class of its leaf; the first class if several are equally frequent.
     fn labels(tree: &Tree, features: &Array2<f64>) -> Vec<usize> {
         let label = |row| {
             let counts = tree.leaf(row).iter().rev();

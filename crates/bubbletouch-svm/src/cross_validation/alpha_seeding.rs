@@ -7,14 +7,14 @@ use std::ops::Range;
 
 use crate::linalg::scalar::Scalar;
 
-/// Alpha seeding between two folds: the rows that differ between their training sets.
+/// Transfer of a solution from one cross-validation fold to the next (alpha seeding), given the rows in which their training sets differ.
 pub(crate) struct AlphaSeeding {
-    /// Removed and added rows of each of the two classes, ascending.
+    /// For each of the two classes, the rows removed from the training set and the rows added to it, ascending.
     sides: [(Vec<usize>, Vec<usize>); 2],
 }
 
 impl AlphaSeeding {
-    /// Creates the alpha seeding from one fold to the next, given the labels of all rows in both folds. Held-out rows have the label 0.
+    /// Creates the alpha seeding from one fold to the next; each slice contains the labels of all rows in one fold, 0 for held-out rows.
     pub fn new((before, labels): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
         let mut sides = [(); 2].map(|()| (Vec::new(), Vec::new()));
         for (at, (before, label)) in before.iter().zip(labels).enumerate() {
@@ -28,8 +28,8 @@ impl AlphaSeeding {
         Self { sides }
     }
 
-    /// Transfers β to the next fold. Returns `None` if a removed row's multiplier cannot be redistributed, because all added rows of its class already have
-    /// one. `similar` returns the kernel values of a row.
+    /// Returns the coefficients β with the values of removed rows transferred to the most similar added rows. Returns `None` if a removed row has no added row
+    /// left. `similar` returns the kernel values of a row with all rows.
     pub fn transfer<'k, T: Scalar>(
         &self,
         beta: &[f64],
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
     use ndarray::Array2;
 
-    /// Rows on a line, the first four positive; the similarity falls with the distance.
+    /// Positions of the rows on a line; the first four rows are positive, and their similarity falls with the distance.
     const AT: [f64; 8] = [0.0, 1.0, 2.0, 3.0, 0.4, 1.4, 2.4, 3.4];
 
     fn seed(beta: &[f64], was: &[usize], is: &[usize]) -> Option<Vec<f64>> {

@@ -24,18 +24,18 @@ pub struct Candidates {
     pub gamma_scales: Vec<f64>,
 }
 
-/// Candidate of C and γ, with its validation accuracy.
+/// Tested combination of C and γ, with its validation accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tried {
-    /// Penalty C of the candidate.
+    /// Penalty C of this combination.
     pub c: f64,
-    /// γ of the candidate; `None` for a linear kernel.
+    /// Kernel parameter γ of this combination; `None` for a linear kernel.
     pub gamma: Option<f64>,
     /// Fraction of validation rows classified correctly over all folds, 0 to 1.
     pub accuracy: f64,
 }
 
-/// Result of the choice of C and γ.
+/// Result of a cross-validated choice of C and γ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
     /// The most accurate candidate.
@@ -84,8 +84,8 @@ pub fn choose(
     Ok(Chosen::new(tried.collect(), n_capped))
 }
 
-/// Chooses C by cross-validation for any classifier. `train` fits a classifier to rows with a given C; it returns a prediction function and the number of
-/// capped solver runs.
+/// Chooses C by cross-validation for any classifier. `train` trains a classifier on given rows with a given C and returns a prediction function and the number
+/// of solver runs that stopped at the iteration cap.
 ///
 /// # Errors
 /// Returns the errors of [`choose`] and of `train`.
@@ -125,7 +125,7 @@ where
 }
 
 impl Chosen {
-    /// Selects the first of the most accurate candidates.
+    /// Creates the result of the choice; the first of the most accurate candidates is the best.
     fn new(tried: Vec<Tried>, n_capped: usize) -> Self {
         let better = |best: Tried, &tried: &Tried| {
             if tried.accuracy > best.accuracy {
@@ -153,7 +153,7 @@ fn ascending(values: &[f64]) -> Vec<f64> {
     values
 }
 
-/// Returns the kernel with each candidate γ, in ascending order.
+/// For each candidate γ in ascending order, returns the kernel with this γ.
 fn kernels(
     params: &SvmParams,
     (training, statistics): (&Dataset, &RowStatistics),
@@ -214,7 +214,8 @@ fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
     }
 }
 
-/// Returns the numbers of correctly classified validation rows (kernels.len() × path.len()), and the number of capped solver runs.
+/// Returns the number of correctly classified validation rows per kernel and C (kernels.len() × path.len()). Also returns the number of solver runs that
+/// stopped at the iteration cap.
 fn on_one_matrix(
     params: &SvmParams,
     (training, statistics): (&Dataset, &RowStatistics),
@@ -239,7 +240,7 @@ fn on_one_matrix(
     grid(params, &sorted, folds, kernels, goal)
 }
 
-/// Sorts the rows by class, and within a class by fold, so that the training rows of a fold form few contiguous runs.
+/// Sorts the training rows by class, and within a class by fold, so that the training rows of each fold form few contiguous ranges.
 fn by_fold<T: SolverScalar>(
     (training, centre): (&Dataset, ArrayView1<f64>),
     folds: &[Split],

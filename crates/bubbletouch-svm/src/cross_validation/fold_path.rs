@@ -12,31 +12,31 @@ use crate::smo::Smo;
 use crate::smo::SolverScalar;
 use crate::training::Goal;
 
-/// Solutions of one fold's binary problem for all values of C.
+/// Solutions of a binary problem on the training rows of one fold, for all values of C.
 pub(crate) struct FoldPath {
-    /// Labels of the rows: 1 for positive rows, −1 for negative rows, 0 for held-out rows.
+    /// Label of each row of the problem: 1 for a positive row, −1 for a negative row, 0 for a row that the fold holds out.
     labels: Vec<f64>,
-    /// Solutions in ascending order of C, up to the last C that changes the solution.
+    /// Solutions in ascending order of C. Larger values of C than the last have the last solution.
     pub solutions: Vec<FoldSolution>,
 }
 
-/// Solution of one fold's binary problem for one C, or for several consecutive C with equal solutions.
+/// Solution of a binary problem on one fold, for one C or for several consecutive values of C that share the solution.
 pub(crate) struct FoldSolution {
-    /// Indices in the path of the values of C that have this solution.
+    /// Range of positions in the ascending list of C whose problems have this solution.
     pub numbers: Range<usize>,
-    /// Coefficients β of all rows of the problem.
+    /// Coefficient β of each row of the problem: label times multiplier, 0 for held-out rows.
     pub beta: Vec<f64>,
-    /// Gradient `f = y − Kβ` of all rows, with y = 0 for held-out rows.
+    /// Gradient `f = y − Kβ` of the dual objective per row, where K is the Gram matrix; the label y is 0 for held-out rows.
     pub f: Vec<f64>,
-    /// Offset ρ of the decision function.
+    /// Offset ρ that is subtracted from the weighted sum of kernel values.
     pub rho: f64,
     /// Whether the solver stopped at its iteration cap.
     pub is_capped: bool,
 }
 
 impl FoldPath {
-    /// Solves a pair of classes for all folds and passes each solved fold to a callback. `folds` contains the labels of each fold, one per row of the Gram
-    /// matrix; the rows of `positive` are positive.
+    /// Solves the problem of a pair of classes on all folds and passes each solved fold to a callback. `folds` contains the labels of each fold, one per row of
+    /// the Gram matrix; the rows in the range `positive` have the label 1.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
         (folds, positive): (Vec<Vec<f64>>, &Range<usize>),
@@ -64,7 +64,7 @@ impl FoldPath {
         }
     }
 
-    /// Solves one class against all others for all folds and passes each solved fold to a callback. If a class is not separable from the rest, several decision
+    /// Solves one class against all others on all folds and passes each solved fold to a callback. If a class is not separable from the rest, several decision
     /// values can be equal within the tolerance. The starting point then determines the predicted class, so each fold starts from zero, as in training.
     pub fn of_class<T: SolverScalar>(
         gram: &mut Dense<T>,
@@ -79,7 +79,7 @@ impl FoldPath {
         }
     }
 
-    /// Returns the start of a fold for one C: β with the multipliers of removed rows transferred to added rows, and its f.
+    /// Returns the starting point of a fold: the coefficients β of the previous fold, with multipliers of removed rows moved to added rows, and their gradient.
     fn moved<T: SolverScalar>(
         &self,
         number: usize,
@@ -98,7 +98,7 @@ impl FoldPath {
     }
 }
 
-/// Solves one fold for each C in ascending order, until the solution is valid for all larger C.
+/// Solves the problem of one fold for each C in ascending order, until the solution no longer changes with C.
 fn along<T: SolverScalar>(
     mut smo: Smo<Dense<T>>,
     goal: Goal,
@@ -126,7 +126,7 @@ fn along<T: SolverScalar>(
     solutions
 }
 
-/// Returns the product of the Gram matrix with each fold's labels, which equal the labels of all rows except 0 for held-out rows.
+/// For each fold, returns the product of the Gram matrix with the labels of the fold, which are 0 for held-out rows.
 fn sums_of_folds<T: SolverScalar>(
     gram: &mut Dense<T>,
     all: &[f64],

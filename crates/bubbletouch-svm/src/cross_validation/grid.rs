@@ -17,35 +17,36 @@ use crate::smo::SolverScalar;
 use crate::split::Split;
 use crate::training::Goal;
 
-/// Maximum number of folds whose solutions are in memory together. With a larger value, more memory is used; with a smaller value, usual numbers of folds need
+/// Maximum number of folds whose solutions are in memory together. With a larger value, more memory is used; with a smaller value, five or ten folds need
 /// several passes.
 const FOLDS_AT_ONCE: usize = 8;
 
-/// Number of classes per block. Pairs of classes from two blocks are solved together and share kernel values (5 MB for 140 rows per class).
+/// Number of classes per block in one-vs-one cross-validation. The pairs between two blocks of classes are solved together and share kernel values (5 MB for
+/// 140 rows per class).
 const CLASSES_AT_ONCE: usize = 8;
 
-/// Training rows and their division into folds.
+/// Data of a cross-validated grid search over kernels and C: training rows, folds and multi-class strategy.
 pub(crate) struct Grid<'a, T> {
     /// Training rows, sorted by class.
     pub sorted: &'a Sorted<T>,
-    /// Folds, by original row numbers; a repeated row counts once in a fold.
+    /// Folds with the original row numbers; a row that a fold repeats counts once.
     pub folds: &'a [Split],
     /// Multi-class strategy: one-vs-one or one-vs-rest.
     pub multiclass: Multiclass,
 }
 
-/// Fold of the cross-validation, in terms of the sorted rows.
+/// Cross-validation fold that refers to the rows in their sorted order.
 struct Fold {
-    /// Whether each row is a training row.
+    /// Whether each sorted row is a training row of the fold.
     is_training: Vec<bool>,
-    /// Whether each class has a training row.
+    /// Whether the fold has a training row of each class.
     is_class: Vec<bool>,
     validation: Vec<usize>,
 }
 
 impl<T: SolverScalar> Grid<'_, T> {
-    /// Returns the number of correctly classified validation rows over all folds, per kernel and C (kernels.len() × path.len()), and the number of solver runs
-    /// that stopped at the iteration cap.
+    /// For each kernel and C, returns the number of correctly classified validation rows over all folds (kernels.len() × path.len()). Also returns the number
+    /// of solver runs that stopped at the iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
         // The kernels differ only in γ, so they share the pairwise numbers.
@@ -133,7 +134,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         ValidationScorer::new((known, &fold.is_class), ranges, self.multiclass, n_path)
     }
 
-    /// Returns all binary problems with their numbers. Pairs of neighbouring classes are adjacent, so that their kernel values stay in the cache.
+    /// Returns the number and the two classes of every binary problem, ordered so that neighbouring pairs of classes share kernel values in the cache.
     fn problems(&self) -> Vec<(usize, (usize, Option<usize>))> {
         let problems = self.multiclass.problems(self.sorted.ranges().len());
         let mut problems: Vec<_> = problems.into_iter().enumerate().collect();
@@ -142,7 +143,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         problems
     }
 
-    /// Returns the labels of a binary problem's rows in each fold; held-out rows have the label 0.
+    /// For each fold, returns the labels of the rows of a binary problem; held-out rows have the label 0.
     fn labels(
         &self,
         (positive, negative): (usize, Option<usize>),

@@ -14,32 +14,32 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Number of rows classified by votes at one time; limits the memory of their kernel values.
+/// Number of validation rows that are classified by votes at one time, which limits the memory of their kernel values.
 const ROWS_AT_ONCE: usize = 512;
 
-/// Scorer of a fold's validation rows; receives the binary problems as they are solved.
+/// Counter of the correctly classified validation rows of one fold, which receives each binary problem after it is solved.
 pub(crate) struct ValidationScorer<T> {
     multiclass: Multiclass,
-    /// All binary problems as pairs of class positions, in the order of the multi-class strategy.
+    /// All binary problems as pairs (positive class, negative class), in the order of the multi-class strategy.
     problems: Vec<(usize, Option<usize>)>,
-    /// Whether each class has training rows.
+    /// Whether the fold has training rows of each class.
     is_class: Vec<bool>,
-    /// Validation rows whose class has training rows, ascending, each with the position of its class.
+    /// Validation rows whose class has training rows, as pairs (row number, position of the class), ascending.
     rows: Vec<(usize, usize)>,
-    /// Whether a row's own class loses at least one pair, for each C and row.
+    /// For each validation row and C, whether the row's own class loses against at least one other class.
     is_beaten: Array2<bool>,
-    /// Coefficients β for each C and class.
+    /// Coefficients of the support vectors, for each C and class.
     weights: Vec<Vec<ClassWeights<T>>>,
-    /// Offsets ρ of the decision functions, shape n_C × n_problems.
+    /// Offset ρ of each decision function, shape n_C × n_problems.
     rho: Array2<f64>,
-    /// Whether the solution of some problem for a C differs from the solution for the previous C.
+    /// For each C, whether at least one problem has another solution than for the previous C.
     is_new: Vec<bool>,
     n_capped: usize,
 }
 
 impl<T: Scalar> ValidationScorer<T> {
-    /// Creates a scorer for validation `rows` (row, position of its class) and `n_path` values of C. `is_class` contains whether each class has training rows;
-    /// `ranges` contains the row range of each class.
+    /// Creates a scorer for `n_path` values of C. `rows` contains pairs (validation row, position of its class), `is_class` whether each class has training
+    /// rows, and `ranges` the row range of each class.
     pub fn new(
         (rows, is_class): (Vec<(usize, usize)>, &[bool]),
         ranges: &[Range<usize>],
@@ -64,12 +64,12 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Returns the number of solver runs that stopped at the iteration cap.
+    /// Returns the number of solver runs in this fold that stopped at the iteration cap.
     pub fn n_capped(&self) -> usize {
         self.n_capped
     }
 
-    /// Adds the solution of a binary problem for one or several values of C.
+    /// Adds the solution of the binary problem with the given number, for one or several values of C.
     pub fn take(&mut self, problem: usize, solution: &FoldSolution) {
         let numbers = solution.numbers.clone();
         self.is_new[numbers.start] = true;
@@ -96,7 +96,8 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Records which validation rows of a class lose a pair. A row's decision value before subtracting ρ is `−f`.
+    /// Records the validation rows of one class that a binary problem assigns to its other class; `f` contains the negative decision values without the offset
+    /// ρ.
     fn look(
         &mut self,
         number: usize,
@@ -132,7 +133,8 @@ impl<T: Scalar> ValidationScorer<T> {
         n_correct
     }
 
-    /// Returns the number of correctly classified rows: their own class wins all its pairs or wins the vote. Needs the kernel values of the rows.
+    /// Returns the number of the given rows that are classified correctly: their own class wins all pairs or wins the vote. `values` contains the kernel values
+    /// of the rows.
     fn n_elected(&self, number: usize, some: &[usize], values: ArrayView2<T>) -> usize {
         let is_open = |place: &usize| !self.is_pairs() || self.is_beaten[[some[*place], number]];
         let open: Vec<usize> = (0..some.len()).filter(is_open).collect();
@@ -169,7 +171,7 @@ mod tests {
         Array2::from_shape_fn((N, N), |(i, j)| (-(at(i) - at(j)).powi(2)).exp())
     }
 
-    /// Returns irregular coefficients β of all rows for each C, with 0 for held-out rows; some C repeat the β of the previous C.
+    /// For each C, returns irregular coefficients β of all rows, with 0 for held-out rows; some values of C repeat the previous coefficients.
     fn path(members: &[usize], own: &Range<usize>, is_training: &[bool]) -> Vec<Vec<f64>> {
         let beta = |c: f64, at: usize| {
             let size = (c * (0.6 + (at as f64 * 2.3 + c).sin())).clamp(0.0, c);

@@ -7,10 +7,10 @@ use ndarray::ArrayViewMut2;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 
-/// Minimum number of rows of a group of classes, except the last group. With a smaller value, matrix products are inefficient.
+/// Minimum number of rows in a group of classes (only the last group can be smaller). With a smaller value, matrix products are inefficient.
 const GROUP_ROWS: usize = 512;
 
-/// Divides the classes, given by their row ranges, into groups of about [`GROUP_ROWS`] rows.
+/// Divides the classes, given by their row ranges, into groups of at least [`GROUP_ROWS`] rows, except the last group.
 pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
     let mut groups: Vec<Range<usize>> = Vec::new();
     for class in 0..ranges.len() {
@@ -24,11 +24,11 @@ pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
     groups
 }
 
-/// Group of classes with its rows and their kernel values.
+/// Group of classes, with the kernel values between all rows of the group.
 pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,
     rows: Range<usize>,
-    /// Kernel values between the group's rows, row by row.
+    /// Kernel values between the rows of the group, row by row.
     own: Vec<T>,
 }
 
@@ -45,7 +45,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         }
     }
 
-    /// Returns the size in bytes of all groups' kernel values, including those between two groups.
+    /// Returns the size in bytes of the kernel values within all groups of classes and between two groups.
     pub fn bytes(sorted: &Sorted<T>, groups: &[Range<usize>]) -> usize {
         let sizes = || groups.iter().map(|group| sorted.rows_of(group).len());
         let squares: usize = sizes().map(|n| n * n).sum();
@@ -53,7 +53,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         (squares + largest * largest) * size_of::<T>()
     }
 
-    /// Computes the kernel values between another group's rows and this group's rows, row by row; `values` is overwritten.
+    /// Computes the kernel values between the rows of another group and the rows of this group, row by row, into `values`.
     pub fn with(&self, other: &Self, values: &mut Vec<T>) {
         let size = (other.rows.len(), self.rows.len());
         values.resize(size.0 * size.1, T::zero());
@@ -64,7 +64,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         others.write_kernel(own, &self.sorted.kernel(), values);
     }
 
-    /// Selects kernel values between some rows and some of this group's rows, row by row. `values` starts with row `first`.
+    /// Selects the kernel values between some rows and some columns (rows of this group), row by row; `values` starts with row number `first`.
     fn part<'v>(
         &self,
         (values, first): (&'v [T], usize),
@@ -83,7 +83,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         self.part((&self.own, self.rows.start), rows, columns)
     }
 
-    /// Selects kernel values of another group's rows with this group's rows from the result of `with`.
+    /// Selects kernel values between rows of another group and rows of this group from the values that `with` computed.
     pub fn part_with<'v>(
         &self,
         other: &Self,

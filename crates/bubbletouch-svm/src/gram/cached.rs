@@ -16,22 +16,22 @@ pub(crate) struct Cached<'a, T> {
     stride: usize,
     diagonal: Vec<T>,
     inverses: InverseCurvatures<T>,
-    /// Maximum size of the cached rows and of a submatrix, bytes.
+    /// Maximum memory of the cached rows, and of a submatrix, bytes.
     limit: usize,
     rows: Vec<Kept<T>>,
-    /// Position in the cache of each row; `None` if the row is not cached.
+    /// Position in the cache of each row of the Gram matrix; `None` if the row is not cached.
     place: Vec<Option<usize>>,
     n_asked: u64,
 }
 
-/// Row of the Gram matrix in the cache.
+/// Cached row of the Gram matrix.
 struct Kept<T> {
     row: usize,
     last_asked: u64,
     values: Vec<T>,
 }
 
-/// Number of kernel rows computed together for a weighted sum.
+/// Number of rows of the Gram matrix that are computed together when all rows are summed with weights.
 const BLOCK: usize = 256;
 
 impl<'a, T: Scalar> Cached<'a, T> {
@@ -55,7 +55,7 @@ impl<'a, T: Scalar> Cached<'a, T> {
         }
     }
 
-    /// Computes row i unless it is cached; returns its position in the cache.
+    /// Computes row i of the Gram matrix unless it is cached; returns its position in the cache.
     fn fetch(&mut self, i: usize) -> usize {
         self.n_asked += 1;
         let at = match self.place[i] {
@@ -77,7 +77,7 @@ impl<'a, T: Scalar> Cached<'a, T> {
         at
     }
 
-    /// Returns an empty position of the cache, or the position of the least recently used row.
+    /// Returns a position of the cache for a new row: an empty position, or else the position of the least recently used row.
     fn make_room(&mut self) -> usize {
         let most = (self.limit / (self.stride * size_of::<T>()).max(1)).max(2);
         if self.rows.len() < most {

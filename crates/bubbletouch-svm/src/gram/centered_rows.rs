@@ -28,7 +28,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self::of_rows(features.rows().into_iter(), centre)
     }
 
-    /// Creates centred rows from slices of m values and a centre (m).
+    /// Creates centred rows from an iterator over rows (slices of m values) and a centre (m values).
     pub fn of_rows<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
@@ -36,7 +36,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self::of_rows_and(rows, centre, |_| ())
     }
 
-    /// Creates centred rows from slices, and passes the [`CenteredRow`] of each row to a callback.
+    /// Creates centred rows from an iterator over rows, and passes the norm and projection of each row ([`CenteredRow`]) to a callback.
     pub fn of_rows_and<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
@@ -66,7 +66,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self { values, norms }
     }
 
-    /// Returns the coordinates of the rows along k directions (k × m): shape n × k.
+    /// Returns the rows projected onto k directions (k × m), with shape n × k.
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         let mut values = Array2::zeros((self.len(), directions.nrows()));
         multiply(self.values.view(), directions, values.view_mut());
@@ -74,7 +74,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self { values, norms }
     }
 
-    /// Returns a view of the rows as contiguous slices.
+    /// Returns a view of all centred rows in contiguous memory.
     pub fn in_place(&self) -> Rows<'_, T> {
         Rows {
             values: self.values.as_slice().expect("rows are stored one by one"),
@@ -105,7 +105,7 @@ impl<T: Scalar> CenteredRows<T> {
         }
     }
 
-    /// Keeps only the rows with the given ascending numbers, without new memory.
+    /// Keeps only the rows with the given ascending numbers, without allocating memory.
     pub fn keep(self, rows: &[usize]) -> Self {
         let n_features = self.values.ncols();
         let norms = self.norms.select(Axis(0), rows);
@@ -124,7 +124,7 @@ impl<T: Scalar> CenteredRows<T> {
         }
     }
 
-    /// Returns the values and the squared norm of one row.
+    /// Returns the centred values and the squared norm of one row.
     #[inline]
     pub fn row(&self, row: usize) -> (&[T], T) {
         (self.in_place().row(row), self.norms[row])
@@ -186,7 +186,7 @@ impl<T: Scalar> PointsView<'_, T> {
         values
     }
 
-    /// Converts pairwise products (or L1 distances) with other rows to kernel values, in place.
+    /// Converts the inner products (or L1 distances) of these rows with other rows to kernel values, in place.
     pub fn apply(
         &self,
         mut pairwise: ArrayViewMut2<T>,

@@ -4,23 +4,24 @@
 
 use crate::linalg::scalar::Scalar;
 
-/// Minimum curvature along a pair of variables, relative to the Gram matrix's largest entry. Equal rows with different labels have zero curvature.
+/// Minimum curvature of the dual objective along a pair of variables, relative to the largest diagonal entry. Equal rows with different labels have zero
+/// curvature.
 const SMALLEST_CURVATURE: f64 = 1e-12;
 
-/// Maximum number of rows for which all inverse curvatures are stored: 4 MB of f32.
+/// Maximum number of rows of a Gram matrix whose inverse curvatures are all stored (4 MB of f32); larger matrices store one row.
 const MAX_KEPT: usize = 1000;
 
-/// Returns the minimum curvature, given the diagonal of the Gram matrix.
+/// Returns the minimum curvature that is used in pairwise steps, given the diagonal of the Gram matrix.
 fn smallest<T: Scalar>(diagonal: &[T]) -> T {
     let largest = diagonal.iter().fold(T::zero(), |a, &b| a.max(b));
     (T::from_f64(SMALLEST_CURVATURE) * largest).max(T::min_positive_value())
 }
 
-/// Inverse curvatures along all pairs of variables, row by row. If the matrix has few rows, each row is stored at first use.
+/// Inverse curvatures of the dual objective along all pairs of variables, row by row. If the Gram matrix has few rows, each row is stored at first use.
 #[derive(Clone, Debug)]
 pub(crate) struct InverseCurvatures<T> {
     values: Vec<T>,
-    /// Whether each row of `values` is computed and stored. If the list is empty, `values` contains only the last requested row.
+    /// For each row of `values`, whether it is computed. If this list is empty, `values` contains only the row that was requested last.
     is_here: Vec<bool>,
     smallest: T,
 }
@@ -34,7 +35,7 @@ impl<T: Scalar> InverseCurvatures<T> {
         }
     }
 
-    /// Resets the storage for a Gram matrix of n rows with the given padded diagonal; the memory is reused.
+    /// Prepares the storage for another Gram matrix with n rows and the given padded diagonal; the memory is reused.
     pub fn renew(&mut self, n: usize, diagonal: &[T]) {
         let n_kept = if n <= MAX_KEPT { n } else { 0 };
         self.is_here.clear();
@@ -46,12 +47,12 @@ impl<T: Scalar> InverseCurvatures<T> {
         self.smallest = smallest(diagonal);
     }
 
-    /// Returns the minimum curvature of a pair of variables.
+    /// Returns the minimum curvature that is used in pairwise steps.
     pub fn smallest(&self) -> T {
         self.smallest
     }
 
-    /// Returns the inverse curvatures along the pairs of variable i with every variable, given row i of the Gram matrix and its diagonal.
+    /// Returns the inverse curvatures of the pairs (i, j) for all variables j, given row i and the diagonal of the Gram matrix.
     #[inline(always)]
     pub fn of_row(&mut self, i: usize, row: &[T], diagonal: &[T]) -> &[T] {
         let (place, is_here) = match self.is_here.get_mut(i) {
@@ -66,7 +67,8 @@ impl<T: Scalar> InverseCurvatures<T> {
     }
 }
 
-/// Writes the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)`; the curvature is at least `smallest`.
+/// For one row i, writes the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)` of all pairs (i, j); `own` is K_ii. Curvatures below `smallest` are raised to this
+/// value.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn write<T: Scalar>(to: &mut [T], (row, diagonal): (&[T], &[T]), (own, smallest): (T, T)) {
     let n = to.len();

@@ -14,15 +14,16 @@ pub(crate) trait Gram<T> {
     fn len(&self) -> usize;
     /// Returns rows i and j of the Gram matrix.
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
-    /// Returns row i and the diagonal, both padded to whole lanes.
+    /// Returns row i and the diagonal of the Gram matrix, both padded to whole lanes.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
-    /// Returns the inverse curvature `1 / (K_ii + K_jj − 2 K_ij)` for each j, with the padding of a row. The curvature is at least the minimum curvature.
+    /// For each j, returns the inverse curvature `1 / (K_ii + K_jj − 2 K_ij)` of the pair (i, j) of variables. Smaller curvatures are raised to the minimum
+    /// curvature.
     fn inverse_curvatures(&mut self, i: usize) -> &[T];
-    /// Returns the minimum curvature of a pair of variables.
+    /// Returns the minimum curvature that pairwise steps use for a pair of variables.
     fn smallest_curvature(&self) -> T;
-    /// Returns the product `K β`, summed in f64 (n values).
+    /// Returns the product of the Gram matrix K with the coefficients β, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
-    /// Subtracts the product `K β` from f.
+    /// Subtracts the product of the Gram matrix K with the coefficients β from the vector f.
     fn take_times(&mut self, beta: &[f64], f: &mut [f64]) {
         for (f, product) in f.iter_mut().zip(self.times(beta)) {
             *f -= product;
@@ -34,12 +35,12 @@ pub(crate) trait Gram<T> {
     fn part(&mut self, indices: &[usize]) -> Dense<T>;
 }
 
-/// Gram matrix with all values stored in memory.
+/// Gram matrix that is stored completely in memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Dense<T> {
     n: usize,
     stride: usize,
-    /// Matrix values: n rows of `stride` values.
+    /// Matrix values, row by row; each row is padded to `stride` values.
     values: Vec<T>,
     diagonal: Vec<T>,
     inverses: InverseCurvatures<T>,
@@ -64,7 +65,7 @@ impl<T: Scalar> Dense<T> {
         n * padded(n) * size_of::<T>()
     }
 
-    /// Resizes the matrix to n rows in the existing memory. `fill` writes the n values of each row; values that it skips must be written later.
+    /// Changes the size to n rows and reuses the memory. `fill` writes the n values of each row; the caller must write the values that `fill` skips.
     pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
         self.n = n;
         self.stride = padded(n);
@@ -80,12 +81,12 @@ impl<T: Scalar> Dense<T> {
         self.inverses.renew(n, &self.diagonal);
     }
 
-    /// Copies a complete matrix of kernel values.
+    /// Copies all values of the given kernel matrix, n × n.
     pub fn of_whole(&mut self, whole: ArrayView2<T>) {
         self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
     }
 
-    /// Builds the symmetric matrix of two groups of rows from the blocks within each group. `write` writes the block between the second and the first group.
+    /// Builds the Gram matrix of two groups of rows. The blocks within the groups are given; `write` computes the block between the second and the first group.
     pub fn of_blocks(
         &mut self,
         [own, others]: [ArrayView2<T>; 2],
@@ -119,7 +120,7 @@ impl<T: Scalar> Dense<T> {
     }
 }
 
-/// Copies the values of a matrix row.
+/// Copies one row of a matrix into a slice.
 fn copy<T: Copy>(to: &mut [T], from: ArrayView1<T>) {
     match from.as_slice() {
         Some(from) => to.copy_from_slice(from),
@@ -170,7 +171,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     }
 }
 
-/// Copies the values at the given columns of a row.
+/// Copies the entries of a row at the given column numbers.
 pub(crate) fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
     for (to, &column) in to.iter_mut().zip(columns) {
         *to = from[column];

@@ -6,7 +6,7 @@ use super::row_sums::weighted_sum;
 use crate::linalg::lanes::padded;
 use crate::linalg::scalar::Scalar;
 
-/// Memory for the rows of a submatrix, reused by successive submatrices.
+/// Reusable memory for the rows of a submatrix.
 #[derive(Debug)]
 pub(crate) struct Workspace<T> {
     values: Vec<T>,
@@ -26,7 +26,7 @@ impl<T: Scalar> Workspace<T> {
     }
 }
 
-/// Gram matrix of n rows that are assembled on demand by a given function.
+/// Gram matrix whose rows are assembled from larger matrices by a given function when they are first needed.
 pub(crate) struct Part<'a, T, F> {
     n: usize,
     stride: usize,
@@ -34,7 +34,7 @@ pub(crate) struct Part<'a, T, F> {
     workspace: &'a mut Workspace<T>,
 }
 
-/// Returns the Gram matrix of two classes, given the blocks within each class and both blocks between them (first × second and second × first).
+/// Returns the Gram matrix of two classes, given the blocks within each class and both blocks between the classes (first × second and second × first).
 pub(crate) fn part_of_blocks<'a, T: Scalar>(
     within: &'a [Vec<&[T]>; 2],
     across: &'a [Vec<&[T]>; 2],

@@ -10,7 +10,7 @@ use crate::gram::matrix::Dense;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 
-/// Kernel on rows whose pairwise products (or L1 distances) are known.
+/// Kernel values that are computed from stored inner products (or L1 distances) of all rows.
 pub(crate) struct ProductKernel<'a, T> {
     points: &'a CenteredRows<T>,
     /// Row range of each class.
@@ -53,20 +53,20 @@ impl<'a, T: Scalar> ProductKernel<'a, T> {
         rows.apply(to, others, &self.kernel);
     }
 
-    /// Writes the Gram matrix of all rows.
+    /// Writes the complete Gram matrix of all rows into `to`.
     pub fn write_all(&self, to: &mut Dense<T>) {
         let (mut values, all) = (self.pairwise.to_owned(), self.points.all());
         all.apply(values.view_mut(), all, &self.kernel);
         to.of_whole(values.view());
     }
 
-    /// Writes the Gram matrix of two classes; the rows of the first class come first.
+    /// Writes the Gram matrix of two classes into `to`; the rows of the first class come first.
     pub fn write_pair(&self, (first, second): (usize, usize), to: &mut Dense<T>) {
         let within = [first, second].map(|class| self.within[class].view());
         to.of_blocks(within, |below| self.write((second, first), below));
     }
 
-    /// Returns the kernel values between some rows and all rows.
+    /// Returns the kernel values between the rows with the given numbers and all rows.
     pub fn rows(&self, rows: &[usize]) -> Array2<T> {
         let mut values = self.pairwise.select(Axis(0), rows);
         let own = self.points.select(rows);

@@ -2,7 +2,7 @@
 
 use crate::linalg::scalar::Scalar;
 
-/// Returns the first n values of the weighted sum `Σ β_j row_j`, in f64.
+/// Returns the sum of rows of a matrix, each multiplied by its weight: the first n values, summed in f64.
 pub(crate) fn weighted_sum<'a, T: Scalar>(
     n: usize,
     beta: &[f64],
@@ -24,7 +24,7 @@ pub(crate) fn weighted_sum<'a, T: Scalar>(
     sums
 }
 
-/// Adds four weighted rows to the sums in one pass, so that the sums are read and written a quarter as often.
+/// Adds four rows, each multiplied by its weight, to the sums in one pass. The sums are then read and written a quarter as often.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     let n = sums.len();
@@ -36,7 +36,7 @@ fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     }
 }
 
-/// Adds β times a row to the sums, in f64.
+/// Adds a row, multiplied by the coefficient `beta`, to the sums, in f64.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn add_row<T: Scalar>(sums: &mut [f64], row: &[T], beta: f64) {
     for (sum, value) in sums.iter_mut().zip(row) {

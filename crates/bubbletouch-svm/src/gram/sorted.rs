@@ -10,7 +10,7 @@ use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 
-/// Returns all pairs of classes `(a, b)` with a < b, where a is in one range of classes and b in another; the ranges may be equal.
+/// Returns all pairs of classes `(a, b)` with a < b, where a is in the first range and b in the second; the ranges may be equal.
 pub(crate) fn pairs(
     own: Range<usize>,
     other: Range<usize>,
@@ -22,18 +22,19 @@ pub(crate) fn pairs(
 #[derive(Clone)]
 pub(crate) struct Sorted<T> {
     points: CenteredRows<T>,
-    /// Original row number of each sorted row.
+    /// Original row number of each row in sorted order.
     order: Vec<usize>,
-    /// Sorted position of each original row.
+    /// Position in sorted order of each original row.
     place: Vec<usize>,
-    /// Range of sorted rows of each class.
+    /// For each class, the range of its rows in sorted order.
     ranges: Vec<Range<usize>>,
     classes: Vec<usize>,
     kernel: KernelFunction,
     centre: Array1<f64>,
-    /// Square of the largest distance of a row from the centre.
+    /// Largest squared distance between a row and the centre.
     farthest: f64,
-    /// Projection `(x − c)·c` of each sorted row x onto the centre c, which gives ρ about the origin for a linear kernel; empty for other kernels.
+    /// Product `(x − c)·c` of each sorted row x with the centre c, which converts the offset ρ of a linear kernel to the origin. The list is empty for other
+    /// kernels.
     centre_products: Vec<f64>,
 }
 
@@ -48,7 +49,7 @@ impl<T: Scalar> Sorted<T> {
         Self::within_classes(data, classes, kernel, centre, |_| 0)
     }
 
-    /// Sorts rows by class, and within a class by the given key; centres them.
+    /// Sorts rows by class, and rows of one class by the given key; then subtracts the centre.
     pub fn within_classes(
         data: &Dataset,
         classes: &[usize],
@@ -89,7 +90,7 @@ impl<T: Scalar> Sorted<T> {
         }
     }
 
-    /// Returns the sorted rows in their coordinates along k directions (k × m).
+    /// Returns the sorted rows projected onto k directions (k × m).
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         Self {
             points: self.points.along(directions),
@@ -109,7 +110,7 @@ impl<T: Scalar> Sorted<T> {
         &self.points
     }
 
-    /// Returns the centred rows and drops the class information.
+    /// Returns the centred rows without the information about classes.
     pub fn into_points(self) -> CenteredRows<T> {
         self.points
     }
@@ -119,7 +120,7 @@ impl<T: Scalar> Sorted<T> {
         &self.order
     }
 
-    /// Returns the sorted position of each original row.
+    /// Returns the position in sorted order of each original row.
     pub fn place(&self) -> &[usize] {
         &self.place
     }
@@ -134,12 +135,12 @@ impl<T: Scalar> Sorted<T> {
         self.centre.view()
     }
 
-    /// Returns the square of the largest distance of a row from the centre.
+    /// Returns the largest squared distance between a row and the centre.
     pub fn farthest(&self) -> f64 {
         self.farthest
     }
 
-    /// Returns the offset ρ of a binary problem's decision function about the centre of the rows.
+    /// Returns the offset ρ that the decision function of a binary problem has for rows minus the centre.
     pub fn rho_about_centre(&self, problem: &BinaryProblem) -> f64 {
         problem.solution.rho
             - self.moved(
@@ -148,7 +149,7 @@ impl<T: Scalar> Sorted<T> {
             )
     }
 
-    /// Returns the change of the offset ρ that is caused by centring the rows, for the given coefficients. The change is 0 unless the kernel is linear.
+    /// Returns how much centring the rows changes the offset ρ, given the coefficients of some rows. The change is 0 unless the kernel is linear.
     pub fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
         if self.centre_products.is_empty() {
             return 0.0;
@@ -163,7 +164,7 @@ impl<T: Scalar> Sorted<T> {
         &self.classes
     }
 
-    /// Returns each class with its range of sorted rows.
+    /// Iterates over the classes, each with the range of its rows in sorted order.
     pub fn classes_and_ranges(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
         self.classes
             .iter()
@@ -171,12 +172,12 @@ impl<T: Scalar> Sorted<T> {
             .zip(self.ranges.iter().cloned())
     }
 
-    /// Returns the range of sorted rows of each class.
+    /// For each class, returns the range of its rows in sorted order.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.ranges
     }
 
-    /// Returns the row range of neighbouring classes.
+    /// Returns the range of all rows of several consecutive classes.
     pub fn rows_of(&self, classes: &Range<usize>) -> Range<usize> {
         self.ranges[classes.start].start..self.ranges[classes.end - 1].end
     }

@@ -5,15 +5,16 @@ use crate::linalg::scalar::Scalar;
 /// Number of values processed in parallel.
 const LANES: usize = 8;
 
-/// Norm and projection of a centred row x − c.
+/// Squared norm and projection of a row x after the centre c is subtracted.
 pub(crate) struct CenteredRow {
-    /// Squared norm `|x − c|²`.
+    /// Squared norm `|x − c|²` of the row x minus the centre c.
     pub norm: f64,
-    /// Projection `(x − c)·c`. Far from the origin, the equivalent `x·c − c·c` would cancel most digits.
+    /// Projection `(x − c)·c` of the row x minus the centre c onto c. Far from the origin, the equivalent `x·c − c·c` would lose most digits.
     pub along_centre: f64,
 }
 
-/// Writes a row minus the centre; returns its norm and projection. The function works on slices, because the compiler does not always vectorise ndarray views.
+/// Writes a row minus the centre into `to`; returns its norm and projection. The function works on slices, because the compiler does not always vectorise
+/// ndarray views.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn center_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -> CenteredRow {
     let (to, last_to) = to.as_chunks_mut::<LANES>();

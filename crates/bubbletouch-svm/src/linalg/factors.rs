@@ -3,18 +3,18 @@
 //! Each row is stored in blocks of [`LANES`] values; entries up to and including the diagonal are 0. The inverse of D is stored separately, with 0 for unused
 //! rows.
 
-/// Number of values processed in parallel: four registers, so that no addition has to wait for the previous one.
+/// Number of values processed in parallel: four vector registers, so that no addition has to wait for the previous one.
 pub(crate) const LANES: usize = 32;
-/// Number of values of a right-hand side that are computed one after another.
+/// Number of unknowns of a triangular system that are computed one after another before their contributions are subtracted from the others.
 const BLOCK: usize = 8;
-/// Threshold of linear independence, as a multiple of the ridge. After elimination, the diagonal of a linearly dependent row is about the ridge; the diagonal
-/// of a nearly dependent row is slightly larger.
+/// Threshold of linear independence, as a multiple of the ridge (the constant added to the diagonal of the matrix). After elimination, the diagonal entry of a
+/// linearly dependent row is about the ridge; the entry of a nearly dependent row is slightly larger.
 const INDEPENDENT_FROM: f64 = 10.0;
 
-/// Block of [`LANES`] consecutive values of a row.
+/// Block of 32 consecutive values of a matrix row.
 pub(crate) type Lanes = [f64; LANES];
 
-/// Factorises a symmetric matrix plus a ridge into `D Lᵀ` and 1/D, row by row, given the upper triangle of the matrix.
+/// Factorises a symmetric matrix plus `ridge` on its diagonal as `L D Lᵀ`, given the upper triangle. The rows become `D Lᵀ`; `inverse` becomes 1/D.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn eliminate(rows: &mut [Lanes], width: usize, inverse: &mut [f64], ridge: f64) {
     let n = inverse.len();
@@ -46,7 +46,7 @@ pub(crate) fn eliminate(rows: &mut [Lanes], width: usize, inverse: &mut [f64], r
     }
 }
 
-/// Solves `L v = side` in place for each right-hand side, block by block; the contributions of previous blocks are subtracted first.
+/// Solves the triangular system `L v = side` in place for N right-hand sides, block by block; the contributions of previous blocks are subtracted first.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute<const N: usize>(
     rows: &[Lanes],
@@ -72,7 +72,7 @@ pub(crate) fn substitute<const N: usize>(
     }
 }
 
-/// Subtracts the product of a block of a row and a factor from each right-hand side.
+/// Subtracts a block of a matrix row, multiplied by one factor per right-hand side, from the N right-hand sides.
 #[inline(always)]
 fn take_product<const N: usize>(own: &mut [Lanes; N], factors: &[f64; N], row: &Lanes) {
     for side in 0..N {
@@ -82,7 +82,7 @@ fn take_product<const N: usize>(own: &mut [Lanes; N], factors: &[f64; N], row: &
     }
 }
 
-/// Solves `D Lᵀ x = side` in place, block by block from the end; the contributions of later blocks are subtracted first.
+/// Solves the triangular system `D Lᵀ x = side` in place, block by block from the end; the contributions of later blocks are subtracted first.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute_back(rows: &[Lanes], width: usize, inverse: &[f64], side: &mut [f64]) {
     let n_blocks = inverse.len().div_ceil(BLOCK);
@@ -114,7 +114,7 @@ pub(crate) fn substitute_back(rows: &[Lanes], width: usize, inverse: &[f64], sid
     }
 }
 
-/// Adds the rank-one matrix `weight · own ownᵀ` to the factorised matrix; the first of the given rows has the position `first`. `own` is overwritten.
+/// Adds the rank-one matrix `weight · own ownᵀ` to a factorised matrix. The first of the given rows has the position `first`; `own` is overwritten.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn add_product(
     rows: &mut [Lanes],
@@ -155,7 +155,7 @@ mod tests {
     const WIDTH: usize = 3;
     const RIDGE: f64 = 1e-3;
 
-    /// Returns an irregular symmetric matrix with a dominant diagonal, including the ridge.
+    /// Returns an irregular symmetric matrix whose diagonal dominates, with the ridge added to the diagonal.
     fn matrix() -> Vec<[f64; N]> {
         let value = |i: usize, j: usize| (((i.min(j) * N + i.max(j)) as f64).sin() * 1e4).fract();
         let entry = |i: usize, j: usize| if i == j { 40.0 + RIDGE } else { value(i, j) };
@@ -182,7 +182,7 @@ mod tests {
         side
     }
 
-    /// Asserts that the product of matrix and solution equals the right-hand side.
+    /// Asserts that the matrix times the solution of its factors equals the right-hand side.
     fn assert_solves((rows, inverse): &(Vec<Lanes>, Vec<f64>), matrix: &[[f64; N]]) {
         let both = |(a, b): (Lanes, Lanes)| [a, b];
         let mut sides: Vec<[Lanes; 2]> = side(0).into_iter().zip(side(1)).map(both).collect();

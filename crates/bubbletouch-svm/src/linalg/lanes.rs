@@ -1,6 +1,6 @@
 //! Lanes of vector instructions, and rows padded to a multiple of their number.
 
-/// Number of values computed in parallel: two vector registers of eight f32, or four of four f64.
+/// Number of values computed in parallel: two vector registers with eight f32 each, or four with four f64 each.
 pub(crate) const LANES: usize = 16;
 
 /// Returns n rounded up to a multiple of [`LANES`].

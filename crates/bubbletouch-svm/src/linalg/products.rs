@@ -5,11 +5,11 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::linalg::scalar::Scalar;
 
-/// Number of rows per matrix product when all rows are multiplied with each other and with all previous rows. A few products of each block are computed twice.
+/// Number of rows per matrix product when the inner products of all pairs of rows are computed block by block. A few products of each block are computed twice.
 const ROWS_AT_ONCE: usize = 128;
-/// Maximum number of rows multiplied without copying; for more rows, a packed matrix product is faster.
+/// Maximum number of rows that are multiplied without copying them; for more rows, a matrix product with packed copies is faster.
 pub(crate) const FEW_ROWS: usize = 4;
-/// Number of rows and columns mirrored together: a cache line of f32.
+/// Number of rows and columns of a tile when a triangle of a matrix is copied to the other: a cache line of f32.
 const TILE: usize = 16;
 
 /// Writes the inner products `x_i · z_j` of rows x (n_left × m) and rows z (n × m): shape n_left × n.
@@ -26,7 +26,8 @@ pub(crate) fn multiply<T: Scalar>(
     general_mat_mul(one, &right, &left.t(), zero, &mut to.reversed_axes());
 }
 
-/// Writes the inner products of a few rows with many rows, without packing. Returns `false`, and writes nothing, if this is not possible.
+/// Writes the inner products of a few rows with many rows, without copying rows. Returns `false`, and writes nothing, if the rows or the processor do not allow
+/// it.
 fn in_place<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,
@@ -44,7 +45,7 @@ fn in_place<T: Scalar>(
     is_done
 }
 
-/// Returns the rows as slices; `None` if a row is not contiguous.
+/// Returns the rows of a matrix as slices; `None` if a row is not contiguous in memory.
 fn slices<T>(rows: ArrayView2<'_, T>) -> Option<Vec<&[T]>> {
     let row = |row: usize| rows.index_axis_move(Axis(0), row).to_slice();
     (0..rows.nrows()).map(row).collect()

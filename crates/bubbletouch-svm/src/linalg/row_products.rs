@@ -10,14 +10,14 @@ use crate::linalg::scalar::Scalar;
 /// Rows of a matrix in contiguous memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a, T> {
-    /// All matrix values, row by row.
+    /// Matrix values in row-major order.
     pub values: &'a [T],
-    /// Number of values per row.
+    /// Number of values in each row.
     pub n_features: usize,
 }
 
 impl<'a, T: Scalar> Rows<'a, T> {
-    /// Adds weighted rows to `sums`; rows are given by number and weight. Sums are in f64, because large weights may nearly cancel.
+    /// Adds some rows, given as pairs (row number, weight), to `sums`. Sums are in f64, because large weights may nearly cancel.
     pub fn add_weighted(self, sums: &mut [f64], rows: impl Iterator<Item = (usize, f64)>) {
         let rows = rows.filter(|(_, weight)| *weight != 0.0);
         let mut weighing: Vec<(&[T], f64)> =
@@ -41,7 +41,7 @@ impl<'a, T: Scalar> Rows<'a, T> {
     }
 }
 
-/// Writes the inner products of rows with other rows of equal length, row by row: rows.len() × others.len() values.
+/// Writes the inner products of rows with other rows of equal length into `to`, row by row: rows.len() × others.len() values.
 pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) {
     if to.is_empty() || T::products_in_place(rows, others, to) {
         return;
@@ -57,7 +57,7 @@ pub(crate) fn multiply<T: Scalar>(rows: &[&[T]], others: &[&[T]], to: &mut [T]) 
         .for_each(|(to, &from)| *to = from);
 }
 
-/// Adds four weighted rows to the sums in one pass, so that the sums are read and written a quarter as often.
+/// Adds four rows, each multiplied by its weight, to the sums in one pass. The sums are then read and written a quarter as often.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
     let n = sums.len();
@@ -72,7 +72,7 @@ fn add_four<T: Scalar>(sums: &mut [f64], rows: &[(&[T], f64); 4]) {
 mod tests {
     use super::*;
 
-    /// Returns n irregular rows of m values.
+    /// Returns n rows of m irregular test values, row by row.
     fn values(n: usize, m: usize) -> Vec<f64> {
         (0..n * m).map(|i| (i as f64 * 1.7 + 0.3).sin()).collect()
     }

@@ -3,8 +3,8 @@
 //! The code uses the processor's vector instructions explicitly. The compiler can generate them from plain loops, but not in every build; a build without them
 //! is ten times slower.
 
-/// Writes the inner products of rows with other rows of equal length into `products`, row by row. Returns `false`, and writes nothing, if the processor lacks
-/// the instructions.
+/// Writes the inner products of rows with other rows of equal length into `products`, row by row. If the processor lacks the required vector instructions,
+/// returns `false` and writes nothing.
 #[cfg(target_arch = "x86_64")]
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn products_in_place(rows: &[&[f32]], others: &[&[f32]], products: &mut [f32]) -> bool {
@@ -33,8 +33,8 @@ pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bo
 #[cfg(target_arch = "x86_64")]
 const DEPTH: usize = 1024;
 
-/// Computes the products of all rows in tiles of N rows with M others by the function `tile`. An incomplete tile is filled with its last row. The code uses
-/// loops instead of iterators, because closures passed to the standard library are not always inlined.
+/// Computes the inner products of all rows with all others in tiles of N rows and M others, by the function `tile`. An incomplete tile is filled with copies of
+/// its last row. The code uses loops instead of iterators, because closures passed to the standard library are not always inlined.
 #[cfg(target_arch = "x86_64")]
 fn by_tiles<'r, const N: usize, const M: usize>(
     (rows, others): (&[&'r [f32]], &[&'r [f32]]),
@@ -71,7 +71,7 @@ fn by_tiles<'r, const N: usize, const M: usize>(
     }
 }
 
-/// Writes the products of a tile for the first block of features; adds them for later blocks.
+/// Writes the inner products of a tile for the first block of features; for later blocks, adds them.
 #[cfg(target_arch = "x86_64")]
 fn put(to: &mut [f32], products: &[f32], is_first: bool) {
     for (to, product) in to.iter_mut().zip(products) {
@@ -90,9 +90,9 @@ mod avx512 {
 
     use crate::linalg::vector_registers::{load, store};
 
-    /// Number of values in a vector register.
+    /// Number of f32 values in a vector register (AVX-512).
     const LANES: usize = 16;
-    /// Number of rows multiplied with N others in one tile; their sums are combined in one register.
+    /// Number of rows of a tile, and number of other rows; the four sums of a row are combined in one register.
     const N: usize = 4;
 
     #[target_feature(enable = "avx512f")]
@@ -103,7 +103,7 @@ mod avx512 {
         }
     }
 
-    /// Returns the inner products of one row with a few others, bitwise equal to the products of a [`tile`].
+    /// Returns the inner products of one row with N others, bitwise equal to the inner products computed by [`tile`].
     #[target_feature(enable = "avx512f")]
     fn row([left]: [&[f32]; 1], right: [&[f32]; N]) -> [f32; N] {
         let n = left.len();
@@ -132,9 +132,9 @@ mod avx512 {
         products
     }
 
-    /// Returns all inner products of a few rows with a few others. Each lane has its own sum; the lanes are added at the end.
+    /// Returns the inner products of N rows with N others. Each lane of a vector register has its own sum; the lanes are added at the end.
     ///
-    /// The sums of each row have separate variables, because the compiler stores an array of arrays in memory.
+    /// The sums of each row have separate variables, because the compiler would store an array of arrays in memory.
     #[target_feature(enable = "avx512f")]
     fn tile(left: [&[f32]; N], right: [&[f32]; N]) -> [[f32; N]; N] {
         let n = left[0].len();
@@ -189,7 +189,7 @@ mod avx512 {
         ]
     }
 
-    /// Returns the sums of four neighbouring lanes of four registers, interleaved: a₀ b₀ c₀ d₀ a₁ b₁ ….
+    /// Adds groups of four neighbouring lanes in each of four registers a, b, c, d; returns the sums interleaved: a₀ b₀ c₀ d₀ a₁ b₁ ….
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn add_lanes([a, b, c, d]: [__m512; N]) -> __m512 {
@@ -219,9 +219,9 @@ mod avx2 {
         _mm256_setzero_ps,
     };
 
-    /// Number of values in a vector register.
+    /// Number of f32 values in a vector register (AVX2).
     const LANES: usize = 8;
-    /// Number of rows multiplied with [`M`] others in one tile; the sums and the loaded values fill 16 vector registers.
+    /// Number of rows of a tile, each multiplied with [`M`] other rows; the sums and the loaded values fill 16 vector registers.
     const N: usize = 4;
     /// Number of other rows per tile, chosen together with [`N`].
     const M: usize = 3;
@@ -238,7 +238,7 @@ mod avx2 {
         }
     }
 
-    /// Returns all inner products of a few rows with a few others. Each lane has its own sum; the lanes are added at the end.
+    /// Returns the inner products of N rows with M others. Each lane of a vector register has its own sum; the lanes are added at the end.
     ///
     /// The code uses loops instead of closures, because closures called by the standard library are compiled without vector instructions.
     #[target_feature(enable = "avx2,fma")]
@@ -285,7 +285,7 @@ mod avx2 {
         _mm256_setr_ps(a, b, c, d, e, f, g, h)
     }
 
-    /// Returns the sum of all lanes of a register by repeated halving.
+    /// Returns the sum of the eight lanes of a register, computed by repeated halving.
     #[inline]
     #[target_feature(enable = "avx2,fma")]
     fn sum(lanes: __m256) -> f32 {

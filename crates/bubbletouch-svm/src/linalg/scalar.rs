@@ -8,7 +8,7 @@ use crate::linalg::row_tiles;
 pub(crate) trait Scalar: NdFloat + Default {
     /// Converts an f64 to the nearest value of this type.
     fn from_f64(value: f64) -> Self;
-    /// Converts a value to f64 without rounding.
+    /// Converts the value to f64 without rounding.
     fn wide(self) -> f64;
     /// Replaces each squared distance by `exp(−γ · distance)`.
     fn exponentials(distances: &mut [Self], gamma: f64);
@@ -57,9 +57,9 @@ impl Scalar for f32 {
 /// the smallest normal number are 0. The code has no branches, so that it is vectorised.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn exponentials_f32(distances: &mut [f32], gamma: f32) {
-    /// Rounding constant 1.5 · 2²³: adding it rounds a number to an integer, which is then contained in the low bits.
+    /// Rounding constant 1.5 · 2²³: adding it to a number rounds the number to an integer, which is then in the low bits of the sum.
     const ROUND: f32 = 12_582_912.0;
-    /// Smallest exponent of a normal result; below it, `exp` is less than the smallest normal number.
+    /// Smallest x for which `exp(x)` is a normal number in f32.
     const LOWEST: f32 = -87.336_54;
     for value in distances {
         let x = (-gamma * *value).max(LOWEST);

@@ -1,6 +1,6 @@
 //! Transposition of several rows at once.
 
-/// Number of rows transposed together: a cache line of f32.
+/// Number of rows that are transposed together: a cache line of f32.
 const TILE: usize = 16;
 
 /// Writes rows of equal length as matrix columns: value `j` of row `i` is written to `j · stride + i`.

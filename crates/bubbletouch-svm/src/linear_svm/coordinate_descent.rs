@@ -12,23 +12,23 @@ use rand::Rng;
 use crate::linear_svm::params::LinearSvmParams;
 use crate::{Error, Result};
 
-/// Number of lanes of the inner products; rows are padded to a multiple. With a smaller value, vector units are partly idle; with a larger value, the padding
-/// grows without benefit.
+/// Number of partial sums of an inner product; rows are padded to a multiple of this number. With a smaller value, vector units are partly idle; with a larger
+/// value, the padding grows without benefit.
 const LANES: usize = 8;
 
-/// Changes of multipliers, and gradients, below this limit are rounding errors.
+/// Limit below which changes of multipliers, and gradients, are treated as rounding errors.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
-/// Multipliers of a solved problem, and the final state of the solver.
+/// Multipliers of a solved binary problem, and the final state of the solver.
 #[derive(Clone, Debug)]
 pub(crate) struct Solved {
-    /// Signed multipliers `y_i a_i`; the weights are their sum over the rows, `w = Σ y_i a_i x_i`.
+    /// Multiplier `a_i` of each training row times its label `y_i = ±1`. The weights of the features are the sum of `y_i a_i x_i` over the rows `x_i`.
     pub multipliers: Vec<f64>,
     pub n_passes: usize,
     pub is_capped: bool,
 }
 
-/// Training rows with an appended bias feature, padded with zeros to whole lanes: contiguous, in f64.
+/// Training rows, each with an appended bias feature of 1 and padded with zeros to whole lanes, contiguous in f64.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
     values: Array2<f64>,
@@ -36,7 +36,7 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// Copies finite features (n × m) and appends the bias feature.
+    /// Copies the features (n × m), which must be finite, and appends the bias feature.
     pub(crate) fn new(features: ArrayView2<f64>) -> Result<Self> {
         let (n_rows, m) = features.dim();
         let mut values = Array2::zeros((n_rows, (m + 1).next_multiple_of(LANES)));
@@ -60,7 +60,7 @@ impl Rows {
         self.squared_norms.len()
     }
 
-    /// Returns the padded row length: m + 1, rounded up to whole lanes.
+    /// Returns the length of a padded row: m + 1, rounded up to whole lanes.
     pub(crate) fn width(&self) -> usize {
         self.values.ncols()
     }
@@ -71,13 +71,13 @@ impl Rows {
         &self.values.as_slice().unwrap_or_default()[row * width..][..width]
     }
 
-    /// Returns the squared norm `|x|²` of a row, at least 1 because of the bias feature.
+    /// Returns the squared norm of a row, at least 1 because the row includes the bias feature.
     pub(crate) fn squared_norm(&self, row: usize) -> f64 {
         self.squared_norms[row]
     }
 }
 
-/// Solves one binary problem with labels `sign` (±1 per row); returns the signed multipliers `y_i a_i`.
+/// Solves one binary problem, given the label ±1 of each row; returns the multiplier of each row times its label.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn solve(
     rows: &Rows,
@@ -158,7 +158,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
-/// Adds a multiple of a padded row to the weights: `w += factor · x`.
+/// Adds the row `x`, multiplied by `factor`, to the weights `w`.
 #[inline(always)]
 pub(crate) fn add_scaled(w: &mut [f64], factor: f64, x: &[f64]) {
     let n = w.len().min(x.len());

@@ -10,20 +10,20 @@ use crate::linear_svm::coordinate_descent::{self, Rows};
 use crate::linear_svm::params::LinearSvmParams;
 use crate::streams::Streams;
 
-/// Convergence of the solver of one binary problem.
+/// Convergence of the solver on one binary problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Convergence {
     /// Primal objective, computed from the weights; an upper bound of the optimum.
     pub primal: f64,
     /// Dual objective, computed from the multipliers; a lower bound of the optimum. The duality gap is `primal − dual`.
     pub dual: f64,
-    /// Number of passes over the rows.
+    /// Number of passes over all training rows.
     pub n_passes: usize,
     /// Whether the solver stopped at the maximum number of passes before reaching its tolerance.
     pub is_capped: bool,
 }
 
-/// Trained linear SVM; its scores are decision values.
+/// Trained linear SVM, whose scores are the decision values of the classes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearSvm {
     classes: Vec<usize>,
@@ -59,7 +59,7 @@ impl LinearSvmParams {
         Ok(self.against_rest(data, classes, &label, multipliers, &ends))
     }
 
-    /// Returns the weights and duality gaps of the binary problems, given their multipliers (n_classes × n_rows).
+    /// Returns the weights and biases of the model, and the duality gap of each binary problem, given the multipliers (n_classes × n_rows).
     fn against_rest(
         &self,
         data: &Dataset,
@@ -104,7 +104,7 @@ impl LinearSvm {
         &self.model
     }
 
-    /// Returns the convergence of the solver for each class's binary problem.
+    /// For each class, returns the convergence of the solver on the problem of this class against all others.
     pub fn convergence(&self) -> &[Convergence] {
         &self.convergence
     }
@@ -127,7 +127,8 @@ impl ClassModel for LinearSvm {
     }
 }
 
-/// Computes the weights `w_k = Σ_i a_ki x_i` and biases `b_k = Σ_i a_ki` from the multipliers, without the accumulated rounding of the updates.
+/// Computes the weights `w_k = Σ_i a_ki x_i` and biases `b_k = Σ_i a_ki` of each class k from the signed multipliers a. The result does not contain the
+/// rounding errors of the solver's updates.
 fn weights(multipliers: &Array2<f64>, features: ArrayView2<f64>) -> LinearModel {
     LinearModel {
         weights: multipliers.dot(&features),
@@ -135,7 +136,7 @@ fn weights(multipliers: &Array2<f64>, features: ArrayView2<f64>) -> LinearModel 
     }
 }
 
-/// Returns the squared norm `|w_k|² + b_k²` for each class.
+/// Returns the squared norm of the weights and the bias of each class k: `|w_k|² + b_k²`.
 fn squared_norms(model: &LinearModel) -> Array1<f64> {
     let weights = model.weights.slice(s![.., ..]);
     weights.map_axis(Axis(1), |w| w.dot(&w)) + model.bias.mapv(|b| b * b)

@@ -10,7 +10,8 @@ pub const MAX_PASSES: usize = 1000;
 pub struct LinearSvmParams {
     /// Penalty C > 0 per unit of margin violation.
     pub c: f64,
-    /// Stopping tolerance, above 0: the spread of the projected gradients, in units of the margin. scikit-learn's default for LinearSVC is 1e-4.
+    /// Stopping tolerance, above 0: the difference between the largest and smallest projected gradient, in units of the margin. scikit-learn's default for
+    /// LinearSVC is 1e-4.
     pub tolerance: f64,
     /// Maximum number of passes over the rows, at least 1. At this limit, the solver stops and marks the problem as capped.
     pub max_passes: usize,
@@ -28,7 +29,7 @@ impl Default for LinearSvmParams {
 }
 
 impl LinearSvmParams {
-    /// Returns an error if a parameter is out of range.
+    /// Returns an error if C, the tolerance or the maximum number of passes is out of range.
     pub(super) fn check(&self) -> Result<()> {
         for (name, value) in [("C", self.c), ("tolerance", self.tolerance)] {
             if !(value > 0.0 && value.is_finite()) {

@@ -8,19 +8,19 @@ use crate::binary_problem::BinaryProblem;
 use crate::gram::sorted::Sorted;
 use crate::linalg::scalar::Scalar;
 
-/// Coefficients of one class's support vectors in all binary problems of the class.
+/// Coefficients of the support vectors of one class in all binary problems that contain the class.
 #[derive(Clone, Debug)]
 pub(crate) struct ClassWeights<T> {
-    /// Range of the class's support vectors.
+    /// Range of the support vectors of the class among all support vectors.
     pub vectors: Range<usize>,
-    /// Numbers of the binary problems of the class, ascending; for one-vs-one, in the order of the other classes.
+    /// Numbers of the binary problems that contain the class, ascending; for one-vs-one, in the order of the other classes.
     pub problems: Vec<usize>,
-    /// Coefficients `y_i a_i`, problems.len() × vectors.len().
+    /// Coefficients (label times multiplier) of the support vectors in each problem, problems.len() × vectors.len().
     pub coefficients: Array2<T>,
 }
 
 impl<V: Scalar> ClassWeights<V> {
-    /// Creates zero coefficients for a class in the given binary problems (pairs of positive and negative class).
+    /// Creates coefficients of 0 for a class in those of the given binary problems (positive class, negative class) that contain it.
     pub fn zeros(
         class: usize,
         vectors: Range<usize>,
@@ -38,7 +38,7 @@ impl<V: Scalar> ClassWeights<V> {
         }
     }
 
-    /// Creates the coefficients of a class for all its rows.
+    /// Creates the coefficients of all training rows of a class.
     pub fn new<T: Scalar>(
         sorted: &Sorted<T>,
         class: usize,
@@ -60,7 +60,7 @@ impl<V: Scalar> ClassWeights<V> {
         weights
     }
 
-    /// Sets the coefficients of a binary problem; does nothing if the class is not part of the problem.
+    /// Sets the coefficients of a class in the binary problem with the given number; does nothing if the problem does not contain the class.
     pub fn set(&mut self, problem: usize, coefficients: &[f64]) {
         if let Ok(place) = self.problems.binary_search(&problem) {
             let own = self.coefficients.row_mut(place);
@@ -91,7 +91,8 @@ impl<V: Scalar> ClassWeights<V> {
     }
 }
 
-/// Returns the sums `Σ_i y_i a_i K(x_i, x)`, n_problems × rows, given the kernel values (rows × vectors) and the coefficients of each class.
+/// For each problem and row, returns the sum of kernel values times coefficients (n_problems × n_rows), given the kernel values (n_rows × n_vectors) and all
+/// coefficients.
 pub(crate) fn weighted_sums<T: Scalar>(
     weights: &[ClassWeights<T>],
     kernel_values: ArrayView2<T>,
@@ -110,7 +111,7 @@ pub(crate) fn weighted_sums<T: Scalar>(
 }
 
 impl ClassWeights<f64> {
-    /// Adds the class's part `Σ y_i a_i x_i` to the hyperplane normals of its problems (n_problems × m).
+    /// Adds the contribution of the class's support vectors to the hyperplane normals of its problems (n_problems × m).
     pub fn add_to<T: Scalar>(&self, normals: &mut Array2<f64>, sorted: &Sorted<T>) {
         let points = sorted.points().in_place();
         for (weights, &problem) in self.coefficients.rows().into_iter().zip(&self.problems) {

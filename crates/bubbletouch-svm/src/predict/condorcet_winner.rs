@@ -20,19 +20,19 @@ use crate::predict::class_weights::ClassWeights;
 const LANES: usize = 4;
 const WIDE: usize = 16;
 
-/// Decision functions of all pairs of classes, each with only its own support vectors. Most support vectors of two classes have zero coefficients in their
-/// pair.
+/// Decision functions of all pairs of classes, each with only its own support vectors. Most support vectors of two classes have the coefficient 0 in the
+/// problem of the two classes.
 #[derive(Clone, Debug)]
 pub(crate) struct Pairs<T> {
     n_classes: usize,
-    /// Pairs (support vector, coefficient) of all decision functions, pair of classes by pair of classes.
+    /// Support vectors and their coefficients in all decision functions, one pair of classes after another.
     terms: Vec<(u32, T)>,
-    /// End index in `terms` and offset ρ of each pair, in the order (0, 1), (0, 2), …, (1, 2), ….
+    /// For each pair of classes (0, 1), (0, 2), …, (1, 2), …: the end of its range in `terms`, and the offset ρ of its decision function.
     ends: Vec<(usize, f64)>,
 }
 
 impl<T: Scalar> Pairs<T> {
-    /// Creates the one-vs-one decision functions from the coefficients of the classes in all pairs and the pairs' ρ.
+    /// Creates the one-vs-one decision functions from the coefficients of each class and the offset ρ of each pair.
     pub fn new(weights: &[ClassWeights<T>], rho: &Array1<f64>) -> Self {
         let mut terms = Vec::new();
         let mut ends = Vec::with_capacity(rho.len());
@@ -55,8 +55,8 @@ impl<T: Scalar> Pairs<T> {
         }
     }
 
-    /// Returns the Condorcet winner of each row of kernel values (n × n_vectors). An entry is `None` if no class wins all its pairs, or if rounding could
-    /// change the result of a pair.
+    /// For each row of kernel values (n × n_vectors), returns the class that wins against every other class (Condorcet winner). Returns `None` for a row if no
+    /// class wins all its pairs, or if rounding could change the result of a pair.
     pub fn condorcet_winners(&self, kernel_values: ArrayView2<T>) -> Vec<Option<usize>> {
         let rows = kernel_values.rows().into_iter();
         let rows = rows.map(|row| row.to_slice().expect("they lie row by row"));
@@ -69,7 +69,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// Returns the Condorcet winner of each of a few feature rows (n × m); only the required kernel values are computed.
+    /// For each of a few feature rows, returns the class that wins against every other class; only the required kernel values are computed.
     pub fn condorcet_winners_by_few(
         &self,
         rows: &CenteredRows<T>,
@@ -86,7 +86,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// Returns the terms (support vector, coefficient) of a pair, and its offset ρ.
+    /// Returns the terms (support vector, coefficient) and the offset ρ of the decision function of a pair of classes.
     #[inline(always)]
     fn pair(&self, pair: usize) -> (&[(u32, T)], f64) {
         let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };
@@ -94,7 +94,7 @@ impl<T: Scalar> Pairs<T> {
         (&self.terms[start..end], rho)
     }
 }
-/// Returns the Condorcet winner of each feature row (n × m), given the hyperplane normals (n_pairs × m) and offsets ρ of all pairs of classes.
+/// For each feature row (n × m), returns the class that wins against every other class, given the hyperplane normals and offsets ρ of all pairs.
 pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     n_classes: usize,
     (normals, rho): (ArrayView2<'a, T>, ArrayView1<'a, f64>),
@@ -116,17 +116,17 @@ pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
 trait Decides<T> {
     fn n_classes(&self) -> usize;
 
-    /// Returns the sum `Σ w k` of a pair, its absolute sum `Σ |w k|`, the number of terms, and the offset ρ.
+    /// For a pair of classes, returns the weighted sum of its decision function, the sum of absolute terms, the number of terms, and the offset ρ.
     fn value(&mut self, pair: usize) -> (T, T, usize, f64);
 }
 
-/// Interface to the kernel values of one row with all support vectors.
+/// Interface to the kernel values between one row and all support vectors.
 trait KernelValues<T> {
-    /// Returns a slice of all kernel values; only the values of the support vectors in `terms` must be valid.
+    /// Returns a slice of the kernel values of all support vectors; only the values of the support vectors in `terms` must be valid.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T];
 }
 
-/// Kernel values that are all known in advance.
+/// Kernel values that are all computed in advance.
 impl<T> KernelValues<T> for &[T] {
     #[inline(always)]
     fn with(&mut self, _: &[(u32, T)]) -> &[T] {
@@ -134,7 +134,7 @@ impl<T> KernelValues<T> for &[T] {
     }
 }
 
-/// Decision functions that are evaluated from kernel values.
+/// Decision functions of one row that are evaluated from its kernel values.
 struct ByKernel<'a, T, K> {
     pairs: &'a Pairs<T>,
     kernel_values: K,
@@ -154,16 +154,16 @@ impl<T: Scalar, K: KernelValues<T>> Decides<T> for ByKernel<'_, T, K> {
     }
 }
 
-/// Kernel values that are computed when a pair first requires them.
+/// Kernel values of one row, each computed when a pair of classes first requires it.
 struct RowKernelValues<'a, T> {
     kernel: &'a KernelFunction,
     vectors: &'a CenteredRows<T>,
     /// Feature row and its squared norm.
     row: (&'a [T], T),
-    /// Kernel value of the row with each support vector.
+    /// Kernel values of the row with all support vectors.
     kernel_values: Vec<T>,
     is_known: Vec<bool>,
-    /// Buffers for support vectors that are computed together: numbers, rows, squared norms and kernel values.
+    /// Numbers of the support vectors whose kernel values are computed together.
     asked: Vec<u32>,
     others: Vec<&'a [T]>,
     norms: Vec<T>,
@@ -187,7 +187,7 @@ impl<'a, T: Scalar> RowKernelValues<'a, T> {
 }
 
 impl<T: Scalar> KernelValues<T> for RowKernelValues<'_, T> {
-    /// Computes the missing kernel values of the given terms, and returns all kernel values.
+    /// Computes the missing kernel values of the support vectors in `terms`, and returns the kernel values of all support vectors.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T] {
         self.asked.clear();
         self.others.clear();
@@ -214,7 +214,7 @@ impl<T: Scalar> KernelValues<T> for RowKernelValues<'_, T> {
     }
 }
 
-/// Decision functions that are evaluated from the hyperplane normals.
+/// Decision functions of one row that are evaluated from the hyperplane normals.
 struct Hyperplanes<'a, T> {
     n_classes: usize,
     normals: &'a [T],
@@ -253,7 +253,7 @@ fn condorcet_winner<T: Scalar, P: Decides<T>>(pairs: &mut P) -> Option<usize> {
     Some(champion)
 }
 
-/// Returns whether class `first` wins against class `second` (first < second); `None` if rounding could change the result.
+/// Returns whether class `first` wins against class `second` (first < second); `None` if rounding errors could change the result.
 #[inline(always)]
 fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize)) -> Option<bool> {
     let pair = first * (2 * pairs.n_classes() - first - 1) / 2 + second - first - 1;
@@ -271,7 +271,7 @@ fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize))
     }
 }
 
-/// Returns `Σ w x` and `Σ |w x|` for a normal w and a row x.
+/// Returns the inner product of a hyperplane normal and a row, and the sum of the absolute values of its terms.
 #[inline(always)]
 fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     let (mut sums, mut sizes) = ([T::zero(); WIDE], [T::zero(); WIDE]);
@@ -297,7 +297,7 @@ fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     (sum, size)
 }
 
-/// Returns `Σ w k` and `Σ |w k|` for coefficients w and kernel values k.
+/// Returns the sum of the coefficients times the kernel values, and the sum of the absolute values of its terms.
 #[inline(always)]
 fn sum_and_size<T: Scalar>(terms: &[(u32, T)], kernel_values: &[T]) -> (T, T) {
     let (mut sum, mut size) = ([T::zero(); LANES], [T::zero(); LANES]);
@@ -330,7 +330,7 @@ mod tests {
     const N_CLASSES: usize = 6;
     const N_VECTORS: usize = 5;
 
-    /// Returns irregular coefficients, of which two in three are zero.
+    /// Returns irregular test coefficients, of which two in three are zero.
     fn weights() -> Vec<ClassWeights<f64>> {
         let pairs = Multiclass::OneVsOne.problems(N_CLASSES);
         let of_class = |class: usize| {
@@ -351,7 +351,7 @@ mod tests {
         (0..N_CLASSES).map(of_class).collect()
     }
 
-    /// Returns the decision values of a row, summed class by class.
+    /// Returns the decision values of a row, computed from the coefficients class by class.
     fn values(weights: &[ClassWeights<f64>], rho: &Array1<f64>, row: &[f64]) -> Array1<f64> {
         let mut values = -rho.clone();
         for class in weights {

@@ -15,24 +15,24 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Number of rows per block of decision values. With a smaller value, packing the support vectors dominates the time; with a larger value, the kernel values
-/// (10 MB with 5,000 support vectors) take much memory.
+/// Number of rows for which decision values are computed together. With a smaller value, packing the support vectors dominates the time; with a larger value,
+/// the kernel values (10 MB with 5,000 support vectors) take much memory.
 const BLOCK_ROWS: usize = 512;
 
 /// Decision functions `Σ y_i a_i K(x_i, x) − ρ` of all binary problems.
 #[derive(Clone, Debug)]
 pub(crate) struct DecisionFunctions<T> {
-    /// Centre that is subtracted from support vectors and from rows to predict (m values).
+    /// Centre that is subtracted from support vectors and from all rows to be classified (m values).
     centre: Array1<f64>,
-    /// Offset ρ of each problem; for a linear kernel, about the centre.
+    /// Offset ρ of each decision function; for a linear kernel, ρ for rows minus the centre.
     rho: Array1<f64>,
     sums: Sums<T>,
 }
 
-/// Representation of the sums `Σ y_i a_i K(x_i, x)` of all problems.
+/// Data from which the weighted sums of kernel values in all decision functions are computed.
 #[derive(Clone, Debug)]
 enum Sums<T> {
-    /// Normals of the hyperplanes of linear problems, n_problems × m.
+    /// For a linear kernel, the normals of the hyperplanes, n_problems × m.
     Hyperplanes(Array2<T>),
     /// Support vectors and their coefficients.
     Support(Support<T>),
@@ -49,8 +49,8 @@ struct Support<T> {
 }
 
 impl<T: Scalar> DecisionFunctions<T> {
-    /// Creates the decision functions of binary problems trained on the given rows. Owned rows are reduced to the support vectors in place. The normals of
-    /// linear problems are computed unless given.
+    /// Creates the decision functions of binary problems that were trained on the given rows. If the rows are owned, they are reduced to the support vectors in
+    /// place. The normals of linear problems are computed unless they are given.
     pub fn new(
         rows: Cow<Sorted<T>>,
         problems: &[BinaryProblem],
@@ -98,7 +98,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         Self { centre, rho, sums }
     }
 
-    /// Returns the decision values of all problems for each row of features (n × m): n × n_problems.
+    /// Returns the decision value of each problem for each row of features: n_rows × n_problems.
     pub fn values(&self, features: ArrayView2<f64>) -> Array2<f64> {
         let mut values = Array2::zeros((features.nrows(), self.rho.len()));
         let mut room = self.allocate_kernel_values(features.nrows());
@@ -111,7 +111,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         values
     }
 
-    /// Returns the class position with the most votes for each row.
+    /// For each row of features, returns the position of the class with the most votes.
     pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
         let elect = |sums: Array2<T>| VoteCounter::elect(&sums, self.rho.view(), between, |_| true);
         let mut room = self.allocate_kernel_values(features.nrows());
@@ -168,7 +168,7 @@ impl<T: Scalar> DecisionFunctions<T> {
             .map(|rows| CenteredRows::new(rows, self.centre.view()))
     }
 
-    /// Allocates memory for the kernel values of one block of rows; all blocks reuse it.
+    /// Allocates memory for the kernel values of one block of rows, which all blocks reuse.
     fn allocate_kernel_values(&self, n_rows: usize) -> Array2<T> {
         let n_vectors = match &self.sums {
             Sums::Hyperplanes(_) => 0,
@@ -177,7 +177,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors))
     }
 
-    /// Returns the sums `Σ y_i a_i K(x_i, x)` of some rows, n_problems × rows, so that the values of a problem are contiguous.
+    /// Returns the weighted sums of kernel values of each problem for some rows, n_problems × n_rows; the sums of a problem are contiguous.
     fn sums_of(&self, points: &CenteredRows<T>, room: &mut Array2<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => {
@@ -197,7 +197,7 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 }
 
-/// Returns the predicted classes of all rows; `elect` classifies the undecided rows, given their numbers.
+/// Returns the predicted classes of all rows: the given winners, or for undecided rows the classes returned by `elect`.
 fn elect_open(
     mut winners: Vec<Option<usize>>,
     elect: impl FnOnce(&[usize]) -> Vec<usize>,
@@ -213,7 +213,7 @@ fn elect_open(
 }
 
 impl<T: Scalar> Support<T> {
-    /// Returns the kernel values `K(x, x_i)` between rows and support vectors: rows × vectors.
+    /// Returns the kernel values between some rows and all support vectors: n_rows × n_vectors.
     fn kernel_values<'a>(
         &self,
         points: &CenteredRows<T>,

@@ -20,7 +20,7 @@ use crate::predict::decision::DecisionFunctions;
 use crate::predict::voting::Voting;
 use crate::training::Trained;
 
-/// Trained SVM.
+/// Trained SVM for two or more classes.
 #[derive(Clone, Debug)]
 pub struct SvmModel {
     voting: Voting,
@@ -29,7 +29,7 @@ pub struct SvmModel {
     decision: Decision,
 }
 
-/// Decision functions of all problems, in the precision of training.
+/// Decision functions of all binary problems, in the precision in which they were trained.
 #[derive(Clone, Debug)]
 pub(crate) enum Decision {
     Single(DecisionFunctions<f32>),
@@ -49,7 +49,7 @@ impl From<DecisionFunctions<f64>> for Decision {
 }
 
 impl SvmModel {
-    /// Creates a model from its training rows and solved problems.
+    /// Creates a model from its training rows and its solved binary problems.
     pub(crate) fn new<T: Scalar>(
         sorted: Cow<Sorted<T>>,
         multiclass: Multiclass,
@@ -71,7 +71,7 @@ impl SvmModel {
         self.voting.classes()
     }
 
-    /// Returns the binary problems and their solutions, in the order of the decision values' columns.
+    /// Returns the solved binary problems, in the order of the columns of the decision values.
     pub fn problems(&self) -> &[BinaryProblem] {
         &self.problems
     }
@@ -82,7 +82,7 @@ impl SvmModel {
         self.problems.iter().filter(is_capped).count()
     }
 
-    /// Returns the decision values (n_rows × n_problems); positive values favour a problem's positive class.
+    /// Returns the decision value of each binary problem for each row (n_rows × n_problems); a positive value favours the positive class of the problem.
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.

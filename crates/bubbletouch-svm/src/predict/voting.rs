@@ -22,7 +22,7 @@ impl Voting {
         }
     }
 
-    /// Returns the class labels, ascending.
+    /// Returns the class labels in ascending order.
     pub fn classes(&self) -> &[usize] {
         &self.classes
     }
@@ -58,17 +58,17 @@ impl Voting {
     }
 }
 
-/// Counter of the votes of binary problems for many rows; problems are added one by one.
+/// Counter of the votes of binary problems for many rows, to which the problems are added one by one.
 #[derive(Clone, Debug)]
 pub(crate) enum VoteCounter {
-    /// One-vs-one: number of votes, n_classes × n_rows.
+    /// For one-vs-one: number of votes for each class and row, n_classes × n_rows.
     Counts(Array2<u16>),
-    /// One-vs-rest: largest decision value so far and its class, for each row.
+    /// For one-vs-rest: for each row, the largest decision value so far and the class with this value.
     Best(Vec<f64>, Vec<usize>),
 }
 
 impl VoteCounter {
-    /// Creates a counter without votes.
+    /// Creates a counter that has no votes.
     pub fn new(n_classes: usize, n_rows: usize, multiclass: Multiclass) -> Self {
         match multiclass {
             Multiclass::OneVsRest => Self::Best(vec![f64::NEG_INFINITY; n_rows], vec![0; n_rows]),
@@ -76,8 +76,8 @@ impl VoteCounter {
         }
     }
 
-    /// Adds the values of one binary problem, minus ρ; a positive value is a vote for the positive class. The problem is given by the positions of its positive
-    /// and negative class. Problems must be added in the order of all problems of the multi-class strategy.
+    /// Adds the votes of one binary problem (positive class, negative class): a value above ρ is a vote for the positive class. Problems must be added in the
+    /// order of all problems of the multi-class strategy.
     pub fn take<T: Scalar>(
         &mut self,
         (positive, negative): (usize, Option<usize>),
@@ -108,8 +108,8 @@ impl VoteCounter {
         }
     }
 
-    /// Returns the predicted class position of each row, given the sums of the problems (n_problems × n_rows) and their ρ. A problem is ignored if one of its
-    /// classes is excluded.
+    /// For each row, returns the position of the predicted class, given weighted sums (n_problems × n_rows) and the offset ρ of each problem. Problems with an
+    /// excluded class are ignored.
     pub fn elect<T: Scalar>(
         sums: &Array2<T>,
         rho: ArrayView1<f64>,
@@ -127,7 +127,7 @@ impl VoteCounter {
         counter.winners()
     }
 
-    /// Returns the class position with the most votes for each row; the first, if several are equal.
+    /// For each row, returns the position of the class with the most votes; the first class if several have equally many.
     pub fn winners(&self) -> Vec<usize> {
         match self {
             Self::Best(_, winners) => winners.clone(),
@@ -140,7 +140,7 @@ impl VoteCounter {
     }
 }
 
-/// Counts the votes per class as LIBSVM does: a positive value is a vote for the positive class, any other value for the negative class. The values are in the
+/// Adds the votes of one row as LIBSVM does: a positive value is a vote for the positive class, any other value for the negative class. The values are in the
 /// order of all pairs of classes, so the pairs of a class with all later classes are contiguous.
 fn count(values: &[f64], votes: &mut [u32]) {
     let mut rest = values;

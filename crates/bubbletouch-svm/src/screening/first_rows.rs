@@ -18,10 +18,10 @@ use crate::screening::margin_rows::{Ranked, Sides, nearest};
 use crate::screening::near_margin::{Classes, NearMargin};
 use crate::smo::SolverScalar;
 
-/// Number of rows per class in the first round of the subspace.
+/// Number of rows per class with which the first solution in the subspace starts.
 const ROWS_ALONG_MEANS: usize = 16;
 
-/// Screening of all pairs of classes, one block of pairs after another.
+/// Selection of the training rows near the margin, for each pair of classes; the pairs are solved block by block.
 pub(crate) struct PairsNearMargin<'a, T> {
     few: Classes<'a, T>,
     all: Classes<'a, T>,
@@ -29,7 +29,7 @@ pub(crate) struct PairsNearMargin<'a, T> {
 }
 
 impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
-    /// Creates the screening of the given rows; `few` contains their projections computed by [`few_dimensions`].
+    /// Creates the selection for the given rows; `few` contains the rows projected to a subspace by [`few_dimensions`].
     pub fn new(sorted: &'a Sorted<T>, few: &'a Sorted<T>) -> Self {
         Self {
             along_means: along_means(few),
@@ -38,7 +38,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         }
     }
 
-    /// Iterates over all pairs of classes in blocks whose data fit into the cache.
+    /// Returns all pairs of classes in blocks; the data of a block fit into the cache.
     pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         let n = self.all.sorted.ranges().len();
         let some = move |start, at_once| start..n.min(start + at_once);
@@ -51,7 +51,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         })
     }
 
-    /// Returns unsolved pairs of classes with their rows near the margin for this C.
+    /// Returns the unsolved problems of the given pairs of classes, each with the rows that are probably near its margin for this C.
     pub fn near(&self, pairs: &[(usize, usize)], c: f64) -> NearMargin<'_, 'a, T> {
         let mut ranked = Ranked::new();
         let rows = pairs.iter().map(|&pair| self.near_means(pair, &mut ranked));
@@ -60,7 +60,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         NearMargin::new(&self.all, pairs, &rows)
     }
 
-    /// Returns the rows of each class of a pair that are nearest to the other class along the line between the class means.
+    /// For a pair of classes, returns the rows of each class that are nearest to the other class along the line between the class means.
     fn near_means(&self, (a, b): (usize, usize), ranked: &mut Ranked) -> Sides {
         let along: [Vec<T>; 2] = [a, b].map(|own| {
             let rows = self.few.sorted.ranges()[own].clone();
@@ -72,7 +72,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
     }
 }
 
-/// Returns the pairs of some classes with later classes. The order of the other classes alternates, so that the rows of the last class are still in the cache.
+/// Returns the pairs of the classes in `own` with later classes in `others`. Their order alternates, so that the rows of the last class are still in the cache.
 fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
     let mut all = Vec::new();
     for a in own {
@@ -85,13 +85,13 @@ fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
     all
 }
 
-/// Returns the rows projected to the subspace spanned by some of them.
+/// Returns all rows projected to a subspace that some of the rows span.
 pub(crate) fn few_dimensions<T: SolverScalar>(sorted: &Sorted<T>) -> Sorted<T> {
     let directions = spanned(sorted.points().all().values, FEW_DIMENSIONS);
     sorted.along(directions.view())
 }
 
-/// Returns the inner products of all rows with the class means: n_rows × n_classes.
+/// Returns the inner product of each row with the mean of each class: n_rows × n_classes.
 fn along_means<T: SolverScalar>(sorted: &Sorted<T>) -> Array2<T> {
     let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
     for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {

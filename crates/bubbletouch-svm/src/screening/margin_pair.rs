@@ -13,9 +13,9 @@ use crate::smo::SolverScalar;
 use crate::smo::reached::Reached;
 use crate::smo::variables::extremes;
 
-/// Minimum number of rows that become active per round while rows violate the optimality conditions.
+/// Minimum number of rows that are added to the reduced problem of a pair per round, while rows violate the optimality conditions.
 const MIN_JOINING: usize = 24;
-/// Fraction of active rows of a pair above which all its rows become active.
+/// Maximum fraction of the rows of a pair that its reduced problem contains; above it, all rows of the pair are added.
 const MAX_SHARE: f64 = 0.6;
 
 /// Inner products between the rows of one class.
@@ -25,7 +25,7 @@ pub(crate) struct Within<T> {
 }
 
 impl<T: SolverScalar> Within<T> {
-    /// Creates the inner products from n × n values, stored row by row.
+    /// Creates the inner products of one class from n × n values.
     pub fn new(products: Array2<T>) -> Self {
         Self {
             diagonal: products.diag().to_vec(),
@@ -33,7 +33,7 @@ impl<T: SolverScalar> Within<T> {
         }
     }
 
-    /// Returns the inner products of one row with all rows of its class.
+    /// Returns the inner products of the given row with all rows of its class.
     fn row(&self, row: usize) -> &[T] {
         let n = self.diagonal.len();
         &self
@@ -45,13 +45,13 @@ impl<T: SolverScalar> Within<T> {
 
 /// Scratch memory that is reused by successive pairs of classes.
 pub(crate) struct PairWorkspace<'r, T> {
-    /// Active rows of both classes of the pair.
+    /// Active rows (rows in the reduced problem) of both classes.
     rows: [Vec<&'r [T]>; 2],
-    /// New inner products between the two classes.
+    /// New inner products between the rows of the two classes.
     across: Vec<T>,
-    /// Rows ranked by a distance from the margin.
+    /// Rows ranked by their distance from the margin.
     pub ranked: Ranked,
-    /// Numbers of the rows of one class that are below a bound.
+    /// Numbers of the rows of one class whose products are below a bound.
     below: Vec<usize>,
 }
 
@@ -66,18 +66,18 @@ impl<T> Default for PairWorkspace<'_, T> {
     }
 }
 
-/// Pair of classes with its active rows and their solution; the first class is positive.
+/// Problem of a pair of classes, reduced to active rows near the margin, with its solution; the first class is positive.
 pub(crate) struct MarginPair<T> {
     classes: [usize; 2],
-    /// Active rows of each class, in the order of activation.
+    /// Active rows of the first and the second class, in the order in which they became active.
     rows: Sides,
-    /// Whether each row of each class is active.
+    /// For each row of the first and the second class, whether the row is active.
     takes_part: [Vec<bool>; 2],
-    /// Inner products of the first class's rows with the second's, and of the second's with the first's, row by row.
+    /// Inner products between the active rows of both classes: first class × second class, and second class × first class, row by row.
     across: [Vec<T>; 2],
-    /// Coefficients β of the first class's rows, then of the second's.
+    /// Coefficients (label times multiplier) of the active rows of the first class, then of the second class.
     beta: Vec<f64>,
-    /// Approximate gradient y − w·x of the active rows.
+    /// Approximate gradient of the dual objective for each active row: its label minus its inner product with the hyperplane normal.
     f: Vec<f64>,
     /// Penalty C of the last solution; 0 before the first solution.
     c: f64,
@@ -87,7 +87,7 @@ pub(crate) struct MarginPair<T> {
 }
 
 impl<T: SolverScalar> MarginPair<T> {
-    /// Creates a pair of classes with the given numbers of rows and without active rows.
+    /// Creates a pair of classes that have the given numbers of rows; no row is active.
     pub fn new(classes: [usize; 2], sizes: [usize; 2]) -> Self {
         Self {
             classes,
@@ -102,13 +102,13 @@ impl<T: SolverScalar> MarginPair<T> {
         }
     }
 
-    /// Returns the positions of the pair's two classes.
+    /// Returns the positions of the two classes of the pair.
     pub fn classes(&self) -> [usize; 2] {
         self.classes
     }
 
-    /// Activates rows of both classes, with coefficients of 0. `products` contains `w·x` of all rows of both classes; it is empty before the first solution.
-    /// `starts` contains the positions of the classes' first rows.
+    /// Activates rows of both classes, with coefficients of 0. `products` contains the inner products of all rows with the hyperplane normal; it is empty
+    /// before the first solution. `starts` contains the positions of the first row of each class.
     pub fn join<'r>(
         &mut self,
         joining: &Sides,
@@ -168,7 +168,7 @@ impl<T: SolverScalar> MarginPair<T> {
         (self.beta, self.f) = (beta, f);
     }
 
-    /// Solves the pair on its active rows, starting from the last solution. `within` contains the products within each class; the Gram matrix reuses the
+    /// Solves the pair on its active rows, starting from the last solution. `within` contains the inner products within each class; the Gram matrix reuses the
     /// memory of `workspace`.
     pub fn solve(&mut self, within: &[Within<T>], workspace: &mut Workspace<T>, goal: PairGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
@@ -205,15 +205,15 @@ impl<T: SolverScalar> MarginPair<T> {
         labels
     }
 
-    /// Iterates over rows with non-zero coefficients: the class (0 or 1), the row number within the class, and the coefficient.
+    /// Iterates over the active rows: the class (0 or 1), the row number within the class, and the coefficient.
     pub fn weighing(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let of_side = |side: usize| self.rows[side].iter().map(move |&row| (side, row));
         let rows = of_side(0).chain(of_side(1)).zip(&self.beta);
         rows.map(|((side, row), &beta)| (side, row, beta))
     }
 
-    /// Returns the rows to activate, given `w·x` of all rows of both classes: the rows with the largest violations of the optimality conditions. If most rows
-    /// are active already, all other rows are returned. Returns `None` if no row violates the conditions.
+    /// Returns the rows to activate: those with the largest violations of the optimality conditions, or all others if most rows are active already. Returns
+    /// `None` if no row violates the conditions. `products` contains the inner product of each row with the hyperplane normal.
     ///
     /// An inactive row violates the conditions if it lies more than half the tolerance beyond the middle of the interval allowed by the active rows.
     pub fn joining(
@@ -256,13 +256,13 @@ impl<T: SolverScalar> MarginPair<T> {
         Some(joining)
     }
 
-    /// Iterates over the inactive rows of one class.
+    /// Returns the numbers of the inactive rows of one class (0 or 1).
     fn outside(&self, side: usize) -> impl Iterator<Item = usize> + '_ {
         let takes_part = &self.takes_part[side];
         (0..takes_part.len()).filter(|&row| !takes_part[row])
     }
 
-    /// Returns the last solution with the coefficients of all rows of both classes.
+    /// Returns the last solution of the pair, with the coefficients of all rows of both classes (0 for inactive rows).
     pub fn solution(&mut self) -> DualSolution {
         let n_first = self.takes_part[0].len();
         let mut coefficients = vec![0.0; n_first + self.takes_part[1].len()];

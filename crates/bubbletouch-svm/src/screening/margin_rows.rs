@@ -5,7 +5,7 @@ use crate::linalg::scalar::Scalar;
 /// Number of inner products processed in parallel.
 const LANES: usize = 32;
 
-/// Labels y of a pair's first and second class.
+/// Labels of the rows of the first and the second class of a pair.
 pub(crate) const SIGNS: [f64; 2] = [1.0, -1.0];
 
 /// Row numbers within the first and the second class of a pair.
@@ -14,8 +14,8 @@ pub(crate) type Sides = [Vec<usize>; 2];
 /// Row of a pair of classes: its class (0 or 1) and its number within the class.
 pub(crate) type RowOfPair = (usize, usize);
 
-/// Row of a pair of classes, ranked by a distance and then by its position. Distance and position are packed into one number, because rows are compared more
-/// often than read.
+/// Row of a pair of classes, ranked by a distance and then by its position. Distance and position are packed into one number, because ranked rows are compared
+/// more often than read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct RankedRow(u128);
 
@@ -41,7 +41,7 @@ impl RankedRow {
 /// Buffer of ranked rows, reused by all pairs of classes.
 pub(crate) type Ranked = Vec<RankedRow>;
 
-/// Returns the n rows of each class that are nearest to the other class, given `w·x` of all rows of both classes.
+/// Returns the n rows of each class that are nearest to the other class; `products` contains the inner product of each row with the hyperplane normal.
 pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, ranked: &mut Ranked) -> Sides {
     [0, 1].map(|side| {
         let products = products[side].iter().enumerate();
@@ -55,7 +55,7 @@ pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, ranked: &mut Ran
     })
 }
 
-/// Returns the n ranked rows with the smallest distances, in any order.
+/// Returns the n rows with the smallest distances, in any order.
 pub(crate) fn smallest(rows: &mut [RankedRow], n: usize) -> &[RankedRow] {
     if n < rows.len() {
         rows.select_nth_unstable(n);
@@ -64,8 +64,8 @@ pub(crate) fn smallest(rows: &mut [RankedRow], n: usize) -> &[RankedRow] {
     rows
 }
 
-/// Writes the positions of all products that are below `bound` after multiplication by `sign` into `places`. Whole chunks are tested first, because most chunks
-/// contain no such product.
+/// Finds the products that are below `bound` after multiplication by `sign`, and writes their positions into `places`. Whole chunks are tested first, because
+/// most chunks contain no such product.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn find_below<T: Scalar>(products: &[T], sign: T, bound: T, places: &mut Vec<usize>) {
     places.clear();

@@ -21,24 +21,24 @@ use crate::screening::margin_pair::{MarginPair, PairWorkspace, Within};
 use crate::screening::margin_rows::{Sides, nearest};
 use crate::smo::SolverScalar;
 
-/// Number of screening rounds in the subspace.
+/// Number of rounds in which rows are added to the reduced problems in the low-dimensional subspace.
 const FEW_ROUNDS: usize = 2;
-/// Tolerance of the solver in the subspace. With 0.5, the selected rows differ too much from the support vectors of the solution.
+/// Tolerance of the solver in the low-dimensional subspace. With 0.5, the selected rows differ too much from the support vectors of the solution.
 const ROUGH_TOLERANCE: f64 = 0.1;
-/// Maximum number of solver iterations in the subspace, where separable classes may overlap.
+/// Maximum number of solver iterations in the low-dimensional subspace, where classes may overlap that are separable with all features.
 const ROUGH_ITERATIONS: u64 = 1000;
-/// Number of rows per class in the first round with all features.
+/// Number of rows per class with which the first round with all features starts.
 const ROWS_NEAR_MARGIN: usize = 24;
 
-/// Rows of all classes, with the inner products within each class.
+/// Rows of all classes, with the inner products between the rows of each class.
 pub(crate) struct Classes<'a, T> {
     pub sorted: &'a Sorted<T>,
-    /// Inner products between the rows of each class.
+    /// For each class, the inner products between its rows.
     within: Vec<Within<T>>,
 }
 
 impl<'a, T: SolverScalar> Classes<'a, T> {
-    /// Computes the inner products within each class.
+    /// Computes the inner products between the rows of each class.
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
             let own = sorted.points().range(range.clone());
@@ -55,13 +55,13 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
         classes.map(|class| self.sorted.ranges()[class].start)
     }
 
-    /// Returns the numbers of rows of two classes.
+    /// Returns the numbers of rows of the two given classes.
     fn sizes(&self, classes: [usize; 2]) -> [usize; 2] {
         classes.map(|class| self.sorted.ranges()[class].len())
     }
 }
 
-/// Pairs of classes, each with its active rows.
+/// Problems of several pairs of classes, each reduced to active rows near its margin.
 pub(crate) struct NearMargin<'c, 'a, T> {
     classes: &'c Classes<'a, T>,
     pairs: Vec<MarginPair<T>>,
@@ -70,22 +70,22 @@ pub(crate) struct NearMargin<'c, 'a, T> {
     round: Round<T>,
 }
 
-/// Result of a round for one pair of classes: the hyperplane's normal, and `w·x` of all rows of both classes.
+/// Result of a round for one pair: the normal of the hyperplane, and the inner product of the normal with each row of both classes.
 type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
 
-/// Results of a round for all pairs of classes, pair by pair.
+/// Results of a round for several pairs of classes, one pair after another.
 #[derive(Default)]
 struct Round<T> {
-    /// Normals of all hyperplanes of the round.
+    /// Normals of the hyperplanes of all pairs in the round.
     normals: Vec<T>,
-    /// Products `w·x` of all rows of both classes, class by class.
+    /// Inner products of the hyperplane normals with all rows of the two classes of each pair, class by class.
     products: Vec<T>,
-    /// Ranges in `products` of both classes of each pair.
+    /// For each pair, the ranges of its two classes in `products`.
     places: Vec<[Range<usize>; 2]>,
 }
 
 impl<T> Round<T> {
-    /// Returns `w·x` of all rows of both classes, for the pair with this number in the round.
+    /// For the pair with this number in the round, returns the inner products of its hyperplane normal with all rows of both classes.
     fn products(&self, number: usize) -> [&[T]; 2] {
         let places = self.places[number].each_ref();
         places.map(|place| &self.products[place.clone()])
@@ -93,7 +93,7 @@ impl<T> Round<T> {
 }
 
 impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
-    /// Creates unsolved pairs of classes that start with the given active rows.
+    /// Creates the unsolved problems of the given pairs of classes, which start with the given active rows.
     pub fn new(classes: &'c Classes<'a, T>, pairs: &[(usize, usize)], rows: &[Sides]) -> Self {
         let pair = |&(a, b): &(usize, usize)| MarginPair::new([a, b], classes.sizes([a, b]));
         let mut all = Self {
@@ -109,8 +109,8 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         all
     }
 
-    /// Returns the maximum memory of the screening, bytes: the products of all pairs if all their rows are active, the hyperplanes of a round, and the
-    /// projected rows.
+    /// Returns the maximum memory of the screening, bytes. The sum contains the inner products of all pairs if all their rows are active, the hyperplanes of a
+    /// round, and the projected rows.
     pub fn most_bytes(sorted: &Sorted<T>) -> usize {
         let sizes = || sorted.ranges().iter().map(Range::len);
         let within: usize = sizes().map(|n| n * n).sum();
@@ -123,8 +123,8 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         (2 * within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
     }
 
-    /// Solves all pairs for this C, starting from the last solutions; the violation of the optimality conditions is at most `tolerance`. Returns the solution
-    /// and the hyperplane normal of each pair. The coefficients belong to all rows of the first class, then of the second.
+    /// Solves all pairs for this C, starting from the last solutions, until no row violates the optimality conditions by more than `tolerance`. Returns the
+    /// solution and the hyperplane normal of each pair. The coefficients belong to all rows of the first class, then of the second.
     pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<(DualSolution, Vec<T>)> {
         let goal = PairGoal {
             c,
@@ -136,7 +136,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         })
     }
 
-    /// Returns the rows of all pairs that are approximately near the margin for this C.
+    /// For each pair, returns the rows that are approximately near the margin for this C.
     pub fn near_margin(mut self, c: f64) -> Vec<Sides> {
         let goal = PairGoal {
             c,
@@ -186,7 +186,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         results.into_iter().flatten().collect()
     }
 
-    /// Solves some pairs on their active rows, and multiplies all rows of their classes with the hyperplanes.
+    /// Solves the given pairs on their active rows, and computes the inner products of their hyperplane normals with all rows of their classes.
     fn solve_round(&mut self, pairs: &[usize], goal: PairGoal) {
         let n_features = self.classes.sorted.centre().len();
         let mut round = std::mem::take(&mut self.round);
@@ -228,7 +228,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         self.round = round;
     }
 
-    /// Adds the hyperplane normal `w = Σ β_i x_i` of a pair to `sums`.
+    /// Adds the hyperplane normal of a pair (the sum of its active rows times their coefficients) to `sums`.
     fn add_normal(&self, pair: usize, sums: &mut [f64]) {
         let starts = self.classes.starts(self.pairs[pair].classes());
         let rows = self.pairs[pair].weighing();

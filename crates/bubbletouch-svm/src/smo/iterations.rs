@@ -5,14 +5,14 @@ use super::variables::Variables;
 use crate::gram::matrix::Gram;
 use crate::linalg::scalar::Scalar;
 
-/// Number of iterations between shrinking checks.
+/// Number of iterations after which the solver checks whether variables can be omitted (shrinking).
 pub(super) const SHRINK_PERIOD: u64 = 1000;
-/// Minimum number of rows for shrinking; with fewer rows, copying the submatrix takes longer than the iterations saved.
+/// Minimum number of rows for shrinking (solving a submatrix without settled variables). With fewer rows, copying the submatrix takes longer than it saves.
 const SHRINK_ROWS: usize = 400;
-/// Maximum fraction of remaining variables for which copying the submatrix is worthwhile.
+/// Maximum fraction of variables that remain after shrinking; with a larger fraction, copying the submatrix is not worthwhile.
 const SHRINK_SHARE: f64 = 0.7;
 
-/// Limits and progress of the solver's search.
+/// Limits of a solver run, and its number of iterations so far.
 pub(crate) struct Search {
     pub tolerance: f64,
     pub max_iterations: u64,
@@ -33,11 +33,12 @@ impl Search {
 pub(crate) enum Stop {
     /// The tolerance or the iteration cap was reached.
     Done,
-    /// Only the given variables can still move, so the problem should be shrunk to them.
+    /// Only the given variables can still move, so the solver should continue on their submatrix.
     Shrink(Vec<usize>),
 }
 
-/// Runs pairwise steps until the optimality conditions hold, the iteration cap is reached, or few variables can still move. The code runs on any processor.
+/// Runs pairwise steps without explicit vector instructions. Stops if the optimality conditions hold, the iteration cap is reached, or few variables can still
+/// move.
 pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     variables: &mut Variables<T>,
@@ -48,8 +49,8 @@ pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
     run_with((gram, passes), variables, search, first_look)
 }
 
-/// Runs pairwise steps with the given passes over the variables. `select_down` finds the variable to decrease from f, marks, inverse curvatures, the highest f
-/// and scratch memory. `step_along` makes a step, given f, two rows, the step length and marks, and returns the next variable to increase.
+/// Runs pairwise steps by two given functions. `select_down` finds the variable to decrease from f, marks, inverse curvatures, the highest f and scratch
+/// memory. `step_along` makes a step, given f, two rows, the step length and marks, and returns the next variable to increase.
 #[inline(always)]
 pub(super) fn run_with<T: Scalar, G: Gram<T>>(
     (gram, (select_down, step_along)): (

@@ -7,7 +7,7 @@
 use crate::linalg::lanes::LANES;
 use crate::linalg::scalar::Scalar;
 
-/// Returns the largest sum `a_i + b_i` over all i. Each lane has its own maximum; the lanes are combined at the end.
+/// Returns the largest sum `a_i + b_i` over all indices i. Each lane has its own maximum; the lanes are combined at the end.
 #[inline(always)]
 fn largest_sum<T: Scalar>(a: &[T], b: &[T]) -> T {
     let mut lanes = [T::neg_infinity(); LANES];
@@ -49,7 +49,7 @@ fn largest<T: Scalar>(a: &[T]) -> T {
         .fold(T::zero(), |a, &b| if b > a { b } else { a })
 }
 
-/// Returns the first index in `0..n` for which `is` returns true. All lanes of a chunk are tested together.
+/// Returns the first index below n for which `is` returns true. All lanes of a chunk are tested together.
 #[inline(always)]
 fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
     for start in (0..n).step_by(LANES) {
@@ -66,7 +66,8 @@ fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
     0
 }
 
-/// Returns the next variable to increase: the first index with the largest `f + up`. Returns `None` if no variable can increase.
+/// Returns the next variable to increase: the first index with the largest gradient f among the variables that can increase. `up` is 0 for these and −∞ for
+/// others.
 #[inline(always)]
 pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     let up = &up[..f.len()];
@@ -78,7 +79,7 @@ pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     }
 }
 
-/// Updates f to `f − step (row_i − row_j)` in place, and returns the next variable to increase.
+/// After a step of two variables i and j, subtracts `step (row_i − row_j)` from the gradient f, and returns the next variable to increase.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn step_along<T: Scalar>(
     f: &mut [T],
@@ -94,17 +95,17 @@ pub(crate) fn step_along<T: Scalar>(
     select_up(f, up)
 }
 
-/// Result of the second pass: the variable to decrease, and the violation of the optimality conditions.
+/// Second variable of a pairwise step, which decreases, and the violation of the optimality conditions.
 pub(crate) struct Down<T> {
     /// Variable to decrease while `i` increases: the one with the largest second-order gain of the dual objective [Fan, Chen, Lin 2005]. `None` if no pair
     /// violates the optimality conditions.
     pub j: Option<usize>,
-    /// Violation of the optimality conditions: the largest f of variables that can increase minus the smallest f of variables that can decrease.
+    /// Violation of the optimality conditions: the largest gradient of variables that can increase minus the smallest gradient of variables that can decrease.
     pub violation: T,
 }
 
-/// Returns the variable to decrease when variable i, with f = `highest`, increases. `low` is 0 for variables that can decrease and −∞ for others. `inverses`
-/// contains the inverse curvatures for i; `gains` is scratch memory.
+/// Returns the variable to decrease when variable i, with the gradient `highest`, increases. `low` is 0 for variables that can decrease and −∞ for others.
+/// `inverses` contains the inverse curvatures of the pairs with i; `gains` is scratch memory.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),
@@ -135,7 +136,7 @@ pub(crate) fn select_down<T: Scalar>(
     }
 }
 
-/// Returns the violation of the optimality conditions: the largest `highest − f + low`, at least 0.
+/// Returns the violation of the optimality conditions: `highest` minus the smallest gradient f of a variable that can decrease, at least 0.
 #[inline(always)]
 fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
     let mut lanes = [T::zero(); LANES];
@@ -163,7 +164,7 @@ fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
 mod tests {
     use super::*;
 
-    /// Returns irregular values; some lanes repeat, so that ties occur.
+    /// Returns irregular test values; some lanes repeat, so that ties occur.
     fn values(n: usize, salt: f64) -> Vec<f64> {
         (0..n)
             .map(|i| ((i % 37) as f64 * 1.7 + salt).sin())

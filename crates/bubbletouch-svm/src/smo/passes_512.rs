@@ -70,7 +70,7 @@ pub(crate) fn run<G: Gram<f32>>(
     )
 }
 
-/// The largest value of each lane so far, and its first position.
+/// Search for the largest value: for each lane, the largest value so far and its first position.
 struct Largest {
     values: __m512,
     places: __m512i,

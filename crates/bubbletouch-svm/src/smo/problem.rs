@@ -9,17 +9,17 @@ use crate::gram::matrix::Gram;
 /// problems that LIBSVM solves are reported as not solved.
 const MAX_ITERATIONS: u64 = 10_000_000;
 
-/// Binary problem on a Gram matrix, with its solution for the last C.
+/// Binary problem given by a Gram matrix and labels, with its solution for the last C.
 pub(crate) struct Smo<'a, G> {
     pub(super) gram: &'a mut G,
-    /// Labels of the rows: 1, −1, or 0 for a row that is excluded from the problem.
+    /// Label of each row: 1, −1, or 0 for a row that is excluded from the problem.
     pub(super) y: &'a [f64],
     pub(super) beta: Vec<f64>,
-    /// Gradient f = y − Kβ of the dual objective.
+    /// Gradient `y − Kβ` of the dual objective, where y are the labels and K is the Gram matrix.
     pub(super) f: Vec<f64>,
-    /// Penalty C of the current β; 0 before the first solution.
+    /// Penalty C for which the coefficients β were computed; 0 before the first solution.
     pub(super) c: f64,
-    /// Whether f was computed from β in f64.
+    /// Whether the gradient f was computed from the coefficients β in f64.
     pub(super) is_summed: bool,
     /// Maximum number of iterations of the solver.
     pub(super) max_iterations: u64,
@@ -42,7 +42,7 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Creates a problem that starts from β and its approximate gradient f. `c` is the penalty of β, or 0 if β belongs to no penalty.
+    /// Creates a problem that starts from coefficients β and their approximate gradient f. `c` is the penalty for which β was computed, or 0.
     pub fn from_start(
         gram: &'a mut G,
         y: &'a [f64],
@@ -65,7 +65,7 @@ impl<'a, G> Smo<'a, G> {
         (&self.beta, &self.f)
     }
 
-    /// Returns the offset ρ of the solution for a given C.
+    /// Returns the offset ρ of the decision function, given the C of the solution.
     pub fn rho(&self, c: f64) -> f64 {
         rho(&self.beta, self.y, &self.f, c)
     }
@@ -75,7 +75,7 @@ impl<'a, G> Smo<'a, G> {
         (self.beta, self.f)
     }
 
-    /// Recomputes the gradient f in f64.
+    /// Recomputes the gradient f from the coefficients β in f64.
     pub(super) fn refresh<T: SolverScalar>(&mut self)
     where
         G: Gram<T>,
@@ -87,7 +87,7 @@ impl<'a, G> Smo<'a, G> {
         self.is_summed = true;
     }
 
-    /// Updates the gradient f from a previous β to the current β.
+    /// Updates the gradient f after the coefficients β have changed; `before` contains the previous coefficients.
     pub(super) fn follow<T: SolverScalar>(&mut self, before: Vec<f64>)
     where
         G: Gram<T>,
@@ -99,7 +99,7 @@ impl<'a, G> Smo<'a, G> {
         self.gram.take_times(&change, &mut self.f);
     }
 
-    /// Returns the dual objective `Σ y β − ½ β K β`.
+    /// Returns the dual objective `Σ y β − ½ β K β`, where y are the labels, β the coefficients and K the Gram matrix.
     pub(super) fn objective(&self) -> f64 {
         let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
         linear - 0.5 * quadratic

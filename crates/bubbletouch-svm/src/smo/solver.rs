@@ -28,7 +28,7 @@ impl<G> Smo<'_, G> {
         self.solve_or_from(c, tolerance, |_| None)
     }
 
-    /// Solves the problem from the last solution, or from another feasible start (β and its f) if that start has a higher objective.
+    /// Solves the problem from the last solution, or from another start (coefficients β and their gradient f) if that start has a higher objective.
     pub fn solve_or_from<T: SolverScalar>(
         &mut self,
         c: f64,
@@ -46,7 +46,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Solves the problem from the better of two starts, and returns only the state of convergence.
+    /// Solves the problem from the better of two starts; returns only whether the solver converged, and its number of iterations.
     pub fn reach<T: SolverScalar>(
         &mut self,
         c: f64,
@@ -116,8 +116,8 @@ impl<G> Smo<'_, G> {
         false
     }
 
-    /// Runs the solver once on all variables. If most variables are soon omitted, the tolerance is rough at first, because omitted variables must be checked
-    /// again before further work.
+    /// Runs pairwise steps once on all variables. If most variables are soon omitted, the tolerance is rough at first, because omitted variables must be
+    /// checked again before further work.
     fn search_once<T: SolverScalar>(&mut self, c: f64, search: &mut Search, is_first: bool)
     where
         G: Gram<T>,

@@ -7,9 +7,9 @@ use crate::gram::matrix::Gram;
 use crate::gram::row_sums::add_row;
 
 impl<G> Smo<'_, G> {
-    /// Returns the unsolved problem with a start for small C: all multipliers at C, except for the surplus rows of the larger class. The surplus rows of a
-    /// class are its rows that are farthest from the other class. If the objective with equal multipliers has its maximum below C, all multipliers start at 0.
-    /// `sums` contains `K y`.
+    /// Returns the unsolved problem with a start for small C: all multipliers at C, except 0 for the surplus rows of the larger class. The surplus rows are its
+    /// rows that are farthest from the other class. If the objective with equal multipliers has its maximum below C, all multipliers start at 0. `sums`
+    /// contains the product of the Gram matrix with the labels.
     pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
     where
         G: Gram<T>,
@@ -36,7 +36,7 @@ impl<G> Smo<'_, G> {
         self
     }
 
-    /// Rescales β to another C by the factor with the best objective, within the new bounds.
+    /// Multiplies the coefficients β by the factor with the best objective within the bounds of another C.
     pub(super) fn stretch(&mut self, c: f64) {
         let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
         if self.c > 0.0 && self.c != c && quadratic > 0.0 {
@@ -56,7 +56,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Replaces β and f by the given start if the start has a higher objective.
+    /// Replaces the coefficients β and the gradient f by the given start if the start has a higher objective.
     pub(super) fn prefer(&mut self, other: (Vec<f64>, Vec<f64>)) {
         let objective = self.objective();
         let own = (
@@ -77,7 +77,7 @@ mod tests {
     use crate::gram::matrix::Dense;
     use ndarray::Array2;
 
-    /// Returns the kernel matrix `exp(−γ d²)` of points on a line, with overlapping classes; one class has five more rows.
+    /// Returns the kernel matrix and the labels of points on a line whose classes overlap; one class has five more rows.
     fn problem(gamma: f64) -> (Dense<f64>, Vec<f64>) {
         let n = 45;
         let at = |i: usize| (i as f64 * 1.7).sin() + if i % 9 < 4 { 0.4 } else { 0.0 };

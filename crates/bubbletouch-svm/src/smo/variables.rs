@@ -5,11 +5,11 @@ use crate::linalg::scalar::Scalar;
 
 /// Number of variables processed in parallel.
 const LANES: usize = 8;
-/// Number of variables whose extremes are searched in parallel. With 64, the compiler generates a vectorised loop; with 8, it unrolls the loop and inserts many
-/// shuffles.
+/// Number of variables in which the largest and smallest gradients are searched in parallel. With 64, the compiler generates a vectorised loop; with 8, it
+/// unrolls the loop and inserts many shuffles.
 const EXTREMES_LANES: usize = 64;
 
-/// Returns the mark of a variable: 0 if β can move, otherwise −∞.
+/// Returns the mark of a variable that is added to its gradient in searches: 0 if the variable can move, otherwise −∞.
 #[inline(always)]
 fn mark<T: Scalar>(can_move: bool) -> T {
     if can_move {
@@ -19,7 +19,7 @@ fn mark<T: Scalar>(can_move: bool) -> T {
     }
 }
 
-/// Marks for every variable whether β can increase and whether it can decrease.
+/// For every variable, marks whether its coefficient β can increase (`up`) and whether it can decrease (`low`): 0 if it can, otherwise −∞.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
     let n = beta.len();
@@ -31,26 +31,26 @@ fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut 
     }
 }
 
-/// Returns the bounds of β: 0 to C for a positive row, −C to 0 for a negative row, and 0 for a row that is excluded from the problem.
+/// Returns the bounds of a row's coefficient, which depend on its label y: (0, C) for y = 1, (−C, 0) for y = −1, (0, 0) for y = 0.
 #[inline(always)]
 pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
     (c * y.min(0.0), c * y.max(0.0))
 }
 
-/// State of the variables during the passes. Slices are padded to whole lanes with variables that cannot move.
+/// State of the variables during pairwise steps. Slices are padded to whole lanes with variables that cannot move.
 #[derive(Clone, Debug)]
 pub(crate) struct Variables<T> {
-    /// Coefficients `β_i = y_i a_i`.
+    /// Coefficient of each row: its label times its multiplier.
     pub beta: Vec<f64>,
     y: Vec<f64>,
     c: f64,
-    /// Gradient `f_i = y_i − (Kβ)_i` of the dual objective along β_i.
+    /// Gradient of the dual objective along each coefficient: `y − Kβ`, where y are the labels and K is the Gram matrix.
     pub f: Vec<T>,
-    /// Marks of the variables that can increase: 0 if β_i can increase, otherwise −∞.
+    /// Mark of each variable: 0 if its coefficient can increase, otherwise −∞.
     pub up: Vec<T>,
-    /// Marks of the variables that can decrease: 0 if β_i can decrease, otherwise −∞.
+    /// Mark of each variable: 0 if its coefficient can decrease, otherwise −∞.
     pub low: Vec<T>,
-    /// Scratch memory of the second pass.
+    /// Scratch memory for the search of the variable to decrease.
     pub gains: Vec<T>,
 }
 
@@ -73,7 +73,7 @@ impl<T: Scalar> Variables<T> {
         variables
     }
 
-    /// Returns a copy with only the variables at the given indices.
+    /// Returns a copy that contains only the variables at the given indices.
     pub fn select(&self, indices: &[usize]) -> Self {
         let beta: Vec<f64> = indices.iter().map(|&i| self.beta[i]).collect();
         let y: Vec<f64> = indices.iter().map(|&i| self.y[i]).collect();
@@ -94,7 +94,7 @@ impl<T: Scalar> Variables<T> {
         }
     }
 
-    /// Increases β_i and decreases β_j by an equal amount, to the optimum along this line or to the first bound. Returns the amount.
+    /// Increases coefficient i and decreases coefficient j by an equal amount, to the optimum along this line or to the first bound. Returns the amount.
     #[inline(always)]
     pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
         let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
@@ -117,8 +117,8 @@ impl<T: Scalar> Variables<T> {
         step
     }
 
-    /// Returns the variables that may still move. `highest` is the largest f of variables that can increase, `lowest` the smallest f of variables that can
-    /// decrease. A variable that cannot move is at a bound, and its gradient points out of the allowed range [Joachims 1999].
+    /// Returns the variables that may still move. `highest` is the largest gradient of variables that can increase, `lowest` the smallest gradient of variables
+    /// that can decrease. The other variables are at a bound, and their gradients point out of the allowed range [Joachims 1999].
     pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
         (0..self.beta.len())
             .filter(|&i| {
@@ -135,7 +135,7 @@ impl<T: Scalar> Variables<T> {
     }
 }
 
-/// Returns the largest f of variables that can increase and the smallest f of variables that can decrease, in f64, for any feasible β.
+/// For any feasible coefficients β, returns the largest gradient f of variables that can increase and the smallest f of variables that can decrease.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     // Each lane has its own extreme; the lanes are combined by halving.
@@ -181,7 +181,7 @@ fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Returns the terms `Σ y β` and `β K β` of the dual objective, given β and its f. The objective is the first term minus half of the second.
+/// Returns the two terms of the dual objective, `Σ y β` and `β K β` with the Gram matrix K. The objective is the first term minus half of the second.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();
@@ -204,7 +204,7 @@ pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, 
     (linear.iter().sum(), quadratic.iter().sum())
 }
 
-/// Returns the sum of f over the variables between their bounds, and their number.
+/// Returns the sum of the gradient f over the variables between their bounds, and the number of these variables.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn sum_of_free(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();
@@ -236,7 +236,8 @@ fn weight_if_free(beta: f64, y: f64, c: f64) -> f64 {
     f64::from(u8::from((beta > low) & (beta < high)))
 }
 
-/// Returns the offset ρ: the mean of −f over the variables between their bounds, or the middle of the interval allowed by the others (LIBSVM's rule).
+/// Returns the offset ρ: the mean of −f over the variables between their bounds. If there are none, returns the middle of the interval that the others allow
+/// (LIBSVM's rule).
 pub(super) fn rho(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
     let (sum, n_free) = sum_of_free(beta, y, f, c);
     if n_free > 0.0 {

@@ -8,27 +8,27 @@ use crate::gram::matrix::Gram;
 use crate::linalg::factors::{LANES, Lanes, add_product, eliminate, substitute, substitute_back};
 use crate::linalg::scalar::Scalar;
 
-/// Ridge δ as a fraction of the largest diagonal kernel value; above the rounding error of kernel values in f32.
+/// Ridge δ (constant added to the diagonal) as a fraction of the largest diagonal kernel value; δ exceeds the rounding error of f32 kernel values.
 const RIDGE: f64 = 1e-5;
-/// Number of variables that can be added before the matrix is factorised again.
+/// Number of variables that can be added to the factors before the matrix is factorised again.
 const JOINING: usize = 64;
 
-/// Factors of the kernel matrix of the free variables.
+/// Factors of the kernel matrix of the free variables (multipliers between 0 and C).
 #[derive(Default)]
 pub(crate) struct FreeFactor {
-    /// Variable at each position of the factors; `None` if the variable was removed.
+    /// Variable at each position of the factors; `None` if the variable was removed from the equations.
     places: Vec<Option<usize>>,
-    /// Number of blocks per row: the capacity of the factors in positions.
+    /// Number of blocks of values per row, which limits the number of positions.
     width: usize,
-    /// Rows of `D Lᵀ`, one per position. Entries are 0 up to the diagonal, beyond the last position, and for removed variables.
+    /// Rows of the factor `D Lᵀ`, one per position. Entries are 0 up to the diagonal, beyond the last position, and for removed variables.
     rows: Vec<Lanes>,
-    /// Inverse of D, one value per position; 0 for removed variables.
+    /// Inverse of the diagonal factor D, one value per position; 0 for removed variables.
     inverse: Vec<f64>,
     ridge: f64,
 }
 
 impl FreeFactor {
-    /// Factorises the equations of the given variables; rows that depend linearly on previous rows are omitted.
+    /// Factorises the kernel matrix of the given variables; variables whose rows depend linearly on previous rows are omitted.
     pub fn new<T: Scalar, G: Gram<T>>(gram: &mut G, free: &[usize]) -> Self {
         let width = (free.len() + JOINING).div_ceil(LANES);
         // The capacity includes all variables that may be added, so that rows are not moved.
@@ -58,12 +58,12 @@ impl FreeFactor {
         factor
     }
 
-    /// Returns the ridge δ that is added to the diagonal.
+    /// Returns the ridge δ that is added to the diagonal of the kernel matrix.
     pub fn ridge(&self) -> f64 {
         self.ridge
     }
 
-    /// Iterates over the free variables and their positions.
+    /// Iterates over the free variables: position in the factors, and variable.
     pub fn variables(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let places = self.places.iter().enumerate();
         places.filter_map(|(place, variable)| Some((place, (*variable)?)))
@@ -74,14 +74,14 @@ impl FreeFactor {
         self.places[place].expect("a place that is asked for is taken")
     }
 
-    /// Returns the given values of the free variables, by position; 0 for removed variables.
+    /// Returns the values of the free variables in the order of their positions in the factors; 0 for removed variables.
     pub fn values(&self, all: &[f64]) -> Vec<f64> {
         let places = self.places.iter();
         places.map(|at| at.map_or(0.0, |at| all[at])).collect()
     }
 
-    /// Solves the equations for the current f. Returns the change of each free variable, by position, and the resulting common f; `None` without free
-    /// variables.
+    /// Solves the equations that make the gradient f equal on all free variables. Returns the change of each free variable, by position, and the resulting
+    /// value of f. Returns `None` if there are no free variables.
     pub fn solve(&self, f: &[f64]) -> Option<(Vec<f64>, f64)> {
         let n_free = self.variables().count();
         // f is centred at its mean, so that products with 1 are small.
@@ -116,7 +116,7 @@ impl FreeFactor {
         is_solved.then_some((steps, mean + level))
     }
 
-    /// Adds a variable that becomes free; returns `false` if the capacity is exhausted.
+    /// Adds a variable to the factors when it becomes free; returns `false` if the capacity is exhausted.
     pub fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, variable: usize) -> bool {
         let n = self.places.len();
         if n == self.width * LANES {
@@ -163,14 +163,14 @@ mod tests {
 
     const N: usize = 120;
 
-    /// Returns kernel values of irregular rows with m features.
+    /// Returns the kernel matrix of irregular rows that have m features.
     fn kernel(m: usize) -> Array2<f64> {
         let feature = |(i, j): (usize, usize)| (((i * m + j) as f64).sin() * 1e4).fract();
         let rows = Array2::from_shape_fn((N, m), feature);
         rows.dot(&rows.t())
     }
 
-    /// Asserts `(K + δ) Δ + μ = f` and `Σ Δ = 0` for the solution.
+    /// Asserts that the solution Δ and its level μ satisfy `(K + δ) Δ + μ = f` and `Σ Δ = 0`.
     fn assert_solves(factor: &FreeFactor, kernel: &Array2<f64>) {
         let f: Vec<f64> = (0..N).map(|i| (i as f64 * 0.7).cos()).collect();
         let (steps, level) = factor.solve(&factor.values(&f)).unwrap();

@@ -14,19 +14,19 @@ use crate::linalg::scalar::Scalar;
 use crate::smo::reached::violation;
 use crate::smo::variables::bounds;
 
-/// Maximum number of free variables in the equations; further variables are added later.
+/// Maximum number of free variables (multipliers between 0 and C) in the equations; further variables are added later.
 const MAX_FREE: usize = 384;
-/// Maximum number of variables that become free in one step.
+/// Maximum number of variables at bounds that become free in one step.
 const MAX_ENTERING: usize = 8;
-/// Minimum violation of a variable that becomes free, as a fraction of the largest violation.
+/// Minimum violation of the optimality conditions at which a variable becomes free, as a fraction of the largest violation.
 const SHARE_OF_FARTHEST: f64 = 0.5;
-/// Maximum number of repeated solves if linearly dependent rows leave f unequal on the free variables.
+/// Maximum number of repeated solutions if linearly dependent rows prevent that the gradient becomes equal on all free variables.
 const MAX_REPEATS: u64 = 8;
 
 /// Stopping criteria of the active-set method.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ActiveSetGoal {
-    /// Penalty C.
+    /// Penalty C of the soft-margin problem.
     pub c: f64,
     /// Maximum violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
@@ -34,7 +34,7 @@ pub(crate) struct ActiveSetGoal {
     pub most_ways: u64,
 }
 
-/// Optimises β and its gradient `f = y − Kβ` by active-set steps. Returns the number of steps; 0 if fewer than two variables are free.
+/// Improves the coefficients β by active-set steps and updates their gradient f. Returns the number of steps; 0 if fewer than two variables are free.
 pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     labels: &[f64],
@@ -65,20 +65,20 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
 struct ActiveSet<'a> {
     labels: &'a [f64],
     beta: &'a mut [f64],
-    /// Gradient f = y − Kβ before the last changes of β.
+    /// Gradient `y − Kβ` of the dual objective before the last changes of β, where y are the labels and K is the Gram matrix.
     f: &'a mut [f64],
-    /// Changes of β since f was updated.
+    /// Changes of the coefficients β since the gradient f was last updated.
     changes: Vec<f64>,
     c: f64,
     factor: FreeFactor,
-    /// Whether each variable has a position in the factors, that is, whether it is free.
+    /// For each variable, whether it has a position in the factors, that is, whether it is free.
     has_place: Vec<bool>,
-    /// Common f of all free variables after the last solve.
+    /// Value of the gradient f on all free variables after the last solution.
     level: f64,
 }
 
 impl<'a> ActiveSet<'a> {
-    /// Creates the state for the variables between their bounds; returns `None` if fewer than two are free.
+    /// Creates the state of the active-set method; returns `None` if fewer than two variables are between their bounds.
     fn new<T: Scalar, G: Gram<T>>(
         gram: &mut G,
         labels: &'a [f64],
@@ -106,7 +106,7 @@ impl<'a> ActiveSet<'a> {
         })
     }
 
-    /// Factorises the equations of the given variables.
+    /// Factorises the kernel matrix of the given free variables.
     fn take<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, free: &[usize]) {
         self.factor = FreeFactor::new(gram, free);
         self.has_place = vec![false; self.labels.len()];
@@ -115,7 +115,7 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
-    /// Moves β to the optimum of the free variables; variables that reach a bound stay there. Returns the number of steps.
+    /// Moves the free variables to their optimum; variables that reach a bound stay there. Returns the number of steps.
     fn solve_free(&mut self, most_ways: u64) -> u64 {
         let mut f = self.factor.values(&self.f[..]);
         for n_ways in 0..most_ways {
@@ -144,7 +144,7 @@ impl<'a> ActiveSet<'a> {
         most_ways
     }
 
-    /// Returns the fraction of the given steps up to the first bound, at most 1, and the position and bound of the blocking variable, if any.
+    /// Returns the fraction of the given steps up to the first bound, at most 1. If a variable blocks the step, returns its position and the bound.
     fn step_fraction(&self, steps: &[f64]) -> (f64, Option<(usize, f64)>) {
         let (mut share, mut blocked) = (1.0, None);
         for (place, variable) in self.factor.variables() {
@@ -158,7 +158,7 @@ impl<'a> ActiveSet<'a> {
         (share, blocked)
     }
 
-    /// Updates the gradient f to the current β.
+    /// Updates the gradient f after changes of the coefficients β.
     fn follow<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G) {
         gram.take_times(&self.changes, self.f);
         self.changes.fill(0.0);
@@ -168,7 +168,7 @@ impl<'a> ActiveSet<'a> {
         violation(self.beta, self.labels, self.f, self.c)
     }
 
-    /// Returns the bound variables with the largest violations, if they exceed the violations of all free variables.
+    /// Returns the variables at bounds with the largest violations of the optimality conditions, if they exceed the violations of all free variables.
     fn entering(&self) -> Vec<usize> {
         let mut beyond = vec![0.0; self.beta.len()];
         let mut farthest = [0.0_f64; 2];
@@ -192,7 +192,7 @@ impl<'a> ActiveSet<'a> {
         entering
     }
 
-    /// Makes variables free, up to the capacity. Returns true if at least one variable was added, or if none had to be added.
+    /// Makes the given variables free, up to the capacity. Returns true if at least one variable was added, or if none had to be added.
     fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, entering: &[usize]) -> bool {
         for (number, &variable) in entering.iter().enumerate() {
             if !self.factor.join(gram, variable) {
@@ -217,7 +217,7 @@ mod tests {
     use crate::smo::variables::extremes;
     use ndarray::{Array1, Array2};
 
-    /// Returns products of n irregular rows with m features; the first half is separated from the others.
+    /// Returns the inner products and labels of n irregular rows with m features; the first half is separated from the others by `apart`.
     fn problem(n: usize, m: usize, apart: f64) -> (Array2<f64>, Vec<f64>) {
         let rows = Array2::from_shape_fn((n, m), |(i, j)| {
             let side = if i < n / 2 { apart } else { -apart };
@@ -248,7 +248,7 @@ mod tests {
         }
     }
 
-    /// Solves from β, and compares the result with the result of pairwise steps.
+    /// Asserts that active-set steps from `start` reach the objective that pairwise steps reach.
     fn assert_settles((kernel, labels): &(Array2<f64>, Vec<f64>), start: Vec<f64>, c: f64) {
         let mut gram = Dense::<f64>::default();
         gram.of_whole(kernel.view());
