@@ -110,6 +110,7 @@
 //! | [`engine`] | work items → rows: axes, journal, shards, provenance |
 //! | [`scene`] | TOML → robots, skin and objects that move → frames over time |
 //! | [`report`] | tables and frames → charts, pages, pictures, terminal output |
+//! | [`schema`] | specifications of studies and scenes → JSON Schemas, reference pages |
 //! | [`studies`] | TOML → plan → work items → tables, charts, page |
 //!
 //! [`recognition`], [`study`] and [`kinds`] re-export names of these stages under shorter paths.

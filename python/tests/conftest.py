@@ -12,7 +12,7 @@ import bubbletouch as bt
 import numpy as np
 import pytest
 
-Command = Callable[..., None]
+Command = Callable[..., str]
 
 
 @pytest.fixture(scope="session")
@@ -45,7 +45,8 @@ def command() -> Command:
     if path is None:
         pytest.skip("no bubbletouch command to compare with: cargo build --release")
 
-    def run(*arguments: object) -> None:
-        subprocess.run([path, *map(str, arguments)], check=True, capture_output=True)
+    def run(*arguments: object) -> str:
+        """Returns what the command prints to standard output."""
+        return subprocess.run([path, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
 
     return run

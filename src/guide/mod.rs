@@ -6,6 +6,12 @@ pub mod first_study {}
 #[doc = include_str!("../../guide/study_file.md")]
 pub mod study_file {}
 
+#[doc = include_str!("../../guide/reference.md")]
+pub mod reference {}
+
+#[doc = include_str!("../../guide/tables.md")]
+pub mod tables {}
+
 #[doc = include_str!("../../guide/objects.md")]
 pub mod objects {}
 

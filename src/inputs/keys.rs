@@ -46,7 +46,9 @@ impl PartialEq for KeyAbout {
 }
 
 /// Units by suffix of the key, longer suffixes first.
-const UNITS: [(&str, &str); 15] = [
+const UNITS: [(&str, &str); 17] = [
+    ("_m_per_s2", "m/s²"),
+    ("_deg_per_s", "°/s"),
     ("_n_s_per_m", "N·s/m"),
     ("_mm_per_s", "mm/s"),
     ("_n_per_m", "N/m"),
@@ -137,6 +139,12 @@ impl KeyAbout {
         let column = Column::new(name, self.role, self.title(), self.unit(), scale);
         column.named(self.names.unwrap_or_default())
     }
+}
+
+/// Returns the unit in the name of a key; empty if there is none.
+pub(crate) fn unit_of(name: &str) -> &'static str {
+    let found = UNITS.iter().find(|(suffix, _)| name.ends_with(suffix));
+    found.map_or("", |(_, unit)| unit)
 }
 
 /// Returns the description of a key, or of the key above it: `touches.depth_mm` for `touches.depth_mm.within`. Returns `None` if the list has no such key.

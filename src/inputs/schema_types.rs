@@ -55,6 +55,19 @@ impl serde::de::Error for Expected {
     }
 }
 
+/// Returns the keys that the reader of `T` accepts in the innermost table of a probe, in the order of their declaration. The innermost table of the probe
+/// contains the single key `?`. Returns no keys if that table accepts any key.
+pub fn accepted_keys<T: DeserializeOwned>(probe: toml::Value) -> Vec<String> {
+    let error = T::deserialize(probe).err();
+    let message = error.as_ref().map_or("", toml::de::Error::message);
+    let names = match message.split_once(", expected ") {
+        Some((start, names)) if start.contains("unknown field `?`") => names,
+        _ => "",
+    };
+    let names = names.split('`').skip(1).step_by(2);
+    names.map(str::to_owned).collect()
+}
+
 /// Schema of [`Features`]: a name, or several names of image features joined by `+`.
 pub struct FeatureNames;
 
@@ -83,7 +96,7 @@ impl JsonSchema for FeatureNames {
         json_schema!({
             "anyOf": [
                 { "type": "string", "enum": names },
-                { "type": "string", "pattern": format!(r"^\s*({one})\s*(\+\s*({one})\s*)+$") },
+                { "title": "several image features joined by `+`", "type": "string", "pattern": format!(r"^\s*({one})\s*(\+\s*({one})\s*)+$") },
             ]
         })
     }

@@ -65,8 +65,16 @@ pub fn strength_keys() -> &'static [KeyAbout] {
 /// Returns the table columns of all strengths, in the order of [`all_strengths`].
 pub fn strength_columns() -> &'static [Column] {
     static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
-        let keys = strength_keys().iter();
-        keys.map(|key| key.column(key.name()).optional()).collect()
+        let column = |(key, (error, strength)): (&KeyAbout, (SensorError, &Strength))| {
+            let words = strength_words(error, strength);
+            let meaning = format!("{words} Present only if the study has the key.");
+            key.column(key.name()).meaning(meaning).optional()
+        };
+        strength_keys()
+            .iter()
+            .zip(all_strengths())
+            .map(column)
+            .collect()
     });
     &COLUMNS
 }

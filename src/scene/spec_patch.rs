@@ -88,6 +88,7 @@ impl JsonSchema for SignalStepSpec {
             keys.insert(key.to_owned(), number.into());
         }
         json_schema!({
+            "title": "`\"force\"` or a table with a key of a step, such as `{ noise_std_n = 0.1 }`",
             "anyOf": [
                 { "type": "string", "const": "force" },
                 {

@@ -1,4 +1,4 @@
-//! JSON Schemas of the tables `[axes]` and `[test]`, which repeat keys of other tables.
+//! Schemas of the tables `[axes]` and `[test]`, which repeat keys of other tables.
 
 use super::study_schema::properties;
 use crate::inputs::keys::AxisPlace;
@@ -7,7 +7,7 @@ use crate::studies::recognition::plan::tested::{SHARED, TABLES};
 use crate::studies::recognition::spec::keys::recognition_keys;
 use serde_json::{Map, Value, json};
 
-/// Adds the tables `[test]` and `[axes]` to the schema of a recognition study.
+/// Completes the schema of a recognition study with `[test]` and `[axes]`.
 pub(super) fn complete(schema: &mut Value) {
     let test = test_table(schema);
     schema["properties"]["test"] = test;
@@ -15,14 +15,25 @@ pub(super) fn complete(schema: &mut Value) {
     schema["properties"]["axes"] = axes;
 }
 
-/// Returns the schema of `[test]`: all keys of other tables that may differ for test touches. No key is required.
+/// Returns the table `[test]`: the keys of other tables that may differ for test touches, none of which is required.
 fn test_table(schema: &Value) -> Value {
     let tables = TABLES.iter().map(|&name| {
-        let mut table = schema["properties"][name].clone();
-        remove_required(&mut table);
-        if let Some(keys) = table["properties"].as_object_mut() {
-            keys.retain(|key, _| !SHARED.contains(&&format!("{name}.{key}")[..]));
-        }
+        let path = format!("#/properties/{name}");
+        let table = &schema["properties"][name];
+        let keys = properties(table).filter(|(key, _)| {
+            let key = format!("{name}.{key}");
+            !SHARED.contains(&&key[..])
+        });
+        let keys =
+            keys.map(|(key, _)| (key.clone(), reference(&format!("{path}/properties/{key}"))));
+        let keys: Map<String, Value> = keys.collect();
+        let description = format!("Keys of `[{name}]` whose values differ for test touches.");
+        let table = json!({
+            "type": "object",
+            "description": description,
+            "properties": keys,
+            "additionalProperties": false,
+        });
         (name.to_owned(), table)
     });
     json!({
@@ -33,27 +44,20 @@ fn test_table(schema: &Value) -> Value {
     })
 }
 
-/// Removes the lists of required keys and the defaults from the schema of a table.
-fn remove_required(table: &mut Value) {
-    if let Some(table) = table.as_object_mut() {
-        table.remove("required");
-        table.remove("default");
-    }
-    if let Some(keys) = table.get_mut("properties").and_then(Value::as_object_mut) {
-        for key in keys.values_mut().filter_map(Value::as_object_mut) {
-            key.remove("default");
-        }
-    }
+/// Returns a reference to a part of the schema, given by its JSON pointer.
+fn reference(pointer: &str) -> Value {
+    json!({ "$ref": pointer })
 }
 
-/// Returns the schema of `[axes]`. A key is a path in quotes, or a table with the last parts of paths.
+/// Returns the table `[axes]`. A key is a path in quotes, or a table with the last parts of paths.
 fn axes_table(schema: &Value) -> Value {
     let mut axes = Map::new();
     for (name, of_key) in properties(schema) {
         let mut keys = recognition_keys().iter();
         if keys.any(|key| is_at(key.path, name) && key.axis != AxisPlace::Never) {
-            add_paths(name, of_key, &mut axes);
-            axes.insert(name.clone(), lists(of_key));
+            let key = Key::new(format!("#/properties/{name}"), of_key, schema);
+            key.add_paths(name, &mut axes);
+            axes.insert(name.clone(), key.lists());
         }
     }
     let mut combine = schema["properties"]["signal"]["properties"]["combine"].clone();
@@ -69,56 +73,88 @@ fn axes_table(schema: &Value) -> Value {
     })
 }
 
-/// Adds the paths of a key and of all keys below it, each with the schema of a list of its values.
-fn add_paths(path: &str, schema: &Value, axes: &mut Map<String, Value>) {
-    axes.extend(list_of(schema).map(|list| (path.to_owned(), list)));
-    for (name, inner) in inner_keys(schema) {
-        add_paths(&format!("{path}.{name}"), inner, axes);
+/// A key, its place in the schema of a study, and that schema.
+struct Key<'s> {
+    pointer: String,
+    schema: &'s Value,
+    root: &'s Value,
+}
+
+impl<'s> Key<'s> {
+    /// Creates a key. If its schema is a reference, the key is the one that is referred to.
+    fn new(pointer: String, schema: &'s Value, root: &'s Value) -> Self {
+        let other = schema["$ref"].as_str();
+        let target = other.and_then(|other| Some((other, root.pointer(&other[1..])?)));
+        match target {
+            Some((pointer, schema)) => Self::new(pointer.to_owned(), schema, root),
+            None => Self {
+                pointer,
+                schema,
+                root,
+            },
+        }
+    }
+
+    /// Adds the paths of the key and of all keys below it, each with the schema of a list of its values.
+    fn add_paths(&self, path: &str, axes: &mut Map<String, Value>) {
+        axes.extend(self.list().map(|list| (path.to_owned(), list)));
+        for (name, inner) in self.inner() {
+            inner.add_paths(&format!("{path}.{name}"), axes);
+        }
+    }
+
+    /// Returns the schema of a list of values of the key, or of a table with such lists.
+    fn lists(&self) -> Value {
+        let inner = self.inner().into_iter();
+        let inner: Map<String, Value> = inner.map(|(name, key)| (name, key.lists())).collect();
+        let is_value = inner.is_empty();
+        let table = json!({ "type": "object", "properties": inner, "additionalProperties": false });
+        match self.list() {
+            None => table,
+            Some(list) if is_value => list,
+            Some(list) => json!({ "anyOf": [list, table] }),
+        }
+    }
+
+    /// Returns the keys of a table, or of a value that may be a table.
+    fn inner(&self) -> Vec<(String, Self)> {
+        let inner =
+            |name: String, schema| Self::new(format!("{}/{name}", self.pointer), schema, self.root);
+        let keys = properties(self.schema);
+        let mut found: Vec<(String, Self)> = keys
+            .map(|(name, schema)| (name.clone(), inner(format!("properties/{name}"), schema)))
+            .collect();
+        for choice in ["anyOf", "oneOf"] {
+            let choices = self.schema[choice].as_array().into_iter().flatten();
+            for (place, schema) in choices.enumerate() {
+                found.extend(inner(format!("{choice}/{place}"), schema).inner());
+            }
+        }
+        found
+    }
+
+    /// Returns the schema of a list of values of the key; `None` for a table.
+    fn list(&self) -> Option<Value> {
+        if self.schema.get("properties").is_some() {
+            return None;
+        }
+        // A key that accepts a value or a list: an axis lists values.
+        let value = match is_axis(self.schema) {
+            true => format!("{}/anyOf/0", self.pointer),
+            false => self.pointer.clone(),
+        };
+        Some(json!({
+            "type": "array",
+            "description": self.schema["description"].as_str().unwrap_or_default(),
+            "items": reference(&value),
+            "minItems": 1,
+            "uniqueItems": true,
+        }))
     }
 }
 
-/// Returns the schema of a list of a key's values, or of a table of such lists.
-fn lists(schema: &Value) -> Value {
-    let inner = inner_keys(schema).into_iter();
-    let inner: Map<String, Value> = inner
-        .map(|(name, schema)| (name.clone(), lists(schema)))
-        .collect();
-    let table = json!({ "type": "object", "properties": inner, "additionalProperties": false });
-    match list_of(schema) {
-        None => table,
-        Some(list) if inner.is_empty() => list,
-        Some(list) => json!({ "anyOf": [list, table] }),
-    }
-}
-
-/// Returns the keys of a table, or of a value that may be a table.
-fn inner_keys(schema: &Value) -> Vec<(&String, &Value)> {
-    let choices = ["anyOf", "oneOf"].map(|choice| schema[choice].as_array());
-    let choices = choices.into_iter().flatten().flatten();
-    properties(schema)
-        .chain(choices.flat_map(inner_keys))
-        .collect()
-}
-
-/// Returns the schema of a list of a key's values; `None` for a table.
-fn list_of(schema: &Value) -> Option<Value> {
-    if schema.get("properties").is_some() {
-        return None;
-    }
-    let mut value = schema.clone();
-    let keywords = value.as_object_mut()?;
-    keywords.remove("default");
-    let description = keywords.remove("description");
-    // A key that accepts a value or a list: an axis lists values.
-    if let Some([one, list]) = schema["anyOf"].as_array().map(Vec::as_slice)
-        && list["items"] == *one
-        && list["uniqueItems"] == true
-    {
-        value = one.clone();
-    }
-    let mut list = json!({ "type": "array", "items": value, "minItems": 1, "uniqueItems": true });
-    if let Some(description) = description {
-        list["description"] = description;
-    }
-    Some(list)
+/// Returns whether a key accepts a value or a list of values that are swept.
+pub(super) fn is_axis(schema: &Value) -> bool {
+    let choices = schema["anyOf"].as_array().map(Vec::as_slice);
+    matches!(choices, Some([one, list]) if list["items"] == *one && list["uniqueItems"] == true)
 }

@@ -1,15 +1,23 @@
 //! JSON Schemas of study and scene files, used by editors and other programs that check such files.
 //!
 //! The keys, types, defaults and descriptions come from the specifications, whose doc comments are the descriptions. Ranges come from the descriptions of
-//! keys ([`inputs::keys`](crate::inputs)). [`reference`] writes the pages `guide/reference.md` and `guide/tables.md`.
+//! keys ([`inputs::keys`](crate::inputs)). The pages `guide/reference.md` and `guide/tables.md` are written from the same lists.
 
 mod axes_schema;
+mod ranges;
+mod reference;
 mod study_schema;
+mod tables;
+#[cfg(test)]
+mod tests;
 mod tidy;
 
+pub use reference::reference_page;
 pub use study_schema::study_schema;
+pub use tables::tables_page;
 
 use crate::scene::SceneSpec;
+use crate::scene::ranges::RANGES;
 use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
@@ -21,6 +29,9 @@ const DIALECT: &str = "https://json-schema.org/draft/2020-12/schema";
 pub fn scene_schema() -> Value {
     let mut schema = generator().into_root_schema_for::<SceneSpec>().to_value();
     tidy::tidy(&mut schema);
+    for (path, is_allowed) in RANGES {
+        ranges::bound(&mut schema, path, is_allowed);
+    }
     schema["title"] = "Scene of bubbletouch".into();
     schema
 }

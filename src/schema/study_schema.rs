@@ -3,8 +3,10 @@
 //! All kinds use tables such as `[skin]`, so the schema lists each table once. Conditions then state which tables a file of each kind may have and
 //! must have; the kind follows from the table that only this kind has.
 
+use super::ranges::bound;
 use super::tidy::tidy;
 use super::{DIALECT, axes_schema, generator};
+use crate::inputs::keys::KeyAbout;
 use crate::studies;
 use serde_json::{Map, Value, json};
 
@@ -12,21 +14,35 @@ use serde_json::{Map, Value, json};
 pub(super) struct KindSchema {
     /// Name of the table that only this kind has.
     pub table: &'static str,
+    /// Description of the kind.
+    pub words: &'static str,
     /// Schema of a file of this kind, without conditions.
     pub schema: Value,
+    /// Function that returns the keys that the reader accepts.
+    pub accepted_keys: fn(toml::Value) -> Vec<String>,
+    /// Descriptions of all keys.
+    pub keys: Vec<KeyAbout>,
 }
 
 /// Returns the schema of each kind, recognition first.
 pub(super) fn kinds() -> Vec<KindSchema> {
-    let kinds = studies::schemas(generator).into_iter().rev();
-    let kinds = kinds.map(|(about, mut schema)| {
-        tidy(&mut schema);
-        if about.table == studies::RECOGNITION_TABLE {
-            axes_schema::complete(&mut schema);
+    let kinds = studies::kind_files(generator).into_iter().rev();
+    let kinds = kinds.map(|mut kind| {
+        tidy(&mut kind.schema);
+        for key in &kind.keys {
+            bound(&mut kind.schema, key.path, |number| {
+                key.range.contains(number)
+            });
+        }
+        if kind.about.table == studies::RECOGNITION_TABLE {
+            axes_schema::complete(&mut kind.schema);
         }
         KindSchema {
-            table: about.table,
-            schema,
+            table: kind.about.table,
+            words: kind.about.words,
+            schema: kind.schema,
+            accepted_keys: kind.accepted_keys,
+            keys: kind.keys,
         }
     });
     kinds.collect()

@@ -26,9 +26,6 @@ fn tidy_object(keys: &mut Map<String, Value>) {
             keys.insert("type".to_owned(), one);
         }
     }
-    if let Some(Value::Array(names)) = keys.get_mut("enum") {
-        names.retain(|name| !name.is_null());
-    }
     if let Some(Value::Array(choices)) = keys.get_mut("anyOf") {
         choices.retain(|one| one.get("type").is_none_or(|of| of != "null"));
         if let [Value::Object(only)] = &choices[..] {
@@ -38,6 +35,9 @@ fn tidy_object(keys: &mut Map<String, Value>) {
                 keys.entry(key).or_insert(value);
             }
         }
+    }
+    if let Some(Value::Array(names)) = keys.get_mut("enum") {
+        names.retain(|name| !name.is_null());
     }
     if let Some(Value::String(words)) = keys.get_mut("description") {
         *words = plain(words);

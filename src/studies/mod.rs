@@ -32,9 +32,10 @@ use crate::error::{Error, Result};
 use crate::files::{OwnedFiles, RUN, with_folder};
 use crate::inputs::check::Check;
 use crate::inputs::keys::KeyAbout;
+use crate::inputs::schema_types::accepted_keys;
 use crate::report::csv_tables::FAILURES_FILE;
 use crate::studies::recognition::plan::study_plan::Plan;
-use crate::table::Table;
+use crate::table::{FileAbout, Table};
 use crate::toml_numbers::with_line;
 use crate::toml_text;
 use schemars::{Schema, SchemaGenerator};
@@ -47,6 +48,7 @@ struct Entry {
     tables: TableFiles,
     schema: fn(SchemaGenerator) -> Schema,
     keys: fn() -> Vec<KeyAbout>,
+    accepted_keys: fn(toml::Value) -> Vec<String>,
 }
 
 /// Registry of all kinds of studies.
@@ -68,14 +70,39 @@ const fn entry<K: Study>() -> Entry {
         tables: K::TABLES,
         schema: SchemaGenerator::into_root_schema_for::<K::Spec>,
         keys: K::keys,
+        accepted_keys: accepted_keys::<K::Spec>,
     }
 }
 
-/// Returns each kind with the JSON Schema of its study files.
-pub(crate) fn schemas(generator: fn() -> SchemaGenerator) -> Vec<(About, serde_json::Value)> {
-    let kinds = KINDS.iter();
-    let schemas = kinds.map(|entry| (entry.about, (entry.schema)(generator()).to_value()));
-    schemas.collect()
+/// Form of the files of a kind of study.
+pub(crate) struct KindFiles {
+    /// Description of the kind.
+    pub about: About,
+    /// JSON Schema of a study file.
+    pub schema: serde_json::Value,
+    /// Function that returns the keys that the reader of a study accepts; see [`accepted_keys`].
+    pub accepted_keys: fn(toml::Value) -> Vec<String>,
+    /// Descriptions of all keys.
+    pub keys: Vec<KeyAbout>,
+    /// Table files.
+    pub tables: TableFiles,
+}
+
+/// Returns the form of the files of each kind.
+pub(crate) fn kind_files(generator: fn() -> SchemaGenerator) -> Vec<KindFiles> {
+    let kinds = KINDS.iter().map(|entry| KindFiles {
+        about: entry.about,
+        schema: (entry.schema)(generator()).to_value(),
+        accepted_keys: entry.accepted_keys,
+        keys: (entry.keys)(),
+        tables: entry.tables,
+    });
+    kinds.collect()
+}
+
+/// Returns the description of the table of failed work items, which every study may write.
+pub(crate) fn failures_about() -> FileAbout {
+    loaded::FAILURES.about()
 }
 
 /// Name of the table that only recognition studies have.

@@ -8,10 +8,11 @@ use crate::error::Result;
 use crate::inputs::keys::KeyAbout;
 use crate::report::study_content::Beyond;
 use crate::studies::source::Source;
-use crate::table::{ChartSpec, Columns, File, Table};
+use crate::table::{ChartSpec, Columns, File, FileAbout, Table};
 use crate::toml_text;
 use schemars::JsonSchema;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -82,6 +83,9 @@ pub trait AnyFile: Sync {
     /// Returns the name of the table file.
     fn name(&self) -> &'static str;
 
+    /// Describes the file; see [`File::about`].
+    fn about(&self) -> FileAbout;
+
     /// Reads the table from a folder.
     ///
     /// # Errors
@@ -100,6 +104,10 @@ impl<R: Columns> AnyFile for File<R> {
         self.name()
     }
 
+    fn about(&self) -> FileAbout {
+        self.about()
+    }
+
     fn read(&self, folder: &Path) -> Result<Table> {
         self.read(folder)
     }
@@ -111,41 +119,29 @@ impl<R: Columns> AnyFile for File<R> {
 
 /// Table files that studies of a kind write.
 #[derive(Clone, Copy)]
-pub enum TableFiles {
-    /// Table files that every study of the kind writes, followed by files of optional parts.
-    Listed {
-        /// Table files that every study of the kind writes.
-        always: &'static [&'static dyn AnyFile],
-        /// Table files of optional parts of a study.
-        of_parts: &'static [&'static dyn AnyFile],
-    },
-    /// Table files whose columns depend on the study.
-    Own {
-        /// Names of all table files that a study of the kind may write.
-        names: &'static [&'static str],
-        /// Function that reads all tables of a folder.
-        read: fn(&Path) -> Result<Vec<Table>>,
-    },
+pub struct TableFiles {
+    /// Table files that every study of the kind writes.
+    pub always: &'static [&'static dyn AnyFile],
+    /// Table files of optional parts of a study.
+    pub of_parts: &'static [&'static dyn AnyFile],
+    /// Function that reads all tables of a folder, for tables whose columns depend on the study.
+    pub read: Option<fn(&Path) -> Result<Vec<Table>>>,
 }
 
 impl TableFiles {
     /// Creates a list of table files without files of optional parts: every study of the kind writes all files.
     pub const fn always(always: &'static [&'static dyn AnyFile]) -> Self {
-        Self::Listed {
+        Self {
             always,
             of_parts: &[],
+            read: None,
         }
     }
 
     /// Returns the names of all table files that a study may write.
     pub fn names(&self) -> Vec<&'static str> {
-        match self {
-            Self::Listed { always, of_parts } => {
-                let files = always.iter().chain(*of_parts);
-                files.map(|file| file.name()).collect()
-            }
-            Self::Own { names, .. } => names.to_vec(),
-        }
+        let files = self.always.iter().chain(self.of_parts);
+        files.map(|file| file.name()).collect()
     }
 
     /// Reads all tables of a folder, in the order in which a study creates them.
@@ -153,17 +149,13 @@ impl TableFiles {
     /// # Errors
     /// If a table cannot be read or has other columns.
     pub fn read(&self, folder: &Path) -> Result<Vec<Table>> {
-        match self {
-            Self::Listed { always, of_parts } => {
-                let files = always.iter().map(|file| file.read(folder).map(Some));
-                let of_parts = of_parts.iter().map(|file| file.read_if_there(folder));
-                files
-                    .chain(of_parts)
-                    .filter_map(Result::transpose)
-                    .collect()
-            }
-            Self::Own { read, .. } => read(folder),
+        if let Some(read) = self.read {
+            return read(folder);
         }
+        let files = self.always.iter().map(|file| file.read(folder).map(Some));
+        let of_parts = self.of_parts.iter().map(|file| file.read_if_there(folder));
+        let files = files.chain(of_parts);
+        files.filter_map(Result::transpose).collect()
     }
 }
 
@@ -188,7 +180,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
 
     /// Specification: the keys of a study file of the kind.
-    type Spec: JsonSchema;
+    type Spec: JsonSchema + DeserializeOwned;
 
     /// Type of the result rows of a work item.
     type Rows: ItemRows;

@@ -69,6 +69,8 @@ pub struct Column {
     /// Display names of codes, such as `RBF SVM` for `rbf_svm`. For other words, underscores are shown as spaces. Numbers with a special meaning can also have
     /// names, such as `none` for `0` bits.
     pub names: &'static [(&'static str, &'static str)],
+    /// Meaning of the values, for the reference of tables.
+    pub meaning: Words,
     /// Whether the column may be missing in a file, because only some studies have it.
     pub is_optional: bool,
 }
@@ -90,6 +92,7 @@ impl Column {
             role,
             interval: None,
             names: &[],
+            meaning: Words::default(),
             is_optional: false,
         }
     }
@@ -97,6 +100,12 @@ impl Column {
     /// Sets the names of the columns with the lower and upper bound of the value.
     pub fn between(mut self, low: impl Into<Words>, high: impl Into<Words>) -> Self {
         self.interval = Some([low.into(), high.into()]);
+        self
+    }
+
+    /// Sets the meaning of the values.
+    pub fn meaning(mut self, meaning: impl Into<Words>) -> Self {
+        self.meaning = meaning.into();
         self
     }
 

@@ -16,6 +16,20 @@ pub struct File<R> {
     rows: PhantomData<fn(R)>,
 }
 
+/// Description of a table file, for the reference of tables.
+pub struct FileAbout {
+    /// Name of the CSV file.
+    pub name: &'static str,
+    /// Title of the table.
+    pub title: &'static str,
+    /// Note on the table; may be empty.
+    pub note: &'static str,
+    /// Whether a repeated run gives the same bytes.
+    pub repeats: bool,
+    /// All columns, including the optional ones.
+    pub columns: Vec<Column>,
+}
+
 impl<R: Columns> File<R> {
     /// Creates the specification of a table from its file name, title and note. By default, the table is reproducible and not a summary.
     pub const fn new(name: &'static str, title: &'static str, note: &'static str) -> Self {
@@ -32,6 +46,17 @@ impl<R: Columns> File<R> {
     /// Returns the name of the CSV file.
     pub const fn name(&self) -> &'static str {
         self.name
+    }
+
+    /// Describes the file.
+    pub fn about(&self) -> FileAbout {
+        FileAbout {
+            name: self.name,
+            title: self.title,
+            note: self.note,
+            repeats: self.repeats,
+            columns: R::columns(),
+        }
     }
 
     /// Marks the table as a table of times, whose bytes differ between runs.

@@ -18,7 +18,7 @@ mod table;
 
 pub use chart::{Along, At, ChartSpec, Mark, Rule, Shown};
 pub use column::{Better, Column, Columns, Role, Scale, column_name};
-pub use file::File;
+pub use file::{File, FileAbout};
 pub use front::front;
 pub(crate) use marks::for_each_mark;
 pub use numbers::{short_number, time_words};

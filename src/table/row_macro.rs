@@ -25,13 +25,13 @@
 /// A field without a description does not compile.
 #[macro_export]
 macro_rules! row {
-    ($(#[$of_row:meta])* pub struct $row:ident { $($(#[$of_field:meta])* $field:ident: $type:ty =>
+    ($(#[$of_row:meta])* pub struct $row:ident { $($(#[$($of_field:tt)*])* $field:ident: $type:ty =>
         $role:ident $(($better:ident))? $($words:literal)? $(in $unit:literal)? $(: $scale:ident)?
         $(between [$low:ident, $high:ident])? $(named $names:path)? $(, $optional:ident)?;)* }) => {
         $(#[$of_row])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
         pub struct $row {
-            $($(#[$of_field])* pub $field: $type,)*
+            $($(#[$($of_field)*])* pub $field: $type,)*
         }
 
         impl $crate::table::Columns for $row {
@@ -48,6 +48,7 @@ macro_rules! row {
                     let mut scale = $crate::table::Scale::Words;
                     $(scale = $crate::table::Scale::$scale;)?
                     let column = $crate::table::Column::new(stringify!($field), role, words, unit, scale);
+                    let column = column.meaning($crate::doc_of!($(#[$($of_field)*])*));
                     $(let column = column.between(stringify!($low), stringify!($high));)?
                     $(let column = column.named($names);)?
                     $(let column = column.$optional();)?
@@ -56,4 +57,15 @@ macro_rules! row {
             }
         }
     };
+}
+
+/// Returns the text of doc comments, line breaks included; other attributes are ignored.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! doc_of {
+    (@ [$($line:literal)*]) => { concat!($($line, "\n"),*) };
+    (@ [$($line:literal)*] #[doc = $next:literal] $($rest:tt)*) => { $crate::doc_of!(@ [$($line)* $next] $($rest)*) };
+    (@ [$($line:literal)*] #[$($other:tt)*] $($rest:tt)*) => { $crate::doc_of!(@ [$($line)*] $($rest)*) };
+    (@ $($wrong:tt)*) => { compile_error!("attributes") };
+    ($($attributes:tt)*) => { $crate::doc_of!(@ [] $($attributes)*) };
 }

@@ -198,7 +198,7 @@ impl JsonSchema for TemporalFeatures {
         json_schema!({
             "anyOf": [
                 { "type": "string", "enum": ["deepest", "moments", "course", "summarised"] },
-                { "type": "string", "pattern": "^stacked_\\+?0*[1-9][0-9]*$" },
+                { "title": "`stacked_` and a number", "type": "string", "pattern": "^stacked_\\+?0*[1-9][0-9]*$" },
             ]
         })
     }

@@ -107,9 +107,10 @@ impl Study for ObjectDetailStudy {
             "object_detail.recognition.classifiers",
         ]),
     };
-    const TABLES: TableFiles = TableFiles::Listed {
+    const TABLES: TableFiles = TableFiles {
         always: &[&DETAIL, &SUMMARY, &TIMING, &COST],
         of_parts: &[&RECOGNITION],
+        read: None,
     };
 
     type Spec = ObjectDetailStudySpec;

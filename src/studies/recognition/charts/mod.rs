@@ -11,5 +11,5 @@ pub use crate::studies::recognition::charts::answers::{answers, words};
 pub use crate::studies::recognition::charts::sections::sections;
 pub use crate::studies::recognition::charts::table_charts::charts;
 pub use crate::studies::recognition::charts::tables::{
-    CONFIGURATIONS, TABLE_NAMES, read_tables, tables_of,
+    CONFIGURATIONS, TABLES, TABLES_OF_PARTS, read_tables, tables_of,
 };

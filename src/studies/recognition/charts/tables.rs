@@ -13,6 +13,7 @@ use crate::studies::recognition::rows::table_rows::{
     Tables, TrialScore, TrialTime, Variance,
 };
 use crate::studies::recognition::spec::study::StudySpec;
+use crate::studies::study::AnyFile;
 use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
 use serde::Serialize;
 use std::path::Path;
@@ -65,21 +66,22 @@ const VARIANCE: File<Variance> =
     File::new("variance.csv", "What makes trials differ", "").summary();
 const LIMITS: File<Limit> = File::new(LIMITS_FILE, "How often limits were reached", "").summary();
 
-/// Names of all table files of a recognition study.
-pub const TABLE_NAMES: [&str; 12] = [
-    ACCURACY.name(),
-    SUMMARY.name(),
-    CONFUSION.name(),
-    COMPARISON.name(),
-    TIMING.name(),
-    PARETO.name(),
-    STAGES.name(),
-    CONFUSED.name(),
-    PUBLISHED.name(),
-    VARIANCE.name(),
-    LIMITS.name(),
-    ROBUSTNESS.name(),
+/// Table files that every recognition study writes. Tables of configurations also have the columns of the axes in `[axes]`.
+pub const TABLES: &[&dyn AnyFile] = &[
+    &ACCURACY,
+    &SUMMARY,
+    &CONFUSION,
+    &COMPARISON,
+    &TIMING,
+    &PARETO,
+    &STAGES,
+    &CONFUSED,
+    &PUBLISHED,
+    &LIMITS,
 ];
+
+/// Table files of studies with several projections per split, and of studies that sweep a condition.
+pub const TABLES_OF_PARTS: &[&dyn AnyFile] = &[&VARIANCE, &ROBUSTNESS];
 
 /// Returns every table of a run, in the order of their files, followed by [`CONFIGURATIONS`].
 ///

@@ -1,5 +1,6 @@
 //! Configuration of a recognition study: one value of every axis. The parameters of a configuration are the first columns of a row of results.
 
+use crate::doc_of;
 use crate::engine::axes::AxisValues;
 use crate::inputs::sensor_errors::{Strengths, TestSensor, strength_columns};
 use crate::learning::classifiers::ClassifierKind;
@@ -20,12 +21,12 @@ use std::borrow::Cow;
 /// are generated from this list, in its order.
 macro_rules! configuration {
     ($(#[$of_cell:meta])* pub struct $configuration:ident {
-        $($(#[$of_field:meta])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(of $key:literal)?;)*
+        $($(#[$($of_field:tt)*])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(of $key:literal)?;)*
     }) => {
         $(#[$of_cell])*
         #[derive(Clone, Debug, PartialEq)]
         pub struct $configuration {
-            $($(#[$of_field])* pub $field: $type,)*
+            $($(#[$($of_field)*])* pub $field: $type,)*
         }
 
         impl Serialize for $configuration {
@@ -46,6 +47,7 @@ macro_rules! configuration {
                     let mut column: Option<Column> = None;
                     $(column = Some(Column::new(stringify!($field), Role::$role, $words, $unit, Scale::$scale));)?
                     $(column = Some(key($key).column(stringify!($field)));)?
+                    let column = column.map(|column| column.meaning(doc_of!($(#[$($of_field)*])*)));
                     $how::columns(column, &mut columns);
                 )*
                 columns

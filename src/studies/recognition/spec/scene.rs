@@ -133,6 +133,9 @@ pub enum SensedSpec {
     untagged,
     expecting = "expected a number, a list, { grid = [first, last, count] }, { uniform = [low, high] } or { within = half_width }"
 )]
+#[schemars(
+    title = "number, list, `{ grid = [first, last, count] }`, `{ uniform = [low, high] }` or `{ within = half_width }`"
+)]
 pub enum SpreadSpec {
     /// Single value for all touches, such as `yaw_deg = 30.0`.
     One(f64),

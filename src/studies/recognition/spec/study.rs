@@ -175,7 +175,7 @@ pub struct RecognitionSpec {
     /// ones), or `most_informative` (the pose with the lowest expected entropy of the belief over objects). All test touches of the object are candidates, each
     /// at most once per decision.
     pub next_touch: Option<Axis<NextTouch>>,
-    /// Rule that decides which touches are held out for testing: `random` (default) or a rule of [`PoseSplit`].
+    /// Rule that decides which touches are held out for testing: `random` (default), or a rule by pose.
     #[serde(default, skip_serializing_if = "is_default")]
     pub split: PoseSplit,
     /// Fraction of the touches that a random split holds out for testing, between 0 and 1. Default: 0.25.

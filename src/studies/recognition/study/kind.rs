@@ -67,9 +67,10 @@ impl Study for RecognitionStudy {
         resumes: Resumes::SharedWork,
     };
 
-    const TABLES: TableFiles = TableFiles::Own {
-        names: &charts::TABLE_NAMES,
-        read: charts::read_tables,
+    const TABLES: TableFiles = TableFiles {
+        always: charts::TABLES,
+        of_parts: charts::TABLES_OF_PARTS,
+        read: Some(charts::read_tables),
     };
     const SUMMARY: Option<fn(&[Table], usize) -> String> = Some(charts::words);
     type Spec = StudySpec;

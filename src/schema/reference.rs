@@ -1,0 +1,484 @@
+//! The page `guide/reference.md`: all keys of study and scene files.
+
+use super::axes_schema::is_axis;
+use super::scene_schema;
+use super::study_schema::{KindSchema, kinds, properties};
+use crate::inputs::keys::{AxisPlace, KeyAbout, unit_of};
+use crate::inputs::schema_types::accepted_keys;
+use crate::scene::SceneSpec;
+use crate::table::short_number;
+use serde_json::Value;
+
+/// Introduction of the page.
+const START: &str = "\
+# Reference of keys
+
+All keys of [study files](#study-files) and [scene files](#scene-files). This page is generated from the program: see [`bubbletouch schema`](#editors) for
+editors. [Tables](tables.md) lists the columns of all result tables.
+
+- **Default** `required`: the file must have the key. Without a default, the meaning says what holds without the key.
+- **Axis** `list`: the key accepts one value or a list of values that are swept, in its table or in `[axes]`. `[axes]`: the key can be swept in `[axes]` alone.
+
+## Editors
+
+Editors with TOML support complete and check keys with a JSON Schema. Write the schemas beside your files:
+
+```sh
+bubbletouch schema study > study.schema.json
+bubbletouch schema scene > scene.schema.json
+```
+
+Then name the schema in the first line of a study (in a scene: `scene.schema.json`):
+
+```toml
+#:schema study.schema.json
+question = \"How many measurements are enough?\"
+```
+
+[Taplo](https://taplo.tamasfe.dev) checks such files with `taplo lint`. In VS Code, the extension *Even Better TOML* reads the same line.
+";
+
+/// Introduction of the study files.
+const STUDIES: &str = "
+## Study files
+
+The kind of a study follows from the table that only this kind has. A file without such a table is a recognition study.
+";
+
+/// Description of `[test]` and `[axes]`, which repeat keys of other tables.
+const AXES: &str = "
+### `[test]` of recognition studies
+
+Keys of `[objects]`, `[skin]`, `[touches]` and `[signal]` whose values differ for test touches, such as `touches.depth_mm = 1.0`. Training and test touches share
+`touches.per_object`, `touches.frames`, `signal.test_sensor` and `signal.combine`. Studies with `[recorded]` or `[human_touch]` accept `[signal]` alone.
+
+### `[axes]` of recognition studies
+
+Each key is the path of another key, with a list of its values: `\"touches.depth_mm\" = [1.0, 2.0]`. `\"touches.offset_{x,y}_mm\"` sets two keys together.
+`combine` is `\"all\"` (default: all combinations) or `\"one_at_a_time\"` (the values of the tables, then each axis alone).
+";
+
+/// Introduction of the scene files.
+const SCENES: &str = "
+## Scene files
+
+`bubbletouch simulate` reads these files. Paths are relative to the folder of the scene file.
+";
+
+/// Returns the page.
+pub fn reference_page() -> String {
+    let kinds = kinds();
+    let mut page = format!("{START}{STUDIES}");
+    let mut written = Vec::new();
+    for kind in &kinds {
+        let is_first = kind.table == kinds[0].table;
+        page.push_str(&words_of_kind(kind, &kinds[0]));
+        let file = FileKind {
+            schema: &kind.schema,
+            accepted_keys: kind.accepted_keys,
+            keys: &kind.keys,
+        };
+        file.write(&mut written, &mut page);
+        if is_first {
+            page.push_str(AXES);
+        }
+    }
+    page.push_str(SCENES);
+    let file = FileKind {
+        schema: &scene_schema(),
+        accepted_keys: accepted_keys::<SceneSpec>,
+        keys: &[],
+    };
+    file.write(&mut Vec::new(), &mut page);
+    page
+}
+
+/// Returns the heading of a kind, its description, and links to the tables that are described before.
+fn words_of_kind(kind: &KindSchema, first: &KindSchema) -> String {
+    let is_shared = |name: &str, schema: &Value| {
+        kind.table != first.table
+            && schema.get("properties").is_some()
+            && first.schema["properties"].get(name).is_some()
+    };
+    let shared = properties(&kind.schema).filter(|(name, schema)| is_shared(name, schema));
+    let shared: Vec<String> = shared.map(|(name, _)| link(&format!("[{name}]"))).collect();
+    let mut words = format!("\n### Studies with `[{}]`\n\n", kind.table);
+    words.push_str(&sentence(&format!("{}.", kind.words)));
+    if !shared.is_empty() {
+        words.push_str(&format!(" They also have {}.", shared.join(", ")));
+    }
+    words.push('\n');
+    words
+}
+
+/// Returns words with a capital letter at the start.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters
+        .next()
+        .map(|letter| letter.to_uppercase().to_string());
+    format!("{}{}", first.unwrap_or_default(), letters.as_str())
+}
+
+/// Returns a link to the section with a heading in back quotes.
+fn link(heading: &str) -> String {
+    let anchor = heading.to_lowercase();
+    let anchor: String = anchor
+        .chars()
+        .filter(|c| c.is_alphanumeric() || *c == '_')
+        .collect();
+    format!("[`{heading}`](#{anchor})")
+}
+
+/// A kind of file.
+struct FileKind<'s> {
+    schema: &'s Value,
+    accepted_keys: fn(toml::Value) -> Vec<String>,
+    /// Descriptions of the keys; empty for scenes, which have no axes.
+    keys: &'s [KeyAbout],
+}
+
+/// Step from a table to a table below it.
+#[derive(Clone)]
+struct Step {
+    name: String,
+    is_list: bool,
+}
+
+/// A table of a file.
+#[derive(Clone)]
+struct Table<'s> {
+    path: Vec<Step>,
+    schema: &'s Value,
+    description: &'s str,
+}
+
+/// Tables that have a section, with their headings.
+type Written = Vec<(Value, String)>;
+
+impl FileKind<'_> {
+    fn write(&self, written: &mut Written, page: &mut String) {
+        let table = Table {
+            path: Vec::new(),
+            schema: self.schema,
+            description: "",
+        };
+        self.write_table(&table, written, page);
+    }
+
+    /// Writes the section of a table and of all tables below it that have no section yet.
+    fn write_table(&self, table: &Table, written: &mut Written, page: &mut String) {
+        if !table.path.is_empty() {
+            page.push_str(&format!(
+                "\n#### `{}`\n\n{}\n",
+                table.heading(),
+                table.description
+            ));
+        }
+        let axis_header = if self.keys.is_empty() { "" } else { " axis |" };
+        page.push_str(&format!(
+            "\n| key | values | unit | range | default |{axis_header} meaning |\n"
+        ));
+        page.push_str(&format!(
+            "|---|---|---|---|---|{} ---|\n",
+            axis_header.replace(" axis ", "---")
+        ));
+        let required = table.schema["required"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default();
+        let mut inner = Vec::new();
+        let mut lists = String::new();
+        for name in table.names(self.accepted_keys) {
+            let key = &table.schema["properties"][&name];
+            if key["deprecated"] == true || REPEATED.contains(&&name[..]) && table.path.is_empty() {
+                continue;
+            }
+            let below = table.below(&name, key);
+            let values = match &below[..] {
+                [] => values(key),
+                tables => self.links(tables, written),
+            };
+            let default = match required.contains(&name.clone().into()) {
+                true => "required".to_owned(),
+                false => default(key),
+            };
+            let about = table.about(&name, self.keys);
+            let axis = match self.keys.is_empty() {
+                true => String::new(),
+                false => format!(" {} |", axis(about)),
+            };
+            page.push_str(&format!(
+                "| `{name}` | {values} | {} | {} | {default} |{axis} {} |\n",
+                unit(&name, about),
+                range(key),
+                meaning(key),
+            ));
+            lists.push_str(&meanings_of_values(&name, key));
+            inner.extend(below);
+        }
+        page.push_str(&lists);
+        for table in inner {
+            if !written
+                .iter()
+                .any(|(known, _)| *known == bare(table.schema))
+            {
+                written.push((bare(table.schema), table.heading()));
+                self.write_table(&table, written, page);
+            }
+        }
+    }
+
+    /// Returns links to the sections of tables.
+    fn links(&self, tables: &[Table], written: &Written) -> String {
+        let links = tables.iter().map(|table| {
+            let known = written
+                .iter()
+                .find(|(known, _)| *known == bare(table.schema));
+            link(&known.map_or_else(|| table.heading(), |(_, heading)| heading.clone()))
+        });
+        links.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Tables whose keys repeat keys of other tables.
+const REPEATED: [&str; 2] = ["test", "axes"];
+
+impl<'s> Table<'s> {
+    /// Returns the name of the table in a file: `[object_detail.recognition]`, or `[[robots]]` for a list of tables.
+    fn heading(&self) -> String {
+        let names: Vec<&str> = self.path.iter().map(|step| &step.name[..]).collect();
+        let is_list = self.path.last().is_some_and(|step| step.is_list);
+        match is_list {
+            true => format!("[[{}]]", names.join(".")),
+            false => format!("[{}]", names.join(".")),
+        }
+    }
+
+    /// Returns the names of all keys, in the order of their declaration.
+    fn names(&self, accepted_keys: fn(toml::Value) -> Vec<String>) -> Vec<String> {
+        let mut names = accepted_keys(self.probe());
+        let own = properties(self.schema).map(|(name, _)| name);
+        let missing: Vec<String> = own.filter(|name| !names.contains(name)).cloned().collect();
+        names.retain(|name| self.schema["properties"].get(name).is_some());
+        names.extend(missing);
+        names
+    }
+
+    /// Returns the description of a key of the table.
+    fn about<'k>(&self, name: &str, keys: &'k [KeyAbout]) -> Option<&'k KeyAbout> {
+        let names = self.path.iter().map(|step| &step.name[..]).chain([name]);
+        let path = names.collect::<Vec<_>>().join(".");
+        keys.iter().find(|key| key.path == path)
+    }
+
+    /// Returns a file that contains the unknown key `?` in this table and nothing else.
+    fn probe(&self) -> toml::Value {
+        let table = |name: &str, value| {
+            toml::Value::Table([(name.to_owned(), value)].into_iter().collect())
+        };
+        let unknown = table("?", 0.into());
+        self.path
+            .iter()
+            .rev()
+            .fold(unknown, |inner, step| match step.is_list {
+                true => table(&step.name, toml::Value::Array(vec![inner])),
+                false => table(&step.name, inner),
+            })
+    }
+
+    /// Returns the tables that a key has as its value: one, or one for each variant.
+    fn below(&self, name: &str, key: &'s Value) -> Vec<Self> {
+        let is_list = key["type"] == "array";
+        let value = if is_list { &key["items"] } else { key };
+        let name = name.to_owned();
+        let mut path = self.path.clone();
+        path.push(Step { name, is_list });
+        if value.get("properties").is_some() {
+            return vec![Self {
+                path,
+                schema: value,
+                description: key["description"].as_str().unwrap_or_default(),
+            }];
+        }
+        // An enum: each variant is a table with one key, which is a table.
+        let variants = value["oneOf"].as_array().into_iter().flatten();
+        let variants = variants.flat_map(|variant| {
+            let description = variant["description"].as_str().unwrap_or_default();
+            properties(variant).map(move |(name, schema)| (name, schema, description))
+        });
+        let variants = variants.filter(|(_, schema, _)| schema.get("properties").is_some());
+        let variants = variants.map(|(variant, schema, description)| {
+            let name = variant.clone();
+            let is_list = false;
+            Self {
+                path: [&path[..], &[Step { name, is_list }]].concat(),
+                schema,
+                description,
+            }
+        });
+        variants.collect()
+    }
+}
+
+/// Returns a schema without the texts that depend on its place.
+fn bare(schema: &Value) -> Value {
+    let mut bare = schema.clone();
+    if let Some(keywords) = bare.as_object_mut() {
+        keywords.remove("description");
+        keywords.remove("default");
+        keywords.remove("required");
+    }
+    bare
+}
+
+/// Describes the values of a key: `number`, or its names.
+fn values(schema: &Value) -> String {
+    if let Some(title) = schema["title"].as_str() {
+        return title.to_owned();
+    }
+    if is_axis(schema) {
+        return values(&schema["anyOf"][0]);
+    }
+    if let Some(name) = schema["const"].as_str() {
+        return format!("`{name}`");
+    }
+    if let Some(names) = schema["enum"].as_array() {
+        let names = names.iter().filter_map(Value::as_str);
+        return names
+            .map(|name| format!("`{name}`"))
+            .collect::<Vec<_>>()
+            .join(", ");
+    }
+    for choice in ["anyOf", "oneOf"] {
+        if let Some(choices) = schema[choice].as_array() {
+            return choices.iter().map(values).collect::<Vec<_>>().join(", ");
+        }
+    }
+    match schema["type"].as_str() {
+        Some("boolean") => "`true`, `false`".to_owned(),
+        Some("string") => "text".to_owned(),
+        Some("array") => list_words(schema),
+        Some("object") => {
+            let keys: Vec<String> = properties(schema)
+                .map(|(name, value)| format!("`{{ {name} = … }}` ({})", values(value)))
+                .collect();
+            match keys.is_empty() {
+                true => "table".to_owned(),
+                false => keys.join(", "),
+            }
+        }
+        Some(other) => other.to_owned(),
+        None => "any".to_owned(),
+    }
+}
+
+/// Describes a list: `list of 3 numbers`.
+fn list_words(schema: &Value) -> String {
+    let items = match schema["prefixItems"].as_array() {
+        Some(_) => "number".to_owned(),
+        None => values(&schema["items"]),
+    };
+    let items = match &items[..] {
+        "number" | "integer" | "text" | "table" => format!("{items}s"),
+        _ => items,
+    };
+    match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+        (Some(least), Some(most)) if least == most => format!("list of {least} {items}"),
+        _ => format!("list of {items}"),
+    }
+}
+
+/// Describes the range of the numbers of a key.
+fn range(schema: &Value) -> String {
+    let choices = ["anyOf", "oneOf"].map(|choice| schema[choice].as_array());
+    let choices = choices.into_iter().flatten().flatten();
+    let inner = std::iter::once(&schema["items"]).chain(choices);
+    let own = |keyword: &str| schema[keyword].as_f64().map(short_number);
+    let least = own("minimum").map(|number| format!("≥ {number}"));
+    let above = own("exclusiveMinimum").map(|number| format!("> {number}"));
+    let most = own("maximum").map(|number| format!("≤ {number}"));
+    let below = own("exclusiveMaximum").map(|number| format!("< {number}"));
+    let ends: Vec<String> = [least.or(above), most.or(below)]
+        .into_iter()
+        .flatten()
+        .collect();
+    match ends.is_empty() {
+        true => inner
+            .filter(|one| !one.is_null())
+            .map(range)
+            .find(|words| !words.is_empty())
+            .unwrap_or_default(),
+        false => ends.join(", "),
+    }
+}
+
+/// Returns the default of a key, as it is written in a file.
+fn default(schema: &Value) -> String {
+    match &schema["default"] {
+        Value::Null | Value::Object(_) => String::new(),
+        Value::Number(number) => format!(
+            "`{}`",
+            number.as_f64().map_or_else(String::new, short_number)
+        ),
+        Value::Array(values) if values.is_empty() => String::new(),
+        Value::String(text) if text.is_empty() => String::new(),
+        other => format!(
+            "`{}`",
+            toml::Value::try_from(other).map_or_else(|_| String::new(), |value| value.to_string())
+        ),
+    }
+}
+
+/// Describes where a key may have a list of values that are swept.
+fn axis(about: Option<&KeyAbout>) -> &'static str {
+    match about.map(|about| about.axis) {
+        Some(AxisPlace::Table) => "list",
+        Some(AxisPlace::Axes) => "`[axes]`",
+        Some(AxisPlace::Never) | None => "",
+    }
+}
+
+/// Returns the unit of a key. Charts show fractions as percent.
+fn unit(name: &str, about: Option<&KeyAbout>) -> &'static str {
+    match about.map_or_else(|| unit_of(name), KeyAbout::unit) {
+        "%" | ":1" => "",
+        unit => unit,
+    }
+}
+
+/// Returns the meaning of a key in one line.
+fn meaning(schema: &Value) -> String {
+    let words = schema["description"].as_str().unwrap_or_default();
+    let words = words
+        .strip_prefix("Axis: ")
+        .map_or_else(|| words.to_owned(), sentence);
+    words.replace("\n\n", " ").replace('|', "\\|")
+}
+
+/// Returns a list of the meanings of the names that a key may have.
+fn meanings_of_values(name: &str, schema: &Value) -> String {
+    let one = if is_axis(schema) {
+        &schema["anyOf"][0]
+    } else {
+        schema
+    };
+    let one = if one["type"] == "array" {
+        &one["items"]
+    } else {
+        one
+    };
+    let choices = one["oneOf"].as_array().into_iter().flatten();
+    let lines = choices.filter_map(|choice| {
+        let value = choice["const"].as_str()?;
+        Some(format!(
+            "- `{value}`: {}\n",
+            choice["description"].as_str()?.replace("\n\n", " ")
+        ))
+    });
+    let lines: String = lines.collect();
+    match lines.is_empty() {
+        true => lines,
+        false => format!("\nValues of `{name}`:\n\n{lines}"),
+    }
+}
