@@ -195,7 +195,7 @@ pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
     Ok(found.filter(|failures| failures.n_rows > 0))
 }
 
-/// Names of the tables that identified kinds of studies which no longer exist, each with an advice on what replaces it.
+/// Names of the tables that identified kinds of studies which no longer exist, each with the name of what replaces it.
 const REMOVED: [(&str, &str); 2] = [
     (
         "speed_accuracy",

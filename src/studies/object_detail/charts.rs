@@ -20,6 +20,7 @@ const FELT: [Named; 2] = [
         "error_after_offset_median_mm",
     ),
 ];
+/// Chart axes that show distances between the surfaces of model and mesh.
 const SURFACE: [Named; 2] = [
     (
         "surface_error",
@@ -35,9 +36,10 @@ const SURFACE: [Named; 2] = [
 
 /// Chart axis that shows the number of spheres of a model.
 const SPHERES: Named = ("spheres", "number of spheres", "n_spheres_median");
+/// Chart axis that shows the computing time per touch.
 const TIME: Named = ("time", "time of a touch", "us_per_touch_median");
 
-/// Chart axes that show the deflection error of the models with which a classifier was trained.
+/// Chart axes that show accuracies of classifiers, plotted against the deflection error of the models used in training.
 const LEARNED: [Named; 2] = [
     (
         "recognition",

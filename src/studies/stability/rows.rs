@@ -157,7 +157,7 @@ pub enum Outcome {
     Inaccurate,
     /// Contact was missed: the sum of all deflections is below half or above twice the exact sum, or nothing supports the ball.
     MissedContact,
-    /// The energy of the simulation exceeds four times the energy that the scene can contain.
+    /// The energy of the simulation exceeds four times the energy that enters the scene.
     EnergyGrowth,
     /// A number of the simulated state became infinite or NaN.
     NotFinite,

@@ -35,8 +35,8 @@ pub(super) fn of_scene(plan: &WholeBodyPlan, scene: &ScenePlan) -> Result<Sphere
     }
 }
 
-/// Returns a built-in object as a union of spheres, metres; the centre of its bounding box is the origin. No sphere is farther than `surface_error` from the
-/// surface.
+/// Returns a built-in object as a union of spheres, metres; the centre of its bounding box is the origin. The spheres
+/// deviate from the surface of the object by at most `surface_error` metres.
 pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
     let solid = Catalogue::builtin()?.object(name)?.solid.clone();
     let middle = solid.bounds().center();

@@ -10,10 +10,11 @@ use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::tables::CONFIGURATIONS;
 use crate::table::{Table, Value, short_number};
 
-/// Maximum number of values listed in a sentence, and of conditions described by a sentence.
+/// Maximum number of values that a sentence lists, and maximum number of conditions (settings of the world, such as noise) for which sentences are written.
 const MAX_LISTED: usize = 8;
 
-/// Returns the findings as sentences: the best configuration in each condition, the cheapest one within its interval, the effect of each setting, and remarks.
+/// Returns the findings of a study as sentences: the best configuration in each condition, the cheapest configuration within its interval, the effect of each
+/// setting, and remarks.
 pub fn answers(tables: &[Table]) -> Vec<String> {
     let Some(configurations) = filled(tables, CONFIGURATIONS) else {
         return vec!["No configuration has been computed.".to_owned()];
@@ -26,7 +27,8 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
     sentences
 }
 
-/// Returns the terminal text at the end of a run: configurations, findings, comparison with published accuracies, and the most frequent confusions.
+/// Returns the text for the terminal at the end of a run: configurations, findings, comparison with published accuracies, and the most frequent confusions of
+/// objects.
 pub fn words(tables: &[Table], width: usize) -> String {
     let shown = [
         CONFIGURATIONS,
@@ -47,7 +49,7 @@ pub fn words(tables: &[Table], width: usize) -> String {
         })
 }
 
-/// Returns a note on the number of touches that deflected no taxel; `None` if every touch deflected one.
+/// Returns a note on the number of touches that deflected no taxel; returns `None` if there are no such touches.
 fn missed(tables: &[Table]) -> Option<String> {
     let limits = filled(tables, LIMITS_FILE)?;
     let row = (0..limits.n_rows).find(|&row| limits.word("limit", row) == MISSED_TOUCHES)?;
@@ -57,7 +59,8 @@ fn missed(tables: &[Table]) -> Option<String> {
     (count > 0.0).then(|| format!("{count} of {of} {MISSED_TOUCHES} ({share} %): {meaning}."))
 }
 
-/// Returns sentences on the best configuration of each condition; only of the first conditions if there are many.
+/// For each condition (settings of the world, such as noise), returns sentences on the best configuration. If there are many conditions, only the first ones
+/// have sentences.
 fn bests(configurations: &Table) -> Option<Vec<String>> {
     let (accuracy, _) = configurations.column("accuracy")?;
     let (measurements, _) = configurations.column("measurements_per_decision")?;
@@ -77,7 +80,8 @@ fn bests(configurations: &Table) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Returns sentences on the best configuration of a condition, and on the one with the fewest measurements within its interval.
+/// Returns sentences on two configurations of a condition: the best one, and the one with the fewest measurements whose accuracy lies within the interval of
+/// the best.
 fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     let best = *offers.front(choices).last()?;
     let accuracy = |offer: &Candidate| offers.table.bounded(offers.value, offer.row);
@@ -110,7 +114,8 @@ fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Returns sentences on the effect of each setting: the mean accuracy at each of its values, over those combinations of other settings that have all values.
+/// For each setting, returns a sentence on its effect: the mean accuracy at each value. The mean extends over those combinations of other settings that were
+/// run with all values.
 fn effects(configurations: &Table) -> Option<Vec<String>> {
     let rows: Vec<usize> = (0..configurations.n_rows).collect();
     let swept = Swept::new(configurations, &rows);
@@ -143,7 +148,7 @@ fn effects(configurations: &Table) -> Option<Vec<String>> {
     Some(swept.free.iter().filter_map(effect).collect())
 }
 
-/// Returns remarks: omitted touches, fits that stopped at a limit, and the number of trials needed for a p-value if there are too few.
+/// Returns remarks on omitted touches and on fits that stopped at a limit. If there are too few trials for a p-value, a remark gives the required number.
 fn remarks(tables: &[Table]) -> Vec<String> {
     let numbers = |file: &str, column: &str| -> &[f64] {
         let numbers = filled(tables, file).and_then(|table| table.numbers(column));

@@ -27,33 +27,33 @@ pub(super) const ROBUSTNESS: File<Robustness> = File::new(
 .summary();
 
 row! {
-/// Robustness of a design to a condition: a row of `robustness.csv`.
+/// Robustness of a design (all settings except one condition) to that condition: a row of `robustness.csv`.
 pub struct Robustness {
-    /// Number of the design's most accurate configuration along the condition; refers to a row of `summary.csv`.
+    /// Number of the most accurate configuration of the design among all values of the condition; the number refers to a row of `summary.csv`.
     configuration: usize => Subject: Linear;
     /// Settings that distinguish this design from the other designs.
     design: String => Subject;
-    /// Column name of the condition, for example `noise_std`.
+    /// Column name of the condition to which the design is robust or not, for example `noise_std`.
     condition: String => Subject;
     /// Direction in which the condition is followed from its most accurate value: to larger or to smaller values.
     direction: Direction => Subject "towards";
     /// Value of the condition at which the accuracy is highest, in the unit of the condition.
     clean_at: f64 => Note "most accurate at": Linear;
-    /// Highest mean accuracy along the condition, 0 to 1.
+    /// Highest mean accuracy of the design over all values of the condition, 0 to 1.
     clean_accuracy: f64 => Note "accuracy there": Share;
-    /// Chance level, 0 to 1: one divided by the number of objects.
+    /// Chance level of the accuracy, 0 to 1: one divided by the number of objects.
     chance: f64 => Note: Share;
-    /// Accuracy half-way from the highest accuracy to chance, `chance + (clean_accuracy − chance) / 2`.
+    /// Accuracy half-way between the highest accuracy and chance, 0 to 1: `chance + (clean_accuracy − chance) / 2`.
     half_accuracy: f64 => Note "half-way to chance": Share;
     /// Whether the accuracy falls to `half_accuracy`, or the reason why it does not.
     status: HalfStatus => Outcome "half-way is";
-    /// Value of the condition at which the accuracy falls to `half_accuracy`; empty if the accuracy stays above.
+    /// Value of the condition at which the accuracy falls to `half_accuracy`, in the unit of the condition; empty if the accuracy stays above.
     half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
-    /// Lower end of the 95 % interval of `half_accuracy_at`; empty if it lies beyond the last value.
+    /// Lower end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it lies beyond the last value of the condition.
     half_accuracy_at_low: Option<f64> => Note "95 % interval of the place, lower end": Linear;
-    /// Upper end of the 95 % interval of `half_accuracy_at`; empty if it lies beyond the last value.
+    /// Upper end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it lies beyond the last value of the condition.
     half_accuracy_at_high: Option<f64> => Note "95 % interval of the place, upper end": Linear;
-    /// Last value of the condition in this direction, in the unit of the condition.
+    /// Last value of the condition in the direction of `direction`, in the unit of the condition.
     end: f64 => Note "last value": Linear;
     /// Mean accuracy at the last value of the condition, 0 to 1.
     accuracy_at_end: f64 => Note "accuracy at the last value": Share;
@@ -81,31 +81,31 @@ pub enum HalfStatus {
     AllAtChance,
 }
 
-/// Number of random draws for an interval. With a larger value, intervals vary less but reports of many configurations take longer. With 1,000 draws, the
-/// standard error of an interval's end is about a tenth of its half width.
+/// Number of random draws from which an interval is computed. With a larger value, intervals vary less, but reports of many configurations take longer. With
+/// 1,000 draws, the standard error of an interval's end is about a tenth of its half width.
 const N_DRAWS: usize = 1000;
 
-/// Minimum number of values of a condition. With two values, the result would only reflect the straight line between them.
+/// Minimum number of values of a condition for which robustness is computed. With two values, the result would only reflect the straight line between them.
 const MIN_VALUES: usize = 3;
 
-/// Length of the range from zero to the smallest positive value on a logarithmic axis, in decades. With a larger value, this range takes most of the axis; with
-/// a smaller value, zero and that value are hardly distinguishable.
+/// Length of the range from zero to the smallest positive value of a condition on a logarithmic axis, in decades. With a larger value, this range takes most of
+/// the axis. With a smaller value, zero and the smallest positive value are hardly distinguishable.
 const ZERO_DECADES: f64 = 0.5;
 
-/// Ratio of the largest to the smallest positive value above which an axis is logarithmic, as in charts.
+/// Ratio of a condition's largest to its smallest positive value above which its axis is logarithmic, as in charts.
 const LOG_RATIO: f64 = 16.0;
 
-/// Mean accuracies of a design along a condition, by ascending value.
+/// Mean accuracies of a design, one for each value of a condition, in ascending order of the values.
 struct Curve {
     values: Vec<f64>,
     accuracy: Vec<f64>,
-    /// Number of independent test rows behind each mean accuracy.
+    /// For each mean accuracy, the number of independent test rows from which it is computed.
     n_test: Vec<f64>,
     chance: f64,
 }
 
 impl Curve {
-    /// Returns the index of the highest accuracy; the first index in a tie.
+    /// Returns the index of the highest accuracy; if several accuracies are equal, the first index.
     fn best(&self) -> usize {
         let accuracy = &self.accuracy;
         let backwards = (0..accuracy.len()).rev();
@@ -113,12 +113,12 @@ impl Curve {
         best.unwrap_or(0)
     }
 
-    /// Returns the accuracy half-way from `accuracy` to chance.
+    /// Returns the accuracy half-way between `accuracy` and the chance level.
     fn half_accuracy(&self, accuracy: f64) -> f64 {
         self.chance + 0.5 * (accuracy - self.chance)
     }
 
-    /// Returns the indices from the highest accuracy to the end of the axis in a direction.
+    /// Returns the indices of the condition's values from the highest accuracy to the last value in a direction.
     fn outwards(&self, direction: Direction) -> Vec<usize> {
         match direction {
             Direction::Smaller => (0..=self.best()).rev().collect(),
@@ -126,7 +126,7 @@ impl Curve {
         }
     }
 
-    /// Returns the smallest positive value of the condition, and whether the axis is logarithmic above it.
+    /// Returns the smallest positive value of the condition, and whether values above it are placed on a logarithmic axis.
     fn scale(&self) -> (f64, bool) {
         let positive = self.values.iter().copied().filter(|&value| value > 0.0);
         let start = positive.fold(f64::INFINITY, f64::min);
@@ -134,7 +134,7 @@ impl Curve {
         (start, self.values[0] >= 0.0 && last / start >= LOG_RATIO)
     }
 
-    /// Returns the position of a value along the axis of the condition.
+    /// Returns the position of a condition's value along its linear or logarithmic axis.
     fn place(&self, value: f64) -> f64 {
         match self.scale() {
             (_, false) => value,
@@ -143,7 +143,7 @@ impl Curve {
         }
     }
 
-    /// Returns the value at a position along the axis; the inverse of `place`.
+    /// Returns the condition's value at a position along its axis; the inverse of `place`.
     fn value(&self, place: f64) -> f64 {
         match self.scale() {
             (_, false) => place,
@@ -152,7 +152,8 @@ impl Curve {
         }
     }
 
-    /// Returns the value at which half of the accuracy above chance is lost, with both ends of its interval; `None` for a value beyond the last one.
+    /// Returns the condition's value at which half of the accuracy above chance is lost, and both ends of its interval. `None` stands for a value beyond the
+    /// last one.
     fn half(&self, direction: Direction, seed: &Seed) -> [Option<f64>; 3] {
         let places: Vec<f64> = self.values.iter().map(|&value| self.place(value)).collect();
         let outwards = self.outwards(direction);
@@ -194,7 +195,7 @@ impl Curve {
     }
 }
 
-/// Returns the number of rows, at least 1, whose 95 % Wilson interval around `accuracy` has the given width.
+/// Returns the number of test rows, at least 1, whose 95 % Wilson interval around `accuracy` has the given width.
 fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
     // With a = z² / n and q = p (1 − p): width² (1 + a)² = 4 a q + a².
     const Z: f64 = 1.959_963_984_540_054;
@@ -207,7 +208,7 @@ fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
     (Z * Z / a).max(1.0)
 }
 
-/// Returns the robustness table, or `None` if no numeric condition has enough values. `summary` has one row per configuration.
+/// Returns the table of robustness; `summary` has one row per configuration. Returns `None` if no numeric condition has enough values.
 ///
 /// # Errors
 /// If an accuracy of the summary is not between 0 and 1, or a row cannot be written to a file.
@@ -261,7 +262,8 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
     }
 }
 
-/// Returns one row for each direction from the highest accuracy that has values. `along` lists rows of the summary by ascending values of the condition.
+/// For each direction from the highest accuracy in which the condition has further values, returns one row. `along` lists rows of the summary by ascending
+/// values of the condition.
 fn both_sides(
     summary: &Table,
     n_objects: &ObjectCounts,
@@ -327,7 +329,7 @@ fn both_sides(
     sides.into_iter().flatten().collect()
 }
 
-/// Numbers of objects of the configurations, derived from their confusion matrices.
+/// Number of objects that each configuration distinguishes, derived from the confusion matrices.
 pub(super) struct ObjectCounts {
     of_cells: HashMap<u64, usize>,
     of_all: usize,
@@ -344,18 +346,19 @@ impl ObjectCounts {
         Self { of_cells, of_all }
     }
 
-    /// Returns the number of objects of a configuration, at least 1. If a study stores only some confusion matrices, all configurations have the same objects.
+    /// Returns the number of objects that a configuration distinguishes, at least 1. If only some confusion matrices are stored, all configurations have the
+    /// same objects.
     fn n_objects(&self, configuration: f64) -> usize {
         self.own(configuration).unwrap_or(self.of_all).max(1)
     }
 
-    /// Returns the number of objects of a configuration, or `None` if its confusion matrix is not stored.
+    /// Returns the number of objects that a configuration distinguishes, or `None` if its confusion matrix is not stored.
     pub(super) fn own(&self, configuration: f64) -> Option<usize> {
         self.of_cells.get(&configuration.to_bits()).copied()
     }
 }
 
-/// Returns one sentence per condition: the value at which the most robust design has lost half of its accuracy above chance.
+/// For each condition, returns a sentence with the value at which the most robust design has lost half of its accuracy above chance.
 pub(super) fn robustness_words(tables: &[Table]) -> Vec<String> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     match (of("summary.csv"), of(ROBUSTNESS.name())) {
@@ -405,7 +408,7 @@ fn sentences(summary: &Table, table: &Table) -> Vec<String> {
     conditions.iter().filter_map(sentence).collect()
 }
 
-/// Rounds an interpolated value to three digits.
+/// Rounds an interpolated value to three significant digits.
 fn three_digits(value: f64) -> f64 {
     let digits = 10f64.powi(2 - value.abs().max(f64::MIN_POSITIVE).log10().floor() as i32);
     (value * digits).round() / digits

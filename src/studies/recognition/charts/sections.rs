@@ -1,4 +1,4 @@
-//! Page sections that only recognition studies have: sample touches, settings, and counts of reached limits.
+//! Page sections that only recognition studies have: sample touches, settings, and how often each limit of the model was reached.
 
 use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
@@ -10,7 +10,7 @@ use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::CONFIGURATIONS;
 use crate::table::{Table, short_number};
 
-/// Returns the page sections for sample touches, settings and reached limits.
+/// Returns the page sections for sample touches, settings, and how often each limit was reached.
 ///
 /// # Errors
 /// If a sample touch cannot be drawn.
@@ -49,7 +49,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     format!("<dl>{html}</dl>")
 }
 
-/// Returns the reached limits of the model and of the solver as HTML.
+/// Returns HTML that lists how often each limit of the model and of the solver was reached.
 fn limits_html(tables: &[Table]) -> String {
     let Some(table) = filled(tables, LIMITS_FILE) else {
         return String::new();

@@ -13,11 +13,11 @@ use crate::studies::recognition::charts::tables::{
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
 use std::cmp::Reverse;
 
-/// Minimum number of classifiers for which a study counts as a comparison of classifiers.
+/// Minimum number of classifiers with which a study counts as a comparison of classifiers, and charts accuracy against time.
 const MANY_CLASSIFIERS: usize = 3;
 
-/// Returns the charts of a study: accuracy by each varying setting, accuracy against time, and the confusions of the best configuration. Accuracy against time
-/// is included if classifiers are compared or the study requests it.
+/// Returns the charts of a study: accuracy by each varying setting, the confusions of the best configuration, and possibly accuracy against time. Accuracy
+/// against time is included if classifiers are compared or `pareto` is `Some(true)`.
 pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     let Some(configurations) = filled(tables, CONFIGURATIONS) else {
         return Vec::new();
@@ -51,7 +51,8 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     charts
 }
 
-/// Returns the horizontal line of the chance level; if configurations differ in their number of objects, one level per configuration.
+/// Returns a horizontal line at the chance level of the accuracy. If configurations differ in their number of objects, the line has one level per
+/// configuration.
 fn chance(configurations: &Table, confusion: Option<&Table>) -> Option<Rule> {
     if configurations.numbers(CHANCE).is_some() {
         return Some(Rule {
@@ -69,7 +70,7 @@ fn chance(configurations: &Table, confusion: Option<&Table>) -> Option<Rule> {
     Some(Rule::at(Along::Y, 1.0 / n_objects as f64, words))
 }
 
-/// Returns the accuracy charts that together show every configuration. Signal settings that vary one at a time have their own charts, with the setting along x.
+/// Returns accuracy charts that together show every configuration. If signal settings vary one at a time, each has its own chart, with the setting along x.
 fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..configurations.n_rows).collect();
     let signal = Swept::new(configurations, &all).one_at_a_time;
@@ -107,8 +108,8 @@ fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> 
     signal.iter().flat_map(charts_of).collect()
 }
 
-/// Returns the charts with a given setting, or the main one, along x. If lines and panels are in use and no setting remains, a second chart exchanges the two.
-/// The effects of the two settings can then be read from lines within one panel.
+/// Returns charts with the given setting along x, or with the main setting if none is given. If lines and panels show settings and no other setting remains, a
+/// second chart exchanges the two. The effects of both settings can then be read from lines within one panel.
 fn charts_along(
     configurations: &Table,
     chart: &ChartSpec,
@@ -178,7 +179,7 @@ fn title(
     title
 }
 
-/// Returns the form of a column name that is used in file names.
+/// Returns the form of a column name that is used in the file names of charts.
 fn word(column: &str) -> &str {
     match column {
         "pitch_mm" | "size_mm" | "smoothing_mm" => column.trim_end_matches("_mm"),
@@ -205,8 +206,8 @@ fn name_ending(fixed: &[Setting], row: usize) -> String {
     parts.collect()
 }
 
-/// Returns charts of accuracy against training time and prediction time. Each value of the first condition has a panel, and each classifier has a colour. With
-/// one classifier, colours show the values of the first other varying setting.
+/// Returns two charts: accuracy against training time, and accuracy against prediction time. Each value of the first condition has a panel, and each classifier
+/// has a colour. If there is only one classifier, colours show the values of the first other varying setting.
 fn time_charts(configurations: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
     let all: Vec<usize> = (0..configurations.n_rows).collect();
     let free = Swept::new(configurations, &all).free;
@@ -235,7 +236,7 @@ fn time_charts(configurations: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
     })
 }
 
-/// Returns the chart of the confusions of the best configuration.
+/// Returns a chart that shows which objects the best configuration confuses.
 fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpec> {
     let accuracy = configurations.numbers("accuracy")?;
     let best = (0..accuracy.len()).reduce(|a, b| if accuracy[b] > accuracy[a] { b } else { a })?;

@@ -32,9 +32,10 @@ const SUMMARY: File<(Configuration, ConfigurationScore)> = File::new(
     "Means over trials.",
 )
 .summary();
-/// Sample of the intervals in `summary.csv` if no groups are held out: without folds, and with folds.
+/// Text for a study without held-out groups and without folds: the test rows over which the intervals in `summary.csv` are computed.
 pub(crate) const OVER_TRIAL: &str =
     "Intervals are 95 % Wilson intervals at the test decisions of one trial.";
+/// Text for a study with folds and without held-out groups: the test rows over which the intervals in `summary.csv` are computed.
 pub(crate) const OVER_FOLDS: &str =
     "Intervals are 95 % Wilson intervals at the test decisions of all folds, each touch once.";
 const CONFUSION: File<Confusion> =
@@ -112,14 +113,14 @@ pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
     From::Folder(folder).all(axes, has_folds)
 }
 
-/// Source of the rows of all tables: the results of a run, or the files of a folder.
+/// Source from which the rows of all tables are taken: the results of a run, or the files of a folder.
 enum From<'a> {
     Rows(&'a Tables),
     Folder(&'a Path),
 }
 
 impl From<'_> {
-    /// Returns all tables. Tables of configurations have the columns of the axes in `[axes]`.
+    /// Returns all tables. Tables of configurations have one column for each axis in the table `[axes]` of the study.
     fn all(&self, axes: Vec<Column>, has_folds: bool) -> Result<Vec<Table>> {
         let mut tables = vec![
             self.table(&ACCURACY, |tables| &tables.accuracy, &axes)?,
@@ -187,7 +188,7 @@ impl From<'_> {
     }
 }
 
-/// Sets the unit of the noise and the meaning of an absent C, which depend on the rows.
+/// Sets the unit of the noise column and the meaning of an empty C; both depend on the rows of the table.
 fn say(table: &mut Table) {
     let unit = match (table.n_rows > 0).then(|| table.word("noise_unit", 0)) {
         Some("mm") => "mm",
@@ -212,7 +213,7 @@ fn say(table: &mut Table) {
     }
 }
 
-/// Returns the note on intervals over held-out groups; `None` if single rows are held out.
+/// Returns a note that intervals are computed over held-out groups of touches; returns `None` if single test rows are held out.
 pub(crate) fn note_of_groups(table: &Table) -> Option<String> {
     let n_groups = table.numbers("n_groups")?;
     let least = n_groups.iter().copied().fold(f64::INFINITY, f64::min);
@@ -225,7 +226,7 @@ pub(crate) fn note_of_groups(table: &Table) -> Option<String> {
     ))
 }
 
-/// Returns the note on the actual coverage of the bootstrap intervals, if it differs from 95 %.
+/// Returns a note on the actual coverage of the bootstrap intervals; returns `None` if the coverage is 95 %.
 fn note_of_few_trials(table: &Table) -> Option<String> {
     let low = table.numbers("bootstrap_low")?;
     let n_trials = table.numbers("n_trials")?.iter().zip(low);
@@ -238,10 +239,11 @@ fn note_of_few_trials(table: &Table) -> Option<String> {
     ))
 }
 
-/// Column of [`CONFIGURATIONS`] with the chance level, if configurations differ in it.
+/// Name of the column in [`CONFIGURATIONS`] that contains the chance level. The column is present only if configurations differ in it.
 pub(crate) const CHANCE: &str = "chance";
 
-/// Returns 1 / the number of objects of each configuration, if configurations differ in it and all confusion matrices are stored.
+/// Returns the column of chance levels: for each configuration, one divided by its number of objects. Returns `None` if all configurations have equal levels,
+/// or if a confusion matrix is not stored.
 fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
     let n_objects = ObjectCounts::new(confusion);
     let chance = (0..summary.n_rows).map(|row| {
@@ -254,7 +256,7 @@ fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)>
     chance.varies(0..summary.n_rows).then_some((column, chance))
 }
 
-/// Returns each configuration with its difference to the best of its condition and with its costs.
+/// Returns a table with one row per configuration: its results, its difference to the best configuration of its condition, and its costs.
 fn cells_of(tables: &[Table]) -> Option<Table> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     let summary = of(SUMMARY.name())?;

@@ -34,7 +34,7 @@ use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Names of all files of exported features.
+/// Names of all files of exported features, except the manifest.
 pub const FEATURE_FILES: [&str; 7] = [
     "features.npy",
     "labels.npy",
@@ -48,13 +48,13 @@ pub const FEATURE_FILES: [&str; 7] = [
 /// Labelled measurements, with the training and test rows of one trial.
 #[derive(Clone, Debug)]
 pub struct FeatureSet {
-    /// Measurements before scaling, shape (n_touches, m), with the object number of every touch.
+    /// Measurements of every touch before scaling, shape (n_touches, m), with the number of the touched object as label.
     pub data: Dataset,
-    /// Training and test rows of the trial.
+    /// Row numbers of the trial's training and test touches.
     pub split: Split,
-    /// Group number of every row; `None` if the split may divide groups.
+    /// Group number of every row; `None` if the split into training and test rows may divide groups.
     pub groups: Option<Array1<usize>>,
-    /// Label of each class as written in the file.
+    /// For each class, its label as written in the file of labels.
     pub classes: Vec<KeyValue>,
 }
 
@@ -64,7 +64,7 @@ struct ObjectRow<'a> {
     object: &'a str,
 }
 
-/// Content of `configuration.toml`.
+/// Content of the file `configuration.toml`: the settings of the configuration and the trial.
 #[derive(Serialize)]
 struct Settings<'a> {
     question: &'a str,
@@ -128,7 +128,7 @@ impl StudyPart {
         })
     }
 
-    /// Simulates the touches of a group in memory, and computes their measurements in a trial.
+    /// Simulates the touches of a group of configurations in memory, and computes their measurements in a trial.
     pub(crate) fn measured(
         &self,
         (group, n_measurements): (&MeasurementGroup, usize),
@@ -147,8 +147,8 @@ impl StudyPart {
         self.measure(group, [&frames, tested], (trial, n_measurements))
     }
 
-    /// Computes the measurements of a group's training and test touches in a trial. Runs and exports share this function: projections and image estimators are
-    /// fitted to the training touches of the whole split, even if a configuration trains on fewer.
+    /// For a group of configurations, computes the measurements of its training and test touches in a trial. Runs and exports share this function. Projections
+    /// and image estimators are fitted to the training touches of the whole split, even if a configuration trains on fewer.
     pub(crate) fn measure(
         &self,
         group: &MeasurementGroup,
@@ -232,7 +232,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     })
 }
 
-/// Returns the path of an array in a folder: the `.npy` file, or else the `.npz` file, the `.csv` file or the archive `features.npz`.
+/// Returns the path of the file that contains an array. The first existing file counts: `.npy`, `.npz`, `.csv`, or the archive `features.npz`.
 fn array_file(folder: &Path, name: &str) -> PathBuf {
     let usual = folder.join(format!("{name}.npy"));
     let others = [
@@ -281,7 +281,7 @@ impl FeatureSet {
         })
     }
 
-    /// Returns the training rows, or only the first `n` of them.
+    /// Returns the training rows as a data set; only the first `n` of them if `n` is given.
     ///
     /// # Errors
     /// If `n` is zero or larger than the number of training rows.
@@ -295,7 +295,7 @@ impl FeatureSet {
         Ok(rows(&self.data, &train[..n])?)
     }
 
-    /// Returns the test rows of the split.
+    /// Returns the test rows as a data set.
     ///
     /// # Errors
     /// If there are no test rows.
@@ -304,7 +304,7 @@ impl FeatureSet {
     }
 }
 
-/// Checks that no row is listed twice: training and test rows must not overlap or repeat.
+/// Returns an error if a row number occurs twice in the training and test rows.
 fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     let mut named_in = vec![None; n_rows];
     for (file, rows) in [("train.npy", &split.train), ("test.npy", &split.test)] {
@@ -322,7 +322,7 @@ fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     Ok(())
 }
 
-/// Returns the configuration with a given number, and its group.
+/// Returns the configuration with a given number, and the group of configurations that contains it.
 pub(crate) fn find(sweep: &Sweep, number: usize) -> Result<(&MeasurementGroup, &Configuration)> {
     let groups = sweep.groups.iter();
     let mut configurations = groups.flat_map(|group| {

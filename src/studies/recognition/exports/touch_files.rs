@@ -75,27 +75,27 @@ struct ObjectRow<'a> {
 /// Touch to be written: its frames, pose and depth.
 struct Reading<'a> {
     row: TouchRow<'a>,
-    /// The F frames of the touch, concatenated.
+    /// Values of the F frames of the touch, one frame after the other.
     frames: Vec<f32>,
-    /// Translation and quaternion of the object's pose.
+    /// Pose of the object in the patch frame: translation x, y, z in metres, and unit quaternion w, x, y, z.
     pose: [f64; 7],
-    /// Depth past first contact, metres.
+    /// Distance that the patch travels past first contact, metres.
     depth: f64,
 }
 
-/// Deepest frame of every touch after the signal chain of a configuration, for one trial and before compression.
+/// Deepest frame of every touch, as a configuration reads it in one trial: after the signal chain and before compression.
 pub struct ReadFrames {
-    /// Index in the plan of the array that the configuration uses.
+    /// Index of the array that the configuration uses, in the list of arrays of the plan.
     pub array: usize,
-    /// Frame values, shape (n_touches · F, n_taxels); the deepest frame of a touch is the last of its F frames.
+    /// Frame values, shape (n_touches · F, n_taxels), where F is the number of frames per touch; the last of the F frames is the deepest.
     values: Array2<f64>,
     n_frames: usize,
-    /// Whether the values are newtons; otherwise metres.
+    /// Whether the values are forces in newtons; otherwise they are deflections in metres.
     pub is_force: bool,
 }
 
 impl ReadFrames {
-    /// Simulates all touches and applies the signal chain of a configuration; the frames of all touches are kept in memory.
+    /// Simulates all touches and applies the signal chain of a configuration. The resulting frames of all touches are kept in memory.
     ///
     /// # Errors
     /// If the study does not have the configuration or the trial, or a signal step is invalid.
@@ -128,7 +128,7 @@ impl ReadFrames {
     }
 }
 
-/// Names of all touch files in the folder of an array.
+/// Names of all touch files that the folder of an array may contain.
 pub const TOUCH_FILES: [&str; 9] = [
     FRAMES,
     SHEAR,
@@ -143,8 +143,8 @@ pub const TOUCH_FILES: [&str; 9] = [
 const FRAMES: &str = "frames.npy";
 const SHEAR: &str = "shear.npy";
 
-/// Returns the quantity and unit of each channel of the frame files as JSON, by file name. `is_force` is given only for frames as a configuration reads them,
-/// which form a single array.
+/// For each frame file, returns the quantity and the unit of each channel, as JSON. `is_force` is given only for frames as a configuration reads them, which
+/// form a single array.
 pub fn touch_units(
     array: &TaxelArray,
     is_force: Option<bool>,
@@ -170,8 +170,9 @@ pub fn touch_units(
 struct FrameFiles {
     frames: NpyFile,
     shear: Option<NpyFile>,
-    /// Number of values of a frame, and number of these that are written to `frames`.
+    /// Number of values that a frame has.
     n_values: usize,
+    /// Number of values of a frame that are written to `frames`; the others are written to `shear`.
     n_first: usize,
 }
 
@@ -198,7 +199,7 @@ impl FrameFiles {
         })
     }
 
-    /// Appends frames with all their channels to the files.
+    /// Appends frames to the files; each channel is written to its file.
     fn push(&mut self, frames: &[f32]) -> Result<()> {
         for frame in frames.chunks(self.n_values) {
             let (first, across) = frame.split_at(self.n_first);
@@ -217,8 +218,8 @@ impl FrameFiles {
     }
 }
 
-/// Simulates all touches of an array, F frames each, block by block, and writes them into an existing folder. If `read` is given, its deepest frames are
-/// written instead of the deflections. Returns the number of touches.
+/// Simulates all touches of an array, F frames each, block by block, and writes them into an existing folder; returns the number of touches. If `read` is
+/// given, its frames are written in place of the deflections.
 ///
 /// # Errors
 /// If the touches cannot be simulated or a file cannot be written.
@@ -303,7 +304,8 @@ pub fn write_touches(
     Ok(n_touches)
 }
 
-/// Simulates all human touches on an array, and writes their frames (n × F × ny × nx) and labels into an existing folder. Returns the number of touches.
+/// Simulates all human touches on an array, and writes their frames and labels into an existing folder. The frames have the shape (n, F, ny, nx), with F frames
+/// per touch. Returns the number of touches.
 ///
 /// # Errors
 /// If a touch is longer than a recording, or a file cannot be written.
@@ -348,7 +350,7 @@ pub fn write_human_touches(
     Ok(labels.len())
 }
 
-/// Returns the axis letters of frames with some channels, and the axis lengths of one touch.
+/// Returns one letter per axis of the frame file, and the lengths of those axes that a single touch has.
 fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (String, Vec<usize>) {
     let (ny, nx) = array.shape();
     let axes = [("t", n_frames), ("c", n_channels), ("y", ny), ("x", nx)];
@@ -357,7 +359,7 @@ fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (Stri
     (format!("n {}", letters.join(" ")), shape)
 }
 
-/// Returns the table `[recorded]` of an equivalent study for the frames of an array, with paths relative to the folder.
+/// For the exported frames of an array, returns the table `[recorded]` of a study that reads them, with paths relative to the folder.
 fn recorded(
     array: &TaxelArray,
     n_frames: usize,
@@ -423,7 +425,7 @@ fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
     file.commit()
 }
 
-/// Simulates one touch, given by its number, its label and the name of its object.
+/// Simulates one touch of an object. The touch is given by its number, its label and the name of the object.
 fn pressed<'a>(
     (press, rests): (&ArrayPress, &[RestPose]),
     (number, label, object): (usize, usize, &'a str),

@@ -9,16 +9,16 @@ use crate::world::Shears;
 use bubbletouch_sim::frame_coding::round_to_single;
 use glam::{DVec2, DVec3};
 
-/// Scratch memory of a thread for simulating touches.
+/// Memory that a thread reuses for every touch that it simulates.
 #[derive(Debug, Default)]
 pub struct ArrayWorkspace {
     press: Workspace,
-    /// Friction state of the array's taxels; `None` without friction.
+    /// Friction state of the array's taxels; `None` if the array has no friction.
     friction: Option<FrictionState>,
 }
 
 impl ArrayWorkspace {
-    /// Returns the force on each taxel in the last touch, newtons; empty if the array does not read shear.
+    /// Returns the force vector on each taxel in the last touch, newtons; empty if the array does not read shear forces.
     pub fn shear_forces(&self) -> &[DVec3] {
         let friction = self.friction.as_ref();
         friction.map_or(&[], FrictionState::force3)
@@ -42,8 +42,8 @@ impl TaxelArray {
 }
 
 impl ArrayPress<'_> {
-    /// Simulates a press to a depth (metres) past first contact and the array's slide, or the first part of this path. Returns `None` if the path misses the
-    /// object.
+    /// Presses the array to a depth past first contact, metres, and then slides it. Only the given first part of this path is simulated, as a fraction of it.
+    /// Returns `None` if the path misses the object.
     pub fn touch(
         &self,
         pose: Pose,
@@ -73,7 +73,7 @@ impl ArrayPress<'_> {
         pose
     }
 
-    /// Returns the number of readings of a touch.
+    /// Returns the number of values that are read in a touch: deflections and shear forces of all taxels.
     pub fn n_values(&self) -> usize {
         self.array.n_values()
     }

@@ -4,11 +4,11 @@ use bubbletouch_sim::frame_coding::decode;
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
-/// Frames of all touches on an array: n_touches · F frames of n_values values (deflections in metres, or more channels). Frames are ordered by object and
-/// touch; the deepest frame of a touch is the last. Only touched taxels are stored.
+/// Frames of all touches on an array: F frames per touch with n_values values each (deflections in metres, or more channels). Frames are ordered by object and
+/// touch; the last frame of a touch is the deepest. Only touched taxels are stored.
 #[derive(Debug)]
 pub struct Frames {
-    /// Counts and processor time of the simulation.
+    /// Counts of missed and saturated touches, and processor time of the simulation.
     pub facts: FrameFacts,
     /// Number of values per frame.
     pub n_values: usize,
@@ -29,7 +29,7 @@ impl Frames {
         }
     }
 
-    /// Appends encoded frames to the store.
+    /// Appends frames to the store that are already encoded.
     pub(crate) fn put(&mut self, encoded: Vec<Box<[u8]>>) {
         self.encoded.extend(encoded);
     }
@@ -48,7 +48,7 @@ impl Frames {
         decode(&self.encoded[number], frame);
     }
 
-    /// Returns all frames, shape (n, n_values).
+    /// Decodes all frames and returns them as an array, shape (n, n_values).
     pub fn to_array(&self) -> Array2<f64> {
         let mut array = Array2::zeros((self.n(), self.n_values));
         let rows = array.axis_iter_mut(Axis(0)).into_par_iter().enumerate();
@@ -68,6 +68,6 @@ pub struct FrameFacts {
     pub n_missed: usize,
     /// Number of touches with at least one taxel at its stroke at the deepest point.
     pub n_saturated: usize,
-    /// Processor time summed over threads, s.
+    /// Processor time of the simulation, summed over threads, s.
     pub cpu_s: f64,
 }

@@ -13,16 +13,15 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-/// Number of frames in a film strip; a strip is one row of the picture.
+/// Number of frames that a film strip shows; a strip is one row of the picture.
 const N_FRAMES: usize = 4;
 
-/// Number of touches of a kind among which the one with the largest force is shown. If only one touch were considered, a flat hand could be represented by a
-/// touch of one fingertip.
+/// Number of touches of each kind that are compared for the picture, which shows the one with the largest force. If only one touch were considered, a flat hand
+/// could be represented by a touch of one fingertip.
 const N_LOOKED_AT: usize = 10;
 
-/// Returns film strips of the kinds of touch that the study lists for its picture, by default of all kinds. Each strip shows the strongest of the first touches
-/// of its kind at four times, evenly spaced between its first and its last contact. The study's finest array is used, without noise.
-///
+/// Returns film strips of the kinds of touch that the study lists for its picture; if it lists none, of all kinds. Each strip shows the strongest of the first
+/// touches of its kind at four times, evenly spaced between its first and its last contact. The study's finest array is used, without noise.
 /// # Errors
 /// If the study has no configurations, lists an unknown kind of touch, or has an invalid skin.
 pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {

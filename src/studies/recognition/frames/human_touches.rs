@@ -11,16 +11,16 @@ use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Human touches of a study, ordered by kind.
+/// Human touches of a study, ordered by kind of touch, such as a stroke.
 #[derive(Clone, Debug)]
 pub struct HumanTouches {
-    /// Kinds of touch, and settings of the recording.
+    /// Kinds of touch to distinguish, and settings of the recording.
     pub spec: HumanTouchSpec,
     /// Touches in the order of their kinds, with the same number for each kind.
     pub touches: Vec<RecordedTouch>,
 }
 
-/// Human touch, and the start of its motion within the recording.
+/// Human touch, and the time at which its motion starts within the recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedTouch {
     /// Motion of the touching hand.
@@ -58,7 +58,7 @@ impl HumanTouches {
         })
     }
 
-    /// Returns the touches of a kind, given by its label.
+    /// Returns the touches of one kind; `label` is the number of the kind.
     pub fn with_label(&self, label: usize) -> &[RecordedTouch] {
         &self.touches[label * self.spec.per_kind..][..self.spec.per_kind]
     }

@@ -7,25 +7,25 @@ use ndarray::{Array2, ArrayViewMut2};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Approximate number of frames per task of a thread. With a smaller value, scheduling takes more time; with a larger value, the threads finish at different
-/// times.
+/// Approximate number of frames that a thread simulates in one task. With a smaller value, scheduling takes more time; with a larger value, the threads finish
+/// at different times.
 const BLOCK: usize = 32;
-/// Number of tasks per thread between two storage steps.
+/// Number of tasks per thread that are simulated before their frames are stored.
 const BLOCKS_A_THREAD: usize = 8;
 
-/// Returns the number of touches of F frames in a task.
+/// Returns the number of touches in a task, if each touch has `n_frames` frames.
 fn block(n_frames: usize) -> usize {
     (BLOCK / n_frames.max(1)).max(1)
 }
 
-/// Returns the number of touches of F frames that are simulated before their frames are stored.
+/// Returns the number of touches that are simulated before their frames are stored, if each touch has `n_frames` frames.
 fn made_at_once(n_frames: usize) -> usize {
     block(n_frames) * BLOCKS_A_THREAD * rayon::current_num_threads()
 }
 
 impl Frames {
-    /// Simulates the frames of touches, each thread with its own workspace; the result does not depend on the number of threads. `press` writes a touch into F
-    /// frames (F × n_values), and returns whether the touch missed the object and whether it saturated a taxel at its deepest point.
+    /// Simulates the frames of touches on all threads, each with its own workspace; the result does not depend on the number of threads. For each touch,
+    /// `press` writes F frames of n_values values. It returns whether the touch missed the object, and whether it saturated a taxel at its deepest point.
     pub fn make<T: Sync, W>(
         &mut self,
         touches: &[T],

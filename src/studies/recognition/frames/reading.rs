@@ -14,44 +14,44 @@ use std::time::Instant;
 /// Number of frames that are measured together by one matrix product. A fixed number makes results independent of the number of threads.
 const BLOCK: usize = 128;
 
-/// Skins and projection with which touches are measured.
+/// Skins whose frames are read, and the measurement matrix that compresses the frames.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// Skins of the touches; all their frames have the same shape.
+    /// Skins that are touched; the frames of all skins have the same shape.
     pub skins: &'a [ReadSkin<'a>],
     /// Measurement matrix Φ.
     pub projection: &'a Projection,
 }
 
-/// Skin of a touch: its signal chains, taxels and frames.
+/// Skin with all data to read its touches: signal chains, taxel parameters and frames of the touches.
 #[derive(Clone, Debug)]
 pub struct ReadSkin<'a> {
-    /// Signal chain of each channel of the skin.
+    /// Signal chain for each channel of the skin. A skin that reads shear has three channels, any other skin one.
     pub chains: Vec<Chain>,
     /// Taxel parameters of the skin.
     pub taxel: Taxel,
-    /// Approach speed of the press at the time of reading, m/s.
+    /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
     /// Frames of all touches on this skin.
     pub frames: &'a Frames,
 }
 
-/// Touch with its random seed, timing and history, as needed to read it.
+/// Touch to be read by a skin: its number, random seed, timing and preceding touch.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchToRead {
-    /// Number of the touch; its first frame in the skin's frames has the number `number · F`.
+    /// Number of the touch. In the frames of the skin, its first frame has the index `number · F`, where F is the number of frames per touch.
     pub number: usize,
     /// Seed of the random numbers of this reading, derived from the touch's name.
     pub seed: Seed,
-    /// Time between the frames, s; `None` if the press stops for each frame.
+    /// Time between the frames of the touch, s; `None` if the press stops for each frame.
     pub interval: Option<f64>,
-    /// Number of the preceding touch; `None` if no touch precedes it.
+    /// Number of the preceding touch, for sensor errors with memory; `None` if no touch precedes it.
     pub before: Option<usize>,
-    /// Index of the touched skin among the skins of the reading.
+    /// Index of the touched skin among the skins of [`Reading`].
     pub skin: usize,
 }
 
-/// Returns all touches of some classes, named by class and number within the class. Each touch is read at rest and has no preceding touch.
+/// For classes given by name and number of touches, returns all their touches. Each touch is read at rest and has no preceding touch.
 pub fn touches_to_read<'a>(
     classes: impl IntoIterator<Item = (&'a str, usize)>,
     seed: &Seed,
@@ -72,7 +72,8 @@ pub fn touches_to_read<'a>(
     touches
 }
 
-/// Applies the signal chain and the measurement matrix to touches. Returns the measurements, shape (n_touches · F, m), and the processor time, s.
+/// Applies the signal chain and the measurement matrix to all touches. Returns the measurements, shape (n_touches · F, m), and the processor time, s. Here F is
+/// the number of frames per touch.
 ///
 /// # Errors
 /// If a signal step fails.
@@ -96,20 +97,20 @@ pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>
     Ok((values, cpu_s))
 }
 
-/// Scratch memory of a thread.
+/// Memory that a thread reuses for every block of touches that it measures.
 #[derive(Debug, Default)]
 struct Working {
-    /// Frames of a block.
+    /// Frames of the current block of touches, one after the other.
     frames: Vec<f64>,
-    /// Frames of one channel of a touch, preceded by up to two frames of history.
+    /// Frames of one channel of a touch, after up to two frames of the preceding touch and of the released skin.
     with_history: Vec<f64>,
-    /// Deepest frame of the preceding touch.
+    /// Deepest frame of the touch that precedes the current one.
     deepest: Vec<f64>,
     rates: Vec<f64>,
     scratch: SignalWorkspace,
 }
 
-/// Measures a block of touches, F frames each.
+/// Computes the measurements of a block of touches with F frames each.
 fn measure_block(
     reading: Reading,
     touches: &[TouchToRead],
@@ -207,7 +208,8 @@ fn read_channel(
     }
 }
 
-/// Returns the deflection rate δ̇ of every taxel, m/s: the approach speed if the object pushes the taxel and the taxel is not at its stroke. `None` at rest.
+/// Returns the deflection rate δ̇ of every taxel, m/s. It is the approach speed if the object pushes the taxel and the taxel is below its stroke, otherwise 0.
+/// Returns `None` if the press is at rest.
 pub fn rates_of<'a>(
     frame: &[f64],
     taxel: &Taxel,

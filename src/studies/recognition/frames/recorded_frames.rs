@@ -31,8 +31,8 @@ use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-/// Fraction of missing readings (NaN) above which a taxel is masked. With a larger value, recordings with an intermittently failing taxel are rejected; with a
-/// smaller value, a few missing readings mask a taxel.
+/// Fraction of missing readings (NaN) above which a taxel is masked, 0 to 1. With a larger value, recordings with an intermittently failing taxel are rejected;
+/// with a smaller value, a few missing readings mask a taxel.
 const MASKED: f64 = 0.1;
 
 /// Recorded touches of a real skin.
@@ -42,15 +42,15 @@ pub struct RecordedFrames {
     pub spec: RecordedSpec,
     /// Names of the classes, in the order of their labels.
     names: Vec<String>,
-    /// Names that determine the random streams of the classes.
+    /// Names from which the seeds of the classes' random numbers are derived.
     streams: Vec<String>,
     /// Number of touches of each class.
     counts: Vec<usize>,
-    /// Frames as recorded: of the training touches (or all touches), and of the separate test set.
+    /// Frames as recorded, in two sets: the training touches (or all touches), and the separate test set.
     readings: [Array2<f64>; 2],
-    /// Row index of each touch in both sets of frames; touches are ordered by class.
+    /// For each touch, its row index in the two sets of frames; touches are ordered by class.
     order: Vec<usize>,
-    /// Whether each value of a frame belongs to a masked taxel.
+    /// For each value of a frame, whether its taxel is masked.
     is_masked: Vec<bool>,
     /// Reading of each taxel when it is not touched; 0 for a masked taxel.
     zeros: Vec<f64>,
@@ -60,11 +60,11 @@ pub struct RecordedFrames {
     saturation: f64,
     /// Number F of frames per touch.
     n_frames: usize,
-    /// Number of taxels; a frame may contain several values per taxel.
+    /// Number of taxels of the skin; a frame may contain several values per taxel.
     n_taxels: usize,
-    /// Group of each touch, in the order of `order`; `None` without groups.
+    /// Group of each touch, in the order of `order`; `None` if the recording defines no groups.
     groups: Option<Array1<usize>>,
-    /// Side (training or test) of each touch, if the data define the split.
+    /// Side (training or test) of each touch; `None` if the data do not define the split.
     sides: Option<Vec<Side>>,
     /// Press depth of each touch, metres; `None` if unknown.
     depths: Option<Vec<f64>>,
@@ -81,7 +81,7 @@ struct FramesOfFile {
 }
 
 impl RecordedFrames {
-    /// Reads the recorded files, if the frames fit into `ceiling` bytes (`None`: no limit).
+    /// Reads the recorded files. If `ceiling` is given, the frames must fit into this number of bytes.
     ///
     /// # Errors
     /// If a file cannot be read or does not fit the others, or a reading is infinite, or NaN although its taxel is not masked.
@@ -152,7 +152,7 @@ impl RecordedFrames {
         })
     }
 
-    /// Returns the readings of a frame of a touch.
+    /// Returns the recorded readings of one frame of a touch.
     fn frame(&self, touch: usize, frame: usize) -> ArrayView1<'_, f64> {
         let row = self.order[touch] * self.n_frames + frame;
         let [train, test] = &self.readings;
@@ -179,7 +179,7 @@ impl RecordedFrames {
         values.collect()
     }
 
-    /// Returns pairs (reading of a touch, reading of the untouched taxel) along the axes of all taxels that are not masked.
+    /// For each taxel that is not masked, returns two readings along its axis: in the touch, and untouched.
     fn pushes(&self, touch: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let frames = (0..self.n_frames).flat_map(move |frame| {
             let readings = self.frame(touch, frame).into_iter().zip(&self.is_masked);
@@ -190,7 +190,7 @@ impl RecordedFrames {
 }
 
 impl RecordedSpec {
-    /// Returns the SHA-256 hash of each file, by its path.
+    /// For each file of the recording, returns its SHA-256 hash by its path.
     ///
     /// # Errors
     /// If a file cannot be read.
@@ -230,7 +230,7 @@ impl RecordedSpec {
         })
     }
 
-    /// Returns the class labels of all touches, the separate test set last.
+    /// Returns the class labels of all touches; the separate test set comes last.
     fn class_labels(&self, n: [usize; 2]) -> Result<ClassLabels> {
         let mut values = Vec::new();
         for (name, n) in ["labels", "labels_test"].into_iter().zip(n) {
@@ -303,7 +303,7 @@ impl RecordedSpec {
         Ok((names, streams, counts))
     }
 
-    /// Returns the group of every touch, the separate test set last.
+    /// Returns the group of every touch; the separate test set comes last. Returns `None` if the recording defines no groups.
     fn group_keys(&self, [n_train, n_test]: [usize; 2]) -> Result<Option<Vec<usize>>> {
         let read = |name: &str, n: usize| -> Result<Option<Vec<KeyValue>>> {
             match self.file_of(name) {
@@ -347,7 +347,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Checks that each class has training and test touches.
+    /// Returns an error if a class has no training touches or no test touches.
     fn check_test_set(
         &self,
         names: &[String],
@@ -405,8 +405,9 @@ impl RecordedSpec {
         Ok(zeros)
     }
 
-    /// Returns the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. The saturation reading is the given full scale,
-    /// or a largest reading that many frames share. A shared largest reading is ignored if the depths are known, because equal depths may cause it.
+    /// Returns the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. The latter is the given
+    /// full scale, or a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because equal depths may
+    /// cause it.
     fn full_scale_of(
         &self,
         files: &[&FramesOfFile],
@@ -454,7 +455,7 @@ impl RecordedSpec {
     }
 }
 
-/// Checks that a file contains one value per touch.
+/// Returns an error if a file does not contain one value per touch.
 fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
     let given = format!("{n_given} numbers");
     let allowed = format!("{n}, one a touch of {}", frames.display());
@@ -471,7 +472,7 @@ fn name_of(value: &KeyValue) -> String {
     }
 }
 
-/// Returns whether the taxel of each frame value is masked because of too many NaN readings.
+/// For each value of a frame, returns whether its taxel is masked because too many readings are NaN.
 fn masked(files: &[&FramesOfFile], n_taxels: usize) -> Result<Vec<bool>> {
     let n_values = files[0].readings.ncols();
     let n_frames: usize = files.iter().map(|file| file.readings.nrows()).sum();
@@ -561,7 +562,8 @@ impl TouchSet for RecordedFrames {
         frames
     }
 
-    /// Touches are read at the study's speed or frame rate. Each touch follows a randomly drawn touch or no touch, depending on the study's keys.
+    /// Returns how each touch is read. Touches are read at the study's speed or frame rate. Each touch follows a randomly drawn touch or no touch, depending on
+    /// the study's keys.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         let streams = self.streams.iter().map(String::as_str);
         let mut touches = touches_to_read(streams.zip(self.counts.iter().copied()), seed);
@@ -585,7 +587,7 @@ impl TouchSet for RecordedFrames {
         depths.filter(|&&depth| depth > limit).count()
     }
 
-    /// The samples are the last frames of the first touch of each class.
+    /// Returns sample touches for pictures: for each class, the last frame of its first touch.
     fn samples(&self, plan: &Plan, _groups: &[MeasurementGroup]) -> Result<Samples> {
         let array = &plan.arrays[0];
         let (configurations, stroke) = (array.picture_cells(), array.taxel().stroke);

@@ -1,4 +1,4 @@
-//! Recorded frames of a skin with additional data for calibration.
+//! Recorded frames of a skin, with the additional data that calibration needs.
 
 use crate::calibration::RecordedSkin;
 use crate::error::{Error, Result};
@@ -8,18 +8,18 @@ use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Selection of the recorded frames in which nothing touches the skin.
+/// Selection of those recorded frames in which nothing touches the skin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UntouchedFrames {
     /// The recording marks no untouched frames.
     None,
     /// Separate file of untouched frames, recorded at even intervals over the same session, in order of time.
     File(PathBuf),
-    /// Ranges of frame numbers in the main file.
+    /// Numbers of the untouched frames in the main file, as ranges.
     Among(Vec<Range<usize>>),
 }
 
-/// Paths of a skin's recorded frames, and the meaning of their readings.
+/// Paths of a skin's recorded frames, and how their readings are converted to deflections.
 #[derive(Clone, Debug)]
 pub struct RecordedSkinFiles {
     /// Frames in the order of time, shape (n, rows, columns) or (n, F, rows, columns).
@@ -28,15 +28,15 @@ pub struct RecordedSkinFiles {
     pub order: Option<String>,
     /// Numbers of rows and columns into which the taxel axis `c` is divided.
     pub grid: Option<[usize; 2]>,
-    /// Selection of frames in which nothing touches the skin.
+    /// Selection of those frames in which nothing touches the skin.
     pub untouched: UntouchedFrames,
     /// Total force on the skin in each frame, newtons, shape (n,).
     pub forces: Option<PathBuf>,
-    /// Reading of an untouched taxel.
+    /// Reading of a taxel that is not touched.
     pub zero: f64,
     /// Reading of a taxel at full scale. Default: the largest of all readings.
     pub full_scale: Option<f64>,
-    /// Deflection of a taxel at full scale, mm.
+    /// Deflection of a taxel at full scale, mm; `None` if unknown.
     pub stroke_mm: Option<f64>,
 }
 
@@ -101,7 +101,7 @@ impl RecordedSkinFiles {
 }
 
 impl RecordedSkinFiles {
-    /// Reads frames as rows; also returns the numbers of rows and columns of each frame.
+    /// Reads frames from a file, one per row; also returns the numbers of rows and columns of each frame.
     fn frames_of(&self, path: &Path) -> Result<(Array2<f64>, (usize, usize))> {
         let spec = RecordedSpec::of_frames(path, self.order.as_deref(), self.grid);
         let shape = spec.shape_of("frames")?;

@@ -18,7 +18,7 @@ use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::touches::drawn_touches::TouchedObject;
 use ndarray::{Array2, ArrayView1};
 
-/// Default number of objects in a picture of samples.
+/// Default number of objects that a sample picture shows.
 const N_SAMPLES: usize = 4;
 
 /// Returns the sample pictures of a study. The first picture shows the first touch of the objects that the study lists, by default of four spread over the
@@ -86,7 +86,8 @@ pub fn sample_frames(
     Ok(Samples { shown, each })
 }
 
-/// Returns the normal readings of each object's first touch, shape (ny, nx). If the skin has memory, one of the objects has touched it before.
+/// Returns the reading of each object's first touch along the taxels' axes, shape (ny, nx). If the skin has memory, the touch of another object precedes each
+/// touch.
 fn read(
     plan: &Plan,
     group: &MeasurementGroup,
@@ -126,7 +127,7 @@ fn read(
     Ok(values.outer_iter().map(frame).collect())
 }
 
-/// Returns the signal chain of each channel without smoothing, because smoothing would hide the other steps.
+/// Returns a signal chain for each channel, without the step that smooths the readings. Smoothing would hide the effect of the other steps.
 fn chains(plan: &Plan, group: &MeasurementGroup) -> Result<Vec<Chain>> {
     let array = &plan.arrays[group.array];
     let skin = skin(&Seed::new(plan.spec.seed), array);
@@ -137,8 +138,8 @@ fn chains(plan: &Plan, group: &MeasurementGroup) -> Result<Vec<Chain>> {
     })
 }
 
-/// Returns the groups to show in a study of one sensor error at a time, each with a title: the first group of an array, then the group with the last value of
-/// each error. Scan errors are omitted, because they do not change a touch that is read once.
+/// For a study that varies one sensor error at a time, returns the groups of configurations to show, each with a title. The first group has the first value of
+/// each error. For each error, the group with its last value follows. Scan errors are omitted, because they do not change a touch that is read once.
 fn imperfect_groups<'a>(
     plan: &Plan,
     groups: &'a [MeasurementGroup],
@@ -175,7 +176,7 @@ fn imperfect_groups<'a>(
     chosen
 }
 
-/// Returns the group with the largest noise among the groups with the most taxels.
+/// Among the groups of configurations with the most taxels, returns the one with the largest noise.
 fn loudest_group<'a>(plan: &Plan, groups: &'a [MeasurementGroup]) -> Option<&'a MeasurementGroup> {
     let n_taxels = |group: &MeasurementGroup| plan.arrays[group.array].n_taxels();
     groups.iter().max_by(|a, b| {
@@ -184,7 +185,7 @@ fn loudest_group<'a>(plan: &Plan, groups: &'a [MeasurementGroup]) -> Option<&'a 
     })
 }
 
-/// Returns the labels of the sample classes: the classes that the study lists, or four spread over the list of all classes.
+/// Returns the labels of the classes that a sample picture shows: those that the study lists, or four that are spread over the list of all classes.
 ///
 /// # Errors
 /// If [`named_samples`] fails.
@@ -194,7 +195,7 @@ pub(crate) fn spread_samples(plan: &Plan, classes: &[&str]) -> Result<Vec<usize>
     Ok(named_samples(plan, classes)?.unwrap_or_else(spread))
 }
 
-/// Returns the labels of the sample classes that the study lists; `None` if it lists none.
+/// Returns the labels of the classes that the study lists for its sample picture; returns `None` if it lists none.
 ///
 /// # Errors
 /// If a listed name is not a class.

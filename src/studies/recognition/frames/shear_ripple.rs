@@ -16,11 +16,11 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Spread;
 use glam::DVec3;
 
-/// Edge lengths of the pressed box, metres; similar to the objects of the built-in sets.
+/// Edge lengths of the box with which the shear error is measured, metres; similar to the objects of the built-in sets.
 const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
 
-/// Mean and standard deviation of the shear error under a flat face of packed spheres, over the taxels. The shear error is the reading along x minus the exact
-/// value, newtons.
+/// Statistics of the shear error under a flat face that is modelled by packed spheres. The shear error of a taxel is its shear reading along x minus the
+/// reading on an exactly flat face, newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearRipple {
     /// Mean shear error over the taxels, newtons.
@@ -72,7 +72,7 @@ impl ShearRipple {
     }
 }
 
-/// Returns the shear reading of each taxel along x, newtons; `None` if the press touches nothing.
+/// Presses the array on an object and slides it along x; returns the shear reading of each taxel along x, newtons. Returns `None` if the press touches nothing.
 fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f64>> {
     let mut workspace = ArrayWorkspace::default();
     let pose = Pose::from_translation(DVec3::new(0.0, 0.0, 0.1));

@@ -10,7 +10,7 @@ use crate::studies::recognition::touches::drawn_touches::TouchedObject;
 use crate::world::Touch;
 use ndarray::ArrayViewMut2;
 
-/// Simulates all touches on an array and stores the frames in memory.
+/// Simulates all touches on an array and stores their frames in memory.
 pub fn simulate_array(
     touched: &dyn TouchSet,
     array: &TaxelArray,
@@ -22,8 +22,8 @@ pub fn simulate_array(
 
 /// Presses one array on every object, touch by touch; the result does not depend on the number of threads.
 ///
-/// A touch to a depth d is read at `n_frames` ≥ 1 depths d/F, 2d/F, …, d, or at as many points of its path if it slides. Each frame is simulated as a separate
-/// touch, because a taxel at rest has no memory.
+/// A touch to depth d is read as F = `n_frames` frames, at the depths d/F, 2d/F, …, d; if the array slides, at F points of its path. Each frame is simulated as
+/// a separate touch, because a taxel at rest has no memory.
 pub(crate) fn press_objects(
     touched: &[TouchedObject],
     (array, n_frames): (&TaxelArray, usize),

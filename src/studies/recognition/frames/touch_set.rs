@@ -15,7 +15,7 @@ use crate::studies::recognition::touches::drawn_touches::touch_labels;
 use crate::world::Touch;
 use ndarray::Array1;
 
-/// Touches of several classes: objects, kinds of touch, or labels of a recording. The touches are ordered by class.
+/// Set of touches of several classes, ordered by class. A class is an object, a kind of human touch, or a label of a recording.
 pub trait TouchSet: Sync {
     /// Returns the name and the number of touches of every class, in the order of the labels.
     fn classes(&self) -> Vec<(&str, usize)>;
@@ -30,7 +30,7 @@ pub trait TouchSet: Sync {
         touch_labels(&self.classes())
     }
 
-    /// Returns the group of every touch, for splits that do not divide groups. By default, each touch is its own group.
+    /// Returns the group number of every touch, for splits into training and test touches that do not divide groups. By default, each touch is its own group.
     ///
     /// # Errors
     /// If an axis is spread uniformly and has no distance.
@@ -43,17 +43,17 @@ pub trait TouchSet: Sync {
         Vec::new()
     }
 
-    /// Returns the group of every touch if the data define groups; `None` otherwise.
+    /// Returns the group number of every touch; returns `None` if the data define no groups.
     fn own_groups(&self) -> Option<Array1<usize>> {
         None
     }
 
-    /// Returns the side (training or test) of every touch, if the data define a test set. The sides hold for all splits.
+    /// Returns the side (training or test) of every touch, which holds in all trials; returns `None` if the data define no test set.
     fn given_sides(&self) -> Option<&[Side]> {
         None
     }
 
-    /// Returns the number of masked taxels and the total number of taxels.
+    /// Returns the number of masked taxels (excluded because of missing readings) and the total number of taxels.
     fn n_masked(&self) -> (usize, usize) {
         (0, 0)
     }
@@ -61,11 +61,11 @@ pub trait TouchSet: Sync {
     /// Computes data that all touches need, on all threads. Without this call, the first touches would compute them one after the other.
     fn prepare(&self) {}
 
-    /// Simulates all touches on an array, F frames each; the result does not depend on the number of threads.
+    /// Simulates all touches on an array with the given number of frames per touch; the result does not depend on the number of threads.
     fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames;
 
-    /// Returns how each touch is read in a trial with F frames per touch: its seed, timing and preceding touch. `seed` is the source of randomness. Pressed
-    /// objects are read at a speed (m/s, 0 at rest), each touch after another randomly drawn touch.
+    /// For each touch in a trial, returns how it is read: its seed, timing and preceding touch. All random numbers are derived from `seed`. Pressed objects are
+    /// read at a speed (m/s, 0 at rest), each touch after another randomly drawn touch.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
     /// Returns sample touches for pictures.
@@ -74,12 +74,12 @@ pub trait TouchSet: Sync {
     /// If a picture cannot be made.
     fn samples(&self, plan: &Plan, groups: &[MeasurementGroup]) -> Result<Samples>;
 
-    /// Returns the number of touches whose depth past first contact exceeds a stroke (metres).
+    /// Returns the number of touches whose depth past first contact is larger than the stroke of the taxels, metres.
     fn n_deeper_than(&self, _stroke: f64) -> usize {
         0
     }
 
-    /// Returns names and values of the touch settings, for the report.
+    /// Returns pairs of the name and the value of each touch setting, for the report.
     fn settings(&self) -> Vec<(String, String)>;
 }
 
@@ -88,6 +88,6 @@ pub trait TouchSet: Sync {
 pub struct Samples {
     /// Touches that the sample picture shows.
     pub shown: Snapshots,
-    /// First touch of every object; `None` for human touches.
+    /// Picture of the first touch of every object; `None` for human touches.
     pub each: Option<Snapshots>,
 }

@@ -15,20 +15,20 @@ use std::ops::Range;
 /// Number of frames that are estimated together by one matrix product. A fixed number makes results independent of the number of threads.
 const BLOCK: usize = 64;
 
-/// Image estimators of a group of configurations, one for each number of measurements.
+/// Estimators that compute images of frames from measurements: one for each number of measurements that a group of configurations uses.
 #[derive(Clone, Debug)]
 pub struct Images {
     /// Numbers of rows and columns of the images.
     shape: (usize, usize),
-    /// Mapping from taxels to pixels; `None` if taxels are pixels.
+    /// Mapping from taxels to pixels; `None` if each taxel is a pixel.
     chart: Option<Chart>,
     full_scale: f64,
-    /// Pairs (number of measurements m, image estimator).
+    /// Image estimators, each with the number m of measurements from which it estimates.
     estimates: Vec<(usize, ImageEstimate)>,
 }
 
 impl Images {
-    /// Fits image estimators for the projections of an array. `full_scale` is the reading of a taxel at its stroke.
+    /// Fits an image estimator for each projection of an array. `full_scale` is the reading of a taxel at its stroke.
     ///
     /// # Errors
     /// If an estimator cannot be fitted.
@@ -73,8 +73,8 @@ impl Images {
         self.estimates.iter().any(|(m, _)| *m == measurements)
     }
 
-    /// Returns the image features of all frames. Each requested kind has shape n_touches × F·k, with k values per frame, followed by the rows of all tilted
-    /// copies in the same order. Each image is estimated once and then used for all kinds of features.
+    /// Returns the image features of all frames: one array for each requested kind. A row contains the k values of each of the F frames of a touch, shape
+    /// (n_touches, F·k). The rows of all tilted copies follow in the same order. Each image is estimated once and then used for all kinds.
     ///
     /// # Panics
     /// If there is no estimator for the number of measurements.
@@ -129,7 +129,7 @@ impl Images {
         all
     }
 
-    /// Estimates images from the measurements of frames; each image (ny × nx) is one row of the result.
+    /// Estimates the images of frames from their measurements; each image (ny × nx pixels) is one row of the result.
     fn images(&self, estimate: &ImageEstimate, measured: ArrayView2<f64>) -> Array2<f64> {
         let frames = estimate.images(measured);
         match &self.chart {
@@ -138,7 +138,7 @@ impl Images {
         }
     }
 
-    /// Returns the tilted images of a touch, shape (F, ny · nx).
+    /// Returns the images of a touch, tilted by a slope along x and y, shape (F, ny · nx).
     fn tilted(&self, images: ArrayView2<f64>, slope: (f64, f64), level: f64) -> Array2<f64> {
         let mut tilted = Array2::zeros(images.raw_dim());
         for (image, mut out) in images.outer_iter().zip(tilted.outer_iter_mut()) {
@@ -157,13 +157,13 @@ impl Images {
         ImageFeatures::new(wanted.join, self.shape, self.full_scale, cut)
     }
 
-    /// Returns the reading above which a taxel counts as in contact.
+    /// Returns the reading of an image pixel above which it counts as in contact.
     fn level(&self, estimate: &ImageEstimate) -> f64 {
         noise_level(estimate.noise_std(), self.shape.0 * self.shape.1)
     }
 }
 
-/// Divides the rows of all requested features into blocks of touches; returns the index of each block and its rows.
+/// Divides the rows of all requested features into blocks of touches; for each block, returns its index and its rows.
 fn blocks(
     mut rows: Vec<ArrayViewMut2<f64>>,
     n_touches: usize,
@@ -180,7 +180,7 @@ fn blocks(
     blocks
 }
 
-/// Writes all image features of a touch (F × n) into one row of each feature array.
+/// Writes all image features of a touch with F frames into one row of each feature array.
 fn write(
     features: &[ImageFeatures],
     images: ArrayView2<f64>,

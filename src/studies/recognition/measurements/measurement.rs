@@ -20,27 +20,27 @@ use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
 use ndarray::{Array1, Array2, ArrayViewMut2, s};
 
-/// Measurements of all touches of a group of configurations. If touches are read several times, the first readings of all touches come first, then the second
-/// readings. Reading r of a touch has the number r · n_touches + touch.
+/// Measurements of all touches of a group of configurations. If touches are read several times, the first readings of all touches come first, followed by the
+/// second readings. Reading r of a touch has the number r · n_touches + touch.
 #[derive(Clone, Debug)]
 pub struct Measurements {
-    /// Measurements, shape (n_readings · n_touches · F, m); the frames of a touch are adjacent, the deepest last.
+    /// Measurements, shape (n_readings · n_touches · F, m), where F is the number of frames per touch. The frames of a touch are adjacent, the deepest last.
     pub values: Array2<f64>,
-    /// Number of touches.
+    /// Number of touches that were measured.
     pub n_touches: usize,
     /// Number F of frames per touch.
     pub n_frames: usize,
-    /// Measurements Φ1 of a frame of ones, shape (m,).
+    /// Measurements of a frame in which every value is 1, shape (m,).
     pub of_ones: Array1<f64>,
-    /// Image features, shape (n_touches, F·k) each, followed by the rows of tilted copies.
+    /// Image features by kind. Each array has the shape (n_touches, F·k) for F frames of k features, and is followed by the rows of tilted copies.
     pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
-    /// Tilted copies of the training touches, if any.
+    /// Tilted copies of the training touches; `None` if the group uses no copies.
     pub copies: Option<TiltedCopies>,
-    /// Processor time summed over threads, s.
+    /// Processor time of the measurement, summed over threads, s.
     pub cpu_s: f64,
 }
 
-/// Projection of a group of configurations in a trial, with the estimators fitted to training touches.
+/// Measurement matrix of a group of configurations in a trial, with the image estimators that are fitted to training touches.
 #[derive(Clone, Debug)]
 pub struct SensedBy {
     /// Measurement matrix Φ.
@@ -50,7 +50,7 @@ pub struct SensedBy {
 }
 
 impl Measurements {
-    /// Returns the numbers of all readings of the given touches: the first reading of each touch in order, then the second of each.
+    /// Returns the numbers of all readings of the given touches: the first reading of each touch in order, followed by the second reading of each.
     pub fn readings(&self, touches: &[usize]) -> Vec<usize> {
         let n_read = self.values.nrows() / (self.n_touches * self.n_frames);
         let readings = (0..n_read).map(|reading| reading * self.n_touches);
@@ -58,7 +58,8 @@ impl Measurements {
         numbers.collect()
     }
 
-    /// Returns the features of the given touches, shape (n, F·m): the first m measurements of each frame, combined over time if the inputs require it.
+    /// Returns the features of the given touches, shape (n, F·m): the first m measurements of each of their F frames. If the inputs require it, the frames of a
+    /// touch are combined.
     pub fn features(&self, inputs: &RowInputs, touches: &[usize]) -> Array2<f64> {
         let mut rows = Array2::zeros((touches.len(), inputs.n_features()));
         let Some(temporal_features) = inputs.temporal_features else {
@@ -76,8 +77,8 @@ impl Measurements {
         rows
     }
 
-    /// Returns the numbers of the tilted copies of the given training touches; the copies are numbered after all readings. The first copy of each touch comes
-    /// first, then the second of each.
+    /// Returns the numbers of the tilted copies of the given training touches; copies are numbered after all readings. The first copy of each touch comes
+    /// first, followed by the second copy of each.
     pub fn copies(&self, inputs: &RowInputs, train: &[usize]) -> Vec<usize> {
         let Some(copies) = &self.copies else {
             return Vec::new();
@@ -87,7 +88,7 @@ impl Measurements {
         rows.map(|row| n_read + row).collect()
     }
 
-    /// Writes the features of all frames of the touches, concatenated per touch, shape (n, F·m).
+    /// Writes the features of the given touches: the first m measurements of each of their F frames, one frame after the other, shape (n, F·m).
     fn read_into(&self, inputs: &RowInputs, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
         let m = inputs.measurements;
         if let Some(wanted) = inputs.of_images() {
@@ -110,11 +111,11 @@ impl Measurements {
     }
 }
 
-/// Set of touches with its simulated frames.
+/// Set of touches with their simulated frames.
 pub type MadeTouches<'a> = (&'a dyn TouchSet, &'a Frames);
 
-/// Computes the measurements of all touches of a group in one trial, for each number of measurements in the inputs. If test touches are made differently,
-/// `tested` contains as many touches in the same order. The trial's test touches are then read from `tested`.
+/// Computes the measurements of all touches of a group in one trial, for each number of measurements in the inputs. If test touches are simulated differently,
+/// `tested` contains as many touches in the same order, and the trial's test touches are read from `tested`.
 ///
 /// # Errors
 /// If a signal step or the projection is invalid.
@@ -186,7 +187,7 @@ pub fn measure_group(
     })
 }
 
-/// Draws the tilted copies of training touches of n classes. `full_scale` is the reading of a taxel at its stroke.
+/// Draws tilted copies of the training touches of n classes. `full_scale` is the reading of a taxel at its stroke.
 fn tilted_copies(
     inputs: &MeasurementInputs,
     train: (&[usize], usize),
@@ -202,7 +203,7 @@ fn tilted_copies(
     Some(TiltedCopies::new(copies, train, a_pixel, &seed))
 }
 
-/// Draws the measurement matrix Φ of a trial, or fits it to training touches, and fits the image estimators.
+/// Draws the measurement matrix Φ of a trial at random, or fits it to training touches; also fits the image estimators.
 fn sensed_by(
     inputs: &MeasurementInputs,
     (whole, touches): (Reading, &[TouchToRead]),
@@ -253,10 +254,11 @@ fn sensed_by(
     Ok(SensedBy { projection, images })
 }
 
-/// Number of readings of the untouched skin. The noise along a component is then known with a relative error of √(2 / 256) = 9 %.
+/// Number of readings of the untouched skin from which its noise is estimated. The standard deviation of the noise then has a relative error of √(2 / 256) = 9
+/// %.
 pub const UNTOUCHED: usize = 256;
 
-/// Returns readings of the untouched skin of the training touches, shape (readings, n).
+/// Reads the skin of the training touches while nothing touches it; returns one reading per row, shape (readings, n_taxels).
 fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     let seed = Seed::new(seed).named("untouched").numbered(trial as u64);
     let mut readings = Array2::zeros((UNTOUCHED, whole.projection.n_taxels()));
@@ -269,7 +271,7 @@ fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     readings
 }
 
-/// Returns the skin of the training touches, followed by the skin of the test touches if it differs.
+/// Returns the skin of the training touches. If the test touches have another skin, it follows.
 fn skins<'a>(
     inputs: &MeasurementInputs,
     (learned, tested): (&'a Frames, &'a Frames),

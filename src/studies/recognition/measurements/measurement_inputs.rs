@@ -25,15 +25,16 @@ pub struct MeasurementInputs<'a> {
     pub array: &'a TaxelArray,
     /// Seed of all random numbers.
     pub seed: u64,
-    /// Number of projections that are combined with each split; `None` if each trial has its own projection.
+    /// Number of projections (measurement matrices) with which each split into training and test touches is combined; `None` if each trial has its own
+    /// projection.
     pub projections_per_split: Option<usize>,
-    /// Approach speed of the press at the time of reading, m/s.
+    /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
     /// Signal chain of the training touches.
     pub signal: SignalInputs,
     /// Skin of the test touches: the training skin or another one.
     pub test_sensor: TestSensor,
-    /// Differing inputs of the test touches; `None` unless the study has `[test]`.
+    /// Inputs of the test touches that differ from the training touches; `None` unless the study has the table `[test]`.
     pub test: Option<TestInputs<'a>>,
     /// Ensemble from which the measurement matrix is drawn.
     pub ensemble: Ensemble,
@@ -41,9 +42,9 @@ pub struct MeasurementInputs<'a> {
     pub projected: Vec<usize>,
     /// Number of readings of each training touch.
     pub n_readings: usize,
-    /// Image features to compute from the measurements.
+    /// Kinds of image features that are computed from the measurements.
     pub of_images: Vec<FeaturesOfImages>,
-    /// Tilted copies of training touches, if any.
+    /// Inputs of the tilted copies of training touches; `None` if there are no copies.
     pub copies: Option<CopyInputs>,
 }
 
@@ -52,19 +53,19 @@ pub struct MeasurementInputs<'a> {
 pub struct TestInputs<'a> {
     /// Array of taxels of the test touches; its frames have the shape of the training touches' frames.
     pub array: &'a TaxelArray,
-    /// Approach speed of the press at the time of reading, m/s.
+    /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
     /// Signal chain of the test touches.
     pub signal: SignalInputs,
 }
 
-/// Inputs of the measurements that depend on the trial.
+/// Trial for which measurements are computed: its number and its split.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasuredTrial<'a> {
     /// Number of the trial, from 0.
     pub number: usize,
-    /// Split of the trial; `None` if the measurements do not depend on it. Measurements depend on the split if something is fitted to training touches, or if
-    /// test touches have another skin.
+    /// Split into training and test touches; `None` if the measurements do not depend on it. They depend on it if something is fitted to training touches, or
+    /// if test touches have another skin.
     pub split: Option<&'a Hashed<Split>>,
 }
 
@@ -73,7 +74,7 @@ pub struct MeasuredTrial<'a> {
 pub struct SignalInputs {
     /// Steps of the signal chain, in order.
     pub steps: Vec<StepSpec>,
-    /// Unit of the noise; full scale if there is no noise.
+    /// Unit of the noise standard deviation; full scale if there is no noise.
     pub noise_unit: NoiseUnit,
     /// Strength of each signal step.
     pub condition: Condition,
@@ -84,19 +85,19 @@ pub struct SignalInputs {
 pub struct CopyInputs {
     /// Number of copies of each touch, at least 1.
     pub n_copies: usize,
-    /// Number of copied training touches per class, in drawing order; `None` for all.
+    /// Number of training touches per class that are copied, in drawing order; `None` for all.
     pub n_touches: Option<usize>,
-    /// Maximum tilt of a copy, radians.
+    /// Maximum tilt of a copy about each axis, radians.
     pub tilt: f64,
 }
 
 impl MeasurementInputs<'_> {
-    /// Returns a text that identifies the inputs; different inputs give different texts.
+    /// Returns a text that identifies the inputs: equal inputs have equal texts, and different inputs have different texts.
     pub fn key(&self) -> String {
         format!("{self:?}")
     }
 
-    /// Returns the inputs that belong to a given trial of a sweep.
+    /// Returns the number and the split of a trial, as needed for measurements.
     pub fn trial<'s>(&self, sweep: &'s Sweep, number: usize) -> MeasuredTrial<'s> {
         let depends = self.learns() || self.has_own_test();
         let split = depends.then(|| &sweep.splits[number]);
@@ -137,7 +138,7 @@ fn counts(of_images: &[FeaturesOfImages]) -> Vec<usize> {
 }
 
 impl SignalInputs {
-    /// Returns the signal steps for a skin with the given seed.
+    /// Returns the signal steps of a skin, whose errors are drawn with the given seed.
     pub fn steps(&self, skin: &Seed) -> Vec<SignalStep> {
         let condition = &self.condition;
         let step = |&step: &StepSpec| match step {
@@ -155,7 +156,7 @@ impl SignalInputs {
     }
 }
 
-/// Returns the signal inputs of a plan under a given condition.
+/// Returns the signal inputs of a plan under a given condition (the strengths of noise and sensor errors).
 fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
     let is_active = |step: &&StepSpec| match step {
         StepSpec::Force => true,
@@ -183,7 +184,7 @@ fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
 }
 
 impl MeasurementGroup {
-    /// Returns the signal inputs of the group.
+    /// Returns the inputs of the signal chain under the condition of this group.
     pub fn signal(&self, plan: &Plan) -> SignalInputs {
         signal_inputs(plan, self.condition)
     }
@@ -200,7 +201,7 @@ impl MeasurementGroup {
         }
     }
 
-    /// Returns the measurement inputs of the group.
+    /// Returns all inputs that determine the measurements of this group.
     pub fn inputs<'a>(&self, plan: &'a Plan) -> MeasurementInputs<'a> {
         let test = plan.tested.as_deref().map(|tested| {
             let condition = plan.tested_condition(self.condition);
@@ -240,7 +241,7 @@ impl MeasurementGroup {
         counts(&self.features_of_images())
     }
 
-    /// Returns the inputs of the tilted copies, with the largest number of copies that any configuration needs.
+    /// Returns the inputs of the tilted copies; their number is the largest that any configuration of the group needs.
     fn copies(&self, plan: &Plan) -> Option<CopyInputs> {
         let recognition = &plan.spec.recognition;
         let copied = self.configurations.iter();

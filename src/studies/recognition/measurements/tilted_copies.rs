@@ -1,26 +1,26 @@
-//! Tilted copies of training touches, which show objects in tilts that the training touches do not contain.
+//! Tilted copies of training touches: they show objects in tilts in which the training touches do not.
 
 use crate::random::Seed;
 use crate::studies::recognition::measurements::measurement_inputs::CopyInputs;
 use rand::Rng;
 use std::collections::HashMap;
 
-/// Copied touches and the tilt of each copy.
+/// Tilted copies of touches: the copied touches, and the tilt of each copy.
 #[derive(Clone, Debug)]
 pub struct TiltedCopies {
     /// Numbers of the copied touches.
     pub touches: Vec<usize>,
     /// Number of copies of each touch.
     pub n_copies: usize,
-    /// Slope of each copy of each touch along x and y: increase of the reading from one taxel to the next.
+    /// For each copy of each touch, its slope along x and y: the increase of the reading from one taxel to the next.
     pub slopes: Vec<(f64, f64)>,
-    /// Position of each touch in `touches`.
+    /// For each copied touch, its position in `touches`.
     places: HashMap<usize, usize>,
 }
 
 impl TiltedCopies {
-    /// Draws copies of training touches; the touches are given in drawing order, alternating between n classes. `steepest` is the maximum increase of a reading
-    /// from one taxel to the next. Each touch has its own random stream.
+    /// Draws the tilts of copies of training touches. The touches are given in drawing order and alternate between n classes; each has its own random stream.
+    /// `steepest` is the maximum increase of a reading from one taxel to the next.
     pub fn new(
         CopyInputs {
             n_copies,
@@ -49,7 +49,7 @@ impl TiltedCopies {
         }
     }
 
-    /// Returns the row numbers of the first `n_copies` copies of the touches: the first copy of each touch, then the second of each.
+    /// Returns the row numbers of the first `n_copies` copies of the given touches: the first copy of each touch, followed by the second copy of each.
     ///
     /// # Panics
     /// If a touch was not copied, or if there are fewer copies.
