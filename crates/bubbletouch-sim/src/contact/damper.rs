@@ -13,7 +13,7 @@
 
 use crate::world::{Taxel, Taxels};
 
-/// Returns φ = e^(−k Δt / c), the fraction of a free taxel's deflection that remains after `dt` seconds; 0 without a damper.
+/// Returns e^(−k Δt / c), the fraction of a free taxel's deflection that remains after `dt` seconds, for stiffness k and damping c; 0 without a damper.
 pub fn relaxation_factor(taxel: &Taxel, dt: f64) -> f64 {
     if taxel.damping == 0.0 {
         return 0.0;
@@ -21,7 +21,7 @@ pub fn relaxation_factor(taxel: &Taxel, dt: f64) -> f64 {
     (-taxel.stiffness * dt / taxel.damping).exp()
 }
 
-/// Deflections and forces of one patch, carried from step to step.
+/// Deflections and forces of the taxels of one patch, carried from one time step to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DamperState {
     /// Deflection of each taxel, metres, shape (n_taxels,).
@@ -39,7 +39,8 @@ impl DamperState {
         }
     }
 
-    /// Advances the state by `dt` seconds (positive). `contact` contains the contact deflections δ* at the step's end, metres, shape (n_taxels,).
+    /// Advances the state by `dt` seconds (positive). `contact` contains the deflections that the objects require at the end of the step, metres, shape
+    /// (n_taxels,).
     ///
     /// # Panics
     /// If `contact`, or a list with one entry per taxel, has another length than the state.
@@ -68,12 +69,12 @@ impl DamperState {
     }
 }
 
-/// Relaxation factors of taxels with equal stiffness and damping, for a step of fixed length.
+/// Relaxation factors of taxels with equal stiffness and damping, for a time step of fixed length.
 pub struct Relaxation {
     stiffness: f64,
-    /// Remaining fraction φ of a deflection after the step.
+    /// Fraction of a free taxel's deflection that remains after the time step.
     left: f64,
-    /// Lost fraction 1 − φ of a deflection after the step.
+    /// Fraction of a free taxel's deflection that is lost during the time step.
     gone: f64,
 }
 
@@ -92,7 +93,7 @@ impl Relaxation {
         }
     }
 
-    /// Advances a taxel to the end of the step and returns its force, newtons.
+    /// Advances the deflection of a taxel to the end of the time step and returns the force, newtons. `pushed` is the deflection that the objects require.
     #[inline]
     fn advance(&self, deflection: &mut f64, pushed: f64) -> f64 {
         let before = *deflection;
@@ -100,7 +101,7 @@ impl Relaxation {
         self.force(before, *deflection)
     }
 
-    /// Returns the force, newtons, that moves a taxel from one deflection to another, metres, within the step.
+    /// Returns the force, newtons, that moves a taxel from the deflection `before` to the deflection `after`, metres, within the time step.
     #[inline]
     pub(crate) fn force(&self, before: f64, after: f64) -> f64 {
         self.stiffness * (after - before * self.left) / self.gone

@@ -2,11 +2,11 @@
 
 use crate::error::Error;
 
-/// Relative accuracy of a force, unless one bit of the travel changes the force by more. If larger, repeated presses differ visibly; if smaller, rounding of
-/// the sum of forces adds needless steps.
+/// Relative accuracy of the force in a press to a force, unless one bit of the travel changes the force by more. If larger, repeated presses differ visibly;
+/// if smaller, rounding of the sum of forces adds needless steps.
 pub(super) const FORCE_ACCURACY: f64 = 1e-13;
 
-/// Creates the error for a force (newtons) above the `largest` reachable one; `where_to` describes the state at the largest force.
+/// Creates the error for a press to a `force` (newtons) above the `largest` reachable force. `where_to` describes the state at the largest force.
 pub(super) fn unreachable_force(force: f64, largest: f64, where_to: &str) -> Error {
     Error::input(
         "touch force",

@@ -9,16 +9,16 @@ use crate::objects::Model;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// Result of moving an object until a force is reached.
+/// Result of moving an object until the skin carries a given force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeldForce {
-    /// Travel of the object along the direction, metres.
+    /// Travel of the object along the direction of motion, metres.
     pub travel: f64,
-    /// Force Σ k δ that the springs carry at this travel, N.
+    /// Total force of the springs at this travel, N.
     pub force: f64,
 }
 
-/// Skin, and one of several objects that is moved onto the skin along a line.
+/// Skin, and one of several objects that moves onto the skin along a line.
 #[derive(Clone, Copy, Debug)]
 pub struct MovedObject<'a> {
     /// Patch of the skin.
@@ -32,8 +32,8 @@ pub struct MovedObject<'a> {
 }
 
 impl MovedObject<'_> {
-    /// Moves the object until the springs of the patch carry `force` newtons together (Σ k δ, due to all objects). The accuracy is a relative 1e-13 or the last
-    /// bit of the travel.
+    /// Moves the object until the springs of the patch together carry `force` newtons, due to all objects. The accuracy is a relative 1e-13 or the last bit
+    /// of the travel.
     ///
     /// `poses` contains one `patch_from_object` per object; the moved object's pose is its pose before any travel, and afterwards its pose at the last press.
     /// `travels`, metres, ascending, contains the lower limit, the present travel, and the upper limit. If the force is not reached between the limits, the

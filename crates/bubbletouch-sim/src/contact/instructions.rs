@@ -11,16 +11,16 @@ pub enum Instructions {
     /// Best instructions that the processor supports.
     #[default]
     Best,
-    /// Instructions that every processor of the compilation target has.
+    /// Instructions that every processor of the compilation target supports.
     Baseline,
-    /// AVX2: 256 bits.
+    /// AVX2 instructions with vectors of 256 bits.
     Avx2,
-    /// AVX-512 F, BW, DQ and VL: 512 bits.
+    /// AVX-512 instructions (F, BW, DQ and VL) with vectors of 512 bits.
     Avx512,
 }
 
 impl Instructions {
-    /// Returns the choices that this processor supports, the best one last.
+    /// Returns the instruction sets that this processor supports, the best one last.
     pub fn here() -> &'static [Self] {
         static HERE: OnceLock<Vec<Instructions>> = OnceLock::new();
         HERE.get_or_init(|| [vec![Self::Baseline], Self::beyond_baseline()].concat())
@@ -43,7 +43,7 @@ impl Instructions {
         Vec::new()
     }
 
-    /// Resolves `Best`, and any unsupported choice, to the best supported instructions.
+    /// Replaces `Best`, and any unsupported instruction set, by the best supported one.
     pub fn resolved(self) -> Self {
         let here = Self::here();
         match here.contains(&self) {

@@ -4,12 +4,12 @@
 /// instructions in closures.
 #[derive(Clone, Copy, Default)]
 pub struct LanesBelow {
-    /// One bit per lane that is still to be visited.
+    /// One bit per vector lane that the iterator has not returned yet.
     pending: u32,
 }
 
 impl LanesBelow {
-    /// Compares `values` (at most 32) with the limit.
+    /// Creates the iterator over the lanes of `values` (at most 32) that are below `limit`.
     #[inline(always)]
     pub fn new<const N: usize>(values: &[f64; N], limit: f64) -> Self {
         let mut pending = 0;

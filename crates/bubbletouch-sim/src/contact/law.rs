@@ -24,8 +24,8 @@
 
 use super::LanesBelow;
 
-/// Returns the deflection, metres, above which a taxel of this stroke (metres) is saturated: the stroke times 1 + 1e-12. The tolerance ensures
-/// that a press to a depth of exactly the stroke saturates no taxel.
+/// Returns the deflection, metres, above which a taxel with this stroke (metres) is saturated: the stroke times 1 + 1e-12. The tolerance ensures that a press
+/// to a depth of exactly the stroke saturates no taxel.
 pub fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)
 }
@@ -34,27 +34,30 @@ pub fn saturation_limit(stroke: f64) -> f64 {
 /// smaller, roots are taken needlessly.
 const ALMOST: f64 = 1.0 - 1e-12;
 
-/// Returns the deflection √q − h that contact with a sphere requires, metres; q must be positive.
+/// Returns the deflection √q − h that contact with a sphere requires, metres. The height h is along the taxel's axis; q is the squared sum of radii minus the
+/// squared distance from the axis, and must be positive.
 #[inline(always)]
 pub(crate) fn deflection(q: f64, height: f64) -> f64 {
     q.sqrt() - height
 }
 
-/// Returns whether a sphere counts: it meets the taxel and is not behind the substrate, whose height is `behind`, metres.
+/// Returns whether a sphere can push a taxel: the taxel meets the sphere (q > 0), and the sphere is not behind the substrate, whose height is `behind`,
+/// metres.
 #[inline(always)]
 pub(crate) fn is_in_front(q: f64, height: f64, behind: f64) -> bool {
     let gap = (behind - height).max(0.0);
     q > gap * gap
 }
 
-/// Returns whether an obstacle counts: it is not wholly behind the substrate. `far_side` is the height at which a taxel would rest on the obstacle's far side,
-/// metres.
+/// Returns whether an obstacle can push a taxel: the obstacle is not wholly behind the substrate at height `behind`. `far_side` is the height at which a
+/// taxel would touch the obstacle's far side, metres.
 #[inline(always)]
 pub(super) fn reaches_front(far_side: f64, behind: f64) -> bool {
     far_side >= behind
 }
 
-/// Returns the deflection that contact with a sphere requires, metres; 0 if the sphere does not count, and at most 0 if the sphere is above the taxel.
+/// Returns the deflection that contact with a sphere requires, metres. Returns 0 if the sphere is behind the substrate or misses the taxel, and at most 0 if
+/// the sphere is above the taxel.
 #[inline(always)]
 pub(super) fn needed(q: f64, height: f64, behind: f64) -> f64 {
     // The root is taken for every value, because selecting between two numbers compiles to a vector instruction and a branch does not.
@@ -79,7 +82,7 @@ fn shortfall(q: f64, height: f64, deflection: f64) -> f64 {
     bar * bar * ALMOST - q
 }
 
-/// Returns the squares q of the spheres that count, and −1 for the other spheres; `squares` are q, m², and `heights` h, metres.
+/// Returns the given squares q (m²) of the spheres that can push a taxel, and −1 for the other spheres. `heights` are the heights of the spheres, metres.
 #[inline(always)]
 pub(crate) fn squares_in_front<const N: usize>(
     squares: &[f64; N],
@@ -94,7 +97,7 @@ pub(crate) fn squares_in_front<const N: usize>(
     squares
 }
 
-/// Returns whether √q − h may exceed a deflection in any lane; `squares` are q, m², and `heights` h, metres. The result `false` is exact.
+/// Returns whether √q − h may exceed the deflection in any lane, for the squares q (m²) and the heights h (metres). The result `false` is exact.
 #[inline(always)]
 pub(crate) fn beats<const N: usize>(
     squares: &[f64; N],
@@ -108,7 +111,7 @@ pub(crate) fn beats<const N: usize>(
     !LanesBelow::new(&shortfalls, 0.0).is_empty()
 }
 
-/// Raises deflections to √q − h where q is positive; `squares` are q, m², and `heights` h, metres.
+/// Raises each deflection to √q − h if this value is larger and q is positive, for the squares q (m²) and the heights h (metres).
 ///
 /// Indexed loops over local copies let the compiler vectorise this function. Iterator adapters compiled elsewhere would remain calls, and memory that may alias
 /// is not vectorised. The roots of all lanes are taken, because roots of negative numbers cost no more. The maximum avoids a masked store, which takes ten

@@ -15,17 +15,17 @@ use crate::world::{Patch, Taxels};
 /// Condition that ends a press.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// No travel: the patch presses at the given pose ([`press_at_pose`]).
+    /// The patch presses at its given pose, without travel ([`press_at_pose`]).
     Pose,
-    /// Depth past first contact, metres ([`press_to_depth`]).
+    /// The patch travels to a depth past first contact, metres ([`press_to_depth`]).
     Depth(f64),
-    /// Travel from the given pose, metres ([`press_to_travel`]).
+    /// The patch moves by a travel from the given pose, metres ([`press_to_travel`]).
     Travel(f64),
-    /// Force that the springs carry together, newtons ([`press_to_force`]).
+    /// The patch travels until the springs of all taxels together carry a force, newtons ([`press_to_force`]).
     Force(f64),
 }
 
-/// Presses until `goal` is reached. Returns `None`, with zero deflections, if the patch meets nothing on its path.
+/// Presses a patch against objects until `goal` is reached. Returns `None`, with zero deflections, if the patch meets nothing on its path.
 ///
 /// # Errors
 /// If [`press_to_force`] fails.
@@ -43,7 +43,7 @@ pub fn press(
     to_goal(patch, placed, goal, (workspace, &mut OutputBuffer::none()))
 }
 
-/// Presses until `goal` is reached and also writes the deflections into `row`, which is faster than copying them afterwards.
+/// Presses a patch against objects until `goal` is reached and writes the deflections into `row`, which is faster than copying them afterwards.
 ///
 /// # Errors
 /// If [`press_to_force`] fails; the contents of `row` are then unspecified.
@@ -62,7 +62,7 @@ pub fn press_into(
     press_with_output(patch, placed, goal, (workspace, OutputBuffer::new(row)))
 }
 
-/// Presses until `goal` is reached and writes the deflections into a row of zeros. Taxels far from all objects are not written, so
+/// Presses a patch against objects until `goal` is reached and writes the deflections into a row of zeros. Taxels far from all objects are not written, so
 /// memory pages of the array that were never written cost nothing.
 ///
 /// # Errors
@@ -118,7 +118,7 @@ fn to_goal(
     Ok(to_place(patch, placed, until, scratch))
 }
 
-/// Presses at a pose, to a travel or to a depth. Returns `None` if the goal is a depth and the patch meets nothing.
+/// Presses the patch at its pose, to a travel or to a depth. Returns `None` if the goal is a depth and the patch meets nothing.
 fn to_place(
     patch: &Patch,
     (objects, patch_from_objects): (&[Model], &[Pose]),
@@ -168,7 +168,7 @@ fn to_place(
     }
 }
 
-/// Returns the travel along z at which the first taxel is touched, metres; negative if a taxel is touched already. Returns `None` if no
+/// Returns the travel of the patch along its z axis at which the first taxel is touched, metres; negative if a taxel is touched already. Returns `None` if no
 /// travel touches anything.
 ///
 /// `patch_from_objects` contains one pose per object. The closed form is exact: a taxel that travels along a line meets a sphere at a root of a quadratic
@@ -193,10 +193,10 @@ pub fn first_contact(
     }
 }
 
-/// Presses until the patch is `depth` metres past first contact. Returns `None`, with zero deflections, if the patch meets nothing.
+/// Presses a patch against objects until it is `depth` metres past first contact. Returns `None`, with zero deflections, if the patch meets nothing.
 ///
-/// The patch approaches from the front, and all spheres count at any depth; taxels pushed past their stroke are saturated. On a flat patch the
-/// deflection of a taxel never decreases with the depth.
+/// The patch approaches from the front, and spheres push at any distance behind the taxels. Taxels pushed past their stroke are saturated. On a flat patch
+/// the deflection of a taxel never decreases with the depth.
 ///
 /// # Panics
 /// If the number of poses differs from the number of objects.
@@ -212,8 +212,8 @@ pub fn press_to_depth(
     to_place(patch, placed, TravelGoal::Depth(depth), scratch)
 }
 
-/// Presses from the front until the patch has moved `travel` metres along z from the given pose. The result equals [`press_to_depth`]
-/// at the depth with this travel.
+/// Presses a patch from the front until it has moved `travel` metres along its z axis from the given pose. The result equals [`press_to_depth`] at the depth
+/// with this travel.
 ///
 /// # Panics
 /// If the number of poses differs from the number of objects.
@@ -229,7 +229,7 @@ pub fn press_to_travel(
     to_place(patch, placed, TravelGoal::Travel(travel), scratch).unwrap_or_default()
 }
 
-/// Presses until the springs carry `force` newtons together, Σ k δ, to within a relative 1e-12 or the last bit of the travel.
+/// Presses a patch until the springs of all taxels together carry `force` newtons, to within a relative 1e-12 or the last bit of the travel.
 ///
 /// Returns `None`, with zero deflections, if the patch meets nothing. The travel may be negative. The result equals a press to the depth `travel −
 /// first_contact`, where `first_contact` is the travel at first contact.
@@ -289,7 +289,7 @@ fn to_force(
     }
 }
 
-/// Presses at the given poses as `press_with_contacts` does, but without recording contacts.
+/// Presses a patch at its given pose as `press_with_contacts` does, but without recording contacts.
 ///
 /// # Panics
 /// If the number of poses differs from the number of objects.

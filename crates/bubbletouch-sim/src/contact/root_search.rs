@@ -4,12 +4,12 @@
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub value: f64,
-    /// Derivative, possibly approximate; an inexact derivative costs steps but does not change the result.
+    /// Derivative of the function, possibly approximate; an inexact derivative costs steps but does not change the result.
     pub slope: f64,
 }
 
-/// Number of Newton steps after which the bracket is halved once. If larger, a function with kinks may converge slowly; if smaller, a smooth function needs
-/// more steps.
+/// Number of Newton steps after which the bracketing interval is halved once. If larger, a function with kinks may converge slowly; if smaller, a smooth
+/// function needs more steps.
 const HALVED_EACH: usize = 3;
 
 /// Returns the argument at which a function reaches the value `wanted`. The function must be smaller than `wanted` at `low`, and not smaller at `high`. The

@@ -9,7 +9,7 @@ use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use ndarray::{Array1, Array2, ArrayView1};
 
-/// Deflections and forces of a patch, recorded over time.
+/// Deflections and forces of a patch's taxels, recorded over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// Time of each frame, seconds, shape (n_frames,).
@@ -18,11 +18,11 @@ pub struct Recording {
     pub deflection: Array2<f64>,
     /// Forces, newtons, shape (n_frames, n_taxels).
     pub force: Array2<f64>,
-    /// Number of taxels at their stroke, summed over frames.
+    /// Number of taxels at the end of their stroke, summed over frames.
     pub n_saturated: usize,
 }
 
-/// Moves the patch and the objects along their plans from t = 0 and records `n_frames` frames. Frame k is recorded at the time (k + 1) dt, seconds.
+/// Moves the patch and the objects along their planned motions from t = 0 and records `n_frames` frames. Frame k is recorded at the time (k + 1) dt, seconds.
 ///
 /// A part of an object that pushed a taxel in the previous frame continues to push this taxel, even from behind the substrate, as in a direct press.
 ///

@@ -6,38 +6,40 @@ use super::wrench::Wrench;
 use crate::world::Patch;
 use glam::DVec3;
 
-/// Sum of the spring forces at some contacts, and their centre of pressure.
+/// Sum of the spring forces at some contacts, and the centre of pressure of these forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLoad {
-    /// Load on the objects without friction: Σ k δ n_c / (n_c·n) at the contact points.
+    /// Force and torque of the taxels on the objects without friction: Σ k δ n_c / (n_c·n) at the contact points, with stiffness k, deflection δ, contact
+    /// normal n_c and taxel axis n.
     pub on_object: Wrench,
-    /// Sum of the taxels' readings, Σ k δ, N.
+    /// Sum of the spring forces (stiffness times deflection), N.
     pub spring_force: f64,
-    /// Mean rest centre of the touched taxels, weighted by k δ; metres, in the patch frame. `None` if none is touched.
+    /// Mean of the centres of the touched taxels (undeflected), weighted by the spring force; metres, in the patch frame. `None` if no taxel is touched.
     pub center_of_pressure: Option<DVec3>,
-    /// Fraction of the spring force that saturated taxels carry, 0 to 1. The additional force of their stops is not counted.
+    /// Fraction of the spring force that saturated taxels carry, 0 to 1. The additional force at the end of their stroke is not counted.
     pub saturated_share: f64,
 }
 
 impl SpringLoad {
-    /// Returns the load on the patch, exactly opposite to the load on the objects.
+    /// Returns the force and torque on the patch, exactly opposite to the load on the objects.
     pub fn on_patch(&self) -> Wrench {
         -self.on_object
     }
 }
 
-/// Sum of forces along the taxels' axes at some contacts, and their centre of pressure.
+/// Sum of the forces along the taxels' axes at some contacts, and the centre of pressure of these forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxialLoad {
-    /// Load on the objects without friction: Σ f n_c / (n_c·n) at the contact points.
+    /// Force and torque of the taxels on the objects without friction: Σ f n_c / (n_c·n) at the contact points, with force f, contact normal n_c and taxel
+    /// axis n.
     pub on_object: Wrench,
-    /// Sum of the forces Σ f, N.
+    /// Sum of the forces along the taxels' axes, N.
     pub force: f64,
-    /// Mean rest centre of the touched taxels, weighted by f; metres, in the patch frame. `None` if the force is zero.
+    /// Mean of the centres of the touched taxels (undeflected), weighted by the force; metres, in the patch frame. `None` if the force is zero.
     pub center_of_pressure: Option<DVec3>,
 }
 
-/// Sums forces along the taxels' axes over the contacts of a press; `force_of` returns the force of a contact, newtons.
+/// Sums the forces along the taxels' axes over the contacts of a press; `force_of` returns the force of a contact, newtons.
 ///
 /// # Panics
 /// If the taxel of a contact does not exist in the patch.
@@ -61,7 +63,7 @@ pub fn axial_load<'a>(
     }
 }
 
-/// Sums the spring forces over the given contacts of a press: all contacts, or those with one object.
+/// Sums the spring forces over the given contacts of a press: all contacts, or the contacts of one object.
 ///
 /// The force on an object is −∇ Σ ½ k δ² with respect to the object's position in the patch frame. Exceptions are saturated taxels, whose energy no longer
 /// changes, and grazing contacts, whose gradient is bounded. \[BT\]
@@ -93,7 +95,8 @@ pub fn spring_load<'a>(
     }
 }
 
-/// Returns the force Σ k δ, N, and its derivative, N/m, while the objects selected by `moved` move along a direction (unit vector in the patch frame).
+/// Returns the total spring force, N, and its derivative, N/m, for a motion of some objects along `direction` (unit vector, patch frame). `moved` returns
+/// whether an object moves.
 pub(super) fn sample(
     patch: &Patch,
     contacts: &[TaxelContact],

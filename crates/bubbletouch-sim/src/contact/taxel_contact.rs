@@ -5,33 +5,34 @@ use super::wrench::Wrench;
 use crate::world::Taxel;
 use glam::DVec3;
 
-/// Cosine between the contact normal and the taxel's axis below which a contact is grazing. The object's flank is then parallel to the axis within 0.6°, and a
-/// light touch would cause an arbitrarily large lateral force. If larger, real lateral forces are reduced; if smaller, forces jump as spheres pass by.
+/// Cosine between the contact normal and the taxel's axis below which a contact is grazing. The object's surface is then parallel to the axis within 0.6°,
+/// and a light touch would cause an arbitrarily large lateral force. If larger, real lateral forces are reduced; if smaller, forces jump as spheres pass by.
 pub const GRAZING: f64 = 0.01;
 
-/// Contact of one taxel with the sphere or triangle that pushes it furthest.
+/// Contact of one taxel with the sphere or triangle that pushes the taxel furthest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaxelContact {
     /// Index of the taxel in the layout.
     pub taxel: usize,
     /// Index of the object in the scene.
     pub object: usize,
-    /// Index of the sphere in its union, or of the triangle in its mesh.
+    /// Index of the sphere in its sphere union, or of the triangle in its mesh.
     pub part: usize,
     /// Deflection δ of the taxel, metres, above 0 and at most the stroke.
     pub deflection: f64,
     /// Deflection that contact with the object requires, not limited to the stroke, metres; larger than `deflection` if the taxel is saturated.
     pub needed: f64,
-    /// Contact normal n_c in the patch frame: a unit vector from the object's surface to the taxel at the deflection needed.
+    /// Contact normal in the patch frame: a unit vector from the object's surface to the taxel at the deflection needed.
     pub normal: DVec3,
-    /// Cosine −n_c·n of the angle between normal and axis, 0 to 1; 1 for a head-on contact.
+    /// Cosine of the angle between the taxel's axis and the reversed contact normal, 0 to 1; 1 for a head-on contact.
     pub cosine: f64,
     /// Contact point on the object, metres, in the patch frame.
     pub point: DVec3,
 }
 
 impl TaxelContact {
-    /// Returns ∂δ/∂x for a motion x of the object in the patch frame: `−n_c / (n_c·n)`, its length bounded by 1 / [`GRAZING`].
+    /// Returns the gradient of the deflection for a motion of the object in the patch frame: `−n_c / (n_c·n)`, with the contact normal n_c and the taxel axis
+    /// n. Its length is at most 1 / [`GRAZING`].
     ///
     /// A spring force f on the taxel exerts the frictionless force `−f ∂δ/∂x` on the object, −∇ of ½ k δ² \[BT\]. For a saturated taxel the gradient is
     /// computed from the deflection needed without the stop.
@@ -39,17 +40,17 @@ impl TaxelContact {
         self.normal / self.cosine.max(GRAZING)
     }
 
-    /// Returns the frictionless load on the object for a force (N) of the taxel along its axis. The load acts at the contact point, opposite to the gradient.
+    /// Returns the force and torque on the object, without friction, for a `force` (N) of the taxel along its axis. The load acts at the contact point.
     pub fn push(&self, force: f64) -> Wrench {
         Wrench::at(self.point, -force * self.gradient())
     }
 
-    /// Returns whether the deflection needed exceeds the stroke of `taxel`, the taxel of this contact.
+    /// Returns whether the deflection needed exceeds the stroke; `taxel` is the taxel of this contact.
     pub fn is_saturated(&self, taxel: &Taxel) -> bool {
         self.needed > saturation_limit(taxel.stroke)
     }
 
-    /// Returns whether the gradient is limited by its bound, 1 / [`GRAZING`].
+    /// Returns whether the contact is grazing, so that its gradient is limited to 1 / [`GRAZING`].
     pub fn is_grazing(&self) -> bool {
         self.cosine < GRAZING
     }

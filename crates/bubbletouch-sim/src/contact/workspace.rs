@@ -5,33 +5,33 @@ use super::instructions::Instructions;
 use super::taxel_contact::TaxelContact;
 use crate::geometry::Pose;
 
-/// Scratch memory of one thread, and the result of its last press. Reuse avoids allocations once the largest patch has been pressed.
+/// Scratch memory of one thread for presses, and the result of the last press. Reuse avoids allocations once the largest patch has been pressed.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     instructions: Instructions,
-    /// Workspace for flat grids pressed along their axis.
+    /// Scratch memory for flat grids pressed along their axis.
     grid: GridPress,
-    /// Whether the last press used the grid workspace.
+    /// Whether the last press was a press of a flat grid along its axis, whose result is in `grid`.
     is_on_grid: bool,
     /// Deflections, metres, shape (n_taxels,).
     pub(super) deflections: Vec<f64>,
-    /// Object and part (sphere or triangle) that determine each deflection, shape (n_taxels,); unspecified for untouched taxels.
+    /// Indices of the object and of its part (sphere or triangle) that determine each deflection, shape (n_taxels,); unspecified for untouched taxels.
     pub(super) deciding: Vec<[u32; 2]>,
     /// Indices of the touched taxels, ascending after a press.
     pub(super) touched: Vec<u32>,
-    /// Indices of an object's spheres near the patch.
+    /// Indices of the spheres of an object near the patch.
     pub(super) near: Vec<u32>,
-    /// Lines (columns and rows) of the last even grid.
+    /// Lines (columns and rows) of the last evenly spaced grid.
     pub(super) lines: GridLines,
     /// Contacts of the touched taxels, in the order of `touched`.
     pub(super) contacts: Vec<TaxelContact>,
-    /// Parts of objects (spheres or triangles) that push their taxels even from behind the substrate.
+    /// Parts of objects (spheres or triangles) that push their taxels even from behind the substrate, with these taxels.
     pub(super) held: Vec<HeldTaxel>,
     /// Poses of the objects along the path of a press.
     pub(super) poses: Vec<Pose>,
 }
 
-/// Taxel that a part of an object continues to push, even from behind the substrate.
+/// Taxel with a part of an object that continues to push it, even from behind the substrate.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldTaxel {
     pub taxel: u32,
@@ -44,7 +44,7 @@ impl Workspace {
         Self::default()
     }
 
-    /// Creates an empty workspace that uses the given instructions, for comparisons.
+    /// Creates an empty workspace that uses the given vector instructions, for comparisons.
     pub fn with(instructions: Instructions) -> Self {
         Self {
             instructions,
@@ -64,7 +64,7 @@ impl Workspace {
         }
     }
 
-    /// Returns whether the last press was of a flat grid along its axis.
+    /// Returns whether the last press was a press of a flat grid along its axis.
     pub(super) fn is_on_grid(&self) -> bool {
         self.is_on_grid
     }
@@ -85,7 +85,7 @@ impl Workspace {
             }));
     }
 
-    /// Marks the parts that determine the deflections of the last press as held, so that they push even from behind the substrate.
+    /// Marks the parts that determine the deflections of the last press as held, so that they push their taxels even from behind the substrate.
     pub(super) fn hold_touched(&mut self) {
         let deciding = &self.deciding;
         self.held.clear();
@@ -96,12 +96,12 @@ impl Workspace {
             }));
     }
 
-    /// Returns whether any part of an object is marked as held.
+    /// Returns whether any part of an object is marked as held, that is, pushes its taxel even from behind the substrate.
     pub fn holds_any(&self) -> bool {
         !self.held.is_empty()
     }
 
-    /// Returns the grid workspace and marks the next press as a press of a flat grid along its axis.
+    /// Returns the scratch memory for grids and marks the next press as a press of a flat grid along its axis.
     pub(super) fn on_grid(&mut self) -> &mut GridPress {
         self.is_on_grid = true;
         self.contacts.clear();
@@ -109,7 +109,7 @@ impl Workspace {
         &mut self.grid
     }
 
-    /// Resizes the buffers for a patch and clears only the taxels that the last press touched.
+    /// Resizes the buffers for `n_taxels` taxels and clears only the taxels that the last press touched.
     pub(super) fn clear(&mut self, n_taxels: usize) {
         self.is_on_grid = false;
         for &taxel in &self.touched {
@@ -123,7 +123,7 @@ impl Workspace {
         self.deciding.resize(n_taxels, [0; 2]);
     }
 
-    /// Raises the deflection of a taxel to `needed`, metres; if several parts require equal deflections, the first part counts.
+    /// Raises the deflection of a taxel to `needed`, metres. If several object parts require equal deflections, the first part counts.
     #[inline(always)]
     pub(super) fn push(&mut self, taxel: u32, needed: f64, deciding: [u32; 2]) {
         let number = taxel as usize;

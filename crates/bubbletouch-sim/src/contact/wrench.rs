@@ -6,9 +6,9 @@ use std::ops::{Add, Neg};
 /// Force, and its torque about the origin of the patch frame; both in the patch frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
-    /// Force, N.
+    /// Force in the patch frame, N.
     pub force: DVec3,
-    /// Torque, N·m.
+    /// Torque about the origin of the patch frame, N·m.
     pub torque: DVec3,
 }
 

@@ -12,58 +12,59 @@ use super::shear_springs::{self, Spring};
 use super::symmetric::{Symmetric, norm};
 use glam::DVec3;
 
-/// Maximum number of poses evaluated per body; a body that rolls across a whole skin needs some hundreds. If larger, problems that do not converge take longer;
-/// if smaller, long rolls do not converge.
+/// Maximum number of poses evaluated per body. A body that rolls across a whole skin needs some hundreds. If larger, problems that do not converge take
+/// longer; if smaller, long rolls do not converge.
 const MAX_STEPS: usize = 4000;
-/// Maximum number of multiplier updates; three to six are usual.
+/// Maximum number of updates of the Lagrange multipliers; three to six are usual.
 const MAX_ROUNDS: usize = 40;
 /// Imbalance (relative residual of force and torque) at which the iteration stops: a tenth of the largest accepted imbalance.
 const TARGET_IMBALANCE: f64 = 1e-7;
 /// Largest imbalance (relative residual of force and torque) of a pose that is reported as at rest. The value is needed for steep flanks, near which no pose is
 /// better.
 const ACCEPTED_IMBALANCE: f64 = 1e-6;
-/// Complementarity residual (violation of the contact constraints) at which the iteration stops.
+/// Complementarity residual (relative violation of the contact constraints) at which the iteration stops.
 const TARGET_RESIDUAL: f64 = 1e-7;
-/// Largest complementarity residual of a pose that is reported as at rest. The value is needed if many stops carry load and rounding limits their stiffness.
+/// Largest complementarity residual of a pose that is reported as at rest. The value is needed if many taxels at the end of their stroke carry load and
+/// rounding limits their stiffness.
 const ACCEPTED_RESIDUAL: f64 = 1e-5;
-/// Length of a step, relative to the longest allowed one, up to which all contacts are gathered. A larger value gathers more pairs; a smaller one needs more
-/// steps.
+/// Largest step, relative to the longest allowed step, for which all possible contacts are gathered. A larger value gathers more pairs of spheres and taxels;
+/// a smaller value needs more steps.
 const NEARBY: f64 = 0.04;
 /// Width of the smoothing of ties (taxels pushed equally far by several spheres). The width is relative to the largest deflection and to the deflection at
 /// which one taxel carries all the weight.
 const SMOOTHING: f64 = 1e-2;
 /// Minimum smoothing of ties, in multiples of the rounding error of the object's size.
 const LAST_BITS: f64 = 64.0;
-/// Maximum number of times that the smoothing is reduced. Each round makes the smoothed kinks of the energy steeper by a factor of 5; rounding hides further
-/// rounds.
+/// Maximum number of times that the smoothing of ties is reduced. Each reduction makes the smoothed kinks of the energy steeper by a factor of 5; rounding
+/// hides further reductions.
 const MAX_TIGHTENINGS: usize = 12;
-/// Distance below which two positions count as equal, relative to size and travel of the object.
+/// Distance below which two positions count as equal, relative to the size and the travel of the object.
 const SAME_PLACE: f64 = 1e-15;
 
-/// Reusable memory of descents; the multipliers of one descent initialise the next one.
+/// Reusable memory of energy descents; the Lagrange multipliers of one descent initialise the next one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DescentWorkspace {
-    /// Energy at the current poses.
+    /// Energy at the current poses of the bodies.
     pub now: Energy,
-    /// Memory for the energy at the trial poses.
+    /// Memory for the energy at the trial poses of the bodies.
     next: Energy,
     model: Model,
     pub multipliers: Multipliers,
 }
 
-/// State of a descent: bodies, step lengths and energies.
+/// State of an energy descent: bodies, step lengths and energies.
 pub(super) struct Descent<'a, 'b> {
     pub workspace: &'b mut DescentWorkspace,
     /// Bodies, ground, and present multipliers of the descent.
     pub scene: Scene<'a>,
-    /// Length of the longest allowed step, metres.
+    /// Length of the longest allowed step of the bodies, metres.
     pub farthest: f64,
     /// Trust-region radius of the next step, metres.
     pub reach: f64,
     pub n_steps: usize,
 }
 
-/// Result of a descent.
+/// Result of an energy descent.
 pub(super) enum End {
     /// All bodies are at rest.
     Rest,
@@ -74,7 +75,7 @@ pub(super) enum End {
 }
 
 impl<'a, 'b> Descent<'a, 'b> {
-    /// Creates the descent of at least one body.
+    /// Creates the descent of at least one body on the ground.
     pub fn new(
         workspace: &'b mut DescentWorkspace,
         bodies: Vec<Body<'a>>,
@@ -111,7 +112,8 @@ impl<'a, 'b> Descent<'a, 'b> {
         }
     }
 
-    /// Repeats descents with updated multipliers. If the residuals no longer decrease, the best pose within the accepted tolerances is returned.
+    /// Repeats energy descents with updated Lagrange multipliers. If the residuals no longer decrease, the best pose within the accepted tolerances is
+    /// returned.
     pub fn run(&mut self) -> End {
         self.look(&[]);
         let mut complementarity_residual = f64::INFINITY;
@@ -173,7 +175,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             && self.complementarity_residual() <= complementarity_residual
     }
 
-    /// Returns the largest complementarity residual of all islands (groups of bodies in contact).
+    /// Returns the largest complementarity residual of all islands, where an island is a group of bodies in contact.
     fn complementarity_residual(&self) -> f64 {
         let now = &self.workspace.now;
         let islands = now.pairs.islands(self.scene.bodies.len());
@@ -182,7 +184,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             .fold(0.0, f64::max)
     }
 
-    /// Returns the bodies of the island with the largest residual.
+    /// Returns the indices of the bodies in the island (group of bodies in contact) with the largest residual.
     pub fn most_restless(&self) -> Vec<usize> {
         let now = &self.workspace.now;
         let islands = now.pairs.islands(self.scene.bodies.len());
@@ -197,7 +199,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         all.filter(|&body| Some(islands[body]) == worst).collect()
     }
 
-    /// Descends to a stationary point of the smoothed energy that is not a saddle.
+    /// Moves the bodies to a stationary point of the smoothed energy that is not a saddle.
     fn descend(&mut self) -> End {
         while self.n_steps < MAX_STEPS * self.scene.bodies.len() {
             if let Some((loose, way, room)) = self.loose() {
@@ -234,7 +236,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         End::Exhausted
     }
 
-    /// Returns the slope of the energy and the best step; `None` at a stationary point that is not a saddle.
+    /// Returns the slope of the energy (relative to the weights) and the best step; `None` at a stationary point that is not a saddle.
     fn best(&mut self) -> Option<(f64, Step)> {
         let (gradient, hessian) = self.derivatives();
         let slope = self.scene.slope(&gradient);
@@ -246,7 +248,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         Some((slope, step))
     }
 
-    /// Sets up the model at the pose evaluated last; returns the gradient (N) and the Hessian (N/m) there.
+    /// Sets up the quadratic model of the energy at the current poses. Returns the gradient (N) and the Hessian (N/m) of the energy.
     fn derivatives(&mut self) -> (Vec<f64>, Symmetric) {
         let DescentWorkspace { now, model, .. } = &mut *self.workspace;
         model.lay(&self.scene, now)
@@ -281,7 +283,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         None
     }
 
-    /// Moves the bodies; returns the work of their weights, joules.
+    /// Moves the bodies by a motion; returns the work of their weights, joules.
     fn go(&mut self, motion: &[f64]) -> f64 {
         let bodies = self.scene.bodies.iter_mut().zip(motion.chunks(6));
         bodies
@@ -289,7 +291,8 @@ impl<'a, 'b> Descent<'a, 'b> {
             .sum()
     }
 
-    /// Returns a group of unsupported bodies, the direction of its motion (unit vector), and the distance it may move, metres.
+    /// Returns a group of unsupported bodies, the direction of its motion (unit vector), and the distance that the group may move, metres. Returns `None` if
+    /// all bodies are supported.
     fn loose(&self) -> Option<(Loose, DVec3, f64)> {
         let down = self.scene.bodies[0].weight.normalize();
         let all = Loose::all(&self.workspace.now.pairs, self.scene.bodies.len());
@@ -304,7 +307,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         })
     }
 
-    /// Lowers a group of bodies together until the energy stops decreasing.
+    /// Moves a group of unsupported bodies together by `way` (metres), or by a smaller distance (halved repeatedly) for which the energy decreases.
     fn fall(&mut self, loose: &Loose, mut way: DVec3) {
         let weights = loose
             .bodies
@@ -345,13 +348,13 @@ impl<'a, 'b> Descent<'a, 'b> {
         self.workspace.now.look(&self.scene, step, behind);
     }
 
-    /// Re-evaluates the energy at the current poses with the present list of spheres behind taxels.
+    /// Re-evaluates the energy at the current poses. Spheres that are now behind the substrate of a taxel continue to exert no force on this taxel.
     fn look_again(&mut self) {
         let behind = std::mem::take(&mut self.workspace.now.pairs.behind);
         self.look(&behind);
     }
 
-    /// Returns the length of a step, metres, for which all possible contacts are gathered.
+    /// Returns the largest step, metres, for which all possible contacts are gathered.
     fn nearby(&self) -> f64 {
         NEARBY * self.farthest
     }
@@ -368,7 +371,7 @@ impl<'a, 'b> Descent<'a, 'b> {
             .reduce(f64::max)
     }
 
-    /// Returns the imbalance of each body under these loads, dimensionless.
+    /// Returns the imbalance of each body under the given loads, dimensionless.
     fn imbalances(&self, loads: &[PairLoad]) -> Vec<f64> {
         let pairs = &self.workspace.now.pairs.all;
         let Scene {

@@ -9,30 +9,30 @@ use super::scene::Scene;
 use super::shear_springs::{self, Spring};
 use glam::DVec3;
 
-/// Weight of violated rigid contacts in the complementarity residual, 1/m.
+/// Weight of the violation of rigid contacts in the complementarity residual, 1/m.
 const RIGID_MISS: f64 = 1e-7 / 3e-10;
 
-/// Energy at the present poses of all bodies, with the contacts and loads from which the quadratic model is built. Reusing the struct avoids allocations.
+/// Energy at the present poses of all bodies, with the contacts and loads from which the quadratic model is built.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Energy {
     pub pairs: Pairs,
     pub loads: Loads,
 }
 
-/// Load of one pair (a sphere and a taxel, or a rigid contact).
+/// Load of one pair; a pair is a sphere with the taxel or rigid counterpart that it pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PairLoad {
     /// Index of the pair in the list of all pairs.
     pub pair: usize,
-    /// Force along the taxel's axis, including the stop's force, newtons.
+    /// Force on the sphere along the taxel's axis, newtons, including the force at the end of the taxel's stroke.
     pub force: f64,
-    /// Part of the force that the taxel's stop carries, newtons.
+    /// Part of the force, newtons, that the hard limit at the end of the taxel's stroke carries.
     pub stop: f64,
 }
 
 impl Energy {
-    /// Evaluates the energy at the present poses and gathers the contacts within a motion of `step` metres. `behind` lists the spheres that were behind a
-    /// taxel's substrate at the previous poses.
+    /// Evaluates the energy at the present poses of the bodies, and gathers all contacts that can occur after a motion of at most `step` metres. `behind`
+    /// lists the spheres that were behind a taxel's substrate at the previous poses.
     pub fn look(&mut self, scene: &Scene, step: f64, behind: &[(Key, Part)]) {
         let margins = Margins {
             step,
@@ -48,7 +48,8 @@ impl Energy {
         self.loads.elastic += shear_springs::energy(&scene.springs, &scene.bodies);
     }
 
-    /// Returns the load of each pair: each taxel carries its stiffness times its deflection, plus the force of its stop.
+    /// Returns the load of each pair of a sphere and a taxel or rigid counterpart. Each taxel carries its stiffness times its deflection, plus the force at
+    /// the end of its stroke.
     pub fn pair_loads(&self) -> Vec<PairLoad> {
         let mut all = Vec::new();
         for (group, load) in self.loads.carrying(&self.pairs.groups) {
@@ -64,7 +65,7 @@ impl Energy {
         all
     }
 
-    /// Returns the complementarity residual of each island of bodies in contact, dimensionless, by the island's number; 0 for an island without contacts.
+    /// Returns the complementarity residual of each island (group of bodies in contact), dimensionless; 0 for an island without contacts.
     ///
     /// At a solution, spheres that share a taxel push it equally far, a stop that carries load is reached exactly, and no stop is exceeded. The residual is the
     /// taxel's stiffness times the largest violation, divided by the largest force of a spring. For rigid contacts the stiffness is replaced by the constant
@@ -112,7 +113,8 @@ impl Energy {
     }
 }
 
-/// Returns for each body the force (N) and the torque about its centre of mass (N·m) of all pairs and tangential springs, in the world frame.
+/// Returns for each body the force (N) and the torque about its centre of mass (N·m), in the world frame. Both are sums over all contacts and tangential
+/// springs.
 pub(super) fn wrenches(
     (loads, pairs): (&[PairLoad], &[Pair]),
     springs: &[Spring],

@@ -8,10 +8,10 @@ use super::rigid_contact::Touched;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Slope of the energy, relative to the weight, below which planes hold a body. The value is well below the accepted imbalance of a pose at rest.
+/// Slope of the energy, relative to the weight, below which planes support a body. The value is well below the accepted imbalance of a pose at rest.
 const FLAT: f64 = 1e-8;
 
-/// Group of bodies in contact only with one another and with planes; no skin or obstacle supports it.
+/// Group of unsupported bodies: they touch only one another and planes, but no skin and no obstacle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loose {
     pub bodies: Vec<usize>,
@@ -20,7 +20,7 @@ pub(super) struct Loose {
 }
 
 impl Loose {
-    /// Returns all unsupported groups among `n_bodies` bodies with these pairs, and the unions of such groups.
+    /// Returns all unsupported groups among `n_bodies` bodies with the given contacts, and the unions of such groups.
     pub fn all(pairs: &Pairs, n_bodies: usize) -> Vec<Self> {
         let islands = pairs.islands(n_bodies);
         let mut all = vec![Self::default(); n_bodies];
@@ -57,8 +57,8 @@ impl Loose {
         all
     }
 
-    /// Returns the direction of the group's motion under gravity (unit vector), which is `down` constrained by the planes touched. Returns `None` if the planes
-    /// hold the group.
+    /// Returns the direction of the group's motion under gravity (unit vector): the vector `down`, constrained by the planes that the group touches. Returns
+    /// `None` if the planes support the group.
     pub fn direction(&self, ground: &Ground, down: DVec3) -> Option<DVec3> {
         let normals = self.planes.iter().map(|&plane| ground.planes[plane].normal);
         let normals: Vec<DVec3> = normals.collect();
@@ -79,8 +79,9 @@ impl Loose {
         (way.length() > FLAT).then(|| way.normalize())
     }
 
-    /// Returns a lower bound, metres, of the distance along `way` (unit vector) to skins, obstacles, other `bodies`, and planes not yet touched. The bound is
-    /// infinite if nothing lies in this direction; `None` if something is too near to decide.
+    /// Returns a lower bound, metres, of the distance along `way` (unit vector) that the group can move without contact. The bound considers skins,
+    /// obstacles, the other bodies, and planes that the group does not touch. The bound is infinite if nothing lies in this direction; `None` if something is
+    /// too near to decide.
     pub fn clearance(&self, bodies: &[Body], ground: &Ground, way: DVec3) -> Option<f64> {
         let others = bodies.iter().enumerate();
         let others = others.filter(|(other, _)| !self.bodies.contains(other));
@@ -91,12 +92,12 @@ impl Loose {
         (nearest > 0.0).then_some(nearest)
     }
 
-    /// Returns whether the group touches a plane.
+    /// Returns whether the group touches a plane and thus slides on it.
     pub fn slides(&self) -> bool {
         !self.planes.is_empty()
     }
 
-    /// Returns the distance from one body of the group to the nearest object along the direction, metres.
+    /// Returns the distance that one body of the group can move along `way` before it meets another object, metres.
     fn gap(&self, body: &Body, ground: &Ground, others: &[&Body], way: DVec3) -> f64 {
         let mut nearest = f64::INFINITY;
         let mut meet = |gap: f64, is_on_way: bool| {

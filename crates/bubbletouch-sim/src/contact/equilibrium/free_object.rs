@@ -15,7 +15,7 @@ pub struct FreeObject<'a> {
     pub(super) spheres: &'a [Sphere],
     pub(super) mass: f64,
     pub(super) center_of_mass: DVec3,
-    /// Distance from the centre of mass to the farthest point of a sphere, metres.
+    /// Distance from the centre of mass to the farthest surface point of a sphere, metres.
     pub(super) radius: f64,
 }
 
@@ -42,7 +42,7 @@ impl<'a> FreeObject<'a> {
     }
 }
 
-/// Skin patch at a pose, as part of the ground that carries free objects.
+/// Skin patch at a pose, as part of the ground that supports free objects.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedSkin<'a> {
     /// Patch with the skin's taxels.
@@ -51,15 +51,15 @@ pub struct PlacedSkin<'a> {
     pub world_from_patch: Pose,
     /// Deflection of each taxel due to fixed or imposed objects, metres; empty if there are none.
     pub pushed: &'a [f64],
-    /// Deflection of each taxel one step ago, metres, and the length of this step, seconds, for the dampers. `None` if there are no dampers or the taxels have
-    /// relaxed.
+    /// Deflection of each taxel at the end of the previous time step, metres, and the length of the present step, seconds, for the dampers. `None` if there
+    /// are no dampers or the taxels have relaxed.
     pub before: Option<(&'a [f64], f64)>,
-    /// Tangential springs that act on objects at the beginning of the step; empty without friction.
+    /// Tangential springs that act on objects at the beginning of the time step; empty without friction.
     pub tangential_springs: &'a [TangentialSpring],
 }
 
 impl<'a> PlacedSkin<'a> {
-    /// Creates a skin without contacts, now and one step ago.
+    /// Creates a skin that touches nothing, now and at the previous time step.
     pub fn new(patch: &'a Patch, world_from_patch: Pose) -> Self {
         Self {
             patch,
@@ -70,14 +70,16 @@ impl<'a> PlacedSkin<'a> {
         }
     }
 
-    /// Returns the deflection of a free taxel at the end of the step, metres: φ δ_before with a damper, 0 without one.
+    /// Returns the deflection of a free taxel at the end of the time step, metres. With a damper, this is the previous deflection times the relaxation
+    /// factor; without a damper, it is 0.
     pub(super) fn relaxed(&self, taxel: usize) -> f64 {
         self.before.map_or(0.0, |(deflections, dt)| {
             deflections[taxel] * relaxation_factor(self.patch.taxels().at(taxel), dt)
         })
     }
 
-    /// Returns the stiffness of a taxel beyond its relaxed deflection, within the step, N/m: k / (1 − φ) with the relaxation factor φ.
+    /// Returns the stiffness of a taxel beyond its relaxed deflection, N/m: k / (1 − φ) with the spring stiffness k and the relaxation factor φ of the time
+    /// step.
     pub(super) fn stiffness(&self, taxel: usize) -> f64 {
         let taxel = self.patch.taxels().at(taxel);
         match self.before {
@@ -90,13 +92,13 @@ impl<'a> PlacedSkin<'a> {
 /// Rigid half-space, such as a table: the points x with x·normal < height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSpace {
-    /// Outward unit normal, in the world.
+    /// Outward unit normal of the surface, in the world.
     pub normal: DVec3,
-    /// Height of the surface along the normal, from the origin, metres.
+    /// Distance of the surface from the origin along the normal, metres, in the world.
     pub height: f64,
 }
 
-/// Fixed rigid object that carries free objects.
+/// Fixed rigid object that supports free objects.
 #[derive(Clone, Copy, Debug)]
 pub struct Obstacle<'a> {
     /// Shape of the obstacle.
@@ -105,10 +107,10 @@ pub struct Obstacle<'a> {
     pub pose: Pose,
 }
 
-/// Fixed surroundings that carry free objects.
+/// Fixed surroundings that support free objects.
 #[derive(Clone, Debug, Default)]
 pub struct Ground<'a> {
-    /// Elastic skins.
+    /// Skin patches with elastic taxels.
     pub skins: Vec<PlacedSkin<'a>>,
     /// Rigid half-spaces, such as a table.
     pub planes: Vec<HalfSpace>,
@@ -117,7 +119,7 @@ pub struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Returns the ground in a frame with another origin.
+    /// Returns the ground in a frame whose origin is moved to `origin`.
     pub(super) fn seen_from(&self, origin: DVec3) -> Self {
         let mut near = self.clone();
         for skin in &mut near.skins {

@@ -16,37 +16,37 @@ use super::pairs::{Group, Pairs};
 use super::tied_max::tied_max;
 use std::collections::BTreeMap;
 
-/// Lagrange multipliers of stops and of taxels shared by several spheres.
+/// Lagrange multipliers: forces of taxels at the end of their stroke, and shares of spheres that push one taxel together.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Multipliers {
-    /// Multipliers λ: the forces on stops, newtons.
+    /// Forces at the end of the stroke, newtons, for each taxel or rigid contact.
     pub stops: BTreeMap<Key, f64>,
-    /// Shares w⁰ of each sphere in the force of a taxel that several spheres push.
+    /// Shares of the spheres in the force of a taxel that several spheres push.
     pub shares: BTreeMap<Key, Vec<(Part, f64)>>,
 }
 
-/// Parameters that smooth the kinks of the energy.
+/// Parameters that smooth the kinks of the energy, where one sphere takes over a taxel from another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smoothness {
-    /// Smoothing width μ of soft taxels, metres.
+    /// Smoothing width of soft taxels, metres.
     pub smoothing: f64,
-    /// Smoothing width of stiff taxels, given as the force μ k relative to the weight. A width that is small for a soft taxel can exceed the deflection of a
-    /// stiff one.
+    /// Smoothing width of stiff taxels, given as a force (width times stiffness) relative to the weight. A width that is small for a soft taxel can exceed
+    /// the deflection of a stiff taxel.
     pub load: f64,
-    /// Minimum smoothing width μ, metres; below this value rounding of deflections would decide ties.
+    /// Minimum smoothing width, metres; below this value, rounding of deflections would decide ties.
     pub least: f64,
-    /// Stiffness κ of stops in the augmented Lagrangian, N/m.
+    /// Stiffness in the augmented Lagrangian of the hard limit at the end of each taxel's stroke, N/m.
     pub stop_stiffness: f64,
 }
 
 impl Smoothness {
-    /// Returns the smoothing width μ of a taxel, metres.
+    /// Returns the smoothing width of a taxel, metres.
     fn for_group(&self, group: &Group) -> f64 {
         let of_load = self.load * group.weight / group.stiffness;
         self.smoothing.min(of_load).max(self.least)
     }
 
-    /// Multiplies the smoothing width by a factor below 1.
+    /// Multiplies the smoothing widths by a factor below 1.
     pub fn tighten(&mut self, factor: f64) {
         self.smoothing *= factor;
         self.load *= factor;
@@ -58,35 +58,35 @@ impl Smoothness {
 pub(super) struct Load {
     /// Number of spheres that carry a share of the force.
     pub n_sharing: usize,
-    /// Largest deflection max δ that contact with a sphere requires, metres; negative if nothing touches the taxel.
+    /// Largest deflection that contact with a sphere requires, metres; negative if nothing touches the taxel.
     pub deepest: f64,
-    /// Smoothing width μ of the taxel, metres.
+    /// Smoothing width of the taxel, metres.
     pub smoothing: f64,
-    /// Force of the taxel's stop, newtons.
+    /// Force of the hard limit at the end of the taxel's stroke, newtons.
     pub stop: f64,
-    /// Force along the axis, including the stop's force, newtons; 0 if nothing touches the taxel.
+    /// Force along the taxel's axis, newtons, including the force at the end of the stroke; 0 if nothing touches the taxel.
     pub force: f64,
-    /// Derivative of the taxel's force with respect to the smoothed maximum ψ, N/m.
+    /// Derivative of the taxel's force with respect to the smoothed maximum of the required deflections, N/m.
     pub tangent: f64,
 }
 
-/// Loads of all taxels and rigid contacts.
+/// Loads of all taxels and rigid contacts, with the shares of the spheres.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Loads {
     /// Loads, one per taxel or rigid contact.
     pub all: Vec<Load>,
-    /// Shares of the taxels' forces, one per pair.
+    /// Share of each pair's sphere in the force of its taxel.
     pub shares: Vec<f64>,
-    /// Elastic energy E, joules.
+    /// Elastic energy of all taxels, joules.
     pub elastic: f64,
-    /// Deflections that contact with the spheres requires, metres, one per pair.
+    /// Deflections that contact with the spheres requires, metres, one per pair of sphere and taxel.
     deflections: Vec<f64>,
     known: Vec<f64>,
     sharing: Vec<f64>,
 }
 
 impl Loads {
-    /// Computes the loads of pairs with the given deflections, metres.
+    /// Computes the loads of all pairs of spheres and taxels or rigid contacts from their deflections, metres.
     pub fn weigh(
         &mut self,
         (multipliers, smoothness): (&Multipliers, &Smoothness),
@@ -142,7 +142,7 @@ impl Loads {
         });
     }
 
-    /// Returns the groups with a nonzero load, and these loads.
+    /// Returns the taxels and rigid contacts with a nonzero load, and these loads.
     pub fn carrying<'a>(
         &'a self,
         groups: &'a [Group],
@@ -151,7 +151,7 @@ impl Loads {
         all.filter(|(_, load)| load.force > 0.0)
     }
 
-    /// Returns the multipliers that keep a pose at rest when the smoothing is removed.
+    /// Returns the Lagrange multipliers for which the pose remains an equilibrium when the smoothing is removed.
     pub fn multipliers(&self, pairs: &Pairs) -> Multipliers {
         let mut multipliers = Multipliers::default();
         for (group, load) in self.carrying(&pairs.groups) {

@@ -12,10 +12,10 @@ use super::slopes::Slopes;
 use super::symmetric::{Six, Symmetric, best_step, dot, norm};
 use glam::DVec3;
 
-/// Maximum number of iterations that minimise the quadratic model.
+/// Maximum number of Newton iterations that minimise the quadratic model.
 const MAX_STEPS: usize = 40;
 
-/// Quadratic model of the energy; a motion has six components per body.
+/// Quadratic model of the energy as a function of the motions of the bodies; a motion has six components per body.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Model {
     slopes: Slopes,
@@ -23,13 +23,13 @@ pub(super) struct Model {
     loads: Loads,
     curvature: Symmetric,
     held: ShearSpringModel,
-    /// Workspace for one taxel: the mean energy gradient of each body that pushes the taxel, weighted with the loads.
+    /// Scratch memory for one taxel: the mean energy gradient of each body that pushes the taxel, weighted with the loads.
     means: Vec<(u32, Six)>,
-    /// Workspace for one taxel: the sum of the energy gradients of each body that pushes the taxel.
+    /// Scratch memory for one taxel: the sum of the energy gradients of each body that pushes the taxel.
     sums: Vec<(u32, Six)>,
 }
 
-/// Step of the bodies, and the predicted decrease of the energy, joules.
+/// Motion of the bodies, and the predicted decrease of the energy, joules.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     pub motion: Vec<f64>,
@@ -37,7 +37,7 @@ pub(super) struct Step {
 }
 
 impl Model {
-    /// Sets up the model around a pose with the given energy; returns the gradient (N) and the Hessian (N/m) at this pose.
+    /// Sets up the model at the poses for which the energy was evaluated. Returns the gradient (N) and the Hessian (N/m) at these poses.
     pub fn lay(
         &mut self,
         scene: &Scene,
@@ -83,7 +83,7 @@ impl Model {
         self.loads.elastic + self.held.energy_after(motion) + bent - fallen
     }
 
-    /// Returns the gradient (N) and the Hessian (N/m) after a motion with the given loads.
+    /// Returns the gradient (N) and the Hessian (N/m) of the energy after a motion with the given loads.
     fn derivatives(
         &mut self,
         scene: &Scene,
@@ -133,8 +133,8 @@ impl Model {
         (gradient, hessian)
     }
 
-    /// Returns a motion of length at most `reach` that decreases the model, found by trust-region Newton steps. The model must have been set up around this
-    /// energy, gradient and Hessian.
+    /// Returns a motion that decreases the model and is not longer than the trust-region radius `reach`, metres. The function uses Newton steps. The model
+    /// must have been set up for the given energy, gradient and Hessian.
     pub fn best(
         &mut self,
         scene: &Scene,
@@ -192,7 +192,7 @@ fn of_body(sums: &mut Vec<(u32, Six)>, body: u32) -> &mut Six {
     &mut sums[at].1
 }
 
-/// Adds `factor · v vᵀ` to the Hessian.
+/// Adds `factor · v vᵀ` to the Hessian, where the vector v is given by its nonzero parts, six components per body.
 fn add_square(hessian: &mut Symmetric, factor: f64, v: &[(u32, Six)]) {
     for (a, x) in v {
         for (b, y) in v {

@@ -7,22 +7,22 @@ use super::reach::Reach;
 use super::rigid_contact::{Touched, Touching};
 use glam::{DMat3, DVec3};
 
-/// Sphere of a body: index of the body in the descent, and index of the sphere.
+/// Sphere of a free object: index of the body among the bodies of the solver, and index of the sphere.
 pub(super) type Part = (u32, u32);
 
-/// Taxel or rigid contact that a sphere pushes.
+/// Taxel or rigid counterpart that a sphere pushes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Key {
-    /// Index of the skin, and index of the taxel in it.
+    /// Index of the skin, and index of the taxel in the skin.
     Taxel(u32, u32),
-    /// Rigid contact of one sphere; another free object is given by its index among the bodies.
+    /// Rigid contact of one sphere with the given counterpart. Another free object as counterpart is given by its index among the bodies of the solver.
     Rigid(Part, Touched),
 }
 
-/// Placeholder sphere of a pair whose deflection is due to fixed or imposed objects.
+/// Value that stands for the sphere of a pair if the deflection of the taxel is due to fixed or imposed objects.
 pub(super) const OTHERS: Part = (u32::MAX, u32::MAX);
 
-/// Sphere of a free object, and the taxel or rigid contact that it pushes.
+/// Sphere of a free object, with the taxel or rigid counterpart that it pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub key: Key,
@@ -30,21 +30,22 @@ pub(super) struct Pair {
     /// Deflection past the taxel's free position, metres; negative if sphere and taxel do not touch yet.
     pub deflection: f64,
     pub kind: Kind,
-    /// Vector from the centre of mass to the sphere's centre; in the patch frame for taxels, in the world for rigid contacts.
+    /// Vector from the centre of mass to the sphere's centre, metres; in the patch frame for taxels, in the world for rigid contacts.
     pub arm: DVec3,
 }
 
-/// Dependence of a pair's deflection on the motions of bodies.
+/// Quantities on which the deflection of a pair depends when bodies move.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind {
     Taxel(Reach),
     Rigid(Touching),
-    /// The deflection is fixed: it is due to fixed or imposed objects.
+    /// The deflection does not depend on free bodies, because fixed or imposed objects push the taxel.
     Fixed,
 }
 
 impl Pair {
-    /// Returns gradient and curvature of the deflection with respect to the sphere's motion relative to its counterpart; `None` for fixed pairs.
+    /// Returns the gradient and the second derivative of the deflection with respect to the sphere's motion relative to its counterpart; `None` for fixed
+    /// pairs.
     pub fn derivatives(&self) -> Option<(DVec3, DMat3)> {
         match &self.kind {
             Kind::Taxel(reach) => {
@@ -67,7 +68,8 @@ impl Pair {
         own.into_iter().chain(other)
     }
 
-    /// Returns the force on the sphere, newtons, for a force (N) along the taxel's axis; in the patch frame for taxels, in the world for rigid contacts.
+    /// Returns the force on the sphere, newtons, that results from a `force` (N) along the taxel's axis; in the patch frame for taxels, in the world for
+    /// rigid contacts.
     pub fn push(&self, force: f64) -> DVec3 {
         let gradient = self.derivatives().map(|(gradient, _)| gradient);
         -force * gradient.unwrap_or(DVec3::ZERO)

@@ -12,32 +12,32 @@ use super::rigid_pairs::gather_rigid;
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
-/// Taxel or rigid contact, with all spheres that push it.
+/// Taxel or rigid contact, with all spheres that push against it.
 #[derive(Clone, Debug)]
 pub(super) struct Group {
     pub key: Key,
     pub pairs: Range<usize>,
     /// Stiffness of the taxel, N/m; 0 for a rigid contact.
     pub stiffness: f64,
-    /// Stroke from the taxel's free position, metres; 0 for a rigid contact.
+    /// Remaining stroke of the taxel from its relaxed deflection, metres; 0 for a rigid contact.
     pub stroke: f64,
-    /// Deflection due to fixed or imposed objects, metres.
+    /// Deflection of the taxel due to fixed or imposed objects, metres.
     pub others: f64,
     /// Weight of the lightest body that pushes the taxel, newtons.
     pub weight: f64,
 }
 
-/// Margins that determine which pairs are gathered in addition to pairs in contact.
+/// Margins for collecting pairs of spheres and taxels that are not in contact yet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Margins {
-    /// Distance that spheres may move without meeting a taxel that is not gathered, metres.
+    /// Distance that the spheres may move without touching a taxel whose pair was not collected, metres.
     pub step: f64,
-    /// Width of the window of gathered pairs, metres: a pair is omitted if its deflection is smaller than the taxel's largest deflection by more than this
-    /// width.
+    /// Largest difference between the largest required deflection of a taxel and the deflections of its other spheres, metres. Spheres with a larger
+    /// difference are omitted.
     pub window: f64,
 }
 
-/// Pairs of spheres and taxels or rigid contacts at the present poses of all bodies.
+/// Pairs of spheres and taxels or rigid counterparts at the present poses of all bodies.
 ///
 /// A sphere behind a taxel's substrate does not push the taxel, not even when it later comes up from behind. Otherwise the energy would jump at the substrate,
 /// and an object could hang on this jump. Pairs of this kind are stored until sphere and taxel separate.
@@ -46,13 +46,13 @@ pub(super) struct Pairs {
     /// Pairs that push or could push, sorted by taxel or rigid contact and then by sphere.
     pub all: Vec<Pair>,
     pub groups: Vec<Group>,
-    /// Pairs that do not push because the sphere came from behind the substrate; sorted.
+    /// Pairs without force because the sphere was behind the substrate of the taxel; sorted.
     pub behind: Vec<(Key, Part)>,
     deepest: Vec<f64>,
 }
 
 impl Pairs {
-    /// Gathers the pairs at the present poses; `behind` lists the pairs whose sphere was behind the substrate before.
+    /// Gathers the pairs at the present poses of the bodies; `behind` lists the pairs whose sphere was behind the substrate of the taxel before.
     pub fn look(
         &mut self,
         bodies: &[Body],
@@ -76,7 +76,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the island number of each of `n_bodies` bodies. Bodies that touch one another or share taxels form an island.
+    /// Returns the island number of each of `n_bodies` bodies. Bodies that touch one another or push a common taxel form an island.
     pub fn islands(&self, n_bodies: usize) -> Vec<usize> {
         let mut islands: Vec<usize> = (0..n_bodies).collect();
         for group in &self.groups {

@@ -5,30 +5,30 @@ use super::super::taxel_contact::GRAZING;
 use crate::world::PlacedTaxel;
 use glam::{DMat3, DVec3};
 
-/// Deflection δ of a taxel by a sphere, and the quantities from which δ is computed; all in the patch frame.
+/// Deflection of a taxel by a sphere, and the quantities from which it is computed; all in the patch frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// Deflection δ, metres.
+    /// Deflection of the taxel, metres.
     pub deflection: f64,
     /// Vector from the taxel's axis to the sphere's centre, perpendicular to the axis, metres.
     beside: DVec3,
-    /// Axis n of the taxel, unit vector.
+    /// Axis of the taxel, unit vector.
     axis: DVec3,
-    /// Sum of the radii of taxel and sphere, S = ρ + R, metres.
+    /// Sum of the radii of taxel and sphere, metres.
     reach: f64,
 }
 
-/// First and second derivative of δ with respect to the sphere's centre.
+/// First and second derivative of a taxel's deflection with respect to the sphere's centre.
 pub(super) struct Derivatives {
-    /// Gradient ∂δ/∂c, dimensionless.
+    /// Gradient of the deflection with respect to the sphere's centre, dimensionless.
     pub gradient: DVec3,
-    /// Second derivative ∂²δ/∂c², 1/m.
+    /// Second derivative of the deflection with respect to the sphere's centre, 1/m.
     pub curvature: DMat3,
     pub is_grazing: bool,
 }
 
 impl Reach {
-    /// Computes the deflection δ of a taxel by a sphere (in the patch frame), ignoring the substrate. Returns `None` if the sphere does not push the taxel and
+    /// Computes the deflection of a taxel by a sphere (in the patch frame), ignoring the substrate. Returns `None` if the sphere does not push the taxel and
     /// cannot push it after a motion of `motion` metres.
     ///
     /// The deflection is `δ = √(S² − b²) − h` for `√(S² − b²) ≥ γS` with γ = [`GRAZING`]. On steeper flanks of the sphere δ continues along the tangent, so a
@@ -60,7 +60,7 @@ impl Reach {
         })
     }
 
-    /// Returns whether the sphere is wholly behind the substrate, whose height along the axis is `taxel.behind`.
+    /// Returns whether a sphere with this centre is wholly behind the taxel's substrate, whose height along the axis is `taxel.behind`.
     pub fn is_behind(&self, taxel: &PlacedTaxel, center: DVec3) -> bool {
         let height = (center - taxel.center).dot(self.axis);
         let q = self.reach * self.reach - self.beside.length_squared();
@@ -105,7 +105,7 @@ fn outer(a: DVec3, b: DVec3) -> DMat3 {
 mod tests {
     use super::*;
 
-    /// Creates a taxel at the origin with ρ = 1 mm and s = 5 mm.
+    /// Creates a taxel at the origin with a radius of 1 mm and a stroke of 5 mm.
     fn taxel(axis: DVec3) -> PlacedTaxel {
         let (x, y) = axis.any_orthonormal_pair();
         PlacedTaxel {

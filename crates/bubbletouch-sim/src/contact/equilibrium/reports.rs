@@ -8,36 +8,36 @@ use super::rigid_contact::Touched;
 use crate::contact::Wrench;
 use glam::DVec3;
 
-/// Load between one taxel and one sphere of an object.
+/// Load between one taxel and one sphere of a free object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaxelLoad {
-    /// Index of the skin in the ground's list of skins.
+    /// Index of the skin in the list of skins of the ground.
     pub skin: usize,
     /// Index of the taxel in its layout.
     pub taxel: usize,
-    /// Index of the object in the solver's input.
+    /// Index of the object in the list passed to the solver.
     pub object: usize,
     /// Index of the sphere in its object.
     pub sphere: usize,
     /// Force of the sphere on the taxel along the taxel's axis, newtons, above 0.
     pub force: f64,
-    /// Reaction of the taxel's stop, newtons: the part of `force` that the spring at its stroke does not carry. The reaction is the multiplier of the
-    /// constraint δ ≤ s, and 0 below the stroke.
+    /// Force of the hard limit at the end of the taxel's stroke, newtons: the part of `force` that the spring does not carry. The force is 0 if the
+    /// deflection is smaller than the stroke.
     pub stop: f64,
-    /// Whether the sphere's flank is nearly parallel to the axis (`GRAZING`).
+    /// Whether the contact is grazing: the surface of the sphere at the contact point is nearly parallel to the taxel's axis (`GRAZING`).
     pub is_grazing: bool,
-    /// Load of the taxel on the object, in the patch frame: force n_c / (n_c·n) at the contact point.
+    /// Force and torque of the taxel on the object, in the patch frame, about the origin of the patch.
     pub on_object: Wrench,
 }
 
-/// Contact load between one sphere of an object and a rigid counterpart.
+/// Contact load between one sphere of a free object and a rigid counterpart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// Index of the object in the solver's input.
+    /// Index of the object in the list passed to the solver.
     pub object: usize,
     /// Index of the sphere in its object.
     pub sphere: usize,
-    /// Rigid counterpart of the sphere.
+    /// Rigid counterpart that the sphere touches.
     pub other: Touched,
     /// Contact point in the world, metres.
     pub point: DVec3,

@@ -8,7 +8,7 @@ use crate::geometry::Pose;
 use crate::objects::Sphere;
 use glam::{DMat3, DVec3};
 
-/// Spheres of another body or an obstacle that a body's sphere may touch.
+/// Spheres of another body or of an obstacle, which a sphere of the body may touch.
 struct Others<'a> {
     spheres: &'a [Sphere],
     pose: Pose,
@@ -16,7 +16,7 @@ struct Others<'a> {
     body: Option<(u32, DVec3)>,
 }
 
-/// Appends the pairs of all spheres that penetrate a rigid counterpart or are nearer to it than `may_move`, metres; sorted.
+/// Appends the pairs of spheres that penetrate a rigid counterpart or are nearer to it than `may_move` metres; sorted.
 pub(super) fn gather_rigid(pairs: &mut Vec<Pair>, bodies: &[Body], ground: &Ground, may_move: f64) {
     let first = pairs.len();
     for (body, slot) in bodies.iter().zip(0..) {
@@ -77,8 +77,8 @@ fn gather_plane(
     }
 }
 
-/// Gathers the pairs less than `gap` metres apart. Spheres are sorted along the line from the body to the middle of the nearby others, so the sweep skips most
-/// pairs.
+/// Gathers the pairs of a body's spheres and other spheres that are less than `gap` metres apart. Spheres are sorted along the line from the body to the
+/// middle of the nearby others, so the sweep skips most pairs.
 fn gather_spheres(
     pairs: &mut Vec<Pair>,
     (slot, body): (u32, &Body),
@@ -127,7 +127,7 @@ fn gather_spheres(
     }
 }
 
-/// Returns the index and the sphere in the world for each sphere of an object.
+/// Returns the index and the sphere in the world for each sphere of an object at a pose.
 fn placed(spheres: &[Sphere], pose: &Pose) -> impl Iterator<Item = (u32, Sphere)> {
     let (rotation, origin) = (DMat3::from_quat(pose.rotation), pose.translation);
     let all = spheres.iter().zip(0..);

@@ -6,7 +6,7 @@ use super::loads::{Multipliers, Smoothness};
 use super::shear_springs::Spring;
 use super::symmetric::norm;
 
-/// Bodies, the ground, and the parameters of the energy.
+/// Bodies and ground of a search for equilibrium, with the parameters of the energy.
 #[derive(Clone)]
 pub(super) struct Scene<'a> {
     pub bodies: Vec<Body<'a>>,
@@ -17,7 +17,7 @@ pub(super) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Returns the largest force on a body in a gradient of the energy, divided by this body's weight.
+    /// Returns the largest norm of the energy gradient of a body, divided by the body's weight.
     pub fn slope(&self, gradient: &[f64]) -> f64 {
         let each = self.bodies.iter().zip(gradient.chunks(6));
         each.map(|(body, part)| norm(part) / body.weight.length())

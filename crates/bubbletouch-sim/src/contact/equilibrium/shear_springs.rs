@@ -21,7 +21,7 @@ use super::symmetric::{Six, Symmetric, dot};
 use crate::contact::friction::{TangentialSpring, TangentialSpringState};
 use glam::{DVec2, DVec3};
 
-/// Relative tolerance of the friction cone: rounding up to this factor does not count as slip.
+/// Factor by which rounding may exceed the friction cone without counting as slip.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
 /// Shear spring between a taxel and a body.
@@ -29,13 +29,13 @@ const ROUNDING: f64 = 1.0 + 1e-12;
 pub(super) struct Spring {
     skin: usize,
     tip: TangentialSpring,
-    /// Index of the body in the descent.
+    /// Index of the body among the bodies of the solver.
     pub body: usize,
-    /// x and y axes of the taxel's frame, in the world.
+    /// Axes x and y of the taxel's frame, in the world.
     axes: [DVec3; 2],
-    /// Position of the point at the beginning of the step, moved with the patch; in the world, metres.
+    /// Position of the contact point at the beginning of the time step, moved with the patch; in the world, metres.
     start: DVec3,
-    /// Largest length |v| of the shear displacement without slip, r = μ f / k_t, metres: the radius of the friction cone.
+    /// Largest shear displacement without slip, metres: the friction coefficient times the normal force, divided by the spring's stiffness.
     reach: f64,
 }
 
@@ -63,20 +63,20 @@ impl Spring {
         springs.collect()
     }
 
-    /// Returns the vector from the body's centre of mass to the spring's point, in the world, metres.
+    /// Returns the vector from the body's centre of mass to the contact point of the spring, in the world, metres.
     fn arm(&self, bodies: &[Body]) -> DVec3 {
         let body = &bodies[self.body];
         body.rotation * (self.tip.point - body.object.center_of_mass)
     }
 
-    /// Returns the spring's displacement v, metres.
+    /// Returns the shear displacement of the spring, metres.
     fn stretch(&self, bodies: &[Body]) -> DVec2 {
         let way = bodies[self.body].center + self.arm(bodies) - self.start;
         let [x, y] = self.axes;
         self.tip.displacement + DVec2::new(way.dot(x), way.dot(y))
     }
 
-    /// Returns the energy of the spring at displacement v, joules.
+    /// Returns the energy of the spring at the shear displacement `v`, joules.
     fn energy(&self, v: DVec2) -> f64 {
         let (k, r, length) = (self.tip.shear.stiffness, self.reach, v.length());
         match length <= r {
@@ -85,12 +85,12 @@ impl Spring {
         }
     }
 
-    /// Returns the derivative of the spring's energy with respect to v, newtons.
+    /// Returns the derivative of the spring's energy with respect to its shear displacement `v`, newtons.
     fn slope(&self, v: DVec2) -> DVec2 {
         self.tip.shear.stiffness * v.clamp_length_max(self.reach)
     }
 
-    /// Returns the second derivative of the spring's energy with respect to v, N/m: the isotropic part, and the amount subtracted along v.
+    /// Returns the second derivative of the spring's energy at the shear displacement `v`, N/m: the isotropic part, and the amount subtracted along `v`.
     fn bend(&self, v: DVec2) -> (f64, f64) {
         let (k, length) = (self.tip.shear.stiffness, v.length());
         if self.reach > 0.0 && length <= self.reach {
@@ -100,13 +100,13 @@ impl Spring {
         (slipping, slipping)
     }
 
-    /// Returns the force of the spring on the body, in the world, newtons.
+    /// Returns the force of the spring on the body at the shear displacement `v`, in the world, newtons.
     fn force(&self, v: DVec2) -> DVec3 {
         let DVec2 { x, y } = -self.slope(v);
         x * self.axes[0] + y * self.axes[1]
     }
 
-    /// Returns the normal force of the taxel's spring on the body at the pose evaluated last, newtons, without the force of the stop.
+    /// Returns the force with which the taxel's spring presses the body, newtons, without the force at the end of the stroke.
     fn pressing(&self, (pairs, loads): (&Pairs, &Loads)) -> f64 {
         let key = Key::Taxel(self.skin as u32, self.tip.taxel as u32);
         let Ok(at) = pairs.groups.binary_search_by_key(&key, |group| group.key) else {
@@ -122,7 +122,7 @@ impl Spring {
         }
     }
 
-    /// Returns the state of the spring in equilibrium, with the index of its object.
+    /// Returns the state of the shear spring in equilibrium, with the index of its object.
     pub fn load(&self, bodies: &[Body], skins: &[PlacedSkin]) -> TangentialSpringState {
         let v = self.stretch(bodies);
         let place = bodies[self.body].center + self.arm(bodies);
@@ -140,14 +140,14 @@ impl Spring {
     }
 }
 
-/// Returns the energy of all shear springs, joules.
+/// Returns the total energy of all shear springs, joules.
 pub(super) fn energy(springs: &[Spring], bodies: &[Body]) -> f64 {
     let each = springs.iter();
     each.map(|spring| spring.energy(spring.stretch(bodies)))
         .sum()
 }
 
-/// Adds the loads of the springs to the force (N) and the torque about the centre of mass (N·m) of each body, in the world.
+/// Adds the loads of the shear springs to the force (N) and the torque about the centre of mass (N·m) of each body, in the world.
 pub(super) fn add_wrenches(springs: &[Spring], bodies: &[Body], to: &mut [(DVec3, DVec3)]) {
     for spring in springs {
         let force = spring.force(spring.stretch(bodies));
@@ -156,7 +156,8 @@ pub(super) fn add_wrenches(springs: &[Spring], bodies: &[Body], to: &mut [(DVec3
     }
 }
 
-/// Updates the friction cones from the present normal forces; returns the largest change of a friction force, relative to the body's weight.
+/// Updates the friction limits of the shear springs from the present normal forces. Returns the largest change of a friction force, relative to the body's
+/// weight.
 pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loads)) -> f64 {
     let mut most = 0.0_f64;
     for spring in springs {
@@ -169,15 +170,15 @@ pub(super) fn renew(springs: &mut [Spring], bodies: &[Body], here: (&Pairs, &Loa
     most
 }
 
-/// Shear springs in a quadratic model of the energy: the displacement v is linear in the motion.
+/// Shear springs in the quadratic model of the energy: their displacements are linear functions of the motion.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ShearSpringModel {
-    /// Each spring with its displacement v at the pose, and the derivative of v with respect to the motion of its body.
+    /// Each spring with its shear displacement at the current pose, and the derivative of this displacement with respect to the motion of its body.
     all: Vec<(Spring, DVec2, [Six; 2])>,
 }
 
 impl ShearSpringModel {
-    /// Sets up the springs' model at a pose; adds the curvature of the energy due to rotations.
+    /// Sets up the model of the shear springs at the current poses, and adds to `curvature` the second derivative of the energy due to rotations.
     pub fn lay(&mut self, springs: &[Spring], bodies: &[Body], curvature: &mut Symmetric) {
         self.all.clear();
         for spring in springs {
@@ -209,14 +210,14 @@ impl ShearSpringModel {
         })
     }
 
-    /// Returns the energy of the springs after a motion, joules.
+    /// Returns the energy of the shear springs after a motion, joules.
     pub fn energy_after(&self, motion: &[f64]) -> f64 {
         self.after(motion)
             .map(|(spring, v, _)| spring.energy(v))
             .sum()
     }
 
-    /// Adds the springs' part of the gradient (N) and Hessian (N/m) after a motion.
+    /// Adds the contribution of the shear springs to the gradient (N) and the Hessian (N/m) of the energy after a motion.
     pub fn add_derivatives(&self, motion: &[f64], gradient: &mut [f64], hessian: &mut Symmetric) {
         for (spring, v, slopes) in self.after(motion) {
             let slope = spring.slope(v).to_array();

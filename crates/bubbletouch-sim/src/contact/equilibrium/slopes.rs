@@ -5,10 +5,10 @@ use super::pair::Pair;
 use super::symmetric::{Six, Symmetric, dot};
 use glam::DVec3;
 
-/// Derivatives ∂δ of each pair with respect to the motions of the bodies on which δ depends.
+/// Derivatives of the deflection of each pair (sphere and taxel or rigid contact) with respect to the motions of the bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slopes {
-    /// Offset of the first entry of each pair, followed by the end of the last pair.
+    /// Index of the first entry of each pair in `all`, followed by the number of entries.
     first: Vec<u32>,
     all: Vec<(u32, Six)>,
 }
@@ -18,7 +18,7 @@ impl Slopes {
         &self.all[self.first[pair] as usize..self.first[pair + 1] as usize]
     }
 
-    /// Returns the first-order change of a pair's deflection by a motion, metres.
+    /// Returns the first-order change of a pair's deflection for a motion of the bodies, metres.
     pub fn dot(&self, pair: usize, motion: &[f64]) -> f64 {
         let of = self.for_pair(pair).iter();
         of.map(|(body, slope)| dot(slope, &motion[6 * *body as usize..]))
@@ -31,8 +31,8 @@ impl Slopes {
         self.first.push(0);
     }
 
-    /// Appends the derivatives of the next pair. `axes` are the world's axes in the frame of the pair's arm. If `force` (newtons) is positive, the curvature of
-    /// the energy is added.
+    /// Appends the derivatives of the next pair's deflection. `axes` are the world's axes in the frame of the pair's arm. If `force` (newtons) is positive,
+    /// the second derivative of the energy is added to `curvature`.
     pub fn lay(
         &mut self,
         bodies: &[Body],
@@ -66,7 +66,8 @@ impl Slopes {
     }
 }
 
-/// Adds the second-order term of a rotation θ, r → r + θ × r + ½ θ × (θ × r). The term is a·½ θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
+/// Adds the second-order term of a body's rotation θ to the energy. The point r moves as r → r + θ × r + ½ θ × (θ × r), and the term for a direction a is a·½
+/// θ × (θ × r) = ½ ((a·θ)(r·θ) − (a·r) θ²).
 pub(super) fn add_turning(
     curvature: &mut Symmetric,
     body: usize,

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::DVec3;
 
-/// Outcome of the equilibrium search for one object.
+/// Outcome of the search for the equilibrium of one object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// The object is at rest: forces and torques balance, and no small motion lowers the energy.
@@ -22,65 +22,65 @@ pub enum Outcome {
         /// Direction from the start position, unit vector in the world; perpendicular to gravity unless the object fell straight down.
         direction: DVec3,
     },
-    /// The solver reached its step limit for the object and those that touch it. The other objects are at rest without them.
+    /// The solver reached its step limit for this object and the objects that touch it. The other objects are at rest without them.
     NotConverged,
 }
 
-/// Final pose of a free object, and the contact forces on it.
+/// Final pose of a free object, and the contact forces that act on the object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
     /// Pose `world_from_object`.
     pub pose: Pose,
-    /// Outcome of the equilibrium search.
+    /// Outcome of the search for equilibrium.
     pub outcome: Outcome,
-    /// Force of taxels (springs and stops) and of rigid contacts on the object, newtons, in the world.
+    /// Force of taxels and rigid contacts on the object, newtons, in the world.
     pub force: DVec3,
-    /// Torque of the contact forces about the centre of mass, N·m.
+    /// Torque of the contact forces about the object's centre of mass, N·m, in the world.
     pub torque: DVec3,
     /// Largest of the force residual divided by the weight and the torque residual divided by weight times radius of the object;
     /// dimensionless.
     pub imbalance: f64,
-    /// Number of taxels that carry the object.
+    /// Number of taxels that the object presses.
     pub n_touched: usize,
-    /// Number of taxels whose stops carry the object.
+    /// Number of taxels that the object presses to the end of their stroke.
     pub n_saturated: usize,
-    /// Number of taxels pushed along a flank nearly parallel to their axis (`GRAZING`).
+    /// Number of grazing contacts, whose contact surface is nearly parallel to the taxel's axis (`GRAZING`).
     pub n_grazing: usize,
     /// Number of poses that the solver evaluated, in total over all objects.
     pub n_steps: usize,
 }
 
 impl Equilibrium {
-    /// Returns whether the object is still in the scene, that is, at rest or not converged.
+    /// Returns whether the object is still in the scene, that is, at rest or not converged. Objects that fell off the skins are no longer in the scene.
     pub fn is_there(&self) -> bool {
         !matches!(self.outcome, Outcome::Escaped { .. })
     }
 }
 
-/// Solver for resting poses; the multipliers of one solution initialise the next one.
+/// Solver for equilibrium poses of free objects; the Lagrange multipliers of one solution initialise the next one.
 #[derive(Clone, Debug, Default)]
 pub struct EquilibriumSolver {
     workspace: DescentWorkspace,
     loads: Vec<TaxelLoad>,
     touches: Vec<Touch>,
     tangential_springs: Vec<TangentialSpringState>,
-    /// Indices of the objects to which the multipliers belong.
+    /// Indices of the objects to which the Lagrange multipliers belong.
     numbers: Vec<usize>,
 }
 
 impl EquilibriumSolver {
-    /// Creates a solver without a warm start.
+    /// Creates a solver without an earlier solution as starting point.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Returns the loads of taxels in the last solution, ordered by skin and taxel; loads of escaped objects are omitted. Together with the rigid contacts
-    /// (`touches`) the loads sum to the forces of each [`Equilibrium`].
+    /// Returns the taxel loads of the last solution, ordered by skin and taxel. Loads of objects that fell off the skins ([`Outcome::Escaped`]) are omitted.
+    /// Together with the rigid contacts (`touches`) the loads sum to the forces of each [`Equilibrium`].
     pub fn loads(&self) -> &[TaxelLoad] {
         &self.loads
     }
 
-    /// Returns the tangential springs in the last solution, ordered by skin and taxel.
+    /// Returns the states of the tangential springs in the last solution, ordered by skin and taxel.
     pub fn tangential_springs(&self) -> &[TangentialSpringState] {
         &self.tangential_springs
     }
@@ -90,7 +90,7 @@ impl EquilibriumSolver {
         &self.touches
     }
 
-    /// Solves for the equilibrium of one object on skins, from the pose `start` (`world_from_object`), under `gravity` (m/s², in the world).
+    /// Finds the equilibrium of one object on skins, starting from the pose `start` (`world_from_object`). `gravity` is in m/s², in the world.
     ///
     /// # Errors
     /// If `solve_all` fails.
@@ -109,7 +109,8 @@ impl EquilibriumSolver {
         Ok(solutions[0])
     }
 
-    /// Solves for the equilibrium of several objects together. `starts` contains one `world_from_object` per object; `gravity` is in m/s², in the world.
+    /// Finds the equilibrium of several objects that may touch each other. `starts` contains one `world_from_object` per object; `gravity` is in m/s², in the
+    /// world.
     ///
     /// The energy never increases from the start poses to the solution, and objects at rest do not move. The ground is fixed.
     ///
@@ -143,8 +144,9 @@ impl EquilibriumSolver {
         Ok(solutions)
     }
 
-    /// Descends repeatedly. Objects that leave or do not converge are removed, and the others continue. If a descent does not converge, it is repeated once
-    /// from its last poses without multipliers, because multipliers of a diverged iteration mislead the next one.
+    /// Runs energy descents until all remaining objects are at rest. Objects that fall off the skins or do not converge are removed, and the others continue.
+    /// If a descent does not converge, it is repeated once from its last poses without multipliers, because multipliers of a diverged iteration mislead the
+    /// next one.
     fn solve_bodies<'s>(
         &mut self,
         mut bodies: Vec<Body<'s>>,
@@ -214,7 +216,7 @@ impl EquilibriumSolver {
             .collect()
     }
 
-    /// Returns the equilibrium of an object whose loads have been reported.
+    /// Returns the equilibrium of a body, from the loads that were stored before.
     fn equilibrium(
         &self,
         (body, number): (&Body, usize),
@@ -239,7 +241,7 @@ impl EquilibriumSolver {
         }
     }
 
-    /// Reports the loads on the bodies in `done`, with the indices of their objects.
+    /// Stores the loads on the bodies in `done` for the user, with the indices of their objects.
     fn report(
         &mut self,
         bodies: &[Body],

@@ -1,6 +1,6 @@
 //! Symmetric matrices over the motions of several bodies, and the minimum of a quadratic model in a ball (trust region).
 
-/// Motion of one body, or a derivative with respect to it: three translations and three rotations.
+/// Motion of one body, or a derivative with respect to this motion: three translations and three rotations.
 pub(super) type Six = [f64; 6];
 
 /// Returns the dot product of two slices, with independent partial sums that vector instructions add in parallel.
@@ -30,7 +30,7 @@ pub(super) struct Symmetric {
     entries: Vec<f64>,
 }
 
-/// Cholesky factor L of the matrix `L Lᵀ`: lower triangular, row by row.
+/// Cholesky factor L of a symmetric matrix `L Lᵀ`: lower triangular, stored row by row.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
     n: usize,
@@ -38,7 +38,7 @@ pub(super) struct Factor {
 }
 
 impl Symmetric {
-    /// Resizes the matrix to n rows of zeros.
+    /// Resizes the matrix to n rows and columns of zeros.
     pub fn clear(&mut self, n: usize) {
         self.n = n;
         self.entries.clear();
@@ -53,12 +53,12 @@ impl Symmetric {
         &self.entries[i * self.n..][..self.n]
     }
 
-    /// Returns the entries of row i, beginning at column `first`.
+    /// Returns the stored entries of row `i`, beginning at column `first`.
     pub fn part_mut(&mut self, i: usize, first: usize) -> &mut [f64] {
         &mut self.entries[i * self.n..][first..self.n]
     }
 
-    /// Adds `factor · x yᵀ` to the block of the motions of body a (rows) and body b (columns).
+    /// Adds `factor · x yᵀ` to the 6 × 6 block with the rows of body `a` and the columns of body `b`.
     pub fn add_block(&mut self, [a, b]: [usize; 2], factor: f64, x: &Six, y: &Six) {
         for (i, x) in x.iter().enumerate() {
             let row = &mut self.part_mut(6 * a + i, 6 * b)[..6];
@@ -68,7 +68,7 @@ impl Symmetric {
         }
     }
 
-    /// Returns whether all eigenvalues are above 0, to rounding accuracy.
+    /// Returns whether all eigenvalues of the matrix are above 0, to rounding accuracy.
     pub fn is_convex(&self) -> bool {
         self.factor(1e-9 * self.size()).is_some()
     }
@@ -77,14 +77,14 @@ impl Symmetric {
         (0..self.n).map(|i| dot(self.row(i), v)).collect()
     }
 
-    /// Returns an upper bound of the eigenvalues.
+    /// Returns an upper bound of the absolute eigenvalues of the matrix.
     pub fn size(&self) -> f64 {
         let rows = (0..self.n).map(|i| self.row(i).iter().map(|x| x.abs()).sum());
         rows.fold(0.0, f64::max)
     }
 
-    /// Returns the Cholesky factor of the matrix with `shift` added to the diagonal; `None` if this sum is not positive definite. Leading zeros of a row are
-    /// preserved and skipped, so bodies that do not touch cost nothing.
+    /// Returns the Cholesky factor of the matrix with `shift` added to the diagonal; `None` if the shifted matrix is not positive definite. Leading zeros of
+    /// a row are preserved and skipped, so bodies that do not touch cost nothing.
     pub fn factor(&self, shift: f64) -> Option<Factor> {
         let n = self.n;
         let mut rows = self.entries.clone();
@@ -117,7 +117,7 @@ impl Factor {
         &self.rows[i * self.n..][..self.n]
     }
 
-    /// Solves `L z = b` for z.
+    /// Returns the solution z of `L z = b`, where L is this Cholesky factor.
     fn forward(&self, b: &[f64]) -> Vec<f64> {
         let mut z = b.to_vec();
         for i in 0..self.n {
@@ -127,7 +127,7 @@ impl Factor {
         z
     }
 
-    /// Solves `L Lᵀ x = b` for x.
+    /// Returns the solution x of `L Lᵀ x = b`, where L is this Cholesky factor.
     pub fn solve(&self, b: &[f64]) -> Vec<f64> {
         let mut x = self.forward(b);
         for i in (0..self.n).rev() {
@@ -140,7 +140,7 @@ impl Factor {
         x
     }
 
-    /// Returns an approximate eigenvector of the lowest eigenvalue, of length 1, by inverse iteration.
+    /// Returns an approximate eigenvector of length 1 for the lowest eigenvalue of the factorised matrix, by inverse iteration.
     fn weakest(&self) -> Vec<f64> {
         /// Number of inverse iterations. The shift is within a hundredth of the eigenvalue, so each iteration gains two digits; if two eigenvalues nearly
         /// agree, either eigenvector is valid.
@@ -162,9 +162,9 @@ impl Factor {
 /// `1/|d| = 1/reach` for σ. If g has no component along the lowest eigenvector of an indefinite H (the hard case), this vector is added up to
 /// the boundary of the ball.
 pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64>, f64) {
-    /// Relative distance from the boundary of the trust region within which a step counts as on the boundary.
+    /// Relative distance from the boundary of the trust region below which a step counts as on the boundary.
     const NEAR: f64 = 1e-9;
-    /// First shift σ tried for an indefinite H, relative to the largest shift; both larger and smaller values need more iterations.
+    /// First diagonal shift tried for an indefinite matrix H, relative to the largest shift; both larger and smaller values need more iterations.
     const FIRST: f64 = 1e-3;
     let (size, slope) = (h.size(), norm(gradient));
     let flat = 1e-14 * size.max(slope / reach);
@@ -246,7 +246,7 @@ mod tests {
         ((0..n).map(|_| rng.gen_range(-1.0..1.0)).collect(), m)
     }
 
-    /// Returns an approximate eigenvector of the lowest eigenvalue, found by bisecting the least shift that makes the matrix positive definite.
+    /// Returns an approximate eigenvector of the lowest eigenvalue of a matrix, found by bisecting the least shift that makes the matrix positive definite.
     fn lowest(m: &Symmetric) -> Vec<f64> {
         let (mut low, mut high) = (0.0, 2.0 * m.size());
         for _ in 0..60 {

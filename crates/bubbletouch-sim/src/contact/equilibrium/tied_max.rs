@@ -9,16 +9,16 @@
 //!
 //! has the gradient w. Replacing w⁰ by w and repeating makes ψ converge to the maximum itself \[RW\].
 
-/// Value ψ of the smoothed maximum, and the number of nonzero shares.
+/// Smoothed maximum of several deflections, and the number of deflections with a nonzero share in this maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct TiedMax {
     pub value: f64,
-    /// Number of shares above zero.
+    /// Number of deflections with a share above zero.
     pub n_sharing: usize,
 }
 
-/// Returns the smoothed maximum of `deflections` and writes the shares to `shares`. `known` contains w⁰ of each deflection, and Σ w⁰² over all spheres,
-/// including those omitted from the list. `None` means that no shares are known.
+/// Returns the smoothed maximum of `deflections` and writes the share of each deflection to `shares`. `known` contains earlier shares of the deflections, and
+/// their sum of squares over all spheres, including omitted ones. `None` means that no shares are known.
 pub(super) fn tied_max(
     deflections: &[f64],
     known: Option<(&[f64], f64)>,

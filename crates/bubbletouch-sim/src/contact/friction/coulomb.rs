@@ -14,16 +14,16 @@
 
 use glam::DVec2;
 
-/// Factor by which rounding may move the trial displacement beyond the rim without a slip. If larger, creep counts as sticking; if smaller, rest on the rim
-/// counts as slip.
+/// Factor by which rounding may move the spring's end beyond the friction disc without counting as slip. If larger, creep counts as sticking; if smaller, an
+/// end that stays on the rim of the disc counts as slipping.
 const ROUNDING: f64 = 1.0 + 1e-12;
 
-/// State of a friction spring's end after a drag.
+/// State of a friction spring's end after the object has dragged it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Dragged {
-    /// Displacement u of the spring's end, metres, |u| ≤ r.
+    /// Displacement of the spring's end, metres, at most the radius of the friction disc.
     pub displacement: DVec2,
-    /// Whether the spring's end slipped during the drag.
+    /// Whether the spring's end slipped while it was dragged.
     pub has_slipped: bool,
 }
 
@@ -52,7 +52,7 @@ fn within(displacement: DVec2, limit: f64) -> DVec2 {
     displacement * (limit / length)
 }
 
-/// Moves the spring's end from inside the disc to its rim, and then along the rim.
+/// Moves the spring's end from inside the friction disc to its rim, and then along the rim.
 fn slide(start: DVec2, motion: DVec2, limit: f64) -> DVec2 {
     if limit == 0.0 {
         return DVec2::ZERO;

@@ -39,7 +39,7 @@ use crate::geometry::Pose;
 use crate::world::{Patch, Shears};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
-/// Mode of the tangential contact of a taxel: free, stick or slip.
+/// State of the tangential contact of a taxel: free, stick or slip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactMode {
     /// No contact: no object presses the taxel.
@@ -51,12 +51,12 @@ pub enum ContactMode {
     Slip,
 }
 
-/// Source of the normal force that limits friction.
+/// Selection of the normal force that limits the friction.
 #[derive(Clone, Copy, Debug)]
 pub enum NormalForce<'a> {
-    /// Spring forces k δ only.
+    /// Spring forces only: stiffness times deflection.
     Springs,
-    /// Forces of springs and dampers; the damper state must have been advanced to the same contacts.
+    /// Forces of springs and dampers; the damper state must have been advanced to the contacts of this step.
     Dampers(&'a DamperState),
 }
 
@@ -78,16 +78,16 @@ pub struct ContactModeCounts {
     pub n_slipping: usize,
 }
 
-/// Sum of the forces that taxels exert on objects.
+/// Sum of the forces that the taxels of a patch exert on objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionLoad {
-    /// Force and torque of springs and friction together.
+    /// Force and torque of the taxels' springs and of the friction together.
     pub on_object: Wrench,
     /// Force and torque of the friction alone.
     pub friction: Wrench,
 }
 
-/// Shear springs of one patch, carried from step to step.
+/// Shear springs of one patch with friction, carried from one time step to the next.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{FrictionState, NormalForce, Workspace, press_with_contacts};
@@ -120,13 +120,13 @@ pub struct FrictionLoad {
 #[derive(Clone, Debug)]
 pub struct FrictionState {
     shears: Shears,
-    /// Readings of three-axis sensors, newtons, shape (n_taxels,).
+    /// Readings of three-axis sensors on the taxels, newtons, shape (n_taxels,).
     forces: Vec<DVec3>,
     /// Contact mode of each taxel, shape (n_taxels,).
     contact_modes: Vec<ContactMode>,
-    /// Contacts of all taxels, ascending by taxel.
+    /// Present contacts of all taxels, ascending by taxel.
     held: Vec<TaxelContactState>,
-    /// Contacts one step ago, ascending by taxel; used only during a step.
+    /// Contacts at the previous time step, ascending by taxel; used only during a step.
     before: Vec<TaxelContactState>,
     /// Poses `patch_from_object` after the last step.
     poses: Vec<Pose>,
@@ -142,7 +142,7 @@ struct TaxelContactState {
     /// Position of the material point, and position of the point where the friction acts; metres, in the patch frame.
     place: DVec3,
     acts_at: DVec3,
-    /// Tangential displacement u of the shear spring, metres, along x and y of the taxel's frame.
+    /// Tangential displacement of the shear spring, metres, along x and y of the taxel's frame.
     displacement: DVec2,
 }
 
@@ -188,12 +188,13 @@ impl FrictionState {
         &self.contact_modes
     }
 
-    /// Returns the friction on one taxel along x and y of the taxel's frame, N. The friction is k_t u, at most μ f.
+    /// Returns the friction force on one taxel along x and y of the taxel's frame, N. The force is the tangential stiffness times the displacement, and its
+    /// length is at most the friction coefficient times the normal force.
     pub fn friction(&self, taxel: usize) -> DVec2 {
         self.shears.at(taxel).stiffness * self.displacement(taxel)
     }
 
-    /// Returns the shear displacement u of one taxel along x and y of the taxel's frame, metres; zero if the taxel is not in contact.
+    /// Returns the shear displacement of one taxel along x and y of the taxel's frame, metres; zero if the taxel is not in contact.
     pub fn displacement(&self, taxel: usize) -> DVec2 {
         self.held(taxel)
             .map_or(DVec2::ZERO, |held| held.displacement)
@@ -217,7 +218,7 @@ impl FrictionState {
         })
     }
 
-    /// Replaces the contacts of one object by the given contacts (ascending by taxel) at the given pose; their displacement u is zero.
+    /// Replaces the contacts of one object by the given contacts (ascending by taxel) at the given pose; the displacements of their shear springs are zero.
     pub fn put(
         &mut self,
         patch: &Patch,
@@ -244,8 +245,8 @@ impl FrictionState {
         }
     }
 
-    /// Advances the shear springs by one step, from the poses of the previous step to `patch_from_objects`. `contacts` are the contacts of a press at the
-    /// step's end, ascending by taxel. At the first step, and at any first contact, u is zero.
+    /// Advances the shear springs by one time step, from the poses of the previous step to `patch_from_objects`. `contacts` are the contacts of a press at
+    /// the step's end, ascending by taxel. At the first step, and at any first contact, the shear displacement is zero.
     ///
     /// # Panics
     /// If the taxel or object of a contact does not exist.
@@ -259,8 +260,8 @@ impl FrictionState {
         self.step_with(patch, contacts, patch_from_objects, normal, &[])
     }
 
-    /// Advances the shear springs by one step, with free objects in equilibrium. `held_at_rest`, ascending by taxel, is the result of the equilibrium that was
-    /// solved with the tangential springs of the previous step.
+    /// Advances the shear springs by one time step with free objects in equilibrium. `held_at_rest` (ascending by taxel) contains the springs' states in the
+    /// equilibrium that was solved with the springs of the previous step.
     ///
     /// # Panics
     /// If the taxel or object of a contact does not exist.
@@ -328,7 +329,7 @@ impl FrictionState {
         counts
     }
 
-    /// Returns the sum of the forces that taxels exert on objects after a step, over the given contacts (all, or those with one object).
+    /// Returns the sum of the forces that taxels exert on objects after a time step, over the given contacts (all contacts, or the contacts of one object).
     pub fn load<'a>(
         &self,
         patch: &Patch,
@@ -360,7 +361,7 @@ impl Dragged {
     }
 }
 
-/// Returns the components of a vector (patch frame) along x and y of a taxel's frame, which are perpendicular to the taxel's axis.
+/// Returns the components of a vector (patch frame) along the axes x and y of a taxel's frame, which are perpendicular to the taxel's axis.
 fn across(frame: &DMat3, vector: DVec3) -> DVec2 {
     (frame.transpose() * vector).xy()
 }

@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
-/// Number of columns that are computed together: four f64 values in a vector of 256 bits. A larger value computes needless columns beside narrow footprints; a
-/// smaller one needs more instructions.
+/// Number of grid columns that are computed together: four f64 values in a vector of 256 bits. A larger value computes needless columns beside narrow
+/// footprints of spheres; a smaller value needs more instructions.
 pub(super) const BLOCK: usize = 4;
 
-/// Number of columns that are computed together in footprints wider than three blocks: eight f64 values in a vector of 512 bits.
+/// Number of grid columns that are computed together if a sphere's footprint is wider than three blocks: eight f64 values in a vector of 512 bits.
 pub(super) const WIDE: usize = 8;
 
-/// Deflections of a grid, row by row, and a rectangle outside of which all deflections are zero.
+/// Deflections of a grid, row by row, with the rectangle of taxels that the last press reached. Outside this rectangle all deflections are zero.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DeflectionGrid {
-    /// Deflections, metres, shape (n_taxels,), padded by one block so that the last row also consists of whole blocks.
+    /// Deflections, metres, shape (n_taxels,), padded so that the last row also consists of whole blocks.
     deflections: Vec<f64>,
     n_columns: usize,
     n_taxels: usize,
@@ -21,12 +21,12 @@ pub(crate) struct DeflectionGrid {
 }
 
 impl DeflectionGrid {
-    /// Returns all deflections, metres.
+    /// Returns the deflections of all taxels of the grid, metres, row by row.
     pub fn deflections(&self) -> &[f64] {
         &self.deflections[..self.n_taxels]
     }
 
-    /// Sets all deflections of a grid to zero, visiting only the covered rectangle.
+    /// Sets all deflections of a grid to zero. If the grid is unchanged, only the rectangle of taxels that the last press reached is written.
     pub fn clear(&mut self, n_columns: usize, n_rows: usize) {
         if (self.n_columns, self.n_taxels) == (n_columns, n_columns * n_rows) {
             self.each_row(|_, taxels| taxels.fill(0.0));
@@ -39,21 +39,21 @@ impl DeflectionGrid {
         self.columns = n_columns..0;
     }
 
-    /// Enlarges the covered rectangle to contain the given rows and columns.
+    /// Enlarges the rectangle of reached taxels so that it contains the given rows and columns.
     #[inline(always)]
     pub fn cover(&mut self, rows: &Range<usize>, columns: &Range<usize>) {
         self.rows = self.rows.start.min(rows.start)..self.rows.end.max(rows.end);
         self.columns = self.columns.start.min(columns.start)..self.columns.end.max(columns.end);
     }
 
-    /// Returns the deflections of the given columns of a row.
+    /// Returns the deflections of the taxels in the given row and columns, metres.
     #[inline(always)]
     pub fn row(&mut self, row: usize, columns: Range<usize>) -> &mut [f64] {
         let first = row * self.n_columns;
         &mut self.deflections[first + columns.start..first + columns.end]
     }
 
-    /// Returns N blocks of a row's deflections, beginning at column `first`; beyond the row's end a block contains taxels of the next row.
+    /// Returns N blocks of deflections in a row, beginning at column `first`. Beyond the row's end a block contains taxels of the next row.
     #[inline(always)]
     pub fn blocks<const N: usize>(&mut self, row: usize, first: usize) -> &mut [[f64; BLOCK]; N] {
         let first = row * self.n_columns + first;
@@ -61,7 +61,7 @@ impl DeflectionGrid {
         blocks.try_into().expect("so many blocks are cut")
     }
 
-    /// Returns a wide block of a row's deflections, beginning at column `first`; all columns must lie in the row.
+    /// Returns a wide block of deflections in a row, beginning at column `first`; all columns must lie in the row.
     #[inline(always)]
     pub fn wide_block(&mut self, row: usize, first: usize) -> &mut [f64; WIDE] {
         let first = row * self.n_columns + first;
@@ -69,7 +69,8 @@ impl DeflectionGrid {
         block.expect("a row is as long")
     }
 
-    /// Visits the covered part of each row, with the index of its first taxel.
+    /// Calls `visit` for each row of the rectangle of taxels that the press reached. The arguments are the index of the row's first reached taxel and the
+    /// deflections.
     #[inline(always)]
     pub fn each_row(&mut self, mut visit: impl FnMut(usize, &mut [f64])) {
         for row in self.rows.clone() {

@@ -9,10 +9,10 @@ use crate::objects::{ContactFace, MeshModel, Model};
 use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use std::cell::Cell;
 
-/// Travel at which a triangle first stops each taxel: the least height in the patch frame as the patch rises.
+/// Travel of the patch at which a triangle first stops each taxel, given as the least height in the patch frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Envelope {
-    /// Heights, metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel.
+    /// Heights at which triangles stop the taxels, metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel.
     pub heights: Vec<f64>,
     /// Smallest of the heights, metres.
     pub first: f64,
@@ -26,8 +26,8 @@ impl Envelope {
         self.first = f64::INFINITY;
     }
 
-    /// Computes the heights at which meshes stop the taxels, up to the goal. Returns whether there is a mesh. `first` is the travel at first contact with
-    /// spheres.
+    /// Computes the heights at which meshes stop the taxels, up to the goal of the press. Returns whether there is a mesh. `first` is the travel at first
+    /// contact with spheres.
     pub fn look(&mut self, placed: &PlacedObjects, (goal, first): (TravelGoal, f64)) -> bool {
         let pairs = placed.objects.iter().zip(placed.patch_from_objects);
         let meshes = pairs.filter_map(|(object, pose)| match object {
@@ -44,7 +44,7 @@ impl Envelope {
         has_meshes
     }
 
-    /// Lowers the heights to the heights at which a mesh stops the taxels, up to the limit.
+    /// Lowers the stored heights to the heights at which a mesh stops the taxels, up to the goal of the press.
     fn lower(
         &mut self,
         mesh: &MeshModel,
@@ -81,7 +81,7 @@ impl Envelope {
 /// State of the search over one mesh. The heights are stored in `Cell`s, so that the search can read and lower them at any time.
 struct Sweep<'a> {
     view: MeshView,
-    /// Radius ρ of a taxel, metres.
+    /// Radius of a taxel, metres.
     radius: f64,
     lines: &'a GridLines,
     /// Goal of the press, and the travel at first contact with the objects evaluated before.
@@ -90,12 +90,12 @@ struct Sweep<'a> {
     first: &'a Cell<f64>,
 }
 
-/// Maximum number of taxels near a box for which the search tests whether the box is hidden. If larger, tests are wasted on triangles as large as taxels; if
-/// smaller, boxes of small triangles are opened needlessly.
+/// Maximum number of taxels near a bounding box for which the search tests whether the box is hidden. If larger, tests are wasted on triangles as large as
+/// taxels; if smaller, boxes of small triangles are searched needlessly.
 const FEW: usize = 2;
 
 impl Sweep<'_> {
-    /// Returns the travel, metres, beyond which heights are not needed.
+    /// Returns the travel, metres, beyond which the heights do not affect the press.
     fn limit(&self) -> f64 {
         match self.goal {
             (TravelGoal::Travel(travel), _) => travel,
@@ -104,7 +104,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Returns a lower bound, metres, of the travel at which a triangle in a box stops a taxel; infinite if none can lower a height.
+    /// Returns a lower bound, metres, of the travel at which a triangle in a bounding box stops a taxel; infinite if no triangle in the box can lower a
+    /// height.
     fn bound(&self, bounds: &Aabb) -> f64 {
         let [low, high] = self.view.turned(bounds);
         if self.view.is_beside(low, high) || self.is_hidden(low, high) {
@@ -114,7 +115,7 @@ impl Sweep<'_> {
     }
 
     /// Returns whether the triangles in a small box certainly cannot lower the heights of the taxels near the box. At a horizontal distance b from the box, a
-    /// ball stops no lower than √(ρ² − b²) below the box.
+    /// ball of radius ρ stops no lower than √(ρ² − b²) below the box.
     fn is_hidden(&self, low: DVec3, high: DVec3) -> bool {
         let (center, half) = (0.5 * (low + high), 0.5 * (high - low) + self.radius);
         let rows = self.lines.y.within(center.y, half.y);
@@ -163,7 +164,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Lowers the heights of the taxels inside a rectangle, given by two corners, to the value of the function `height`.
+    /// Lowers the heights of the taxels inside a rectangle (given by two corners) to the value of the function `height` at each taxel.
     #[inline]
     fn lower_under(&self, ground: (DVec2, DVec2), height: impl Fn(DVec2) -> Option<f64>) {
         let (low, high) = ground;
@@ -189,14 +190,14 @@ impl Sweep<'_> {
     }
 }
 
-/// Transform from a mesh's frame to the patch frame, with which boxes are rotated.
+/// Transform from a mesh's frame to the patch frame, which also rotates bounding boxes.
 struct MeshView {
     rotation: DMat3,
     translation: DVec3,
     /// Positive and negative parts of the rotation matrix; their products with a box's corners are the bounds of the rotated box.
     positive: DMat3,
     negative: DMat3,
-    /// Half the patch's width along x and y, including the taxels' radius ρ, metres.
+    /// Half the patch's width along x and y, enlarged by the taxels' radius, metres.
     half_size: DVec2,
 }
 
@@ -224,13 +225,13 @@ impl MeshView {
         self.rotation * point + self.translation
     }
 
-    /// Returns the lowest and highest corner of the axis-aligned box around a rotated box.
+    /// Returns the lowest and the highest corner, in the patch frame, of the axis-aligned box around a rotated box.
     fn turned(&self, bounds: &Aabb) -> [DVec3; 2] {
         [(bounds.min, bounds.max), (bounds.max, bounds.min)]
             .map(|(near, far)| self.positive * near + self.negative * far + self.translation)
     }
 
-    /// Returns whether no taxel is under a box.
+    /// Returns whether no taxel lies below a box, given by its lowest and highest corner in the patch frame.
     fn is_beside(&self, low: DVec3, high: DVec3) -> bool {
         low.xy().cmpgt(self.half_size).any() || high.xy().cmplt(-self.half_size).any()
     }

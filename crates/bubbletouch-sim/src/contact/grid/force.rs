@@ -51,12 +51,12 @@ pub(crate) fn press(
     Ok(Some(press.indent(grid, travel, output)))
 }
 
-/// Relative rounding of a force that is the sum of thousands of springs: far above 1e-16, far below any measurable difference.
+/// Relative rounding error of a force that is the sum of thousands of spring forces: far above 1e-16, far below any measurable difference.
 const ROUNDING: f64 = 1e-12;
 
-/// Force F(t) of a grid as a function of the travel t, up to a largest travel.
+/// Total spring force of a grid as a function of its travel, up to a largest travel.
 struct ForceCurve<'a> {
-    /// Travels t_i at which taxels begin to move, metres.
+    /// Travels at which the taxels begin to move, metres.
     starts: &'a [f64],
     /// Travel beyond which the force is constant or unknown, metres.
     end: f64,
@@ -65,7 +65,7 @@ struct ForceCurve<'a> {
 }
 
 impl<'a> ForceCurve<'a> {
-    /// Creates the force curve from the gathered objects, up to a travel, metres.
+    /// Creates the force curve of a grid against the objects gathered by `press`, up to a `travel` in metres.
     fn new(press: &'a mut GridPress, (grid, stiffness): (&EvenGrid, f64), travel: f64) -> Self {
         let starts = press.starts(grid, travel);
         let last = starts.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
@@ -77,7 +77,7 @@ impl<'a> ForceCurve<'a> {
         }
     }
 
-    /// Returns the force F, N, and its derivative, N/m, at a travel, metres.
+    /// Returns the force, N, and its derivative with respect to the travel, N/m, at a travel in metres.
     fn at(&self, travel: f64) -> Sample {
         let (mut deflection, mut n_moving) = (0.0, 0);
         for start in self.starts {
@@ -96,7 +96,7 @@ impl<'a> ForceCurve<'a> {
         self.at(self.end).value
     }
 
-    /// Returns the travel, metres, at which the springs carry `force`, N, which is at most the largest force.
+    /// Returns the travel, metres, at which the springs carry `force`, N. This force must not exceed the largest force of the curve.
     fn travel(&self, force: f64) -> f64 {
         let first = self.starts.iter().fold(self.end, |a, &b| a.min(b));
         crossing(
@@ -107,7 +107,7 @@ impl<'a> ForceCurve<'a> {
     }
 }
 
-/// Returns a height in the patch frame above all objects, metres.
+/// Returns the height of the highest point of all objects, or a larger value, in the patch frame, metres.
 fn top(objects: &[Model], patch_from_objects: &[Pose]) -> f64 {
     let tops = objects.iter().zip(patch_from_objects);
     let tops = tops.map(|(object, pose)| {

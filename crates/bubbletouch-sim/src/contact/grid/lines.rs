@@ -3,20 +3,20 @@
 use crate::world::Grid;
 use std::ops::Range;
 
-/// Bound of rounding errors of positions on the grid, in pitches: far above 1e-16 of the largest grid, far below any measurable distance.
+/// Bound of rounding errors in positions on the grid, as a fraction of the pitch: far above 1e-16 of the largest grid, far below any measurable distance.
 const ROUNDING: f64 = 1e-9;
 
-/// Columns and rows of a grid, as positions of lines.
+/// Positions of the columns and rows of a grid.
 #[derive(Clone, Debug, Default)]
 pub struct GridLines {
-    /// Columns, given by their x coordinates.
+    /// Positions of the columns along x.
     pub x: Lines,
-    /// Rows, given by their y coordinates.
+    /// Positions of the rows along y.
     pub y: Lines,
     grid: Option<Grid>,
 }
 
-/// Equidistant lines, in ascending order.
+/// Equidistant parallel lines, in ascending order.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     /// Positions of the lines, metres.
@@ -57,7 +57,7 @@ impl Lines {
         self.density = 1.0 / pitch;
     }
 
-    /// Returns the position of the line nearest to a coordinate, metres.
+    /// Returns the position of the line that is nearest to a coordinate, metres.
     #[inline(always)]
     pub fn nearest(&self, coordinate: f64) -> f64 {
         let index = (coordinate - self.positions[0]) * self.density + 0.5;
@@ -65,7 +65,7 @@ impl Lines {
         self.positions[(index as u32 as usize).min(self.positions.len() - 1)]
     }
 
-    /// Returns the range of lines within `half_width` of a coordinate, metres; the range includes lines that are farther away only by rounding.
+    /// Returns the indices of the lines within `half_width` of a coordinate, metres. The range includes lines that are farther away only by rounding.
     ///
     /// Casts truncate and saturate beside the grid. Casts replace floor and ceil, which are function calls on the oldest supported processors.
     /// The cast to 32 bits needs fewer instructions than one to 64 bits.

@@ -1,6 +1,6 @@
 //! Output buffer of a press: a row of the caller's array that receives the deflections.
 
-/// Destination of a press: one deflection per taxel, metres, in single or double precision.
+/// Destination of the deflections of a press: one value per taxel, metres, in single or double precision.
 ///
 /// An array of many frames is rarely in the processor's caches, and filling a row with zeros takes a third of a fast press. The row is therefore
 /// filled in small parts while the spheres press, when the memory is idle.
@@ -20,7 +20,7 @@ impl Row<'_> {
         }
     }
 
-    /// Writes one deflection per taxel.
+    /// Writes one deflection per taxel to the row.
     pub(crate) fn write(&mut self, deflections: &[f64]) {
         match self {
             Self::Double(row) => row.copy_from_slice(deflections),
@@ -38,12 +38,12 @@ impl Row<'_> {
 pub(crate) struct OutputBuffer<'a> {
     pub row: Row<'a>,
     n_filled: usize,
-    /// Number of values that one step fills with zeros.
+    /// Number of values that one call of `step` fills with zeros.
     step: usize,
 }
 
 impl<'a> OutputBuffer<'a> {
-    /// Creates the buffer of a row with arbitrary contents.
+    /// Creates the output buffer for a row with arbitrary contents.
     pub fn new(row: Row<'a>) -> Self {
         Self {
             row,
@@ -52,7 +52,7 @@ impl<'a> OutputBuffer<'a> {
         }
     }
 
-    /// Creates the buffer of a row that already contains zeros.
+    /// Creates the output buffer for a row that already contains zeros.
     pub fn from_zeros(row: Row<'a>) -> Self {
         Self {
             n_filled: row.len(),
@@ -61,18 +61,18 @@ impl<'a> OutputBuffer<'a> {
         }
     }
 
-    /// Creates a buffer without an output row.
+    /// Creates an output buffer without a row, for presses without output.
     pub fn none() -> Self {
         Self::new(Row::Double(&mut []))
     }
 
-    /// Distributes the filling with zeros over `n_steps` steps.
+    /// Divides the filling with zeros into `n_steps` calls of `step`.
     pub fn in_steps(&mut self, n_steps: usize) {
         let step = (self.row.len() - self.n_filled).div_ceil(n_steps.max(1));
         self.step = step.next_multiple_of(LINE);
     }
 
-    /// Fills the values of one step with zeros.
+    /// Fills the next part of the row with zeros.
     #[inline(always)]
     pub fn step(&mut self) {
         if self.step > 0 {
@@ -80,7 +80,7 @@ impl<'a> OutputBuffer<'a> {
         }
     }
 
-    /// Fills the remaining values with zeros.
+    /// Fills the rest of the row with zeros.
     pub fn finish(&mut self) {
         self.fill(self.row.len());
     }
@@ -97,5 +97,5 @@ impl<'a> OutputBuffer<'a> {
     }
 }
 
-/// Number of values that are filled at once: one or two cache lines of 64 bytes.
+/// Number of values whose filling is not divided further: one or two cache lines of 64 bytes.
 const LINE: usize = 16;

@@ -8,35 +8,35 @@ use crate::objects::{Cluster, ClusterBounds, MAX_IN_CLUSTER, Sphere};
 use glam::{DMat3, DVec3};
 use std::ops::Range;
 
-/// Sphere in the patch frame whose radius is enlarged by the taxel's radius, so that the taxel can be treated as a point.
+/// Sphere in the patch frame whose radius is enlarged by the taxel's radius, so that a taxel can be treated as a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedSphere {
     pub center: DVec3,
-    /// Sum of the radii of taxel and sphere, S = ρ + R, metres.
+    /// Sum of the radii of taxel and sphere, metres.
     pub reach: f64,
 }
 
 /// Factor that covers rounding of a radius: far above 1e-16 and far below any measurable difference.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Largest number of columns for which a sphere's footprint is treated as a square. If larger, taxels beside large spheres are computed needlessly; if smaller,
-/// taxels at the ends of short rows are.
+/// Largest number of columns for which a sphere's footprint on the grid is treated as a square. If larger, taxels beside large spheres are computed
+/// needlessly; if smaller, taxels at the ends of short rows are.
 const SQUARE: usize = 10;
 
-/// Transform from an object's frame to the patch frame, with which spheres are selected.
+/// Transform from an object's frame to the patch frame, used to select the spheres that can press the grid.
 #[derive(Clone, Debug)]
 pub(crate) struct View {
-    /// Rows of the rotation matrix.
+    /// Rows of the rotation matrix from the object's frame to the patch frame.
     rows: DMat3,
     translation: DVec3,
-    /// Radius ρ of the taxels, metres.
+    /// Radius of the taxels, metres.
     taxel_radius: f64,
-    /// Largest |x| and |y| of a taxel, metres.
+    /// Largest |x| and largest |y| of a taxel centre, metres.
     half_size: [f64; 2],
 }
 
 impl View {
-    /// Creates the transform for an object at `patch_from_object` and a grid with taxels of one radius.
+    /// Creates the transform for an object at the pose `patch_from_object`, and for a grid whose taxels have one radius.
     pub fn new(taxel_radius: f64, lines: &GridLines, pose: &Pose) -> Self {
         let last = |positions: &[f64]| positions.last().copied().unwrap_or(0.0);
         Self {
@@ -47,8 +47,8 @@ impl View {
         }
     }
 
-    /// Writes, for each cluster of spheres, a travel before which none of its spheres meets a taxel, metres; infinite if the cluster's projection misses the
-    /// patch.
+    /// Writes, for each cluster of spheres, a travel before which no sphere of the cluster meets a taxel, metres. The travel is infinite if the cluster's
+    /// projection misses the patch.
     #[inline(always)]
     pub fn lay_starts(&self, bounds: &ClusterBounds, starts: &mut [f64]) {
         let n = starts.len();
@@ -96,7 +96,7 @@ impl View {
         starts
     }
 
-    /// Returns the sphere in the patch frame; `None` if it meets no taxel before `travel` or its projection misses the patch.
+    /// Returns the sphere in the patch frame; `None` if the sphere meets no taxel before `travel` or its projection misses the patch.
     #[inline(always)]
     pub fn place(&self, sphere: &Sphere, travel: f64) -> Option<PlacedSphere> {
         let reach = self.taxel_radius + sphere.radius;
@@ -115,7 +115,7 @@ impl View {
     }
 }
 
-/// Returns `value - numbers[k]` for each k.
+/// Returns `value - numbers[k]` for each index k.
 #[inline(always)]
 fn less<const N: usize>(value: f64, numbers: &[f64; N]) -> [f64; N] {
     let mut differences = [0.0; N];
@@ -126,8 +126,8 @@ fn less<const N: usize>(value: f64, numbers: &[f64; N]) -> [f64; N] {
 }
 
 impl PlacedSphere {
-    /// Returns the travel at first contact, metres, that is, with the taxel nearest to the sphere's axis. The travel is infinite if the sphere passes between
-    /// taxels.
+    /// Returns the travel at which the sphere first touches a taxel, metres. This is the taxel nearest to the sphere's axis. The travel is infinite if the
+    /// sphere passes between taxels.
     #[inline(always)]
     pub fn first_touch(&self, lines: &GridLines) -> f64 {
         let DVec3 { x, y, z } = self.center;
@@ -162,8 +162,8 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises deflections by a sphere whose centre is below the substrate's height `behind`, metres. Only taxels whose substrate is inside the sphere are
-    /// pushed.
+    /// Raises deflections by a sphere whose centre is below the substrate's height `behind`, metres. The sphere pushes only taxels whose substrate is inside
+    /// it.
     #[cold]
     pub fn indent_through(
         &self,
@@ -192,7 +192,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises the deflections of N blocks in each row, beginning at column `first`.
+    /// Raises the deflections of N blocks of columns in each row, beginning at column `first`.
     #[inline(always)]
     fn indent_square<const N: usize>(
         &self,
@@ -221,7 +221,7 @@ impl PlacedSphere {
         }
     }
 
-    /// Raises the deflections of all columns that the sphere reaches, row by row; the footprint is wider than a block.
+    /// Raises the deflections of all columns that the sphere's footprint covers, row by row. The footprint is wider than a block of columns.
     #[inline(always)]
     fn indent_rows(
         &self,
@@ -258,8 +258,8 @@ impl PlacedSphere {
         }
     }
 
-    /// Increases the deflection of each taxel that the sphere pushes further, and marks these taxels. A sphere behind the substrate, whose height is `behind`,
-    /// does not count.
+    /// Raises the deflection of each taxel that the sphere pushes further, and writes `mark` for these taxels. A sphere wholly behind the substrate, whose
+    /// height is `behind`, pushes no taxel.
     ///
     /// The footprint is the region where contact with the sphere requires a deflection above zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, small
     /// footprints to a square. The comparison with S in the innermost loop decides exactly.

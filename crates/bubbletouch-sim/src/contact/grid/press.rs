@@ -14,19 +14,19 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use crate::world::EvenGrid;
 
-/// Workspace of one thread for presses of flat grids.
+/// Scratch memory of one thread for presses of flat grids.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GridPress {
     pub instructions: Instructions,
     /// Lines (columns and rows) of the last grid.
     lines: GridLines,
-    /// Search for the spheres that can press.
+    /// Search for the spheres that can press a taxel.
     search: SphereSearch,
     /// Heights at which the meshes stop the taxels; empty if there are no meshes.
     envelope: Envelope,
     deflections: DeflectionGrid,
-    /// Height of the substrate, metres: −s − ρ at a pose, −∞ if the press comes from the front and all spheres count. A sphere with a lower centre pushes only
-    /// taxels whose substrate is inside the sphere.
+    /// Height of the substrate, metres, below which spheres push only taxels whose substrate is inside the sphere. −∞ if the press comes from the front,
+    /// where spheres push at any distance behind the taxels.
     behind: f64,
     /// Travels at which the taxels began to move in the last press to a force, metres.
     starts: Vec<f64>,
@@ -38,7 +38,8 @@ impl GridPress {
         self.deflections.deflections()
     }
 
-    /// Gathers the spheres that press a taxel before the goal. Returns the travel at first contact if the goal is a depth; `None` if the patch meets nothing.
+    /// Collects the spheres that press a taxel before the goal of the press is reached. Returns the travel at first contact if the goal is a depth; `None` if
+    /// the patch meets nothing.
     pub(crate) fn gather(
         &mut self,
         grid: &EvenGrid,
@@ -70,7 +71,7 @@ impl GridPress {
         first.is_finite().then_some(first)
     }
 
-    /// Computes the deflections of the patch at a travel; the objects must have been gathered for this travel or a larger one.
+    /// Computes the deflections of the patch at a travel. The objects must have been gathered for this travel or a larger one.
     pub(crate) fn indent(
         &mut self,
         grid: &EvenGrid,
@@ -90,7 +91,7 @@ impl GridPress {
         }
     }
 
-    /// Returns the travel at which each taxel begins to move, metres, for the taxels that the gathered objects reach before `travel`.
+    /// Returns the travel at which each taxel begins to move, metres, for the taxels that the gathered objects touch before `travel`.
     pub(crate) fn starts(&mut self, grid: &EvenGrid, travel: f64) -> &[f64] {
         self.push(grid, travel, &mut OutputBuffer::none());
         self.starts.clear();
@@ -107,7 +108,7 @@ impl GridPress {
         &self.starts
     }
 
-    /// Sets all deflections of a patch to zero.
+    /// Sets the deflections of all taxels of a grid to zero.
     pub(crate) fn touch_nothing(&mut self, grid: &EvenGrid) {
         self.deflections.clear(grid.grid.nx, grid.grid.ny);
     }
@@ -139,7 +140,7 @@ impl GridPress {
 }
 
 for_instructions! {
-    /// Raises the deflections by all spheres that count at a travel, and fills the output row with zeros in the meantime.
+    /// Raises the deflections by all spheres that push taxels at a travel, and fills the output row with zeros in the meantime.
     fn indent_all(
         spheres: &[PlacedSphere],
         lines: &GridLines,
@@ -169,7 +170,7 @@ fn indent_each(
 }
 
 for_instructions! {
-    /// Counts touched and saturated taxels, limits deflections to the stroke, and writes them into the output row if there is one.
+    /// Counts touched and saturated taxels, limits their deflections to the stroke, and writes them into the output row if there is one.
     fn stop_at_stroke(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [usize; 2] = stop_each
 }
 
@@ -205,7 +206,7 @@ fn stop_each(deflections: &mut DeflectionGrid, stroke: f64, row: &mut Row) -> [u
     [stop.n_touched, stop.n_saturated]
 }
 
-/// Stroke that limits the deflections, and the numbers of touched and saturated taxels.
+/// Stroke to which deflections are limited, and the numbers of touched and saturated taxels.
 struct Stop {
     stroke: f64,
     limit: f64,
@@ -214,7 +215,7 @@ struct Stop {
 }
 
 impl Stop {
-    /// Counts a deflection as touched or saturated, and returns it limited to the stroke.
+    /// Counts a taxel as touched or saturated, and returns its deflection, limited to the stroke.
     #[inline(always)]
     fn limit(&mut self, deflection: f64) -> f64 {
         self.n_touched += usize::from(deflection > 0.0);

@@ -7,23 +7,23 @@ use crate::contact::instructions::for_instructions;
 use crate::contact::law;
 use crate::objects::{Model, SphereClusters};
 
-/// Workspace of a search for spheres.
+/// Scratch memory of a search for the spheres that can press a grid.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SphereSearch {
     /// Transforms of the sphere unions to the patch frame, in the order of the unions.
     views: Vec<View>,
-    /// Travel before which no sphere of a cluster presses a taxel, metres, for each cluster; infinite beside the patch.
+    /// Travel before which no sphere of a cluster presses a taxel, metres, for each cluster. The travel is infinite if the cluster passes beside the patch.
     starts: Vec<f64>,
     /// Spheres that can press a taxel, in the patch frame before the travel.
     pub found: Vec<PlacedSphere>,
 }
 
-/// Number of clusters that are tested together.
+/// Number of clusters of spheres that are tested together.
 const LOOK: usize = 8;
 
 for_instructions! {
-    /// Finds the spheres that can press a taxel before the goal, and returns the travel at first contact, metres. The travel is infinite if no taxel is touched
-    /// or if the goal is not a depth.
+    /// Finds the spheres that can press a taxel before the goal of the press. Returns the travel at first contact, metres; infinite if no taxel is touched or
+    /// if the goal is not a depth.
     ///
     /// For a depth, the nearest cluster is evaluated first, so that most other clusters can be excluded by their bounds.
     pub(crate) fn search(search: &mut SphereSearch, placed: &PlacedObjects, goal: TravelGoal) -> f64 = run
@@ -102,7 +102,7 @@ impl SphereSearch {
         first
     }
 
-    /// Gathers the spheres that press a taxel before a travel and for which `counts` returns true.
+    /// Collects the spheres that press a taxel before the travel `limit` and for which `counts` returns true.
     #[inline(always)]
     fn gather(&mut self, objects: &[Model], limit: f64, counts: impl Fn(&PlacedSphere) -> bool) {
         let mut found = std::mem::take(&mut self.found);
@@ -121,7 +121,7 @@ impl SphereSearch {
         self.found = found;
     }
 
-    /// Returns the sphere unions with their transforms and the travels of their clusters.
+    /// Returns the sphere unions with their transforms to the patch frame and the travels of their clusters.
     #[inline(always)]
     fn unions<'a>(
         &'a self,

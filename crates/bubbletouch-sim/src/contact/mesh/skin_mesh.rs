@@ -15,17 +15,17 @@ pub(crate) struct MeshAt<'a> {
     rotation: DMat3,
 }
 
-/// Height at which a mesh stops a taxel, and the triangle that does.
+/// Height at which a mesh stops a taxel, and the triangle that stops the taxel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stop {
-    /// Height of the taxel's centre along its axis, relative to its rest centre, metres; negative.
+    /// Height of the taxel's centre along its axis, relative to the centre of the undeflected taxel, metres; negative.
     pub height: f64,
     /// Index of the triangle in the mesh.
     pub triangle: usize,
 }
 
-/// Offset from the axis, in radii, of the ray that tests the taxel's substrate. Diagonals of boxes often lie on the axes of grids, and a ray along an edge hits
-/// both of its triangles or none.
+/// Distance from the taxel's axis, in radii of the taxel, of the ray that tests whether the substrate is inside a mesh. Diagonals of boxes often lie on the
+/// axes of grids, and a ray along an edge hits both of its triangles or none.
 const BESIDE: DVec2 = DVec2::new(0.011, 0.007);
 
 impl<'a> MeshAt<'a> {
@@ -72,15 +72,15 @@ impl<'a> MeshAt<'a> {
         }
     }
 
-    /// Returns the height at which one triangle stops a taxel, even if the triangle is behind the taxel's substrate.
+    /// Returns the height at which one triangle stops a taxel, even if the triangle is behind the taxel's substrate; `None` if the triangle misses the taxel.
     pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<Stop> {
         let turned = AxisView::new(self, taxel).turned(&self.mesh.mesh().triangle(triangle));
         let height = stopping_height(&turned, taxel.radius, DVec2::ZERO)?;
         Some(Stop { height, triangle })
     }
 
-    /// Returns the triangle through which a taxel's axis entered the mesh, if the substrate is inside the solid mesh. In that case the nearest triangle behind
-    /// the substrate faces outwards, and the nearest one ahead shows its inner side.
+    /// Returns the triangle through which a taxel's axis enters the mesh, if the taxel's substrate is inside the solid mesh. In that case the nearest
+    /// triangle behind the substrate faces outwards, and the nearest triangle ahead shows its inner side.
     fn entered(&self, view: &AxisView) -> Option<Stop> {
         let beside = view.taxel.radius * BESIDE;
         let place = view.to_mesh(beside.extend(view.taxel.behind));
@@ -111,12 +111,12 @@ impl<'a> MeshAt<'a> {
     }
 }
 
-/// Transform from a mesh's frame to a taxel's frame: z along the taxel's axis, origin at its rest centre.
+/// Transform from a mesh's frame to a taxel's frame: z along the taxel's axis, origin at the centre of the undeflected taxel.
 struct AxisView<'a> {
     taxel: &'a PlacedTaxel,
     rotation: DMat3,
     translation: DVec3,
-    /// Absolute values of the rotation matrix, which rotate the half-size of a box.
+    /// Absolute values of the rotation matrix, which give the half-size of a rotated bounding box.
     absolute: DMat3,
 }
 
@@ -151,7 +151,8 @@ impl<'a> AxisView<'a> {
         self.rotation.transpose() * DVec3::Z
     }
 
-    /// Returns a lower bound of the heights at which a triangle in a box stops the taxel; infinite if no triangle can, or only triangles behind the substrate.
+    /// Returns a lower bound of the heights at which a triangle in a bounding box stops the taxel. The bound is infinite if no triangle can stop it, or only
+    /// triangles behind the substrate.
     fn lowest(&self, bounds: &Aabb) -> f64 {
         let center = self.rotation * bounds.center() + self.translation;
         let half = self.absolute * (0.5 * bounds.size()) + self.taxel.radius;

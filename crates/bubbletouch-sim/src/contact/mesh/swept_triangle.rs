@@ -13,11 +13,12 @@ use crate::contact::law;
 use crate::mesh::Triangle;
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-/// Cosine below which a steep face or edge is replaced by its edges or corners. The projection of such a part of 0.1 m is less than a nanometre,
-/// and its heights would be dominated by rounding.
+/// Cosine to the vertical below which a steep face is replaced by its edges, and a steep edge by its corners. The projection of such a face or edge of 0.1 m
+/// is less than a nanometre, and its heights would be dominated by rounding.
 const STEEP: f64 = 1e-8;
 
-/// Returns the height of the centre of a ball that rises along z at (x, y) and stops at a triangle; `None` if the ball misses the triangle.
+/// Returns the height of the centre of a ball that rises along z at the position `at` (x, y) until a triangle stops it; `None` if the ball misses the
+/// triangle.
 ///
 /// All lengths are in metres. The triangle is solid from both sides and may degenerate to a line or a point.
 pub fn stopping_height(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f64> {
@@ -34,18 +35,18 @@ pub fn stopping_height(triangle: &Triangle, radius: f64, at: DVec2) -> Option<f6
     heights.flatten().reduce(f64::min)
 }
 
-/// Returns the height of the ball's centre at which a corner stops the ball, metres.
+/// Returns the height of the ball's centre at which a corner of a triangle stops the ball, metres; `None` if the ball misses the corner.
 #[inline]
 pub(crate) fn corner_height(corner: DVec3, radius: f64, at: DVec2) -> Option<f64> {
     let q = radius * radius - at.distance_squared(corner.xy());
     (q > 0.0).then(|| -law::deflection(q, corner.z))
 }
 
-/// Face of a triangle, moved down by the ball's radius along the face's normal.
+/// Face of a triangle, moved down by the ball's radius along the normal of the face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweptFace {
     corners: [DVec2; 3],
-    /// Unit normal; if it points up, the corners are counter-clockwise as seen from above.
+    /// Unit normal of the face; if it points up, the corners are counter-clockwise as seen from above.
     normal: DVec3,
     height_of_first: f64,
 }
@@ -65,14 +66,14 @@ impl SweptFace {
         })
     }
 
-    /// Returns the lowest and highest corner of the ground rectangle under the face.
+    /// Returns the lowest and the highest corner of the rectangle (x, y) below the face.
     #[inline]
     pub fn ground(&self) -> (DVec2, DVec2) {
         let [a, b, c] = self.corners;
         (a.min(b).min(c), a.max(b).max(c))
     }
 
-    /// Returns the height of the ball's centre at which the face stops the ball, metres.
+    /// Returns the height of the ball's centre at which the face stops the ball, metres; `None` if the ball misses the face.
     #[inline]
     pub fn height(&self, at: DVec2) -> Option<f64> {
         let [a, b, c] = self.corners;
@@ -86,7 +87,7 @@ impl SweptFace {
     }
 }
 
-/// Lower side of a tube around an edge, without the part that adjacent faces hide.
+/// Lower side of a tube around an edge of a triangle, without the part that adjacent faces hide.
 ///
 /// Distances along and beside the edge are stored as multiples of its ground length, because most tests are decided before this length is needed.
 #[derive(Clone, Copy, Debug)]
@@ -96,9 +97,9 @@ pub(crate) struct SweptEdge {
     /// Squared length of the edge's projection onto the ground, m².
     length2: f64,
     radius: f64,
-    /// Range of distances beside the edge, positive to the left, in which the edge can stop the ball; multiplied by the edge's length.
+    /// Range of distances beside the edge, positive to the left, in which the edge can stop the ball; stored as multiples of the edge's projected length.
     beside: [f64; 2],
-    /// Normals of the two adjacent faces, pointing down, if the faces lie on different sides of the edge.
+    /// Normals of the two adjacent faces, pointing down, if the faces lie on different sides of the edge; otherwise `None`.
     between: Option<[DVec3; 2]>,
 }
 
@@ -147,10 +148,10 @@ impl SweptEdge {
         })
     }
 
-    /// Returns the lowest and highest corner of a ground rectangle that contains all places where the edge can stop the ball.
+    /// Returns the lowest and the highest corner of a rectangle (x, y) that contains all positions at which the edge can stop the ball.
     ///
-    /// The places are the edge moved by ρ along all directions between its faces' normals. The arc of directions deviates from its chord by at most
-    /// ρ (1 − cos β) / 2, where β is the angle between the normals.
+    /// These positions are the edge moved by the ball's radius ρ along all directions between its faces' normals. The arc of directions deviates from its
+    /// chord by at most ρ (1 − cos β) / 2, where β is the angle between the normals.
     #[inline]
     pub fn ground(&self) -> (DVec2, DVec2) {
         let to = (self.from + self.edge).xy();
@@ -163,7 +164,7 @@ impl SweptEdge {
         (low + a.min(b) - arc, high + a.max(b) + arc)
     }
 
-    /// Returns the height of the ball's centre at which the visible part of the edge stops the ball, metres.
+    /// Returns the height of the ball's centre at which the visible part of the edge stops the ball, metres; `None` if the ball misses this part.
     #[inline]
     pub fn height(&self, at: DVec2) -> Option<f64> {
         let from = at - self.from.xy();

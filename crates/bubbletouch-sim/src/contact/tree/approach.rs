@@ -13,7 +13,7 @@ use glam::DVec3;
 use std::cell::Cell;
 use std::sync::OnceLock;
 
-/// Approach of a patch along a direction, for presses past first contact.
+/// Approach of a patch along a direction, for presses to a depth or force past first contact.
 ///
 /// First contact depends on the taxels' spheres and the direction, not on the taxels' axes. The search therefore uses a copy of the taxels whose axes are the
 /// direction and whose strokes are unlimited. The taxel with the largest deflection touches first.
@@ -21,7 +21,7 @@ use std::sync::OnceLock;
 pub struct Approach<'a> {
     patch: &'a Patch,
     direction: DVec3,
-    /// Copy of the taxels with axes along the direction, created on first use; the copy along z belongs to the patch.
+    /// Copy of the taxels with axes along the direction, created on first use; for the direction z the patch itself stores the copy.
     travelling: OnceLock<Travelling>,
 }
 
@@ -57,8 +57,8 @@ impl<'a> Approach<'a> {
         self.travelling.get_or_init(make)
     }
 
-    /// Returns the travel at which a taxel first meets an object, metres; negative if the patch is past this contact. Returns `None` if the path misses all
-    /// objects.
+    /// Returns the travel of the patch at which a taxel first meets an object, metres; negative if the patch is past this contact. Returns `None` if the path
+    /// misses all objects.
     ///
     /// `patch_from_objects` has one pose per object.
     ///
@@ -83,7 +83,7 @@ impl<'a> Approach<'a> {
         (farthest > 0.0).then_some(end - farthest)
     }
 
-    /// Returns the larger of `others` and the largest deflection of the travelling taxels (axes along the direction) by an object, metres.
+    /// Returns the larger of `others` and the largest deflection that an object requires of a taxel whose axis is the direction of travel, metres.
     fn farthest(&self, object: &Model, pose: &Pose, others: f64) -> f64 {
         let mut farthest = others;
         match object {
@@ -100,8 +100,8 @@ impl<'a> Approach<'a> {
         farthest
     }
 
-    /// Returns the larger of `others` and the largest deflection by a sphere union, metres. The cluster with the largest bound is evaluated first, then those
-    /// whose bound exceeds the deflection found.
+    /// Returns the larger of `others` and the largest deflection that a sphere union requires of a taxel, metres. The cluster with the largest bound is
+    /// evaluated first, then those whose bound exceeds the deflection found.
     fn farthest_sphere(&self, union: &SphereUnion, pose: &Pose, others: f64) -> f64 {
         let (placed, travelling) = (PlacedUnion::new(union, pose), &self.travelling().taxels);
         let mut foremost = (others, None);
@@ -133,7 +133,8 @@ impl<'a> Approach<'a> {
         self.travelling().front + ball.radius - ball.center.dot(self.direction)
     }
 
-    /// Returns an upper bound of the deflection of a tree node's taxels by a ball. All taxels are parallel, so the bound uses the distance from their axes.
+    /// Returns an upper bound of the deflections, metres, that a ball requires of the taxels in a tree node. All taxels are parallel, so the bound uses the
+    /// distance from their axes.
     #[inline(always)]
     fn most_of(&self, node: &Node, ball: &Sphere) -> f64 {
         let room = node.margin(ball.center, ball.radius);
@@ -143,8 +144,8 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// Presses to a depth (metres, positive) past first contact and records the contacts in the workspace. Returns `None`, with zero
-    /// deflections, if the path misses all objects.
+    /// Presses the patch to a depth (metres, positive) past first contact and records the contacts in the workspace. Returns `None`, with zero deflections,
+    /// if the path misses all objects.
     ///
     /// A part of an object that pushes a taxel continues to push it behind the substrate, so no object passes through the skin.
     ///
@@ -161,8 +162,8 @@ impl<'a> Approach<'a> {
         self.press_and_slide(objects, patch_from_objects, motion, None, workspace)
     }
 
-    /// Presses to a depth and then slides along a straight line (metres, in the patch frame). With friction, the objects drag the taxels sideways. The friction
-    /// is zero at the start of the path; `friction` then contains the forces at the end of the path.
+    /// Presses the patch to a depth and then slides it along a straight line (metres, in the patch frame). With friction, the objects drag the taxels
+    /// sideways. The friction is zero at the start of the path; `friction` then contains the forces at the end of the path.
     ///
     /// # Panics
     /// If the number of poses differs from the number of objects, or the friction belongs to another patch.
@@ -217,7 +218,7 @@ impl<'a> Approach<'a> {
 }
 
 for_instructions! {
-    /// Returns the larger of `others` and the largest deflection by each of some spheres, metres.
+    /// Returns the larger of `others` and the largest deflection that any of the listed spheres requires of a taxel, metres.
     fn farthest_of_each(
         approach: &Approach,
         placed: &PlacedUnion,

@@ -12,7 +12,7 @@ use crate::objects::Model;
 use crate::text::in_range::positive;
 
 impl Approach<'_> {
-    /// Presses until the springs carry `force` newtons together, Σ k δ, to within a relative 1e-12 or the last bit of the travel.
+    /// Presses the patch until the springs of all taxels together carry `force` newtons, to within a relative 1e-12 or the last bit of the travel.
     ///
     /// `patch_from_objects` contains the objects' poses before the motion, one per object. Returns `None` if the path misses all objects; the workspace then
     /// contains the last press on the path. On a curved skin several travels can have this force; the first one found by steps of half a stroke is returned. If
@@ -41,7 +41,7 @@ impl Approach<'_> {
 }
 
 impl ApproachPath<'_> {
-    /// Increases the travel until the force is reached.
+    /// Increases the travel until the springs carry `force` newtons; returns `None` if the path misses all objects.
     fn go(&mut self, force: f64) -> Result<Option<Contact>> {
         let ends = meeting(
             self.patch,
@@ -65,7 +65,8 @@ impl ApproachPath<'_> {
         }))
     }
 
-    /// Returns two travels, metres: the force is smaller than `force` at the first and not smaller at the second. Returns `None` if nothing is touched.
+    /// Returns two travels, metres, between which the springs reach `force`: smaller at the first, not smaller at the second. Returns `None` if nothing is
+    /// touched.
     fn bracket(&mut self, [start, end]: [f64; 2], force: f64) -> Result<Option<[f64; 2]>> {
         let mut largest = (0.0, start);
         let n_steps = self.patch.n_steps(end - start);
@@ -89,7 +90,7 @@ impl ApproachPath<'_> {
         Err(unreachable_force(force, largest.0, &where_to))
     }
 
-    /// Returns the force Σ k δ, N, and its derivative with respect to the travel, N/m.
+    /// Returns the total spring force at a travel, N, and its derivative with respect to the travel, N/m.
     fn sample(&mut self, travel: f64) -> Sample {
         self.press(travel);
         sample(

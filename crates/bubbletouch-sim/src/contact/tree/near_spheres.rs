@@ -6,7 +6,7 @@ use crate::objects::{Sphere, SphereUnion};
 use crate::world::{LEAF, Leaf};
 use glam::{DMat3, DVec3};
 
-/// Spheres of an object, placed in the patch frame.
+/// Spheres of an object, with their pose in the patch frame.
 pub(crate) struct PlacedUnion<'a> {
     union: &'a SphereUnion,
     rotation: DMat3,
@@ -22,7 +22,7 @@ impl<'a> PlacedUnion<'a> {
         }
     }
 
-    /// Returns the sphere with the given index, in the patch frame.
+    /// Returns the sphere with the given index in the object, in the patch frame.
     #[inline(always)]
     pub fn at(&self, number: u32) -> Sphere {
         self.place(self.union.spheres()[number as usize])
@@ -47,7 +47,7 @@ impl<'a> PlacedUnion<'a> {
         self.union.clusters().numbers(cluster)
     }
 
-    /// Collects the indices of the spheres of those clusters for which `may_count` returns true; ascending.
+    /// Collects the indices of the spheres in those clusters for whose bounding ball `may_count` returns true; ascending.
     pub fn gather(&self, mut may_count: impl FnMut(&Sphere) -> bool, numbers: &mut Vec<u32>) {
         numbers.clear();
         for (cluster, ball) in self.clusters() {

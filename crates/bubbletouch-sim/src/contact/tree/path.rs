@@ -8,13 +8,13 @@ use crate::objects::Model;
 use crate::world::{Patch, Taxel, TaxelTree};
 use glam::DVec3;
 
-/// Length of a step relative to the shortest stroke. If larger, a short peak of the force may be missed, and small spheres may pass through; if smaller,
-/// presses are wasted.
+/// Length of a step along the path, relative to the shortest stroke of a taxel. If larger, a short peak of the force may be missed, and small spheres may
+/// pass through; if smaller, presses are wasted.
 const STEP: f64 = 0.5;
-/// Length of a step with friction relative to the smallest taxel's radius. If larger, taxels that come into contact within a step are dragged too little. If
-/// smaller, more presses change the shear by at most one per cent.
+/// Length of a step with friction, relative to the smallest radius of a taxel. If larger, taxels that come into contact within a step are dragged too little.
+/// If smaller, more presses change the shear by at most one per cent.
 const FRICTION_STEP: f64 = 0.25;
-/// Maximum number of steps of a path; if strokes are far shorter than the path, steps become longer.
+/// Maximum number of steps along a path. If strokes are far shorter than the path, the steps become longer.
 const MAX_STEPS: f64 = 4096.0;
 
 /// Path of a patch along a direction (unit vector, in the patch frame), with the poses of the objects before the motion.
@@ -27,7 +27,7 @@ pub(crate) struct ApproachPath<'a> {
     pub workspace: &'a mut Workspace,
 }
 
-/// Whether a press along a path records contacts.
+/// Selection whether a press along a path records contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ContactRequest {
     /// Contacts are recorded at the end of the path.
@@ -37,7 +37,7 @@ pub(crate) enum ContactRequest {
 }
 
 impl Patch {
-    /// Returns the number of steps for a part of the path of this length, metres.
+    /// Returns the number of steps for a part of the path with this `length`, metres.
     pub fn n_steps(&self, length: f64) -> usize {
         let step = STEP * self.least(|taxel| taxel.stroke);
         (length / step).ceil().clamp(1.0, MAX_STEPS) as usize
@@ -62,7 +62,7 @@ impl ApproachPath<'_> {
         }
     }
 
-    /// Returns the number of steps with friction for a part of the path of this length, metres.
+    /// Returns the number of steps with friction for a part of the path with this `length`, metres.
     pub fn n_friction_steps(&self, length: f64) -> usize {
         let step = FRICTION_STEP * self.patch.least(|taxel| taxel.radius);
         // Rounding of the length must not add a step.
@@ -71,7 +71,7 @@ impl ApproachPath<'_> {
         n_steps.max(self.patch.n_steps(length))
     }
 
-    /// Presses the patch at a travel, metres.
+    /// Presses the patch after a `travel` along the path, metres.
     pub fn press(&mut self, travel: f64) -> Contact {
         self.press_at(travel * self.direction)
     }
@@ -115,7 +115,7 @@ impl ApproachPath<'_> {
         counts
     }
 
-    /// Presses from one travel to another and then slides along a straight line; `None` if the patch meets nothing.
+    /// Presses the patch from one travel to another and then slides it along a straight line; `None` if the patch meets nothing.
     pub fn press_and_slide(
         &mut self,
         travels: Option<[f64; 2]>,
@@ -162,7 +162,7 @@ impl ApproachPath<'_> {
     }
 }
 
-/// Returns the ends of `n` equal parts of an interval; the last one is the interval's end.
+/// Returns the ends of `n` equal parts of an interval; the end of the last part is exactly the interval's end.
 fn parts([start, end]: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
     (1..=n).map(move |number| match number == n {
         true => end,
@@ -170,7 +170,7 @@ fn parts([start, end]: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Returns the travels between which the bounding balls of the moving patch and of objects meet; `None` if none meet.
+/// Returns the travels between which the bounding ball of the moving patch meets the bounding balls of objects; `None` if none meet.
 pub(crate) fn meeting(
     patch: &Patch,
     objects: &[Model],

@@ -27,7 +27,8 @@ pub(crate) fn push(
     push_held(patch, objects, patch_from_objects, workspace);
 }
 
-/// Raises the deflections of the taxels of a tree; the tree may be built from an even grid. Held parts are ignored.
+/// Raises the deflections of the taxels of a tree, which may have been built from an even grid. The function ignores object parts that are marked as held
+/// ([`Workspace::hold`]).
 pub(crate) fn push_tree(
     (taxels, even_grid): (&TaxelTree, Option<&EvenGrid>),
     n_taxels: usize,
@@ -62,7 +63,8 @@ pub(crate) fn push_tree(
     }
 }
 
-/// Pushes taxels by parts of objects that are held behind the substrate; parts in front of the substrate push their taxels in any case.
+/// Raises deflections by the object parts that are marked as held, which push their taxels even from behind the substrate. Parts in front of the substrate
+/// push their taxels in any case.
 fn push_held(
     patch: &Patch,
     objects: &[Model],
@@ -97,7 +99,7 @@ fn push_held(
     workspace.held = held;
 }
 
-/// Pushes taxels in rows without a search; spheres above all taxels are skipped. The result is bitwise equal to [`push_by_spheres`].
+/// Raises deflections row by row without a tree search; spheres above all taxels are skipped. The result is bitwise equal to [`push_by_spheres`].
 fn push_along_rows(
     grid: &EvenGrid,
     (object, union, near): (usize, &SphereUnion, &[u32]),
@@ -132,7 +134,7 @@ fn push_along_rows(
 }
 
 for_instructions! {
-    /// Pushes the taxels by the nearby spheres of an object.
+    /// Raises the deflections of the taxels by the nearby spheres of an object.
     fn push_by_spheres(
         taxels: &TaxelTree,
         placed: (usize, &PlacedUnion, &[u32]),
@@ -181,7 +183,7 @@ fn push_by_mesh(
     });
 }
 
-/// Computes the deflections and records the part that determines each deflection.
+/// Computes the deflections of the taxels and records the object part that determines each deflection.
 pub(crate) fn deflect(
     patch: &Patch,
     objects: &[Model],
@@ -290,7 +292,7 @@ fn meet(
     counts
 }
 
-/// Returns the point of an object's part (sphere or triangle) nearest to a position, and the direction from this point to the position; in the patch frame.
+/// Returns the point of an object's part (sphere or triangle) nearest to `place`, and the direction from this point to `place`; in the patch frame.
 fn nearest_point(object: &Model, part: usize, pose: &Pose, place: DVec3) -> (DVec3, DVec3) {
     match object {
         Model::Spheres(union) => {
