@@ -11,38 +11,38 @@ use glam::DVec3;
 pub struct Frame {
     /// Time since the start of the scene, seconds.
     pub time: f64,
-    /// Reading of each patch, in the order of the plan.
+    /// Reading of each patch of skin, in the order of the plan.
     pub patches: Vec<PatchReading>,
     /// Reading of each object, in the order of the plan.
     pub objects: Vec<ObjectReading>,
-    /// Contacts between free objects and planes or other objects. Planes and objects have their numbers in the plan.
+    /// Contacts of free objects with planes or with other objects. Planes and objects have their numbers in the plan.
     pub touches: Vec<Touch>,
 }
 
-/// Pose, deflections and forces of a patch.
+/// Pose, deflections and forces of a patch of skin at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PatchReading {
     /// Pose of the patch, `world_from_patch`.
     pub pose: Pose,
     /// Deflections of the taxels, metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// Forces along the taxel axes, newtons, shape (n_taxels,), at least 0; zero on a taxel that only relaxes. If a taxel at its stroke carries a free object,
-    /// the reaction of its stop is included. The reaction of a stop to an imposed object is indeterminate and not included.
+    /// Forces along the taxel axes, newtons, shape (n_taxels,), at least 0; zero on a taxel that only relaxes without contact. If a taxel at its stroke carries
+    /// a free object, the reaction of its stop is included. The reaction of a stop to an imposed object is indeterminate and not included.
     pub force: Vec<f64>,
-    /// Forces of the objects on the taxels, newtons, patch frame, shape (n_taxels,). Each is the sum of the axial force, transverse forces of inclined
-    /// contacts, and friction. The sum over all taxels is the force of `wrench`.
+    /// Force of the objects on each taxel, newtons, patch frame, shape (n_taxels,). Each force is the sum of the axial force, the transverse force of an
+    /// inclined contact, and friction. The sum over all taxels is the force of `wrench`.
     pub force3: Vec<DVec3>,
     /// Output of the signal chain, metres or newtons, shape (n_taxels,). `None` if the patch has no signal chain.
     pub signal: Option<Vec<f64>>,
     /// Number of taxels with a positive force.
     pub n_touched: usize,
-    /// Number of taxels at their stroke that an object would push further, or whose stop carries a free object.
+    /// Number of taxels at their stroke (maximum deflection) that an object would push further, or whose stop carries a free object.
     pub n_saturated: usize,
-    /// Number of taxels with a grazing contact (`contact::GRAZING`).
+    /// Number of taxels whose contact is grazing, that is, almost perpendicular to the taxel axis (`contact::GRAZING`).
     pub n_grazing: usize,
-    /// Sum of the reactions of all stops to free objects, newtons; included in `force` and `force3`.
+    /// Sum of the forces of all stops (taxels at their stroke) on free objects, newtons; included in `force` and `force3`.
     pub stop_force: f64,
-    /// Wrench of the objects on the patch, in the patch frame, including friction.
+    /// Force and torque of the objects on the patch, in the patch frame, including friction.
     pub wrench: Wrench,
     /// Friction state of the patch; `None` if the patch has no friction.
     pub friction: Option<FrictionReading>,
@@ -50,48 +50,48 @@ pub struct PatchReading {
     pub center_of_pressure: Option<DVec3>,
 }
 
-/// Friction state of a patch.
+/// Friction force on a patch, and numbers of sticking and slipping taxels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionReading {
-    /// Friction force on the patch, newtons, patch frame; a part of the wrench's force.
+    /// Friction force on the patch, newtons, patch frame; this force is included in the wrench of the patch.
     pub shear: DVec3,
-    /// Number of taxels with sticking contacts.
+    /// Number of taxels whose contacts stick, that is, do not slide.
     pub n_sticking: usize,
     /// Number of taxels whose contacts slipped during the last step.
     pub n_slipping: usize,
 }
 
-/// Pose of an object, and how the pose is determined.
+/// Pose of an object, and the rule by which the pose is determined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectReading {
-    /// Pose of the object, `world_from_object`; for an escaped object, its last pose.
+    /// Pose of the object, `world_from_object`; for an escaped object, the last pose before the escape.
     pub pose: Pose,
-    /// How the pose is determined: imposed, pressed, free or escaped.
+    /// Rule by which the pose is determined: imposed, pressed, free or escaped.
     pub held: PoseControl,
-    /// Equilibrium of a free object with the residual of the forces; `None` for other objects and after an escape.
+    /// Equilibrium of a free object, including the residual of the forces; `None` for other objects and after an escape.
     pub balance: Option<Equilibrium>,
 }
 
-/// How the pose of an object is determined.
+/// Rule by which the pose of an object is determined.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PoseControl {
     /// The pose follows an imposed motion.
     #[default]
     Imposed,
-    /// The pose follows an imposed motion, with an additional travel that controls the force on a patch.
+    /// The pose follows an imposed motion; in addition, the object travels along a line to control the force on a patch.
     Pressed {
         /// Distance of the object from the pose of its imposed motion, metres.
         travel: f64,
-        /// Spring force Σ k δ of the patch, newtons.
+        /// Sum of the spring forces of all taxels of the patch, newtons.
         force: f64,
-        /// Target of the spring force, newtons.
+        /// Target of the sum of spring forces, newtons.
         wanted: f64,
     },
     /// The object is free and in equilibrium.
     AtRest,
     /// The object is free but not in equilibrium, because the solver reached its iteration limit.
     NotConverged,
-    /// The object was free, left the skin and has no contact.
+    /// The object was free, left the skin and has no contact any more.
     Escaped {
         /// Time of the escape, seconds.
         time: f64,
@@ -100,11 +100,12 @@ pub enum PoseControl {
     },
 }
 
-/// Tolerance for reaching a target force, N, relative above 1 N. With a smaller value, rounding errors of stiff skins count as missed forces.
+/// Tolerance within which a target force counts as reached, N (relative for forces above 1 N). With a smaller value, rounding errors of stiff skins count as
+/// missed forces.
 const REACHED: f64 = 1e-9;
 
 impl PoseControl {
-    /// Returns whether the object is pressed and its force differs from the target.
+    /// Returns whether the object is pressed and the force on its patch differs from the target.
     pub fn is_off(&self) -> bool {
         match self {
             Self::Pressed { force, wanted, .. } => {

@@ -14,16 +14,16 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::SphereUnion;
 
-/// All free objects of a scene, with their common equilibrium.
+/// All free objects of a scene (objects that move under gravity and contact forces), with their common equilibrium.
 #[derive(Clone, Debug)]
 pub(super) struct FreeObjects {
     all: Vec<Free>,
-    /// Scene numbers of the free objects in the last equilibrium.
+    /// Scene numbers of the free objects that took part in the last equilibrium.
     there: Vec<usize>,
-    /// Scene numbers of the objects that are not free (imposed or pressed).
+    /// Scene numbers of the imposed or pressed objects, which act as obstacles.
     obstacles: Vec<usize>,
     balancer: EquilibriumSolver,
-    /// Deflections of each patch caused by objects that are not free, metres; empty if none of them touches the patch.
+    /// For each patch, the deflections that imposed and pressed objects cause, metres; empty if none of these objects touches the patch.
     pushed: Vec<Vec<f64>>,
     workspace: Workspace,
 }
@@ -35,7 +35,7 @@ struct Free {
     mass: f64,
     center_of_mass: glam::DVec3,
     reading: ObjectReading,
-    /// Whether the object was placed and has not been in equilibrium since.
+    /// Whether the object was placed by hand and has not reached an equilibrium since.
     is_put: bool,
 }
 
@@ -71,7 +71,7 @@ impl FreeObjects {
         }
     }
 
-    /// Places the object with this scene number. In the next step, the object moves from this pose to its equilibrium.
+    /// Places the object with this scene number at a pose. In the next step, the object moves from this pose to its equilibrium.
     pub fn put(&mut self, object: usize, pose: Pose) {
         for free in self.all.iter_mut().filter(|free| free.object == object) {
             free.reading = at_start(pose);
@@ -79,8 +79,8 @@ impl FreeObjects {
         }
     }
 
-    /// Computes the equilibrium of all objects that have not escaped; returns whether it converged. `dt` is the time since the last call, infinite at the
-    /// start.
+    /// Computes the common equilibrium of all objects that have not escaped; returns whether the solver converged. `dt` is the time since the last call,
+    /// infinite at the start.
     pub fn solve_equilibrium(
         &mut self,
         plan: &ScenePlan,
@@ -145,13 +145,13 @@ impl FreeObjects {
             .all(|free| free.reading.held != PoseControl::NotConverged))
     }
 
-    /// Iterates over the loads of free objects on the taxels of a patch, in taxel order.
+    /// Iterates over the forces between free objects and the taxels of a patch, in taxel order.
     pub fn on_patch(&self, patch: usize) -> impl Iterator<Item = &TaxelLoad> {
         let loads = self.balancer.loads().iter();
         loads.filter(move |load| load.skin == patch)
     }
 
-    /// Returns the tangential springs that hold free objects on a patch with friction, in taxel order, with scene numbers of objects.
+    /// Returns the tangential springs that hold free objects on a patch with friction, in taxel order; the springs contain the scene numbers of the objects.
     pub fn tips_on(&self, patch: usize) -> Vec<TangentialSpringState> {
         let tips = self.balancer.tangential_springs().iter();
         let own = tips
@@ -163,7 +163,7 @@ impl FreeObjects {
         own.collect()
     }
 
-    /// Iterates over the contacts of free objects with rigid bodies, with scene numbers of objects and planes.
+    /// Iterates over the contacts of free objects with planes and other objects, which are identified by their scene numbers.
     pub fn touches(&self) -> impl Iterator<Item = Touch> {
         self.balancer.touches().iter().map(|touch| Touch {
             object: self.there[touch.object],
@@ -178,7 +178,7 @@ impl FreeObjects {
         })
     }
 
-    /// Attaches the tangential springs of patches with friction to objects that were just placed.
+    /// For objects that were just placed, attaches the tangential springs of all patches with friction.
     fn hold_by_tips(&mut self, plan: &ScenePlan, skins: &mut [SkinState], objects: &PlacedObjects) {
         let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
         for free in self.all.iter_mut().filter(|free| free.is_put) {
@@ -196,7 +196,7 @@ impl FreeObjects {
         }
     }
 
-    /// Computes the deflections of each patch caused by objects that are not free.
+    /// For each patch, computes the deflections that imposed and pressed objects cause.
     fn push_by_others(&mut self, plan: &ScenePlan, skins: &[SkinState], objects: &PlacedObjects) {
         let patches = plan.patches.iter().zip(skins).zip(&mut self.pushed);
         for ((patch, skin), pushed) in patches {
@@ -209,7 +209,7 @@ impl FreeObjects {
         }
     }
 
-    /// Writes the poses and equilibria of all free objects to their readings.
+    /// Writes the pose and equilibrium of each free object to the entry of `readings` with the object's scene number.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for free in &self.all {
             readings[free.object] = free.reading;

@@ -12,17 +12,17 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
-/// Maximum distance from a facet's middle to the round shape, relative to the pitch. With a larger value, taxels are deeper; with a smaller value, more
-/// triangles are needed.
+/// Maximum distance between a facet's middle and the round shape that it replaces, relative to the taxel pitch. With a larger value, taxels lie deeper; with a
+/// smaller value, more triangles are needed.
 const SAGITTA: f64 = 0.02;
-/// Minimum and maximum number of facets around a round shape. More facets would need memory without moving taxels noticeably.
+/// Minimum and maximum number of facets around a circle of a round shape. More facets would need memory without moving taxels noticeably.
 const N_FACETS: [f64; 2] = [16.0, 720.0];
 
-/// Selection of a link and its shapes.
+/// Selection of the shapes of a robot link that form a surface.
 pub(super) struct LinkSurface<'a> {
     /// Name of the link.
     pub link: &'a str,
-    /// Role of the shapes; with `None`, the collision shapes if the link has any, otherwise the visual shapes.
+    /// Role of the selected shapes. If `None`, the collision shapes are selected if the link has any, otherwise the visual shapes.
     pub role: Option<ShapeRole>,
 }
 
@@ -76,7 +76,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns all shapes of a role that have a volume. Without a role, returns the collision shapes, or the visual shapes if there are none.
+/// Returns all shapes of a link that have the given role and a volume. Without a role, returns the collision shapes, or the visual shapes if there are none.
 fn solids(link: &Link, role: Option<ShapeRole>) -> Vec<&LinkShape> {
     let of = |role: ShapeRole| -> Vec<&LinkShape> {
         let shapes = link.shapes.iter();
@@ -100,7 +100,7 @@ fn kind(role: Option<ShapeRole>) -> &'static str {
     }
 }
 
-/// Reads a mesh file named in a URDF file in `folder`, and multiplies its coordinates by the scale.
+/// Reads a mesh file named in a URDF file in `folder`, and multiplies the coordinates by `scale`.
 fn read_link_mesh(file: &str, scale: DVec3, folder: Option<&Path>) -> Result<TriangleMesh> {
     let Some(path) = find_mesh(file, folder.unwrap_or(Path::new(""))) else {
         let allowed =
@@ -120,8 +120,8 @@ fn read_link_mesh(file: &str, scale: DVec3, folder: Option<&Path>) -> Result<Tri
     TriangleMesh::new(&place, vertices.collect(), triangles.collect())
 }
 
-/// Returns the path of a mesh file named in a URDF file in `folder`: a path relative to the folder, `file://…`, or `package://NAME/…`. A package path is
-/// searched in each parent folder as NAME/… and without NAME, because a copy of a package may have another name.
+/// Returns the path of a mesh file, given its name in a URDF file in `folder`: a path relative to the folder, `file://…`, or `package://NAME/…`. A package path
+/// is searched in each parent folder, both as NAME/… and without NAME, because a copy of a package may have another name.
 fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
     let in_package = ["package://", "model://"]
         .iter()
@@ -140,7 +140,7 @@ fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
     found.find(|path| path.is_file())
 }
 
-/// Returns the facets of a shape that is not a mesh, in the shape's own frame.
+/// Returns the facets of a box, cylinder, ball or other shape that is not a mesh, in the frame of the shape.
 fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
     let (vertices, triangles) = match *geometry {
         LinkGeometry::Box { size } => return TriangleMesh::cuboid("shape", size),
@@ -158,7 +158,7 @@ fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
 
 type Facets = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// Returns the facets of a ball or capsule; each hemisphere is shifted by `half` along z.
+/// Returns the facets of a ball or capsule, whose hemispheres are shifted by `half` up and down along z.
 fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
     let n = n_facets(radius, pitch);
     let n_rings = n.div_ceil(4).max(2);
@@ -175,13 +175,14 @@ fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
     revolved(&profile, n)
 }
 
-/// Returns the number of facets around a circle for which their middles are within [`SAGITTA`] pitches of the circle: r (1 − cos(π/n)) ≤ sagitta.
+/// Returns the number of facets around a circle for which the middle of each facet is at most [`SAGITTA`] times the pitch from the circle.
 fn n_facets(radius: f64, pitch: f64) -> usize {
     let cos = (1.0 - SAGITTA * pitch / radius).max(0.0);
     (PI / cos.acos()).ceil().clamp(N_FACETS[0], N_FACETS[1]) as usize
 }
 
-/// Returns the surface of revolution about z with n facets. The profile (r, z) starts at its lower end on the axis and ends at its upper end.
+/// Returns the surface of revolution of a profile about z, with n facets around each circle. The profile (r, z) starts at its lower end on the axis and ends at
+/// its upper end.
 fn revolved(profile: &[(f64, f64)], n: usize) -> Facets {
     let (lower, upper) = (profile[0].1, profile[profile.len() - 1].1);
     let rings = &profile[1..profile.len() - 1];

@@ -8,12 +8,12 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::scene::spec_motion::PoseSpec;
 
-/// Body to which a patch is fixed.
+/// Body to which a patch of skin or another mounted body is fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mount {
-    /// Fixed to the world; the pose `world_from_mounted` is constant.
+    /// The world: the pose `world_from_mounted` is constant.
     World(Pose),
-    /// Fixed to a link of a robot.
+    /// A link of a robot.
     Link {
         /// Index of the robot in the scene.
         robot: usize,
@@ -22,7 +22,7 @@ pub enum Mount {
         /// Pose of the mounted body on the link, `link_from_mounted`.
         link_from_mounted: Pose,
     },
-    /// Fixed to an object of the scene.
+    /// An object of the scene.
     Object {
         /// Index of the object in the scene.
         object: usize,
@@ -50,7 +50,7 @@ impl Mount {
 }
 
 impl Reader<'_> {
-    /// Returns the body to which a patch is fixed.
+    /// Returns the body to which a patch is fixed: an object, a robot link or the world.
     pub fn mount_of_patch(
         &self,
         key: &str,
@@ -81,7 +81,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the mount for an optional robot name and an optional link name.
+    /// Returns the mount that is described by an optional robot name and an optional link name.
     pub fn mount(
         &self,
         key: &str,
@@ -108,7 +108,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the indices of a robot and of its link; without a link, of its base.
+    /// Returns the index of a robot and the index of its link with the given name; without a name, the index of its base.
     pub fn link(
         &self,
         key: &str,

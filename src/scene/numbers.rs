@@ -5,13 +5,13 @@ use serde::de::{Deserializer, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// One number for all elements, or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
+/// One number for all taxels or times, or a list: `stiffness_n_per_m = 100.0` or `stiffness_n_per_m = [90.0, 110.0]`.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Numbers {
-    /// One number for all elements.
+    /// One number that holds for all elements.
     One(f64),
-    /// One number for each element.
+    /// List with one number for each element.
     Each(Vec<f64>),
 }
 

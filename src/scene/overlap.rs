@@ -9,11 +9,11 @@ use crate::geometry::Pose;
 use crate::inputs::check::Check;
 use crate::objects::{Model, Sphere};
 
-/// Maximum overlap, as a fraction of the smaller object's radius. With a larger value, deeper overlaps are accepted; with a smaller value, objects of coarse
-/// spheres are rejected.
+/// Maximum accepted overlap of two objects at the start, as a fraction of the smaller object's radius. With a larger value, deeper overlaps are accepted; with
+/// a smaller value, objects of coarse spheres are rejected.
 const MAX_SHARE: f64 = 0.5;
 
-/// Object of a scene at its initial pose, with its spheres in the object's frame.
+/// Object of a scene at its initial pose, with its spheres in the object frame.
 struct Start<'a> {
     object: &'a PlannedObject,
     spheres: &'a [Sphere],
@@ -22,7 +22,7 @@ struct Start<'a> {
 
 /// Checks that no free object starts inside another object.
 ///
-/// The tolerance is the sum of both objects' surface errors.
+/// The tolerance for the overlap is the sum of the surface errors of both objects.
 ///
 /// # Errors
 /// If a free object overlaps another object by more than the tolerance. The error names both objects and the overlap of their deepest spheres.
@@ -110,7 +110,7 @@ impl Start<'_> {
         near
     }
 
-    /// Returns the largest overlap of two spheres, one of each object, metres; 0 if the objects do not overlap.
+    /// Returns the largest overlap between a sphere of this object and a sphere of the other object, metres; 0 if the objects do not overlap.
     fn overlap(&self, other: &Self) -> f64 {
         let (own, others) = (
             self.spheres_near(&other.ball()),

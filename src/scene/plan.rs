@@ -23,20 +23,20 @@ use std::path::Path;
 /// Maximum number of steps of a scene; a larger number indicates a time step in the wrong unit.
 const MAX_STEPS: f64 = 1e9;
 
-/// Executable scene: robots, skin, objects and the times of the frames.
+/// Scene that is checked and ready to be simulated: robots, skin, objects and the times of the frames.
 #[derive(Clone, Debug)]
 pub struct ScenePlan {
     /// File name of the scene, for error messages.
     pub place: String,
-    /// Specification of the scene, with its duration and absolute paths.
+    /// Specification of the scene, in which the duration is filled in and all paths are absolute.
     pub spec: SceneSpec,
     /// Number of frames per second of scene time, Hz.
     pub output_rate: f64,
-    /// Number of frames, at least one. Frame k is at k / output_rate seconds.
+    /// Number of frames, at least one. The time of frame k is k / output_rate seconds.
     pub n_frames: usize,
-    /// Number of frames before the scene was cut; the drift of sensors depends on this duration.
+    /// Number of frames before the scene was shortened by [`cut`](Self::cut). The drift of the sensors depends on this duration.
     pub n_frames_uncut: usize,
-    /// Number of equal time steps between two frames, if steps are needed.
+    /// Number of equal time steps between two frames, for scenes that need such steps.
     pub n_substeps: usize,
     /// Gravitational acceleration, m/s², world frame.
     pub gravity: DVec3,
@@ -169,7 +169,7 @@ impl ScenePlan {
         frame as f64 / self.output_rate
     }
 
-    /// Iterates over notes on used and ignored parts of the robots' files, each with its key.
+    /// Iterates over notes about parts of the robots' files that are used or ignored; each note starts with the key of the robot.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let of_robot = |robot: &PlannedRobot| {
             let trajectory = robot.joints.iter().flat_map(|joints| joints.notes());
@@ -190,7 +190,7 @@ impl ScenePlan {
         self.robots.iter().flat_map(of_robot)
     }
 
-    /// Returns whether a patch has the taxels of a robot's tactile sensor.
+    /// Returns whether a patch uses the taxels of the tactile sensor with this name in the file of this robot.
     fn has_sensor(&self, robot: &str, sensor: &str) -> bool {
         let mut patches = self.spec.patches.iter();
         patches.any(|patch| {
@@ -199,7 +199,7 @@ impl ScenePlan {
         })
     }
 
-    /// Returns whether frames depend on the steps between them: this holds for dampers, friction, free objects and pressed objects.
+    /// Returns whether frames depend on time steps between them. This is the case if the scene has dampers, friction, free objects or pressed objects.
     pub fn needs_steps(&self) -> bool {
         let remembers = |object: &PlannedObject| {
             matches!(object.movement, Movement::Free { .. }) || object.press.is_some()
@@ -243,7 +243,7 @@ impl Clock {
         })
     }
 
-    /// Returns the number of frames in a duration (seconds).
+    /// Returns the number of frames of a scene with this duration (seconds) and frame rate (Hz).
     fn frames(duration: f64, rate: f64) -> usize {
         (duration * rate + 1e-9).floor() as usize + 1
     }

@@ -17,14 +17,14 @@ use crate::world::Motion;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Checked object of an executable scene.
+/// Checked object of a scene that is ready to be simulated.
 #[derive(Clone, Debug)]
 pub struct PlannedObject {
     /// Name of the object in the scene.
     pub name: String,
-    /// How the pose of the object is determined.
+    /// Rule by which the pose of the object is determined: imposed, carried or free.
     pub movement: Movement,
-    /// Force control; `None` unless the motion is imposed and a target force is given.
+    /// Control of the force on a patch; `None` unless the motion is imposed and a target force is given.
     pub press: Option<PlannedPress>,
     /// Bounding ball of the object (centre, radius), object frame, metres.
     pub(super) ball: (DVec3, f64),
@@ -33,7 +33,7 @@ pub struct PlannedObject {
 }
 
 impl ObjectSpec {
-    /// Returns `surface_error_mm` or its default, which depends on the finest pitch of the patches.
+    /// Returns the maximum distance between spheres and surface, mm: the key `surface_error_mm`, or a default that depends on the finest pitch of the patches.
     fn surface_error_or_default_mm(&self, finest_mm: f64, for_mesh: ModelSpec) -> f64 {
         let model = self.mesh.as_ref().map_or(ModelSpec::Mesh, |_| for_mesh);
         let default = || model.default_surface_error_mm(finest_mm);
@@ -41,16 +41,16 @@ impl ObjectSpec {
     }
 }
 
-/// How the pose of an object is determined.
+/// Rule by which the pose of an object is determined.
 #[derive(Clone, Debug)]
 pub enum Movement {
     /// Motion that is imposed and does not depend on contacts.
     Imposed(Motion),
-    /// Motion that is imposed on a robot's link.
+    /// Motion that is imposed relative to a link of a robot.
     Carried {
         /// Index of the robot in the scene.
         robot: usize,
-        /// Index of the link in the robot.
+        /// Index of the link that carries the object in the robot.
         link: usize,
         /// Motion of the object in the frame of the link.
         motion: Motion,
@@ -67,7 +67,8 @@ pub enum Movement {
 }
 
 impl Reader<'_> {
-    /// Checks an object and returns it with its contact model. `finest_mm` is the finest pitch of all patches; `default` is the default model of a mesh.
+    /// Checks an object of a scene file and returns the object with its contact model. `finest_mm` is the finest pitch of all patches; `default` is the default
+    /// contact model of a mesh.
     pub fn object(
         &self,
         spec: &ObjectSpec,
@@ -140,7 +141,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Returns the contact model of an object; `model` selects the contact model of a mesh.
+    /// Returns the contact model of an object; `model` selects how a mesh is represented.
     pub fn model(
         &self,
         key: &str,
@@ -222,7 +223,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the solid of a named object, or of the key `parts`.
+    /// Returns the solid of a built-in object, or the solid that the key `parts` describes.
     fn solid(&self, key: &str, spec: &ObjectSpec) -> Result<Solid> {
         let Some(name) = &spec.object else {
             let text = toml::to_string(&BTreeMap::from([("part", &spec.parts)]));
@@ -246,7 +247,7 @@ impl Reader<'_> {
         Ok(entry.solid.clone())
     }
 
-    /// Returns a model given in memory unchanged.
+    /// Returns a model given in memory, after checking that the object has no keys that only apply to files.
     fn model_in_memory(&self, key: &str, spec: &ObjectSpec, model: &Model) -> Result<Model> {
         let shape = [
             ("object", spec.object.is_some()),
@@ -305,7 +306,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns a bounding ball of the model, centred in the middle of its bounding box.
+/// Returns a ball that contains the model and is centred in the middle of its bounding box: centre and radius.
 fn ball(model: &Model) -> (DVec3, f64) {
     let bounds = model.bounds();
     let center = bounds.center();

@@ -16,7 +16,7 @@ use crate::random::Seed;
 use crate::world::{DrapeRegion, Grid, Layout, Patch, PerTaxel, Shears};
 use std::path::Path;
 
-/// Checked patch of an executable scene, with its mount.
+/// Checked patch of a scene that is ready to be simulated, with its mount.
 #[derive(Clone, Debug)]
 pub struct PlannedPatch {
     /// Taxels and layout of the patch.
@@ -25,7 +25,7 @@ pub struct PlannedPatch {
     pub mount: Mount,
     /// Tangential springs of the taxels; `None` if the patch has no friction.
     pub shears: Option<Shears>,
-    /// Signal chain of the patch; `None` if it has no steps.
+    /// Signal chain of the patch (conversion of deflections to sensor readings); `None` if it has no steps.
     pub signal: Option<PlannedSignal>,
 }
 
@@ -44,7 +44,7 @@ impl PlannedPatch {
 }
 
 impl LayoutSpec {
-    /// Returns the distance of neighbours, mm; `None` for layouts whose taxels are listed one by one.
+    /// Returns the distance between neighbouring taxels, mm; `None` for layouts whose taxels are listed one by one.
     pub fn pitch_mm(&self) -> Option<f64> {
         Some(match *self {
             Self::File(_) | Self::Sensor(_) => return None,
@@ -60,7 +60,7 @@ impl LayoutSpec {
 }
 
 impl Reader<'_> {
-    /// Checks a patch and returns its taxels, mount, friction and signal chain.
+    /// Checks a patch of a scene file and returns its taxels, mount, friction and signal chain.
     pub fn patch(
         &self,
         spec: &mut PatchSpec,
@@ -181,8 +181,8 @@ impl Reader<'_> {
         self.under(key, layout)
     }
 
-    /// Returns the taxels of a layout file or of a robot's tactile sensor, with their radii in mm; `None` for other layouts. A patch of a sensor is
-    /// mounted on the sensor's link.
+    /// For a layout file or a robot's tactile sensor, returns the taxels and their radii in mm; `None` for other layouts. A patch with the taxels of a sensor
+    /// is mounted on the link of the sensor.
     fn listed_taxels(
         &self,
         key: &str,
@@ -264,7 +264,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the part of a surface that carries taxels; the surface is a mesh file, or a link if `mesh` is `None`.
+    /// Returns the part of a surface that carries taxels. The surface is a mesh file, or a robot link if `mesh` is `None`.
     fn region(&self, key: &str, spec: &RegionSpec, mesh: Option<&Path>) -> Result<DrapeRegion> {
         let refuse = |given: &str, allowed: &str| Err(self.check.error(key, given, allowed));
         if spec.shapes.is_some() && spec.link.is_none() {

@@ -8,20 +8,21 @@ use crate::error::Result;
 use crate::inputs::range::{not_negative, positive};
 use glam::DVec3;
 
-/// Force control of an object that is pressed onto a patch.
+/// Control of the force with which an object is pressed onto a patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedPress {
     /// Index of the patch whose force is controlled.
     pub patch: usize,
     /// Direction of the travel, a unit vector in the world frame.
     pub direction: DVec3,
-    /// Times of the target forces, seconds, strictly increasing; at least one.
+    /// Times at which target forces are given, seconds, strictly increasing; at least one.
     pub times: Vec<f64>,
-    /// Target spring forces Σ k δ at these times, N, at least 0. Between the times, the forces are interpolated linearly; outside, they are constant.
+    /// Target of the patch's total spring force at each of the times, N, at least 0. Between the times, the target is interpolated linearly; outside, it is
+    /// constant.
     pub forces: Vec<f64>,
-    /// Maximum speed of the object along the direction, m/s, positive.
+    /// Maximum speed of the object along the direction of travel, m/s, positive.
     pub speed: f64,
-    /// Maximum travel of the object from the pose of its motion, metres, positive.
+    /// Maximum distance of the object from the pose of its imposed motion, metres, positive.
     pub travel: f64,
 }
 
@@ -39,14 +40,14 @@ impl PlannedPress {
         }
     }
 
-    /// Returns the time of the last target force, seconds.
+    /// Returns the time of the last given target force, seconds.
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)
     }
 }
 
 impl Reader<'_> {
-    /// Checks the force control of an object.
+    /// Checks the keys of a pressed object and returns the control of its force.
     pub fn press(
         &self,
         key: &str,

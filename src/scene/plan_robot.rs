@@ -9,7 +9,7 @@ use crate::world::{Joint, JointTrajectory, Motion, Robot};
 use ndarray::Array2;
 use std::path::{Path, PathBuf};
 
-/// Checked robot of an executable scene.
+/// Checked robot of a scene that is ready to be simulated.
 #[derive(Clone, Debug)]
 pub struct PlannedRobot {
     /// Name of the robot in the scene.
@@ -20,7 +20,7 @@ pub struct PlannedRobot {
     pub folder: Option<PathBuf>,
     /// Motion of the robot's base.
     pub base: Motion,
-    /// Motion of the joints; `None` if they stay at their rest positions.
+    /// Motion of the joints; `None` if all joints stay at their rest positions.
     pub joints: Option<JointTrajectory>,
 }
 
@@ -33,7 +33,7 @@ impl PlannedRobot {
 }
 
 impl Reader<'_> {
-    /// Checks a robot and reads its URDF file.
+    /// Checks a robot of a scene file and reads its URDF file.
     pub fn robot(&self, spec: &RobotSpec) -> Result<PlannedRobot> {
         let key = &format!("robots.{}", spec.name);
         let robot = match (&spec.urdf, spec.floating) {
@@ -60,7 +60,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Checks the way-points of a robot's joints.
+    /// Checks the way-points of a robot's joints and returns the joint motion.
     pub fn joints(
         &self,
         key: &str,
@@ -95,7 +95,7 @@ impl Reader<'_> {
         self.under(key, trajectory).map(Some)
     }
 
-    /// Returns the joint way-points, shape (n_times, n_coordinates), rad and m. Joints that are not listed stay at their rest positions.
+    /// Returns the joint positions at all way-points, shape (n_times, n_coordinates), rad and m. Joints that are not listed stay at their rest positions.
     fn positions(&self, key: &str, joints: &JointsSpec, robot: &Robot) -> Result<Array2<f64>> {
         let key = &format!("{key}.positions");
         let n_times = joints.time_s.len();
@@ -148,7 +148,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the reason why the scene cannot move a joint, in words.
+/// Returns the reason in words why the scene cannot move a joint.
 fn stays(joint: &Joint, robot: &Robot) -> String {
     match joint.mimic {
         Some(mimic) => format!("mimics `{}`", robot.joints()[mimic.joint].name),

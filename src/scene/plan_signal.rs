@@ -14,24 +14,25 @@ use crate::spelling::nearest_names;
 use crate::world::Patch;
 use std::collections::BTreeMap;
 
-/// Key of the smoothing step. All other keys of signal steps belong to [noise](NOISES) or sensor errors.
+/// Name of the smoothing step of a signal chain. All other step names belong to [noise](NOISES) or sensor errors.
 const SMOOTHING: &str = "smoothing_mm";
 
-/// Signal chain of a patch, ready for execution.
+/// Checked signal chain of a patch, which converts deflections to sensor readings.
 #[derive(Clone, Debug)]
 pub struct PlannedSignal {
     chain: Chain,
-    /// Physical quantity of the chain's input.
+    /// Physical quantity with which the chain starts: deflection or force.
     begins: Quantity,
 }
 
 impl PlannedSignal {
-    /// Returns the physical quantity of the signal chain's output.
+    /// Returns the physical quantity of the sensor readings: deflection or force.
     pub fn quantity(&self) -> Quantity {
         self.chain.quantity()
     }
 
-    /// Writes the output of the signal chain to the reading. `name` is the seed of the noise; `share` is the elapsed fraction of the scene's duration, 0 to 1.
+    /// Computes the sensor readings of a patch and writes them to `reading`. `name` is the seed of the noise; `share` is the elapsed fraction of the scene's
+    /// duration, 0 to 1.
     pub(super) fn read(
         &self,
         reading: &mut PatchReading,
@@ -57,7 +58,7 @@ impl PlannedSignal {
 }
 
 impl Reader<'_> {
-    /// Returns the signal chain of a patch, or `None` if it has no steps.
+    /// Checks the signal steps of a patch and returns the signal chain; returns `None` if there are no steps.
     pub fn signal(
         &self,
         key: &str,

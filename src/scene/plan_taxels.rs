@@ -20,7 +20,7 @@ const FRICTION: &str = "friction";
 const SHEAR: &str = "shear_stiffness_n_per_m";
 const NAMES: [&str; 6] = [RADIUS, STROKE, STIFF, DAMPING, FRICTION, SHEAR];
 
-/// Source of the taxel properties of one patch.
+/// Source of the taxel properties of one patch: its keys in the scene file and its CSV file.
 struct Lookup<'a> {
     reader: &'a Reader<'a>,
     /// Key of the patch in the scene file.
@@ -31,7 +31,7 @@ struct Lookup<'a> {
 }
 
 impl Reader<'_> {
-    /// Returns the taxels of a patch and, if it has friction, their tangential springs. Writes defaults into the spec.
+    /// Returns the taxels of a patch and, if the patch has friction, their tangential springs. Writes default values into the specification of the patch.
     pub fn taxels(
         &self,
         key: &str,
@@ -96,7 +96,7 @@ impl Reader<'_> {
 }
 
 impl Lookup<'_> {
-    /// Returns a required taxel property; returns an error if it is absent.
+    /// Returns a taxel property that is required; returns an error if the property is missing.
     fn needed(
         &self,
         name: &'static str,
@@ -111,7 +111,7 @@ impl Lookup<'_> {
         })
     }
 
-    /// Returns a taxel property from the scene file or the CSV file, after checking each number.
+    /// Returns a taxel property from the scene file or from the CSV file; each number is checked.
     fn find(
         &self,
         name: &'static str,
@@ -175,7 +175,7 @@ impl Lookup<'_> {
         self.reader.check.error(&key, given, allowed)
     }
 
-    /// Returns equal values for all taxels if all inputs are equal for all taxels.
+    /// Makes one value per taxel from several properties. If all properties are equal for all taxels, makes a single value for all taxels.
     fn each<T, const N: usize>(
         &self,
         of: [&PerTaxel<f64>; N],
@@ -189,7 +189,7 @@ impl Lookup<'_> {
     }
 }
 
-/// Reads a CSV table with one row per taxel and one column per property. Errors state line and column; unknown and repeated column names are errors.
+/// Reads a CSV table with one row per taxel and one column per property. Errors name the line and the column; unknown and repeated column names are errors.
 fn read_table(place: &str, source: impl std::io::Read) -> Result<NumberTable> {
     let allowed = "a header and one row a taxel, of as many numbers";
     let table = NumberTable::read(place, source, allowed)?;

@@ -6,28 +6,28 @@ use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
 use crate::geometry::Pose;
 
-/// All pressed objects of a scene.
+/// All pressed objects of a scene (objects that control the force on a patch).
 #[derive(Clone, Debug)]
 pub(super) struct PressedObjects {
     all: Vec<Pressed>,
-    /// Pose of each object in the patch frame, `patch_from_object`.
+    /// Pose of each object of the scene in the frame of a patch, `patch_from_object`.
     poses: Vec<Pose>,
     workspace: Workspace,
 }
 
-/// Pressed object with its travel, force and contacts.
+/// Pressed object, with its travel, its force and its contacts.
 #[derive(Clone, Debug)]
 struct Pressed {
     object: usize,
     now: HeldForce,
-    /// Target of the spring force on the patch, N.
+    /// Target of the total spring force of the patch, N.
     wanted: f64,
-    /// Contacts with the pressed patch; a contact persists for any travel of the object.
+    /// Contacts of the object with the patch, which do not depend on the travel of the object.
     contacts: Vec<TaxelContact>,
 }
 
 impl PressedObjects {
-    /// Creates the pressed objects of a scene with zero travel.
+    /// Creates the pressed objects of a scene, which have not moved yet.
     pub fn new(plan: &ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
         let pressed = objects.filter(|(_, planned)| planned.press.is_some());
@@ -44,7 +44,8 @@ impl PressedObjects {
         }
     }
 
-    /// Moves each pressed object, in the order of the scene, from the pose of its motion. `dt` is the time since the last call, seconds; infinite at the start.
+    /// Moves each pressed object towards its target force, starting from the pose of its imposed motion. `dt` is the time since the last call, seconds;
+    /// infinite at the start.
     pub fn push(
         &mut self,
         plan: &ScenePlan,
@@ -78,7 +79,7 @@ impl PressedObjects {
         }
     }
 
-    /// Iterates over the contacts of a patch, given by its index, with the objects that are pressed onto it.
+    /// Iterates over the contacts of the patch with the given index with the objects that are pressed onto it.
     pub fn contacts_on<'a>(
         &'a self,
         plan: &'a ScenePlan,
@@ -94,7 +95,7 @@ impl PressedObjects {
             .flat_map(|pressed| &pressed.contacts)
     }
 
-    /// Writes the readings of all pressed objects.
+    /// Writes the travel, force and target of each pressed object to the entry of `readings` with the object's scene number.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for pressed in &self.all {
             readings[pressed.object].held = PoseControl::Pressed {
@@ -107,9 +108,9 @@ impl PressedObjects {
 }
 
 impl Pressed {
-    /// Moves the object towards the target force by at most `way` metres, and to at most `farthest` metres from the pose of its motion.
+    /// Moves the object towards the target force by at most `way` metres. The object stays within `farthest` metres from the pose of its imposed motion.
     ///
-    /// `poses` contains the pose of each object, `patch_from_object`; for this object, it is the pose of its motion.
+    /// `poses` contains the pose of each object, `patch_from_object`; for the pressed object, the pose of its imposed motion.
     fn go(
         &mut self,
         moved: &MovedObject,

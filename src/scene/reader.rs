@@ -16,10 +16,10 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Number of metres per millimetre.
+/// Millimetre in metres: factor that converts mm to m.
 pub(super) const MM: f64 = 1e-3;
 
-/// Reader of the keys of a scene file.
+/// Reader that checks the values of a scene file and converts them to SI units.
 pub(crate) struct Reader<'a> {
     pub check: Check<'a>,
     /// Folder to which paths in the file are relative.
@@ -29,12 +29,12 @@ pub(crate) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Adds the file and the key to the error of a result.
+    /// Adds the file name and `key` to the error, if the result is an error.
     pub fn under<T>(&self, key: &str, result: Result<T>) -> Result<T> {
         result.map_err(|error| error.under(format!("{}, key {key}: ", self.check.place)))
     }
 
-    /// Returns the index of a name in the list of names that are allowed for `key`.
+    /// Returns the position of `name` in the list of names that `key` allows; if the name is missing, returns an error.
     pub fn known<'n>(
         &self,
         key: &str,
@@ -64,7 +64,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Converts a vector of finite numbers to SI units; `unit` is the factor.
+    /// Converts a vector of finite numbers to SI units; `unit` is the factor of the conversion.
     pub fn vector(&self, key: &str, numbers: [f64; 3], unit: f64) -> Result<DVec3> {
         for number in numbers {
             self.check
@@ -73,7 +73,7 @@ impl Reader<'_> {
         Ok(unit * DVec3::from_array(numbers))
     }
 
-    /// Converts the pose of a key to SI units.
+    /// Converts the pose in a scene file to SI units; errors name `key`.
     pub fn pose(&self, key: &str, pose: &PoseSpec) -> Result<Pose> {
         let position = self.vector(&format!("{key}.position_mm"), pose.position_mm, MM)?;
         let degree = 1f64.to_radians();
@@ -81,7 +81,7 @@ impl Reader<'_> {
         Ok(Pose::new(rotation_from_rpy(rpy), position))
     }
 
-    /// Converts a plane to a half-space in SI units with a unit normal.
+    /// Converts a plane of a scene file to a half-space in SI units with a unit normal.
     pub fn plane(&self, plane: &PlaneSpec) -> Result<HalfSpace> {
         let key = format!("planes.{}", plane.name);
         let point = self.vector(&format!("{key}.point_mm"), plane.point_mm, MM)?;
@@ -97,7 +97,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the motion of the body that is described under `key`.
+    /// Returns the motion of the body that is described under `key`: from the pose `at` and the optional imposed motion.
     pub fn motion(&self, key: &str, at: &PoseSpec, motion: Option<&MotionSpec>) -> Result<Motion> {
         let start = self.pose(&format!("{key}.at"), at)?;
         let Some(motion) = motion else {

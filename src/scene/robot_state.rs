@@ -8,9 +8,9 @@ use crate::geometry::Pose;
 #[derive(Clone, Debug)]
 pub(super) struct RobotState {
     positions: Vec<f64>,
-    /// Whether the joint positions were set manually and no longer follow the plan.
+    /// Whether the joint positions were set by the program and no longer follow the scene.
     are_set: bool,
-    /// Pose of the base that was set manually, `world_from_base`; `None` if it follows the plan.
+    /// Pose of the base that was set by the program, `world_from_base`; `None` if the base follows the scene.
     pub base: Option<Pose>,
     /// Pose of each link, `world_from_link`.
     pub world_from_link: Vec<Pose>,
@@ -27,13 +27,13 @@ impl RobotState {
         }
     }
 
-    /// Sets the joint positions manually from now on, rad or m, one per coordinate.
+    /// Sets the joint positions from now on, rad or m, one per coordinate; the joints no longer follow the scene.
     pub fn set_positions(&mut self, positions: &[f64]) {
         self.positions.copy_from_slice(positions);
         self.are_set = true;
     }
 
-    /// Computes the link poses at a time (seconds).
+    /// Computes the pose of each link at a time (seconds).
     pub fn place(&mut self, robot: &PlannedRobot, time: f64) -> Result<()> {
         if let (Some(joints), false) = (&robot.joints, self.are_set) {
             joints.positions_into(time, &mut self.positions);

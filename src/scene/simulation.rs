@@ -13,10 +13,11 @@ use crate::geometry::Pose;
 use crate::random::Seed;
 use crate::signal::SignalWorkspace;
 
-/// Choice of the time steps that are computed between frames.
+/// Selection of the time steps that are computed between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// Skips the steps between frames if the scene has no memory. In scenes with memory, only patches with memory are computed in these steps.
+    /// Computes only what later frames depend on. Steps between frames are skipped if no later frame depends on them; otherwise only patches with dampers or
+    /// friction are computed.
     AsNeeded,
     /// Computes all patches in all steps. The frames are equal but take longer to compute; used in tests.
     Always,
@@ -30,7 +31,7 @@ pub struct Simulation<'p> {
     pub(super) robots: Vec<RobotState>,
     skins: Vec<SkinState>,
     objects: PlacedObjects,
-    /// Poses of imposed objects that were set manually, `world_from_object`; `None` for objects that follow their motions.
+    /// For each imposed object whose pose was set by the program, this pose, `world_from_object`; `None` for objects that follow their motions.
     pub(super) put: Vec<Option<Pose>>,
     pressed: PressedObjects,
     pub(super) free: FreeObjects,
@@ -40,9 +41,9 @@ pub struct Simulation<'p> {
     scratch: SignalWorkspace,
     /// Time since the start of the scene, seconds.
     pub(super) time: f64,
-    /// Whether a program makes the steps manually, instead of the scene's clock.
+    /// Whether the program makes the steps instead of the scene's clock.
     pub(super) is_by_hand: bool,
-    /// Length of the last step, seconds, while its patches are not yet computed; what has to be computed depends on whether a frame is read.
+    /// Length of the last step, seconds, if its patches are not computed yet. What must be computed depends on whether a frame is read next.
     unfelt: Option<f64>,
     n_read: usize,
     pub(super) n_steps: usize,
@@ -55,7 +56,7 @@ impl<'p> Simulation<'p> {
         Self::with_seed(plan, stepping, plan.spec.seed)
     }
 
-    /// Creates a simulation whose sensor noise has a given seed instead of the plan's.
+    /// Creates a simulation in which the seed of the sensor noise is given instead of taken from the scene.
     pub(super) fn with_seed(plan: &'p ScenePlan, stepping: Stepping, seed: u64) -> Self {
         let signals = Seed::new(seed).named("signal");
         let skins = plan.patches.iter();
@@ -137,7 +138,7 @@ impl<'p> Simulation<'p> {
         self.observe().map(Some)
     }
 
-    /// Returns the current frame. Before any step, it is the first frame of the scene, in its steady state. Sensor noise is drawn once per frame, so a second
+    /// Returns the current frame. Before any step, this is the first frame of the scene, in its steady state. Sensor noise is drawn once per frame, so a second
     /// call returns an equal frame.
     ///
     /// # Errors
@@ -152,7 +153,7 @@ impl<'p> Simulation<'p> {
         Ok(&self.frame)
     }
 
-    /// Returns the number of steps computed so far, including frames.
+    /// Returns the number of time steps computed so far, including the steps that produced frames.
     pub fn n_steps(&self) -> usize {
         self.n_steps
     }
@@ -167,7 +168,7 @@ impl<'p> Simulation<'p> {
         if are_needed { self.plan.n_substeps } else { 1 }
     }
 
-    /// Computes the initial state of the scene, if no step has been made.
+    /// Computes the initial state of the scene, unless a step has already been made.
     pub(super) fn begin(&mut self) -> Result<()> {
         match self.n_steps {
             0 => self.advance(0.0, f64::INFINITY),
@@ -175,7 +176,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Advances the simulation to a time, `dt` seconds after the last step.
+    /// Advances the simulation to `time`, which is `dt` seconds after the last step.
     pub(super) fn advance(&mut self, time: f64, dt: f64) -> Result<()> {
         if let Some(dt) = self.unfelt.take() {
             self.feel(dt);
@@ -186,7 +187,7 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Moves robots, objects and patches to their poses at a time, `dt` seconds after the last step.
+    /// Moves robots, objects and patches to their poses at `time`, which is `dt` seconds after the last step.
     fn go_to(&mut self, time: f64, dt: f64) -> Result<()> {
         let plan = self.plan;
         self.n_steps += 1;
@@ -223,7 +224,7 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Computes the patches after a step that makes no frame.
+    /// Updates the state of the patches after a step for which no frame is written.
     fn feel(&mut self, dt: f64) {
         let plan = self.plan;
         for (number, (skin, patch)) in self.skins.iter_mut().zip(&plan.patches).enumerate() {
@@ -240,7 +241,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Returns the elapsed fraction of the scene's duration, 0 to 1; it determines the drift of the sensors.
+    /// Returns the elapsed fraction of the scene's duration, 0 to 1, on which the drift of the sensors depends.
     fn share(&self) -> f64 {
         let n_frames = match self.is_by_hand {
             true => self.time * self.plan.output_rate,
@@ -249,7 +250,7 @@ impl<'p> Simulation<'p> {
         (n_frames / (self.plan.n_frames_uncut - 1).max(1) as f64).min(1.0)
     }
 
-    /// Computes the patches after a step and writes the frame.
+    /// Computes all patches after a step of `dt` seconds and writes the frame.
     fn read(&mut self, dt: f64) {
         let plan = self.plan;
         let share = self.share();

@@ -12,23 +12,24 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::DVec3;
 
-/// Poses and bounding balls of all objects.
+/// Poses and bounding balls of all objects of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct PlacedObjects {
-    /// Pose of each object, `world_from_object`. Escaped objects have the pose [`OUT_OF_REACH`].
+    /// Pose of each object, `world_from_object`; for escaped objects, a pose far from all skin.
     pub poses: Vec<Pose>,
     /// Bounding ball of each object (centre, radius), object frame, metres.
     pub balls: Vec<(DVec3, f64)>,
 }
 
-/// Pose of an object without contacts: far from all skin, but with a finite squared distance.
+/// Pose of objects that must have no contact: far from all skin, but with a finite squared distance.
 pub(super) const OUT_OF_REACH: Pose = Pose {
     rotation: glam::DQuat::IDENTITY,
     translation: DVec3::new(0.0, 0.0, 1e100),
 };
 
 impl PlacedObjects {
-    /// Returns the poses of the objects in the patch frame, `patch_from_object`. An object that carries the patch does not touch it and is put out of reach.
+    /// Returns the pose of each object in the patch frame, `patch_from_object`. An object that carries the patch does not touch it and gets a pose out of
+    /// reach.
     pub fn seen_by<'a>(
         &'a self,
         patch: &PlannedPatch,
@@ -65,13 +66,13 @@ impl PlacedObjects {
 /// State of a patch at one time.
 #[derive(Clone, Debug)]
 pub(super) struct SkinState {
-    /// Pose of the patch, `world_from_patch`.
+    /// Current pose of the patch, `world_from_patch`.
     pub pose: Pose,
     damper: DamperState,
     /// Whether no object pushes the patch and all deflections are zero.
     is_idle: bool,
     workspace: Workspace,
-    /// Friction state of the patch; `None` if it has no friction.
+    /// State of the friction contacts of the patch; `None` if the patch has no friction.
     friction: Option<FrictionState>,
     contact_modes: ContactModeCounts,
     /// Pose of each object in the patch frame, `patch_from_object`.
@@ -100,20 +101,20 @@ impl SkinState {
         }
     }
 
-    /// Marks parts of objects that push their taxels in the following steps, even from behind the substrate.
+    /// Marks the given contacts: their parts of objects push their taxels in the following steps, even from behind the substrate.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.workspace.hold(contacts);
     }
 
-    /// Returns the tangential springs that hold objects, with scene numbers of objects.
+    /// Returns the tangential springs of the patch that hold objects; the springs contain the scene numbers of the objects.
     pub fn tangential_springs(&self) -> impl Iterator<Item = TangentialSpring> {
         self.friction
             .iter()
             .flat_map(FrictionState::tangential_springs)
     }
 
-    /// Attaches tangential springs to the contacts of one object at its pose, as if it had just been placed there. In `only`, all other objects are out of
-    /// reach.
+    /// Attaches tangential springs to the contacts of the object with the number `object`, as if it had just been placed. In `only`, all other objects are out
+    /// of reach.
     pub fn put(
         &mut self,
         patch: &PlannedPatch,
@@ -133,7 +134,7 @@ impl SkinState {
         &self.damper.deflection
     }
 
-    /// Makes a step and writes the reading. `loads` and `tips` contain the loads and tangential springs of free objects, in taxel order.
+    /// Makes a step and writes the reading of the patch. `loads` and `tips` contain the forces and tangential springs of free objects, in taxel order.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
@@ -174,7 +175,8 @@ impl SkinState {
         }
     }
 
-    /// Makes a step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. `tips`: tangential springs of free objects.
+    /// Makes a step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. `tips` contains the tangential springs of
+    /// free objects.
     pub fn feel(
         &mut self,
         patch: &PlannedPatch,
@@ -214,7 +216,7 @@ impl SkinState {
     }
 }
 
-/// Adds the reactions of the stops to free objects to a patch reading.
+/// Adds the forces with which stops (taxels at their stroke) carry free objects to the reading of a patch.
 fn add_stops(
     patch: &PlannedPatch,
     contacts: &[TaxelContact],
@@ -235,8 +237,8 @@ fn add_stops(
     }
 }
 
-/// Returns the frictionless wrench of the taxels on the objects, and writes the force of the objects on each taxel to `force3`. A contact has one direction,
-/// but several spheres of free objects may touch one taxel: the loads contain the force of each sphere.
+/// Returns the frictionless force and torque of the taxels on the objects, and writes the force of the objects on each taxel to `force3`. A contact has one
+/// direction, but several spheres of free objects may touch one taxel; `loads` contains the force of each sphere.
 fn on_objects(
     contacts: &[TaxelContact],
     loads: &[&TaxelLoad],
@@ -261,7 +263,7 @@ fn on_objects(
     sum
 }
 
-/// Results that a step has to compute.
+/// Results that a step of a patch has to compute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Detail {
     Deflections,
@@ -269,7 +271,7 @@ pub(super) enum Detail {
     Contacts,
 }
 
-/// Converts the wrench of the taxels on an object into the opposite wrench on the patch, without negative zeros.
+/// Converts the force and torque of the taxels on an object into the opposite force and torque on the patch, without negative zeros.
 fn on_patch(on_object: Wrench) -> Wrench {
     Wrench::default() + -on_object
 }

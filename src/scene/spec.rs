@@ -12,11 +12,11 @@ use crate::toml_text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Contents of a scene file. Paths are relative to the folder of the file.
+/// Contents of a scene file. Paths are relative to the folder of the scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneSpec {
-    /// Description of the scene in one sentence.
+    /// Description of the scene in one sentence, for reports.
     pub title: String,
     /// Maximum time step, ms, positive. Default: 1. The time between two frames is divided into equal steps of at most this length; any length is stable.
     #[serde(default = "one")]
@@ -33,15 +33,15 @@ pub struct SceneSpec {
     /// Seed of all random numbers, such as sensor noise and the start of a draped layout. Default: 2018.
     #[serde(default = "seed")]
     pub seed: u64,
-    /// Tables `[[robots]]`: robots that carry patches or objects.
+    /// Tables `[[robots]]` of the scene file: robots that carry patches or objects.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robots: Vec<RobotSpec>,
-    /// Tables `[[patches]]`: patches of skin.
+    /// Tables `[[patches]]` of the scene file: patches of skin.
     pub patches: Vec<PatchSpec>,
-    /// Tables `[[objects]]`: objects that touch the skin.
+    /// Tables `[[objects]]` of the scene file: objects that touch the skin.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub objects: Vec<ObjectSpec>,
-    /// Tables `[[planes]]`: rigid planes, such as tables.
+    /// Tables `[[planes]]` of the scene file: rigid planes, such as tables.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planes: Vec<PlaneSpec>,
 }

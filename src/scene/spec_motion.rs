@@ -7,12 +7,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Pose, such as `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`.
+/// Position and rotation of a body, such as `at = { position_mm = [0.0, 0.0, 50.0], rotation_deg = [180.0, 0.0, 0.0] }`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = with_rpy_deg)]
 pub struct PoseSpec {
-    /// Position of the origin, mm. Default: 0.
+    /// Position of the body's origin, mm. Default: 0.
     #[serde(default)]
     pub position_mm: [f64; 3],
     /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0.
@@ -24,35 +24,35 @@ pub struct PoseSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionSpec {
-    /// Phases of constant velocity, in order, starting at the pose `at`.
+    /// Phases of constant velocity, one after another, starting at the pose `at`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<PhaseSpec>,
-    /// Poses in the world, or on the link that carries the object, at given times; replaces `at`.
+    /// Poses at given times, in the world or on the link that carries the object; replaces `at`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub way_points: Vec<WayPointSpec>,
-    /// Sinusoidal motion about `at`.
+    /// Sinusoidal motion about the pose `at`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub oscillation: Option<OscillationSpec>,
-    /// CSV file of way-points of a pose.
+    /// CSV file with a time and a pose in each row (way-points).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
-    /// Interpolation between way-points.
+    /// Interpolation of the poses between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,
 }
 
-/// Phase of constant velocity, such as `{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] }`.
+/// Phase of a motion with constant velocity, such as `{ duration_s = 1.0, linear_mm_per_s = [0.0, 0.0, -5.0] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhaseSpec {
     /// Duration of the phase, s.
     pub duration_s: f64,
-    /// Velocity of the origin in the world frame, mm/s. Default: 0.
+    /// Velocity of the body's origin in the world frame, mm/s. Default: 0.
     #[serde(default)]
     pub linear_mm_per_s: [f64; 3],
-    /// Angular velocity about the origin in the world frame, degrees per second. Default: 0.
+    /// Angular velocity about the body's origin in the world frame, degrees per second. Default: 0.
     #[serde(default)]
     pub angular_deg_per_s: [f64; 3],
 }
@@ -73,14 +73,14 @@ pub struct OscillationSpec {
     pub period_s: f64,
 }
 
-/// Way-point of a pose, such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.
+/// Pose at a given time, such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = with_rpy_deg)]
 pub struct WayPointSpec {
-    /// Time of the way-point, s.
+    /// Time of the way-point since the start of the scene, s.
     pub time_s: f64,
-    /// Position of the origin in the world frame, mm. Default: 0.
+    /// Position of the body's origin in the world frame, mm. Default: 0.
     #[serde(default)]
     pub position_mm: [f64; 3],
     /// Rotations about the fixed axes x, y, z, applied in this order, degrees. Default: 0.
@@ -92,15 +92,15 @@ pub struct WayPointSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointsSpec {
-    /// CSV file of way-points of the joints.
+    /// CSV file with a time and the joint positions in each row (way-points).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub csv: Option<FilePath>,
-    /// Interpolation between way-points.
+    /// Interpolation of the joint positions between way-points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<Interpolation>>")]
     pub interpolation: Option<Interpolation>,
-    /// Times of the way-points, s.
+    /// Times of the way-points since the start of the scene, s.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
     /// Positions of each moved joint, one number per time. A key is the joint's name with its unit, such as `elbow_deg`, `elbow_rad`, `slide_mm` or `slide_m`.

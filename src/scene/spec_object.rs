@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Keys of `[[objects]]`: an object of the scene.
+/// Keys of a table `[[objects]]`: an object of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = with_mesh_unit)]
@@ -20,7 +20,7 @@ pub struct ObjectSpec {
     /// Name of a built-in object; the command `bubbletouch objects` lists them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
-    /// TOML file of objects that contains `object`. Default: the built-in objects.
+    /// TOML file of objects in which the name `object` is searched. Default: the built-in objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub objects: Option<FilePath>,
@@ -28,7 +28,7 @@ pub struct ObjectSpec {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(with = "Vec<BTreeMap<String, serde_json::Value>>")]
     pub parts: Vec<toml::Table>,
-    /// Whether the origin of a solid is the middle of its bounding box. Default: false; the origin is then the middle of the base of a named object, or the
+    /// Whether the origin of a solid is the middle of its bounding box. Default: false. The origin is then the middle of the base of a named object, or the
     /// origin of `parts`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub centered: bool,
@@ -62,10 +62,10 @@ pub struct ObjectSpec {
     /// Imposed motion of the object, which does not depend on contacts. Default: no motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSpec>,
-    /// Force control, together with `motion`: the object also moves along a line until the force on a patch reaches a target.
+    /// Force control in addition to `motion`: the object also moves along a line until the force on a patch reaches a target.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub press: Option<PressSpec>,
-    /// Free object, whose pose follows from gravity and contacts; replaces `motion`.
+    /// Properties of a free object, whose pose follows from gravity and contacts; replaces `motion`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free: Option<FreeSpec>,
 }
@@ -82,7 +82,7 @@ pub struct FreeSpec {
     pub center_of_mass_mm: Option<[f64; 3]>,
 }
 
-/// Force control, such as `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`.
+/// Force control of an object, such as `press = { patch = "palm", direction = [0.0, 0.0, -1.0], force_n = 2.0, speed_mm_per_s = 20.0, travel_mm = 10.0 }`.
 ///
 /// The object starts at the pose of `at` and `motion` and moves along the direction until the force on the patch reaches the target. If the force is too large,
 /// the object moves back. Speed and travel are limited. The object does not pass through the patch: pressed taxels stay at their stroke, even if the target is
@@ -92,15 +92,15 @@ pub struct FreeSpec {
 pub struct PressSpec {
     /// Name of the patch whose force is controlled.
     pub patch: String,
-    /// Direction of the travel in the world frame, of any length.
+    /// Direction in which the object travels, world frame, of any length.
     pub direction: [f64; 3],
-    /// Target of the patch's spring force Σ k δ from all objects, N, at least 0: one number, or one for each time in `time_s`.
+    /// Target of the patch's total spring force from all objects, N, at least 0: one number, or one number for each time in `time_s`.
     pub force_n: Numbers,
-    /// Times of the target forces, s. Between the times, forces are interpolated linearly; outside, they are constant.
+    /// Times at which the target forces hold, s. Between the times, forces are interpolated linearly; outside, they are constant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
     /// Maximum speed of the object along the direction, mm/s, positive.
     pub speed_mm_per_s: f64,
-    /// Maximum travel of the object from the pose of its motion, mm, positive.
+    /// Maximum distance of the object from the pose of its imposed motion, mm, positive.
     pub travel_mm: f64,
 }

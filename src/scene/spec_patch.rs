@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// Keys of `[[patches]]`: a patch of skin.
+/// Keys of a table `[[patches]]`: a patch of skin.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PatchSpec {
@@ -31,32 +31,32 @@ pub struct PatchSpec {
     /// Pose of the patch on the link, on the object, or in the world. Default: the origin.
     #[serde(default)]
     pub at: PoseSpec,
-    /// Layout of the taxels on the patch.
+    /// Layout of the taxels on the patch, for example a grid.
     pub layout: LayoutSpec,
-    /// Radius ρ of the taxels, mm. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number per taxel, or a
-    /// column of `taxels_csv`. Lists have the order of the layout (for a grid, row by row).
+    /// Radius of the spherical taxels, mm. Default: half the pitch. This key and the following ones are a number for all taxels, a list with one number per
+    /// taxel, or a column of `taxels_csv`. Lists have the order of the layout (for a grid, row by row).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub taxel_radius_mm: Option<Numbers>,
-    /// Stroke s (maximum deflection) of the taxels, mm; required.
+    /// Stroke (maximum deflection) of the taxels, mm; required.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stroke_mm: Option<Numbers>,
-    /// Stiffness k of the taxels along their axes, N/m. Default: 100.
+    /// Stiffness of the taxels along their axes, N/m. Default: 100.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stiffness_n_per_m: Option<Numbers>,
-    /// Damping coefficient c of the taxels, N·s/m. Default: 0.
+    /// Damping coefficient of the taxels along their axes, N·s/m. Default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping_n_s_per_m: Option<Numbers>,
-    /// Friction coefficient μ of the taxels. With friction, tangential springs hold the contacts until they slip. Default: no friction.
+    /// Friction coefficient between taxels and objects. With friction, tangential springs hold the contacts until they slip. Default: no friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Numbers>,
-    /// Tangential stiffness k_t of the taxels, N/m, used with `friction`. Default: the axial stiffness.
+    /// Tangential stiffness of the taxels, N/m, used with `friction`. Default: the stiffness along the axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shear_stiffness_n_per_m: Option<Numbers>,
     /// CSV file with one row per taxel. Its columns have the names of the keys above; only columns that differ between taxels are needed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub taxels_csv: Option<FilePath>,
-    /// Steps of the patch's signal chain, in order. Default: none.
+    /// Steps of the patch's signal chain (noise and sensor errors), in order. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub signal: Vec<SignalStepSpec>,
 }
@@ -67,7 +67,7 @@ pub struct PatchSpec {
 pub enum SignalStepSpec {
     /// The word `"force"`, allowed as the first step: the chain then starts with forces instead of deflections.
     Word(String),
-    /// Strengths of a step, by key. Two keys of one step may be given together.
+    /// Names of noises or sensor errors with their strengths. Two keys of one step may be given together.
     Strengths(BTreeMap<String, f64>),
 }
 
@@ -103,7 +103,7 @@ impl JsonSchema for SignalStepSpec {
     }
 }
 
-/// Returns the keys of the signal steps of a patch, with their descriptions. Steps that need earlier and later frames are omitted.
+/// Returns the keys and descriptions of the signal steps that a patch of a scene allows. Steps that need earlier and later frames are omitted.
 fn scene_steps() -> impl Iterator<Item = (&'static str, String)> {
     let noises = NOISES.iter().map(|(key, unit)| (*key, noise_words(*unit)));
     let smoothing = "Standard deviation of the Gaussian smoothing over the array, mm.";
@@ -176,11 +176,11 @@ pub enum LayoutSpec {
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
     },
-    /// Taxels of a file: `layout = { file = "palm.csv" }`; see [`layout_file`](crate::inputs::layout_file) for the formats.
+    /// Taxels listed in a file: `layout = { file = "palm.csv" }`; see [`layout_file`](crate::inputs::layout_file) for the formats.
     File(FileLayoutSpec),
-    /// Tactile sensor that the file of the patch's robot declares, by its name.
+    /// Taxels of a tactile sensor, given by its name in the file of the patch's robot.
     Sensor(String),
-    /// Outer surface of a triangle mesh, or of a link of the patch's robot.
+    /// Taxels on the outer surface of a triangle mesh, or of a link of the patch's robot.
     Draped {
         /// Mesh file of the surface; omitted if `region.link` names a link.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -202,20 +202,20 @@ pub enum LayoutSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum FileLayoutSpec {
-    /// Path of the file.
+    /// Path of the layout file, if its format needs nothing else.
     Path(#[schemars(with = "String")] FilePath),
-    /// Path of the file, and what its format needs besides.
+    /// Path of the layout file and further information that its format needs.
     Parts(FileLayoutParts),
 }
 
-/// Layout file with what its format needs besides.
+/// Layout file and further information that its format needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FileLayoutParts {
-    /// Path of the file.
+    /// Path of the layout file.
     #[schemars(with = "String")]
     pub path: FilePath,
-    /// Mesh whose surface gives the normals, for files of points without normals.
+    /// Mesh whose surface normals are the taxel axes, for files of points without normals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub mesh: Option<FilePath>,
@@ -223,7 +223,7 @@ pub struct FileLayoutParts {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
-    /// Name of the sensor in a robot's file with several sensors.
+    /// Name of the tactile sensor, if a robot's file contains several sensors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor: Option<String>,
 }
@@ -255,7 +255,7 @@ pub struct RegionSpec {
     /// Name of a group (`g`) or object (`o`) of an OBJ file that forms the region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<String>,
-    /// First and last triangle number of the region, from 0 in the order of the file.
+    /// Numbers of the first and last triangle of the region, counted from 0 in the order of the mesh file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub triangles: Option<[usize; 2]>,
 }

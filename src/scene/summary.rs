@@ -10,24 +10,24 @@ pub struct PatchPeaks {
     pub deflection: f64,
     /// Largest sum of the taxel forces along their axes, newtons.
     pub force: f64,
-    /// Largest number of taxels with a positive force.
+    /// Largest number of taxels with a positive force in a frame.
     pub n_touched: usize,
-    /// Largest number of taxels at their stroke.
+    /// Largest number of taxels at their stroke (maximum deflection) in a frame.
     pub n_saturated: usize,
-    /// Largest number of taxels in grazing contact.
+    /// Largest number of taxels with a grazing contact in a frame.
     pub n_grazing: usize,
     /// Largest friction force on the patch, newtons.
     pub shear: f64,
-    /// Largest number of taxels with sticking contacts.
+    /// Largest number of taxels with sticking contacts in a frame.
     pub n_sticking: usize,
-    /// Largest number of taxels with slipping contacts.
+    /// Largest number of taxels with slipping contacts in a frame.
     pub n_slipping: usize,
 }
 
-/// Summary of an object over all frames.
+/// Summary of the motion of one object over all frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ObjectSummary {
-    /// How the pose of the object was determined in the last frame.
+    /// Rule by which the pose of the object was determined in the last frame.
     pub held: PoseControl,
     /// Number of frames in which the object was not in equilibrium.
     pub n_unsettled: usize,
@@ -37,14 +37,14 @@ pub struct ObjectSummary {
     pub n_off: usize,
 }
 
-/// Frame sink that computes the summary and stores no frames.
+/// Receiver of frames that computes the summary of a scene and stores no frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
     /// Number of frames received so far.
     pub n_frames: usize,
     /// Largest values of each patch, in the order of the plan.
     pub patches: Vec<PatchPeaks>,
-    /// Summary of each object, in the order of the plan.
+    /// Summary of the motion of each object, in the order of the plan.
     pub objects: Vec<ObjectSummary>,
 }
 

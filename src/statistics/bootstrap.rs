@@ -9,10 +9,10 @@ use rand::Rng;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::collections::BTreeMap;
 
-/// Minimum number of trials for an interval; the resamples of four trials are too few for a coverage of 95 %.
+/// Minimum number of trials for a bootstrap interval; the resamples of four trials are too few for a coverage of 95 %.
 pub const FEWEST: usize = 5;
 
-/// Number of bootstrap resamples. If fewer distinct resamples exist (five trials), each of them is used once and nothing is drawn.
+/// Number of bootstrap resamples. For five trials, fewer distinct resamples exist; each of them is then used once and nothing is drawn.
 const RESAMPLES: usize = 4000;
 
 /// Returns the true coverage of the 95 % bootstrap interval for `n_trials` trials, rounded to 0.01; `None` if there is no interval. The value is the lowest
@@ -27,8 +27,8 @@ pub fn coverage_of_95(n_trials: usize) -> Option<f64> {
     }
 }
 
-/// Bootstrap with cached resamples, drawn once for each number of trials. The draws do not depend on a study's seed, so equal scores always have equal
-/// intervals.
+/// Bootstrap intervals of mean scores. Resamples are drawn once for each number of trials and cached. The draws do not depend on a study's seed, so equal
+/// scores always have equal intervals.
 #[derive(Debug, Default)]
 pub struct Bootstrap {
     drawn: BTreeMap<(&'static str, usize), Vec<u32>>,
@@ -84,7 +84,7 @@ impl Bootstrap {
         }))
     }
 
-    /// Returns the resamples of `n` trials as consecutive blocks of `n` trial indices.
+    /// Returns the resamples of `n` trials one after another, each a block of `n` trial indices.
     fn drawn(&mut self, what: &'static str, n: usize) -> &[u32] {
         self.drawn.entry((what, n)).or_insert_with(|| {
             let n_different = (n as u128).checked_pow(n as u32);
@@ -130,7 +130,7 @@ fn means_of_blocks(scores: ArrayView2<f64>, rows: &[u32], columns: &[u32]) -> Ve
     resamples.map(mean).collect()
 }
 
-/// Returns the fraction of resamples that is cut off at each end.
+/// Returns the fraction of resampled means that is cut off at each end of the interval for `n` trials.
 fn tail(n: usize, confidence: f64) -> Result<f64> {
     let n = n as f64;
     let student = StudentsT::new(0.0, 1.0, n - 1.0)
@@ -180,7 +180,7 @@ mod tests {
         assert_expected("high", found.high, mean + half, of_quantile);
     }
 
-    /// Returns the fraction of intervals that contain the expectation of the scores drawn by `draw`.
+    /// Returns the fraction of bootstrap intervals that contain the expectation of the scores drawn by `draw`.
     fn coverage(
         n_draws: usize,
         expected: f64,
@@ -197,7 +197,7 @@ mod tests {
         holds.count() as f64 / n_draws as f64
     }
 
-    /// Returns the coverage for normal scores, and for accuracies of 0.9 and 0.98 at 100 test rows.
+    /// Returns the coverage of the bootstrap intervals for normal scores, and for accuracies of 0.9 and 0.98 at 100 test rows.
     fn coverages(n_draws: usize, n_trials: usize) -> [f64; 3] {
         let of_accuracy = |p: f64| {
             let rows = Binomial::new(100, p).unwrap();
@@ -253,7 +253,7 @@ mod tests {
         }
     }
 
-    /// Draws scores of crossed trials with given standard deviations of split, projection and residual.
+    /// Draws scores of crossed trials with given standard deviations of the splits, the projections and the residual.
     fn crossed(
         rng: &mut rand_chacha::ChaCha8Rng,
         (n_splits, n_projections): (usize, usize),

@@ -7,10 +7,10 @@ use crate::{Error, Result};
 use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 
-/// Difference between the scores of two configurations over common trials.
+/// Comparison of the scores of two configurations in their common trials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
-    /// Mean difference `a − b` over the trials.
+    /// Mean over the trials of the score of `a` minus the score of `b`.
     pub mean_difference: f64,
     /// Confidence interval of the mean difference.
     pub interval: Interval,
@@ -118,7 +118,7 @@ pub fn compare_crossed(
     estimate.test(a.len(), confidence).map(Some)
 }
 
-/// Size of a difference, in standard deviations between trials, for which practically all trials have a difference of the same sign.
+/// Size of a difference between two configurations, in standard deviations between trials, at which nearly all trials agree on the sign of the difference.
 const AGREED: f64 = 3.0;
 /// Maximum number of trials that [`trials_needed`] considers.
 const MAX_TRIALS: usize = 1000;
@@ -153,12 +153,12 @@ pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usiz
     Ok(Some(MAX_TRIALS))
 }
 
-/// Returns the mean of n_test / n_train over the trials, the variance correction for trials that share touches.
+/// Returns the mean ratio of test rows to training rows over the trials, which corrects the variance for trials that share touches.
 fn overlap(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| size.n_test as f64 / size.n_train as f64)
 }
 
-/// Returns the mean variance of rounding scores to multiples of 1 / n_test.
+/// Returns the variance that rounding to multiples of 1 / (number of test rows) adds to a score, averaged over the trials.
 fn rounding(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| {
         let n_test = size.n_test as f64;
@@ -166,14 +166,14 @@ fn rounding(sizes: &[TrialSize]) -> f64 {
     })
 }
 
-/// Returns the mean of a quantity over trials; exact, without rounding, if all values are equal.
+/// Returns the mean of a quantity over trials; if all values are equal, the result is exact, without rounding.
 fn mean_of(sizes: &[TrialSize], value: impl Fn(&TrialSize) -> f64) -> f64 {
     let first = value(&sizes[0]);
     let above: f64 = sizes.iter().map(|size| value(size) - first).sum();
     first + above / sizes.len() as f64
 }
 
-/// Mean difference, its variance, and the degrees of freedom of the variance.
+/// Mean difference of two configurations, the variance of this mean, and the degrees of freedom of the variance.
 struct Estimate {
     mean: f64,
     variance: f64,

@@ -32,22 +32,22 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::collections::BTreeMap;
 
-/// Minimum number of groups for an informative interval. With four groups, Student's t is 3.2, whereas the normal quantile is 2.
+/// Minimum number of groups for an informative interval. With four groups, the 95 % quantile of Student's t is 3.2, whereas the normal quantile is 2.
 pub const FEW_GROUPS: usize = 5;
 
-/// Number of rows and of correct rows of one group in one test.
+/// Number of test rows and of correctly recognised test rows in one group of a test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "[usize; 3]", into = "[usize; 3]")]
 pub struct GroupCount {
     /// Number of the group.
     pub group: usize,
-    /// Number of the group's test rows. A decision on touches of several groups counts as a row of each group, which widens intervals.
+    /// Number of test rows in the group. A decision on touches of several groups counts as a row of each group, which widens intervals.
     pub n_rows: usize,
-    /// Number of the group's correctly recognised rows.
+    /// Number of correctly recognised test rows in the group.
     pub n_correct: usize,
 }
 
-/// Serialises a count as an array to save space, because there may be as many counts as touches.
+/// Serialises the counts of a group as an array of three numbers to save space, because there may be as many counts as touches.
 impl From<GroupCount> for [usize; 3] {
     fn from(count: GroupCount) -> Self {
         [count.group, count.n_rows, count.n_correct]
@@ -64,18 +64,18 @@ impl From<[usize; 3]> for GroupCount {
     }
 }
 
-/// Test on whole groups of rows.
+/// Test of a classifier in which whole groups of rows are test rows.
 #[derive(Clone, Copy, Debug)]
 pub struct GroupedTest<'a> {
-    /// Number of test rows of the test.
+    /// Number of test rows.
     pub n_rows: usize,
-    /// Number of correctly recognised rows of the test.
+    /// Number of correctly recognised test rows.
     pub n_correct: usize,
-    /// Counts of each group; each group appears once.
+    /// Counts of each group in the test; each group appears once.
     pub groups: &'a [GroupCount],
 }
 
-/// Counts the rows and the correct rows of each group; returns the counts in ascending order of the group number.
+/// For each group, counts its rows and its correct rows; returns the counts in ascending order of the group number.
 pub fn count_groups(rows: impl IntoIterator<Item = (usize, bool)>) -> Vec<GroupCount> {
     let mut counts = BTreeMap::new();
     for (group, is_correct) in rows {
@@ -92,7 +92,8 @@ pub fn count_groups(rows: impl IntoIterator<Item = (usize, bool)>) -> Vec<GroupC
     counts.collect()
 }
 
-/// Returns the confidence interval of the mean accuracy of `tests`, and the number of groups. For a single group, the interval is 0 to 1.
+/// Returns the confidence interval of the mean accuracy of `tests` if groups are drawn at random, and the number of groups. For a single group, the interval is
+/// 0 to 1.
 ///
 /// # Errors
 /// If there are no tests, a test has no rows or no groups, more rows are correct than exist, or the confidence is outside 0..1.
@@ -115,17 +116,17 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
     Ok((interval, n_groups))
 }
 
-/// Pooled statistics of all tests; the module documentation defines the symbols.
+/// Pooled statistics of tests on groups of rows.
 struct Clustered {
-    /// Mean accuracy θ.
+    /// Mean accuracy over all tests.
     share: f64,
-    /// Effective number of rows n/D*.
+    /// Effective number of rows: the number of independent rows that would give the accuracy an equal variance.
     n_rows: f64,
-    /// Number of groups G.
+    /// Number of different groups in all tests.
     n_groups: usize,
 }
 
-/// Returns Student's t distribution with G − 1 degrees of freedom; `None` for a single group.
+/// Returns Student's t distribution with `n_groups` − 1 degrees of freedom; `None` for a single group.
 fn student(n_groups: usize) -> Option<StudentsT> {
     StudentsT::new(0.0, 1.0, n_groups as f64 - 1.0).ok()
 }
@@ -181,8 +182,8 @@ fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {
     })
 }
 
-/// Returns the interval of an accuracy and the number of groups. Without grouped tests, the interval is Wilson's for `n_correct` of `n_rows`, and the number of
-/// groups is `None`. With grouped tests, [`interval_of_groups`] computes both.
+/// Returns the interval of an accuracy and the number of groups. Without grouped tests, the interval is Wilson's for `n_correct` of `n_rows` rows, and the
+/// number of groups is `None`. With grouped tests, [`interval_of_groups`] computes both.
 ///
 /// # Errors
 /// If there are no rows, more rows are correct than exist, or the confidence is outside 0..1.
@@ -293,7 +294,7 @@ mod tests {
         (0..n_groups).map(group).collect()
     }
 
-    /// Returns the coverage and the mean width of intervals over groups and of intervals over rows.
+    /// Returns the coverage and the mean width of two kinds of intervals: over groups, and over single rows.
     fn coverage(sizes: (usize, usize), of: (f64, f64), rng: &mut ChaCha8Rng) -> [(f64, f64); 2] {
         let mut found = [(0.0, 0.0); 2];
         for _ in 0..N_DRAWS {

@@ -1,7 +1,7 @@
 //! Correction of p-values for multiple tests.
 
-/// Corrects the p-values of several tests, in input order (Holm, *A simple sequentially rejective multiple test procedure*, 1979). The probability of any false
-/// positive among all tests is then at most the probability for a single test.
+/// Corrects the p-values of several tests, in input order (Holm, *A simple sequentially rejective multiple test procedure*, 1979). With the corrected values,
+/// the probability of any false positive among all tests is at most the significance level.
 pub fn holm(p_values: &[f64]) -> Vec<f64> {
     let n = p_values.len();
     let mut order: Vec<usize> = (0..n).collect();
@@ -16,7 +16,7 @@ pub fn holm(p_values: &[f64]) -> Vec<f64> {
     corrected
 }
 
-/// Corrects the p-values of several tests with [`holm`]; tests without a p-value do not count and stay `None`.
+/// Corrects the p-values of several tests with [`holm`]; tests without a p-value are ignored and stay `None`.
 pub fn holm_of_some(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
     let known: Vec<f64> = p_values.iter().flatten().copied().collect();
     let mut corrected = holm(&known).into_iter();

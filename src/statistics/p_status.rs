@@ -5,15 +5,15 @@ use serde::{Deserialize, Serialize};
 /// Confidence level of every interval in the result tables.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Status of a comparison's p-value: present, or the reason why it is missing.
+/// Status of the p-value of a comparison: present, or the reason why it is missing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PStatus {
-    /// The comparison has a p-value. Tables of earlier versions contain no status and get this one.
+    /// The comparison has a p-value. Result tables of earlier versions contain no status and are read as this one.
     #[default]
     Tested,
     /// The study has so few trials that hardly any difference could be significant.
     TooFewTrials,
-    /// Some of the crossed trials are missing because they failed.
+    /// Some trials are missing because they failed, so the trials do not combine every split with every projection.
     TrialsMissing,
 }

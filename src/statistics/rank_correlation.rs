@@ -11,10 +11,11 @@ use crate::random::Seed;
 use bubbletouch_sim::statistics::interval::Interval;
 use rand::Rng;
 
-/// Number of bootstrap resamples. With another random stream, the ends of the interval move by 1 % of its width.
+/// Number of bootstrap resamples of the configurations. With another random stream, the ends of the interval move by 1 % of its width.
 const RESAMPLES: usize = 4000;
 
-/// Returns Kendall's τ_b of pairs of values, one pair per configuration. Returns `None` for fewer than two pairs, or if all values of one run are equal.
+/// Returns Kendall's rank correlation τ_b of two runs, given one pair of values per configuration. Returns `None` for fewer than two pairs, or if all values of
+/// one run are equal.
 pub fn kendall(pairs: &[[f64; 2]]) -> Option<f64> {
     let mut sorted = pairs.to_vec();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
@@ -34,8 +35,9 @@ pub fn kendall(pairs: &[[f64; 2]]) -> Option<f64> {
 /// in 87 %, and of 0.8 in 63 % of cases, because resamples of few configurations in nearly equal order hardly differ.
 pub const SUFFICIENT_SETTINGS: usize = 10;
 
-/// Returns the percentile bootstrap interval of Kendall's τ_b over configurations; `None` if no resample has a τ_b. Source: Efron and Tibshirani, *An
-/// introduction to the bootstrap*, 1993, chapter 13. A configuration drawn twice is tied with itself. The draws depend only on the number of configurations.
+/// Returns the percentile bootstrap interval of Kendall's rank correlation τ_b over configurations; `None` if no resample has a τ_b. Source: Efron and
+/// Tibshirani, *An introduction to the bootstrap*, 1993, chapter 13. A configuration drawn twice is tied with itself. The draws depend only on the number of
+/// configurations.
 pub fn kendall_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<Interval> {
     let n = pairs.len();
     let seed = Seed::new(0).named("rank correlation");
@@ -88,7 +90,7 @@ mod tests {
     use crate::standard_errors::{assert_at_least, assert_expected, of_share};
     use rand_distr::{Distribution, StandardNormal};
 
-    /// Computes τ_b over all pairs of configurations, in O(n²).
+    /// Computes Kendall's rank correlation τ_b by comparing all pairs of configurations, in O(n²).
     fn slow(pairs: &[[f64; 2]]) -> Option<f64> {
         let (mut sum, mut untied) = (0.0, [0.0; 2]);
         for (i, a) in pairs.iter().enumerate() {
@@ -156,7 +158,7 @@ mod tests {
         assert_eq!(kendall_interval(&[], 0.95), None);
     }
 
-    /// Returns the fraction of intervals that contain τ = 2/π asin ρ, for normal numbers with correlation ρ.
+    /// Returns the fraction of intervals that contain the true rank correlation τ = 2/π asin ρ, for normal numbers with correlation ρ.
     fn coverage(n_draws: usize, n: usize, correlation: f64) -> f64 {
         let mut rng = Seed::new(7).rng();
         let tau = correlation.asin() * std::f64::consts::FRAC_2_PI;

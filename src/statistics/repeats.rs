@@ -9,29 +9,30 @@ use bubbletouch_sim::statistics::interval::Interval;
 use ndarray::Array2;
 use std::collections::{BTreeSet, HashMap};
 
-/// Score of one trial, with the trial's split and projection.
+/// Score of one trial of a configuration, with the numbers of the trial's split and projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repeat {
     /// Number of the trial, from 0.
     pub trial: usize,
-    /// Number of the split; equal for trials with equal training and test touches.
+    /// Number of the split into training and test touches; trials with equal splits have equal numbers.
     pub split: usize,
-    /// Number of the projection, if the trials combine every split with every projection.
+    /// Number of the random projection, if the trials combine every split with every projection; otherwise `None`.
     pub projection: Option<usize>,
     /// Score of the trial, for example its accuracy.
     pub score: f64,
-    /// Numbers of training and test rows, if known.
+    /// Numbers of training and test rows of the trial, if known.
     pub size: Option<TrialSize>,
 }
 
 impl Repeat {
-    /// Returns the split and the projection, which identify the trial.
+    /// Returns the numbers of the split and the projection, which identify the trial.
     fn place(&self) -> (usize, Option<usize>) {
         (self.split, self.projection)
     }
 }
 
-/// Averages the scores of trials with equal split and projection. A repeated split contains no new information, so it counts as one trial.
+/// Averages the scores of trials whose split and projection, returned by `place`, are equal. A repeated split contains no new information, so it counts as one
+/// trial.
 fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) -> Vec<Repeat> {
     let mut known: HashMap<_, usize> = HashMap::new();
     let mut groups: Vec<Vec<Repeat>> = Vec::new();
@@ -54,8 +55,8 @@ fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) ->
     groups.collect()
 }
 
-/// Returns the scores of a configuration as a matrix. If the trials are crossed, the shape is splits × projections, and the result is `None` if some trials are
-/// missing. If the trials are not crossed, the shape is (n_splits, 1), and repeated splits are averaged.
+/// Returns the scores of a configuration as a matrix. If the trials combine every split with every projection, the shape is splits × projections; the result is
+/// `None` if some trials are missing. Otherwise, the shape is (n_splits, 1), and repeated splits are averaged.
 pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
     let mut ordered = merged(trials, |number| trials[number].place());
     if ordered.iter().any(|trial| trial.projection.is_none()) {
@@ -69,13 +70,13 @@ pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
     Array2::from_shape_vec((splits.len(), projections.len()), values).ok()
 }
 
-/// Result of a significance test of two configurations.
+/// Result of a significance test of the difference between two configurations.
 pub struct Tested {
-    /// Status of the p-value.
+    /// Whether the test has a p-value, or the reason why it is missing.
     pub p_status: PStatus,
     /// p-value of the null hypothesis that there is no difference; `None` if the test is not possible.
     pub p_value: Option<f64>,
-    /// Confidence interval of the difference; `None` for a single trial.
+    /// Confidence interval of the difference of the scores; `None` for a single trial.
     pub interval: Option<Interval>,
     /// Number of trials that a p-value requires. For crossed trials, this is the required number of splits times the number of projections.
     pub n_needed: Option<usize>,
@@ -85,7 +86,7 @@ pub struct Tested {
 pub struct Paired {
     ours: Vec<Repeat>,
     theirs: Vec<Repeat>,
-    /// Sizes of the paired trials of the first configuration, or of all its trials if none is paired; `None` if a size is unknown.
+    /// Sizes of the trials of the first configuration that are paired, or of all its trials if none is paired; `None` if a size is unknown.
     sizes: Option<Vec<TrialSize>>,
     /// Whether several trials have the same split.
     has_repeats: bool,
@@ -165,7 +166,7 @@ impl Paired {
         }))
     }
 
-    /// Compares the first configuration with the second; returns `None` for a single trial, or if crossed trials are missing.
+    /// Compares the first configuration with the second; returns `None` for a single trial, or if trials with some split and projection are missing.
     fn test(&self, sizes: &[TrialSize]) -> Result<Option<Comparison>> {
         let (Some(ours), Some(theirs)) = (scores(&self.ours), scores(&self.theirs)) else {
             return Ok(None);

@@ -6,25 +6,25 @@ use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
-/// Contribution of one random source to the variance of a score.
+/// Contribution of one random source, such as the splits, to the variance of a score.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Component {
-    /// Number of random levels (splits or projections); for the residual, the number of scores.
+    /// Number of random levels of the source (splits or projections); for the residual, the number of scores.
     pub n_levels: usize,
-    /// Degrees of freedom of the mean square.
+    /// Degrees of freedom of the source's mean square.
     pub degrees_of_freedom: usize,
     /// Mean square of the source in the analysis of variance.
     pub mean_square: f64,
-    /// Unbiased estimate of the variance; may be negative by chance if the variance is small.
+    /// Unbiased estimate of the variance that the source contributes; the estimate may be negative by chance if the variance is small.
     pub estimate: f64,
-    /// Confidence interval of the variance, at least 0.
+    /// Confidence interval of the variance that the source contributes, at least 0.
     pub interval: Interval,
     /// p-value of the null hypothesis that the variance is 0; `None` for the residual.
     pub p_value: Option<f64>,
 }
 
 impl Component {
-    /// Returns the estimated variance; negative estimates are replaced by 0.
+    /// Returns the estimated variance that the source contributes; negative estimates are replaced by 0.
     pub fn variance(&self) -> f64 {
         self.estimate.max(0.0)
     }
@@ -33,9 +33,9 @@ impl Component {
 /// Variance components of scores when every split is combined once with every projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components {
-    /// Component of the matrix rows (splits).
+    /// Variance component of the matrix rows (splits).
     pub rows: Component,
-    /// Component of the matrix columns (projections).
+    /// Variance component of the matrix columns (projections).
     pub columns: Component,
     /// Residual component: independent noise of each score, and the interaction of row and column.
     pub rest: Component,
@@ -71,7 +71,7 @@ pub fn components(scores: ArrayView2<f64>, confidence: f64) -> Result<Components
 }
 
 impl MeanSquares {
-    /// Returns the variance component of an effect with mean square `mean_square` and `n_levels` levels, each of which has `n_each` scores.
+    /// Returns the variance component of one effect, given its mean square, the number of its levels and the number `n_each` of scores per level.
     fn effect(
         &self,
         mean_square: f64,
@@ -197,7 +197,7 @@ mod tests {
         assert_eq!(levels, [(4, 3), (3, 2), (12, 6)]);
     }
 
-    /// Draws scores with given standard deviations of rows, columns and residual.
+    /// Draws test scores with given standard deviations of rows, columns and residual.
     fn draw(
         rng: &mut ChaCha8Rng,
         (n_rows, n_columns): (usize, usize),

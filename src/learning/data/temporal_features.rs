@@ -27,31 +27,32 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// Temporal features computed from the frames of a touch, before scaling and training.
+/// Temporal features that are computed from the frames of a touch, before scaling and training.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum TemporalFeatures {
-    /// Measurements of the frame with the highest level (the first, if several are equal): m numbers.
+    /// Measurements of the frame with the highest contact strength (the first if several are equal): m numbers for m measurements per frame.
     Deepest,
-    /// Measurements of k evenly spaced frames, including the first and the last (for k = 1, the middle frame): k · m numbers.
+    /// Measurements of k evenly spaced frames, including the first and the last (for k = 1, the middle frame). With m measurements per frame, these are k · m
+    /// numbers.
     Stacked(usize),
-    /// Mean, standard deviation and largest absolute value of each measurement over time: 3 m numbers.
+    /// Mean, standard deviation and largest absolute value of each of the m measurements over time: 3 m numbers.
     Moments,
-    /// Course of the touch: ten numbers that describe contact strength, duration and change.
+    /// Course of the touch over time: ten numbers that describe contact strength, duration and change.
     Course,
-    /// Moments, followed by the course: 3 m + 10 numbers.
+    /// The features of `Moments`, followed by the features of `Course`: 3 m + 10 numbers for m measurements per frame.
     Summarised,
 }
 
 /// Number of features of the course of a touch.
 const N_COURSE: usize = 10;
 
-/// Level above which a frame counts as in contact, as a fraction of the range from the lowest to the highest level. If lower, noise counts as contact; if
-/// higher, weak contacts are missed.
+/// Level of contact strength above which a frame counts as in contact, as a fraction of the range from the lowest to the highest level. With a smaller value,
+/// noise counts as contact; with a larger value, weak contacts are missed.
 const CONTACT_LEVEL: f64 = 0.5;
 
 impl TemporalFeatures {
-    /// Returns the number of temporal features for F frames of m measurements.
+    /// Returns the number of temporal features for `n_frames` frames of m measurements each.
     pub fn n_features(self, n_frames: usize, m: usize) -> usize {
         match self {
             Self::Deepest => m,
@@ -88,7 +89,7 @@ impl TemporalFeatures {
     }
 }
 
-/// Returns the index of frame number `part` among k evenly spaced frames.
+/// Returns the index of the frame with the number `part` when k frames are selected at even intervals.
 fn evenly(part: usize, k: usize, n_frames: usize) -> usize {
     match k {
         1 => (n_frames - 1) / 2,
@@ -101,7 +102,7 @@ fn levels(frames: ArrayView2<f64>) -> Vec<f64> {
     rows.map(|frame| frame.dot(&frame).sqrt()).collect()
 }
 
-/// Returns the index of the highest level; the first index, if several are equal.
+/// Returns the index of the highest of the levels; the first index if several levels are equal.
 fn highest(levels: &[f64]) -> usize {
     let mut best = 0;
     for (frame, &level) in levels.iter().enumerate() {
@@ -228,7 +229,7 @@ mod tests {
         row.to_vec()
     }
 
-    /// Returns a touch whose frames have one non-zero measurement each, except the fourth frame.
+    /// Returns a test touch whose frames have one non-zero measurement each, except the fourth frame.
     fn touch() -> Array2<f64> {
         array![
             [0.0, 0.0],

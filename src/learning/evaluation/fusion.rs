@@ -10,16 +10,16 @@ use rand::seq::SliceRandom;
 
 use crate::random::Seed;
 
-/// Groups of test rows with one decision per group.
+/// Groups of test rows for which one common decision is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FusedRows {
-    /// Groups of k row positions. All rows of a group have the same class; groups are disjoint and ordered by class.
+    /// For each group, the positions of its k rows. All rows of a group have the same class; groups are disjoint and ordered by class.
     pub groups: Vec<Vec<usize>>,
-    /// Number of rows that do not fill a whole group.
+    /// Number of rows that are left over because they do not fill a whole group.
     pub n_left_out: usize,
 }
 
-/// Groups rows with equal labels at random, k rows per group. For k = 1, each row is a group, in the order of the rows.
+/// Divides the rows into random groups of k rows with equal labels. For k = 1, each row is a group, in the order of the rows.
 ///
 /// The rows of each class are shuffled by a separate stream of `seed` and cut into groups. The groups of a class therefore do not depend on other classes.
 ///
@@ -50,7 +50,7 @@ pub fn fuse_rows(labels: ArrayView1<usize>, k: usize, seed: &Seed) -> FusedRows 
     fused
 }
 
-/// Sums the scores of each group: (n_rows × n_scores) to (n_groups × n_scores).
+/// For each group, adds the scores of its rows: (n_rows × n_scores) becomes (n_groups × n_scores).
 pub fn fuse_scores(scores: ArrayView2<f64>, groups: &[Vec<usize>]) -> Array2<f64> {
     let mut sums = Array2::zeros((groups.len(), scores.ncols()));
     for (mut sum, group) in sums.outer_iter_mut().zip(groups) {

@@ -40,33 +40,33 @@ impl ConfusionMatrix {
         Ok(Self { counts })
     }
 
-    /// Returns the number of rows.
+    /// Returns the total number of test rows.
     pub fn n_rows(&self) -> usize {
         self.counts.sum()
     }
 
-    /// Returns the number of correctly predicted rows.
+    /// Returns the number of test rows whose class was predicted correctly.
     pub fn n_correct(&self) -> usize {
         self.counts.diag().sum()
     }
 
-    /// Returns the fraction of correctly predicted rows, 0 to 1.
+    /// Returns the fraction of test rows whose class was predicted correctly, 0 to 1.
     pub fn accuracy(&self) -> f64 {
         self.n_correct() as f64 / self.n_rows() as f64
     }
 
-    /// Returns the precision of each class (n_classes), that is, correct predictions divided by all predictions of the class; 0 if there are none.
+    /// For each class, returns the precision: correct predictions of the class divided by all predictions of the class; 0 if there are none.
     pub fn precision(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(0)))
     }
 
-    /// Returns the recall of each class (n_classes), that is, correct predictions divided by all rows of the class; 0 if there are none.
+    /// For each class, returns the recall: correct predictions of the class divided by all rows of the class; 0 if there are none.
     pub fn recall(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(1)))
     }
 
-    /// Returns the F1 score of each class (n_classes): `2 · correct / (true + predicted)`, the harmonic mean of precision and recall. The score is 0 if the
-    /// class does not occur.
+    /// For each class, returns the F1 score, the harmonic mean of precision and recall: `2 · correct / (true + predicted)`. The score is 0 if the class does
+    /// not occur.
     pub fn f1(&self) -> Array1<f64> {
         let occurrences = self.counts.sum_axis(Axis(0)) + self.counts.sum_axis(Axis(1));
         shares(self.counts.diag(), &occurrences) * 2.0

@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Policy that chooses the touches after the first one.
+/// Policy that chooses the pose of each touch after the first one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NextTouch {
@@ -30,7 +30,7 @@ pub enum NextTouch {
     Random,
     /// The pose with the largest distance to the nearest previous touch.
     Farthest,
-    /// The pose with the lowest expected entropy of the belief over objects.
+    /// The pose after which the expected entropy (uncertainty) of the belief over the objects is lowest.
     MostInformative,
 }
 
@@ -39,12 +39,12 @@ pub enum NextTouch {
 pub struct Poses {
     /// Coordinates of the poses, n_touches × n_axes, each axis in units of its range.
     pub coordinates: Array2<f64>,
-    /// Size of a full turn on each axis that is a periodic angle, in units of the axis range; `None` for other axes.
+    /// For each axis that is a periodic angle, the size of a full turn in units of the axis range; `None` for other axes.
     pub turns: Vec<Option<f64>>,
 }
 
 impl Poses {
-    /// Returns the poses of the touches with the given numbers, in the given order.
+    /// Returns the poses of only the touches with the given numbers, in the given order.
     pub fn select(&self, touches: &[usize]) -> Self {
         Self {
             coordinates: self.coordinates.select(Axis(0), touches),
@@ -52,7 +52,7 @@ impl Poses {
         }
     }
 
-    /// Returns the absolute difference of two poses along an axis; for a periodic axis, the smaller of the two differences.
+    /// Returns the absolute difference of two poses `a` and `b` along an axis; for a periodic axis, the smaller of the two possible differences.
     fn difference(&self, axis: usize, a: usize, b: usize) -> f64 {
         let apart = (self.coordinates[[a, axis]] - self.coordinates[[b, axis]]).abs();
         match self.turns[axis] {
@@ -64,14 +64,14 @@ impl Poses {
         }
     }
 
-    /// Returns the sum of squared differences of two poses, each axis in units of its bandwidth.
+    /// Returns the sum over all axes of the squared differences of two poses, where each axis is in units of its bandwidth.
     fn squared_distance(&self, bandwidths: &[f64], a: usize, b: usize) -> f64 {
         let along = bandwidths.iter().enumerate();
         let along = along.map(|(axis, bandwidth)| self.difference(axis, a, b) / bandwidth);
         along.map(|apart| apart * apart).sum()
     }
 
-    /// Returns the position in `left` of the touch with the largest distance to its nearest touch in `made`; the first, if several are equal.
+    /// Returns the position in `left` of the touch whose pose is farthest from its nearest pose in `made`; the first if several are equal.
     ///
     /// # Panics
     /// If `made` or `left` is empty.
@@ -86,28 +86,29 @@ impl Poses {
     }
 }
 
-/// Model of a classifier's labels, estimated from training touches that were labelled by classifiers not trained on them.
+/// Probability model of the labels that a classifier predicts for each object and pose. The training touches were labelled by classifiers that were not trained
+/// on them.
 #[derive(Clone, Debug)]
 pub struct AnswerModel<'a> {
     poses: &'a Poses,
-    /// Touches of each object and their predicted labels.
+    /// For each object, its touches and their predicted labels.
     answered: Vec<Vec<(usize, usize)>>,
     /// Bandwidth of each pose axis, in units of the axis range.
     bandwidths: Vec<f64>,
-    /// Strength s of the prior: weight of the pose-independent label frequencies, as a number of touches in the pose.
+    /// Strength of the prior, as a number of touches: weight of the label frequencies over all poses relative to touches near the pose.
     strength: f64,
 }
 
-/// Candidate bandwidths, in units of the axis range. With smaller bandwidths, a pose has no neighbours. A bandwidth above 1 gives an axis little influence, an
-/// infinite bandwidth none.
+/// Candidate bandwidths of a pose axis, in units of the axis range. With smaller bandwidths, a pose has no neighbours. A bandwidth above 1 gives an axis little
+/// influence, an infinite bandwidth none.
 const BANDWIDTHS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, f64::INFINITY];
-/// Candidate strengths s of the prior. If small, few touches in a pose determine the probabilities; if large, many touches are needed.
+/// Candidate strengths of the prior, as numbers of touches. If small, few touches near a pose determine the probabilities; if large, many touches are needed.
 const STRENGTHS: [f64; 3] = [1.0, 5.0, 25.0];
-/// Number of passes over all parameters; each pass optimises every parameter once.
+/// Number of passes over the model's parameters; in each pass, every parameter is optimised once.
 const PASSES: usize = 2;
 
 impl<'a> AnswerModel<'a> {
-    /// Fits the model to labelled touches (pose number, object, label). Objects and labels are below `n_objects`.
+    /// Fits the model to labelled touches, given as (pose number, object, label). Objects and labels are below `n_objects`.
     pub fn new(poses: &'a Poses, touches: &[(usize, usize, usize)], n_objects: usize) -> Self {
         let mut answered = vec![Vec::new(); n_objects];
         for &(touch, object, answer) in touches {
@@ -128,7 +129,7 @@ impl<'a> AnswerModel<'a> {
         model
     }
 
-    /// Sets one parameter to the candidate value with the highest likelihood.
+    /// Sets the parameter returned by `number` to the candidate value with the highest likelihood.
     fn choose<const N: usize>(&mut self, values: [f64; N], number: impl Fn(&mut Self) -> &mut f64) {
         let likelihoods = values.map(|value| {
             *number(self) = value;
@@ -137,7 +138,7 @@ impl<'a> AnswerModel<'a> {
         *number(self) = values[first_greatest(likelihoods)];
     }
 
-    /// Returns the leave-one-out log-likelihood of all labels.
+    /// Returns the logarithm of the likelihood of all labels, where each label is predicted from all other touches (leave-one-out).
     fn log_likelihood(&self) -> f64 {
         let share = 1.0 / self.answered.len() as f64;
         let of_object = |answered: &Vec<(usize, usize)>| -> f64 {
@@ -163,7 +164,7 @@ impl<'a> AnswerModel<'a> {
         (-0.5 * self.poses.squared_distance(&self.bandwidths, a, b)).exp()
     }
 
-    /// Returns the label probabilities of each object in the pose of the given touch.
+    /// For the pose of the given touch, returns the probabilities of all labels for each object.
     pub fn at(&self, touch: usize) -> PoseAnswers {
         let n = self.answered.len();
         let mut given = Array2::from_elem((n, n), 1.0 / n as f64);
@@ -182,17 +183,17 @@ impl<'a> AnswerModel<'a> {
     }
 }
 
-/// Label probabilities of all objects in one pose.
+/// Label probabilities of all objects for touches in one pose.
 #[derive(Clone, Debug)]
 pub struct PoseAnswers {
-    /// Conditional probabilities P(a | o), n_objects × n_answers, positive; each row sums to 1.
+    /// Conditional probability of each label given each object, n_objects × n_answers, positive; each row sums to 1.
     given: Array2<f64>,
-    /// Entropies H(A | o) of each object's labels, nats.
+    /// For each object, the entropy of its label probabilities, nats.
     entropies: Array1<f64>,
 }
 
 impl PoseAnswers {
-    /// Creates the probabilities from P(a | o), n_objects × n_answers, positive; each row sums to 1.
+    /// Creates the probabilities from a matrix with one row per object and one column per label; entries are positive, and each row sums to 1.
     pub fn new(given: Array2<f64>) -> Self {
         Self {
             entropies: given.map_axis(Axis(1), entropy),
@@ -200,20 +201,20 @@ impl PoseAnswers {
         }
     }
 
-    /// Updates the belief in each object after observing a label (Bayes' rule).
+    /// After a label `answer` is observed, updates the probability of each object by Bayes' rule.
     pub fn believe(&self, belief: &mut Array1<f64>, answer: usize) {
         *belief *= &self.given.column(answer);
         *belief /= belief.sum();
     }
 
-    /// Returns the mutual information I(O; A): the expected reduction of the entropy of the belief, nats.
+    /// Returns by how much a touch in this pose is expected to reduce the entropy of the belief over objects (mutual information), nats.
     pub fn information(&self, belief: &Array1<f64>) -> f64 {
         entropy(belief.dot(&self.given).view()) - belief.dot(&self.entropies)
     }
 }
 
-/// Returns the position in `left` of the most informative pose; the first, if several are equal. `poses` and `answers` are indexed by touch. The belief is
-/// computed from the labels of the touches in `made`; the labels of `left` are not used.
+/// Returns the position in `left` of the most informative touch; the first if several are equal. `poses` and `answers` are indexed by touch. The belief is
+/// computed from the labels of the touches in `made`; the labels of the touches in `left` are not used.
 pub fn most_informative(
     (poses, answers): (&[PoseAnswers], &[usize]),
     made: &[usize],
@@ -227,8 +228,8 @@ pub fn most_informative(
     first_greatest(left.iter().map(|&touch| poses[touch].information(&belief)))
 }
 
-/// Returns a sequence of k ≤ n of the touches `0..n` that starts with `first`. Each further touch is chosen by `next`, which receives the previous touches in
-/// order and the remaining touches in ascending order. The result of `next` is a position in the list of remaining touches.
+/// Returns a sequence of k ≤ n touches from `0..n` that starts with the touch `first`. Each further touch is chosen by `next`, which receives the previous
+/// touches in order and the remaining touches in ascending order. The result of `next` is a position in the list of remaining touches.
 pub fn sequence(
     (first, k): (usize, usize),
     n: usize,
@@ -247,7 +248,7 @@ fn entropy(shares: ArrayView1<f64>) -> f64 {
     -shares.iter().map(|share| share * share.ln()).sum::<f64>()
 }
 
-/// Returns the index of the greatest value; the first index, if several are equal.
+/// Returns the index of the greatest value; the first index if several values are equal.
 fn first_greatest(values: impl IntoIterator<Item = f64>) -> usize {
     let values = values.into_iter().enumerate();
     let greatest = values.reduce(|best, one| if one.1 > best.1 { one } else { best });
