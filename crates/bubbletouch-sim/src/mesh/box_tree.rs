@@ -7,24 +7,24 @@ use std::ops::Range;
 /// Tree of boxes in one flat array. Equal boxes give equal trees.
 #[derive(Clone, Debug)]
 pub struct BoxTree {
-    /// Nodes, the root first; the two children of a node are adjacent.
+    /// Nodes of the tree, the root first; the two children of a node are adjacent.
     nodes: Vec<Node>,
     /// Indices of the boxes, leaf by leaf.
     order: Vec<u32>,
 }
 
-/// Maximum number of nodes on the stack of a search: one per level.
+/// Maximum number of nodes that wait during a search: one per level of the tree.
 const STACK: usize = DEEPEST + 1;
 
 impl BoxTree {
-    /// Builds the tree of the given boxes, metres; `None` if there are no boxes.
+    /// Builds the tree of the given bounding boxes, metres; `None` if there are no boxes.
     pub fn new(boxes: Vec<Aabb>) -> Option<Self> {
         let root = Aabb::around(boxes.iter().copied())?;
         let (nodes, order) = build(boxes, root);
         Some(Self { nodes, order })
     }
 
-    /// Returns the bounding box of all boxes.
+    /// Returns the bounding box of all boxes in the tree.
     pub fn bounds(&self) -> Aabb {
         self.nodes[0].bounds
     }
@@ -34,7 +34,7 @@ impl BoxTree {
         &self.order
     }
 
-    /// Returns the number of nodes; node 0 is the root, and children come after their parents.
+    /// Returns the number of nodes of the tree; node 0 is the root, and children come after their parents.
     pub(super) fn n_nodes(&self) -> usize {
         self.nodes.len()
     }
@@ -54,8 +54,8 @@ impl BoxTree {
         self.nodes[node].places()
     }
 
-    /// Visits leaves by branch and bound. A leaf is visited if all nodes above it have a `bound` below the limit; the child with the lower bound comes first.
-    /// `visit` receives the leaf's positions in the tree's order and the limit, and returns the new limit.
+    /// Visits leaves by branch and bound. A leaf is visited if `bound` is below the limit for all nodes above it; the child with the lower bound comes first.
+    /// `visit` receives the positions of the leaf's boxes in the tree's order and the limit, and returns the new limit.
     pub fn search(
         &self,
         limit: f64,
@@ -65,8 +65,8 @@ impl BoxTree {
         self.search_unless(limit, bound, |_, _| false, visit);
     }
 
-    /// Visits leaves by branch and bound, as `search` does, but skips nodes for which `rules_out` returns true. The arguments of `rules_out` are the node and
-    /// the current limit.
+    /// Visits leaves by branch and bound, as `search` does, but skips nodes for which `rules_out` returns true. The arguments of `rules_out` are the node's
+    /// index and the current limit.
     pub(super) fn search_unless(
         &self,
         mut limit: f64,

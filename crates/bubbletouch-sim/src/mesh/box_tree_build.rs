@@ -8,29 +8,29 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     pub bounds: Aabb,
-    /// Position of the first box of a leaf, otherwise the first child.
+    /// Position of the first box if the node is a leaf, otherwise the index of the first child.
     pub first: u32,
     /// Number of boxes in a leaf; zero for a node with children.
     pub n_boxes: u32,
 }
 
 impl Node {
-    /// Returns the positions of a leaf's boxes in the order of the tree.
+    /// Returns the positions of a leaf's boxes in the order of the tree; empty for a node with children.
     pub fn places(&self) -> Range<usize> {
         self.first as usize..(self.first + self.n_boxes) as usize
     }
 }
 
-/// Maximum number of boxes in a leaf. If larger, more boxes are tested; if smaller, the tree has more nodes.
+/// Maximum number of boxes in a leaf. If larger, a search tests more boxes; if smaller, the tree has more nodes.
 const LEAF: usize = 4;
-/// Number of candidate cuts per axis. A larger number improves the tree but takes longer to build.
+/// Number of bins per axis, between which a node can be cut. A larger number improves the tree but takes longer to build.
 const BINS: usize = 16;
-/// Depth beyond which nodes are cut at the median, whatever the cost.
+/// Depth of the tree beyond which nodes are cut at the median, whatever the cost.
 const BALANCED_FROM: usize = 24;
-/// Maximum depth of a tree: 32 levels halve 2³² boxes.
+/// Maximum depth of a tree. Beyond the depth [`BALANCED_FROM`], 32 levels halve 2³² boxes.
 pub(super) const DEEPEST: usize = BALANCED_FROM + 32;
 
-/// Returns the nodes of the tree, and the indices of the boxes leaf by leaf. `root` is the box around all boxes.
+/// Returns the nodes of the tree, and the indices of the boxes leaf by leaf. `root` is the bounding box of all boxes.
 pub(super) fn build(boxes: Vec<Aabb>, root: Aabb) -> (Vec<Node>, Vec<u32>) {
     let n_boxes = boxes.len() as u32;
     let mut builder = Builder {
@@ -53,12 +53,12 @@ struct Builder {
     centers: Vec<DVec3>,
     order: Vec<u32>,
     nodes: Vec<Node>,
-    /// Scratch memory for a cut: the boxes of the second part.
+    /// Scratch memory for cutting a node: the indices of the boxes in its second part.
     right: Vec<u32>,
 }
 
 impl Builder {
-    /// Builds the subtree of a node that contains `order[range]`.
+    /// Builds the subtree of the node with index `node`, which contains the boxes `order[range]`.
     fn split(&mut self, node: usize, range: Range<usize>, depth: usize) {
         if range.len() <= LEAF {
             return;
@@ -85,8 +85,8 @@ impl Builder {
         Aabb::around(boxes).expect("no part of the tree is empty")
     }
 
-    /// Reorders a range of boxes, and returns the start of its second part and the bounding boxes of both parts. The cut has the lowest expected cost (surface
-    /// area heuristic, cuts at equal distances). The median is used if there is no such cut or the tree is deep.
+    /// Divides a range of boxes in two by reordering them. Returns the start of the second part and the bounding boxes of both parts. The cut has the lowest
+    /// expected cost (surface area heuristic, cuts at equal distances). The median is used if there is no such cut or the tree is deep.
     fn partition(&mut self, range: Range<usize>, depth: usize) -> (usize, [Aabb; 2]) {
         let centers = &self.centers;
         let order = &mut self.order[range.clone()];
@@ -119,7 +119,7 @@ impl Builder {
     }
 }
 
-/// Plane that cuts a node across one axis, between two bins of centres.
+/// Plane across one axis that cuts a node between two bins of box centres.
 struct Cut {
     axis: usize,
     low: f64,
@@ -129,7 +129,7 @@ struct Cut {
 }
 
 impl Cut {
-    /// Returns the best cut along any axis with the bounding boxes of its sides; `None` if all centres coincide.
+    /// Returns the cheapest cut along any axis with the bounding boxes of both sides; `None` if the centres of all boxes coincide.
     fn cheapest(
         boxes: &[Aabb],
         centers: &[DVec3],
@@ -179,7 +179,7 @@ impl Cut {
     }
 }
 
-/// Bin of boxes whose centres lie between two candidate cuts.
+/// Bin: the boxes whose centres lie between two adjacent candidate cuts.
 #[derive(Clone, Copy)]
 struct Bin {
     /// Bounding box of the boxes in the bin; inverted if the bin is empty.
@@ -216,7 +216,7 @@ impl Bin {
     }
 }
 
-/// Returns the lowest total cost of both sides of a plane, and the first bin on the right; `None` if one bin contains all boxes.
+/// Returns the lowest total cost of a cut between two bins, and the first bin beyond the cut; `None` if one bin contains all boxes.
 fn cheapest_plane(bins: &[Bin; BINS]) -> Option<(f64, usize)> {
     let mut right_costs = [None; BINS];
     let mut right = Bin::EMPTY;

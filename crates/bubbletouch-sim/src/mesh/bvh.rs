@@ -6,7 +6,7 @@ use crate::geometry::Aabb;
 use glam::DVec3;
 use std::ops::Range;
 
-/// Triangles in a tree of bounding boxes. Equal triangles give equal trees.
+/// Bounding volume hierarchy: triangles in a tree of bounding boxes. Equal triangles give equal trees.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     tree: BoxTree,
@@ -14,7 +14,7 @@ pub struct Bvh {
     triangles: Vec<Triangle>,
     /// Planes of the triangles, in the order of the tree.
     planes: Vec<Plane>,
-    /// Slab (two parallel planes) around the triangles of each node.
+    /// Slab around the triangles of each node, that is, the space between two parallel planes.
     slabs: Vec<Slab>,
 }
 
@@ -34,7 +34,7 @@ pub struct Closest {
 /// Intersection of a line and a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Position along the line, as a multiple of its direction vector.
+    /// Position of the intersection along the line, as a multiple of the line's direction vector.
     pub along: f64,
     /// Index of the intersected triangle in the mesh.
     pub triangle: usize,
@@ -75,7 +75,7 @@ impl Bvh {
         &self.triangles[self.tree.leaf(node)]
     }
 
-    /// Returns the nearest point of the mesh that is closer than `within` metres; no limit if `within` is infinite.
+    /// Returns the nearest point of the mesh if it is closer than `within` metres, otherwise `None`. If `within` is infinite, the distance is not limited.
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         let mut found = None;
         let mut visit = |place: usize, limit| {
@@ -116,7 +116,7 @@ impl Bvh {
         });
     }
 
-    /// Returns the first triangle that the line `origin + along · direction` crosses for `along` in a range.
+    /// Returns the first triangle that the line `origin + along · direction` crosses, for values of `along` in a range.
     pub fn first_hit(&self, origin: DVec3, direction: DVec3, range: Range<f64>) -> Option<Hit> {
         let mut found = None;
         self.search(
@@ -136,8 +136,8 @@ impl Bvh {
         found
     }
 
-    /// Visits every triangle that the infinite line crosses, in the order of the tree. A line through an edge may cross both triangles or,
-    /// due to rounding, none.
+    /// Visits every triangle that the infinite line through `origin` along `direction` crosses, in the order of the tree. A line through an edge may cross
+    /// both triangles or, due to rounding, none.
     pub fn each_hit(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(Hit)) {
         self.search(
             f64::INFINITY,
@@ -154,7 +154,7 @@ impl Bvh {
         );
     }
 
-    /// Visits triangles by branch and bound. A leaf is visited if all nodes above it have a `bound` below the limit; the child with the lower bound comes
+    /// Visits triangles by branch and bound. A leaf is visited if `bound` is below the limit for all nodes above it; the child with the lower bound comes
     /// first. `visit` receives a triangle's index in the mesh, its corners and the limit, and returns the new limit.
     pub fn search(
         &self,
@@ -167,7 +167,7 @@ impl Bvh {
         });
     }
 
-    /// Returns the index in the mesh of the triangle at a given position in the order of the tree.
+    /// Returns the mesh index of the triangle at the position `place` in the order of the tree.
     pub fn number(&self, place: usize) -> usize {
         self.tree.order()[place] as usize
     }
@@ -177,7 +177,7 @@ impl Bvh {
         &self.triangles
     }
 
-    /// Visits triangles by branch and bound, as `search` does, with positions in the order of the tree instead of indices in the mesh.
+    /// Visits triangles by branch and bound, as `search` does, but passes positions in the order of the tree instead of indices in the mesh.
     pub fn search_places(
         &self,
         limit: f64,
@@ -200,13 +200,13 @@ impl Bvh {
 struct Plane {
     /// Unit normal of the plane; zero if the triangle is too thin.
     normal: DVec3,
-    /// Position of the plane along the normal, metres.
+    /// Distance of the plane from the origin along the normal, metres.
     offset: f64,
 }
 
 impl Plane {
     fn new(triangle: &Triangle) -> Self {
-        /// Smallest height of a triangle relative to its length; the planes of thinner ones are rotated too much by rounding.
+        /// Smallest height of a triangle relative to its length; the planes of thinner triangles are rotated too much by rounding.
         const THINNEST: f64 = 1e-4;
         let is_thin = 2.0 * triangle.area() <= THINNEST * triangle.longest_edge_squared();
         let normal = match triangle.normal() {
@@ -219,7 +219,7 @@ impl Plane {
         }
     }
 
-    /// Returns whether the plane is certainly farther from a point than the square root of `limit`.
+    /// Returns whether the plane is certainly farther from a point than the square root of `limit` (a squared distance).
     fn is_beyond(&self, point: DVec3, limit: f64) -> bool {
         let height = self.normal.dot(point) - self.offset;
         height * height > limit * (1.0 + 1e-6)

@@ -9,14 +9,14 @@ use super::{Bvh, Triangle};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Smallest distance of a ray from an edge of a triangle, in barycentric coordinates. If larger, more rays are rejected; if smaller, rounding may count both
-/// triangles at the edge, or none.
+/// Smallest allowed distance of a ray from an edge of a triangle, in barycentric coordinates. If larger, more rays are rejected; if smaller, rounding may
+/// count both triangles at the edge, or none.
 const NEAR_EDGE: f64 = 1e-7;
 
-/// Maximum number of ray directions that are tried; about one direction in a million fails.
+/// Maximum number of ray directions that are tried for one point; about one direction in a million fails.
 const MAX_RAYS: usize = 32;
 
-/// Returns the winding number of the triangles around a point.
+/// Returns the winding number of the triangles around a point, computed with rays.
 pub(super) fn winding(bvh: &Bvh, point: DVec3) -> i32 {
     let rays = (0..MAX_RAYS).find_map(|number| along_ray(bvh, point, direction(number)));
     rays.unwrap_or_else(|| {
@@ -25,7 +25,7 @@ pub(super) fn winding(bvh: &Bvh, point: DVec3) -> i32 {
     })
 }
 
-/// Returns a ray direction by its index. The directions are spread over the sphere by the golden ratio and avoid the axes of typical meshes.
+/// Returns the ray direction with the index `number`. The directions are spread over the sphere by the golden ratio and avoid the axes of typical meshes.
 fn direction(number: usize) -> DVec3 {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let turns = 0.137 + GOLDEN * number as f64;
@@ -35,7 +35,7 @@ fn direction(number: usize) -> DVec3 {
     DVec3::new(across * cos, across * sin, z)
 }
 
-/// Returns the winding number, computed with one ray; `None` if the ray passes too close to an edge.
+/// Returns the winding number around a point, computed with one ray; `None` if the ray passes too close to an edge.
 fn along_ray(bvh: &Bvh, point: DVec3, direction: DVec3) -> Option<i32> {
     let (mut sum, mut is_clear) = (0, true);
     bvh.search(
@@ -55,8 +55,8 @@ fn along_ray(bvh: &Bvh, point: DVec3, direction: DVec3) -> Option<i32> {
     is_clear.then_some(sum)
 }
 
-/// Returns 1 if the ray crosses the front of a triangle, −1 if it crosses the back, 0 if it misses; `None` near the triangle's edges. A triangle too thin to
-/// have a normal is missed by every ray that avoids the edges of its neighbours.
+/// Returns 1 if the ray crosses a triangle from behind, −1 if the ray enters through its front, 0 if the ray misses it; `None` near the triangle's edges. A
+/// triangle too thin to have a normal is missed by every ray that avoids the edges of its neighbours.
 fn crossing(triangle: &Triangle, origin: DVec3, direction: DVec3) -> Option<i32> {
     let [a, b, c] = triangle.0;
     let (ab, ac, from_a) = (b - a, c - a, origin - a);

@@ -72,7 +72,7 @@ impl MeshFormat {
 }
 
 impl LengthUnit {
-    /// Names of the units in options and files.
+    /// Names of the length units in options and files.
     pub const NAMES: [(&'static str, Self); 4] = [
         ("m", Self::Metre),
         ("cm", Self::Centimetre),
@@ -80,7 +80,7 @@ impl LengthUnit {
         ("in", Self::Inch),
     ];
 
-    /// Returns the name of the unit in options and files.
+    /// Returns the name of the length unit in options and files.
     pub fn name(self) -> &'static str {
         let named = Self::NAMES.iter().find(|(_, unit)| *unit == self);
         named.expect("every unit has a name").0

@@ -7,7 +7,7 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Connected part of the border of a mesh: edges with one face.
+/// Hole of a mesh: a connected part of its border, which consists of the edges with one face.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hole {
     /// Border edges in the direction of their faces, from corner to corner.
@@ -51,7 +51,7 @@ impl Hole {
         }
     }
 
-    /// Returns whether the border enters every corner as often as it leaves it. In this case a cone closes the hole.
+    /// Returns whether the border enters every corner as often as it leaves the corner. In this case a cone can close the hole.
     fn is_circuit(&self) -> bool {
         let mut balance: BTreeMap<u32, i32> = BTreeMap::new();
         for &[from, to] in &self.border {
@@ -62,7 +62,7 @@ impl Hole {
     }
 }
 
-/// Returns the largest distance between two points.
+/// Returns the largest distance between two of the points.
 fn width(mut points: Vec<DVec3>) -> f64 {
     let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
     // Far points come first: two points closer to the middle than half the width cannot be farther apart.
@@ -85,14 +85,14 @@ fn width(mut points: Vec<DVec3>) -> f64 {
 /// Result of closing the holes of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedHoles {
-    /// Mesh with a cone over each closed hole: one triangle per border edge, to the mean of the border's corners.
+    /// Mesh with a cone over each closed hole. A cone has one triangle per border edge, each with the mean of the border's corners as its apex.
     pub mesh: TriangleMesh,
     /// Width of each closed hole, metres, the widest first.
     pub widths: Vec<f64>,
 }
 
 impl TriangleMesh {
-    /// Closes all holes whose width is at most `widest` (metres, not negative).
+    /// Closes all holes of the mesh whose width is at most `widest` (metres, not negative).
     ///
     /// # Errors
     /// If the width is negative or NaN.
@@ -121,7 +121,7 @@ impl TriangleMesh {
 }
 
 impl fmt::Display for ClosedHoles {
-    /// Formats the result as a sentence: `closed 2 holes, at most 0.93 mm wide`.
+    /// Formats the result as a phrase, such as `closed 2 holes, at most 0.93 mm wide`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.widths[..] {
             [] => write!(f, "closed no hole"),

@@ -4,14 +4,14 @@ use super::TriangleMesh;
 use glam::DVec3;
 
 impl TriangleMesh {
-    /// Returns the sum of the triangles' areas, m².
+    /// Returns the area of the mesh, the sum of its triangles' areas, m².
     pub fn area(&self) -> f64 {
         (0..self.n_triangles())
             .map(|t| self.triangle(t).area())
             .sum()
     }
 
-    /// Returns the centroid of the surface, metres: the mean of the triangles' centroids, weighted by area.
+    /// Returns the centroid of the mesh's surface, metres: the mean of the triangles' centroids, weighted by area.
     pub fn surface_centroid(&self) -> DVec3 {
         let mut area = 0.0;
         let mut moment = DVec3::ZERO;
@@ -28,7 +28,7 @@ impl TriangleMesh {
         }
     }
 
-    /// Returns the enclosed volume, m³ (negative if the triangles face inwards), and the volume's centroid, metres.
+    /// Returns the volume that the mesh encloses, m³ (negative if the triangles face inwards), and the centroid of this volume, metres.
     ///
     /// The volume is computed by tetrahedra from the centroid of the surface, which is exact for a closed mesh. A hole counts as closed by a cone to this
     /// centroid.

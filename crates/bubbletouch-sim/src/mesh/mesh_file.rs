@@ -15,7 +15,7 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Creates the contents of a file and checks the invariant. Vertices are in metres.
+    /// Creates the contents of a mesh file and checks the invariant. Vertices are in metres.
     ///
     /// # Errors
     /// If the invariant does not hold; errors begin with `place` and count from 1.
@@ -40,7 +40,7 @@ impl MeshFile {
         Ok(Self { vertices, polygons })
     }
 
-    /// Returns the contents with every coordinate multiplied by a factor.
+    /// Returns the contents of the file with every coordinate multiplied by a factor.
     pub(super) fn scaled(self, place: &str, factor: f64) -> Result<Self> {
         let vertices = self.vertices.into_iter().map(|v| v * factor).collect();
         Self::new(place, vertices, self.polygons)
@@ -78,7 +78,7 @@ impl MeshFile {
         TriangleMesh::new(place, self.vertices, triangles)
     }
 
-    /// Returns whether a triangle of the fan is reversed relative to the area vector of the polygon.
+    /// Returns whether a triangle of the polygon's fan is reversed relative to the area vector of the polygon.
     fn folds(&self, polygon: &[u32]) -> bool {
         if polygon.len() == 3 {
             return false;

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use glam::DVec3;
 use std::io::BufRead;
 
-/// Index that marks a vertex that no face uses.
+/// Index that marks vertices that no face uses.
 const UNUSED: u32 = u32::MAX;
 
 /// Reads the mesh in an OBJ file; all objects and groups of the file form one mesh.
@@ -70,8 +70,8 @@ pub fn read_obj(place: &str, source: impl BufRead) -> Result<MeshFile> {
     MeshFile::new(place, used, polygons)
 }
 
-/// Returns the vertex index of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1. Negative indices count back from the last of
-/// the `n_vertices` vertices read so far.
+/// Returns the vertex index in the word of a face corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 1. Negative indices count back from the last of the
+/// `n_vertices` vertices read so far.
 fn index(word: &str, n_vertices: usize) -> Result<usize> {
     let vertex = word.split('/').next().unwrap_or_default();
     let index = match vertex.parse::<i64>() {

@@ -14,39 +14,39 @@ use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Maximum number of triangles from which rays are sent to find the outside of an open part. If larger, the test is slower; if smaller, parts with narrow
-/// openings are tested by few rays.
+/// Maximum number of triangles from which rays are sent to find the outside of an open part. If larger, the test is slower; if smaller, few rays test parts
+/// with narrow openings.
 const MAX_RAYS: usize = 2000;
 
-/// Number of points of a part that are tested against another part; the majority decides, so the number is odd.
+/// Number of points of one part of a mesh that are tested against another part; the majority decides, so the number is odd.
 const N_POINTS: usize = 9;
 
 /// Smallest volume of a part relative to its area to the power 3/2. Parts with less volume enclose nothing: they are the two sides of a surface without
 /// thickness.
 const MIN_VOLUME: f64 = 1e-9;
 
-/// Fraction of the area of an open part that may face inwards; above it, the orientation of the part is undecided. If smaller, scans with a few flipped
-/// triangles are rejected. If larger, a skin on the part may point both ways.
+/// Largest area fraction of an open part that may face inwards. Above this fraction, the orientation of the part is undecided. If smaller, scans with a few
+/// flipped triangles are rejected. If larger, a skin on the part may point both ways.
 const MAX_DISAGREEING: f64 = 0.05;
 
-/// Orientation of the triangles of a mesh, as `turned_outwards` determines it.
+/// Orientation of the triangles of a mesh, as determined by `turned_outwards`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Orientation {
-    /// The triangles faced outwards as given. Flat surfaces and open parts without an outside count as outwards if their faces are consistent.
+    /// The triangles already faced outwards. Flat surfaces and open parts without an outside count as outwards if their faces are consistent.
     Outwards,
-    /// The triangles face outwards after triangles of closed parts were turned.
+    /// The triangles face outwards after some triangles of closed parts were turned.
     Turned {
         /// Number of triangles that were turned.
         n_triangles: usize,
         /// Number of triangles of the mesh.
         n_all: usize,
     },
-    /// The orientation is undecided: an open part faces inwards, or its faces are inconsistent. No triangle was turned.
+    /// The orientation is undecided, because an open part faces inwards or its faces are inconsistent. No triangle was turned.
     NotConverged(&'static str),
 }
 
 impl Orientation {
-    /// Returns an error if the outside of the mesh is unknown.
+    /// Returns an error if the orientation of the mesh is undecided; `place` is the name of its file.
     ///
     /// # Errors
     /// If the orientation is undecided (`NotConverged`); the error begins with `place`.
@@ -67,7 +67,7 @@ impl Orientation {
 }
 
 impl fmt::Display for Orientation {
-    /// Formats the orientation as a sentence: `12 of 12 triangles faced inwards and were turned outwards`.
+    /// Formats the orientation as a phrase, such as `12 of 12 triangles faced inwards and were turned outwards`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Outwards => write!(f, "faces outwards"),
@@ -104,7 +104,7 @@ impl TriangleMesh {
     }
 }
 
-/// Parts of a mesh: triangles that are connected by edges.
+/// Parts of a mesh. A part consists of the triangles that are connected by edges.
 struct Parts<'a> {
     mesh: &'a TriangleMesh,
     welded: &'a Welded,
@@ -112,7 +112,7 @@ struct Parts<'a> {
     triangles: Vec<Vec<u32>>,
     /// Index of the part of each triangle.
     part_of: Vec<u32>,
-    /// Whether each triangle must be turned.
+    /// Whether each triangle must be turned to face outwards.
     is_turned: Vec<bool>,
     /// Whether each part is closed: every edge has equally many triangles in both directions.
     is_closed: Vec<bool>,
@@ -150,7 +150,7 @@ impl<'a> Parts<'a> {
         parts
     }
 
-    /// Returns whether the triangle of a side passes the edge forwards, after the triangle is turned if necessary.
+    /// Returns whether a side's triangle passes the edge forwards, after the triangle is turned if necessary.
     fn is_forward(&self, side: &Side) -> bool {
         side.is_forward != self.is_turned[side.triangle as usize]
     }
@@ -220,7 +220,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Returns the corners of a triangle, after turning if the triangle is marked.
+    /// Returns the corners of a triangle; in reversed order if the triangle is marked to be turned.
     fn triangle(&self, triangle: u32) -> Triangle {
         let [a, b, c] = self.mesh.triangle(triangle as usize).0;
         match self.is_turned[triangle as usize] {
@@ -229,7 +229,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Returns the signed volume of a closed part, m³; 0 if it encloses nothing.
+    /// Returns the signed volume of a closed part, m³; 0 if the part encloses nothing.
     fn volume(&self, part: usize) -> f64 {
         let triangles = self.triangles[part].iter().map(|&t| self.triangle(t));
         let apex = self.triangle(self.triangles[part][0]).0[0];
@@ -243,7 +243,7 @@ impl<'a> Parts<'a> {
         if is_solid { volume } else { 0.0 }
     }
 
-    /// Turns closed parts outwards if other parts do not enclose their outside.
+    /// Turns closed parts so that they face outwards. Cavities, whose outside is enclosed by other parts, keep facing inwards.
     fn turn_closed_parts(&mut self) {
         let closed = (0..self.triangles.len()).filter(|&part| self.is_closed[part]);
         let volumes = closed.map(|part| (part, self.volume(part)));
@@ -287,7 +287,7 @@ impl<'a> Parts<'a> {
         }
     }
 
-    /// Returns the fault of an open part whose faces are inconsistent, or face inwards according to rays from its faces.
+    /// Returns the fault of an open part whose faces are inconsistent or face inwards, according to rays from its faces; `None` if there is none.
     fn unsettled(&self) -> Option<&'static str> {
         if self.is_closed.iter().all(|&closed| closed) {
             return None;
@@ -343,7 +343,8 @@ impl Enclosure {
         self.bounds.min.cmple(bounds.min).all() && self.bounds.max.cmpge(bounds.max).all()
     }
 
-    /// Returns the winding number of this part around another part, before turning. The majority of several points decides; the number is 0 outside.
+    /// Returns the winding number of this part (before turning) around another part, given by its triangles. The majority of several points decides; the
+    /// number is 0 outside.
     fn winding_around(&mut self, triangles: &[Triangle]) -> i32 {
         let bvh = self.bvh.get_or_insert_with(|| {
             Bvh::from_triangles(self.triangles.clone()).expect("a part has triangles")

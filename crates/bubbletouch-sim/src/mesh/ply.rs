@@ -49,7 +49,7 @@ pub fn read_ply(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     MeshFile::new(place, vertices, polygons(place, &faces)?)
 }
 
-/// Converts vertex indices, which are read as signed numbers. Invalid indices are rejected here or when the surface is created.
+/// Converts the vertex indices of the faces from signed numbers. Invalid indices are rejected here or when the surface is created.
 fn polygons(place: &str, faces: &[Face]) -> Result<Vec<Vec<u32>>> {
     let index = |face: usize, corner: i64| {
         u32::try_from(corner).map_err(|_| {
@@ -88,7 +88,7 @@ fn check_magic(place: &str, source: &mut impl BufRead) -> Result<()> {
     Err(Error::input(place, given, "a file that begins with `ply`"))
 }
 
-/// Rejects unsupported elements before the reader reads data or allocates memory.
+/// Returns an error for unsupported elements before the reader reads data or allocates memory.
 fn check_header<'a>(place: &str, elements: impl Iterator<Item = &'a ElementDef>) -> Result<()> {
     let mut has_vertices = false;
     for element in elements {

@@ -4,7 +4,7 @@ use super::welded::Welded;
 use super::{Feature, TriangleMesh};
 use glam::DVec3;
 
-/// Pseudonormals of all features of a mesh: the sum of the normals of the faces around a feature, weighted by their angle there.
+/// Pseudonormals of all faces, edges and corners of a mesh. A pseudonormal is the sum of the normals of the adjacent faces, weighted by their angle there.
 ///
 /// A triangle too thin to have a normal has no weight.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ impl Pseudonormals {
         }
     }
 
-    /// Returns the pseudonormal of a feature, which points outwards and has any length.
+    /// Returns the pseudonormal of a face, edge or corner of a triangle. The vector points outwards and has any length.
     pub fn at(&self, triangle: usize, feature: Feature) -> DVec3 {
         match feature {
             Feature::Face => self.faces[triangle],

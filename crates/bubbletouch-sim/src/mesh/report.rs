@@ -6,26 +6,26 @@ use crate::geometry::Aabb;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Counts and measures of a mesh, after corners with identical coordinates were welded.
+/// Counts and measurements of a mesh, after corners with identical coordinates were merged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshReport {
-    /// Number of distinct corners of triangles.
+    /// Number of distinct corners of all triangles.
     pub n_vertices: usize,
     /// Number of triangles.
     pub n_triangles: usize,
     /// Number of edges, each counted once.
     pub n_edges: usize,
-    /// Number of components (parts that share no corner).
+    /// Number of components of the mesh (parts that share no corner).
     pub n_components: usize,
-    /// Number of triangles with a repeated corner.
+    /// Number of triangles with two equal corners.
     pub n_collapsed: usize,
-    /// Number of other triangles with collinear corners, which have no normal.
+    /// Number of triangles with three different but collinear corners, which have no normal.
     pub n_slivers: usize,
     /// Number of triangles with the three corners of an earlier triangle, in either direction.
     pub n_duplicates: usize,
     /// Number of edges with three or more triangles.
     pub n_crowded_edges: usize,
-    /// Number of pinched corners, at which several fans of triangles meet in one point only.
+    /// Number of corners at which several fans of triangles meet only in this one point.
     pub n_pinched_vertices: usize,
     /// Number of edges with two inconsistently oriented triangles.
     pub n_flipped_edges: usize,
@@ -33,7 +33,7 @@ pub struct MeshReport {
     pub holes: Vec<f64>,
     /// Sum of the triangles' areas, m².
     pub area: f64,
-    /// Enclosed volume, m³, negative if the triangles face inwards; approximate for a mesh with holes.
+    /// Volume that the mesh encloses, m³, negative if the triangles face inwards; approximate for a mesh with holes.
     pub volume: f64,
     /// Bounding box of all triangles, metres.
     pub bounds: Aabb,
@@ -73,7 +73,7 @@ impl MeshReport {
         }
     }
 
-    /// Returns whether the mesh has no border: every edge has two triangles or more.
+    /// Returns whether the mesh has no border, that is, every edge has at least two triangles.
     pub fn is_watertight(&self) -> bool {
         self.holes.is_empty() && self.n_edges > 0
     }
@@ -87,7 +87,7 @@ impl MeshReport {
             && self.volume > 0.0
     }
 
-    /// Returns the faults, one phrase each; empty if there are none.
+    /// Returns the faults of the mesh, one phrase each; empty if there are none.
     pub fn faults(&self) -> Vec<String> {
         let count = |n: usize, one: &str, many: &str| {
             (n > 0).then(|| format!("{n} {}", if n == 1 { one } else { many }))
@@ -187,7 +187,7 @@ fn n_duplicates(welded: &Welded) -> usize {
     n - sorted.len()
 }
 
-/// Returns the number of corners whose triangles form several fans if triangles are joined only across edges.
+/// Returns the number of corners whose triangles form several fans. A fan consists of triangles that are joined across edges.
 fn n_pinched(welded: &Welded) -> usize {
     // One element per corner of each triangle: 3 · triangle + corner.
     let mut joined = Joined::new(3 * welded.corners.len());

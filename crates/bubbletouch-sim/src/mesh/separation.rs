@@ -3,11 +3,12 @@
 use super::Triangle;
 use glam::DVec3;
 
-/// Largest gap, relative to the triangles' size, that may be a rounding error.
+/// Largest gap between triangles that may be a rounding error, relative to their size.
 const ROUNDING: f64 = 1e-12;
 
 impl Triangle {
     /// Returns whether a plane certainly separates two triangles. The test uses their normals and the 9 products of their edges (separating axes). Returns
+    /// false for triangles that touch or lie in one plane.
     /// false for triangles that touch or lie in one plane.
     pub fn is_apart(&self, other: &Self) -> bool {
         let origin = self.0[0];
@@ -32,7 +33,7 @@ fn edges([a, b, c]: &[DVec3; 3]) -> [DVec3; 3] {
     [b - a, c - b, a - c]
 }
 
-/// Returns the lowest and the highest position of the corners along an axis.
+/// Returns the lowest and the highest position of a triangle's corners along an axis.
 fn range(corners: &[DVec3; 3], axis: DVec3) -> (f64, f64) {
     let [a, b, c] = corners.map(|corner| corner.dot(axis));
     (a.min(b).min(c), a.max(b).max(c))

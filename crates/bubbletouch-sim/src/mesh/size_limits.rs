@@ -13,19 +13,19 @@ pub struct SizeLimits {
     pub largest: f64,
 }
 
-/// Maximum length of an object, in multiples of the array's side; a touch on a longer object covers less than a hundredth of a face.
+/// Maximum length of an object, in multiples of the side of the sensor array; a touch on a longer object covers less than a hundredth of a face.
 const MAX_SIDES: f64 = 10.0;
-/// Length that is always allowed, because small arrays also touch furniture or a person's arm; metres.
+/// Length of an object that is always allowed, because small arrays also touch furniture or a person's arm; metres.
 const ALWAYS_ALLOWED: f64 = 1.0;
 
 impl SizeLimits {
-    /// Limits for an unknown array: 0.1 mm, which is below the pitch of every tactile sensor, to 10 m, ten sides of an array of one square metre.
+    /// Size limits for an unknown array: 0.1 mm, which is below the pitch of every tactile sensor, to 10 m, ten sides of an array of one square metre.
     pub const ANY: Self = Self {
         smallest: 1e-4,
         largest: 10.0,
     };
 
-    /// Returns the limits for arrays given by (longest side, taxel radius). An object smaller than the smallest taxel radius has no detectable
+    /// Returns the size limits for arrays given by (longest side, taxel radius), metres. An object smaller than the smallest taxel radius has no detectable
     /// shape. An object longer than ten sides of the largest array, and than one metre, is a plane.
     pub fn of_arrays(arrays: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let none = Self {
@@ -40,7 +40,7 @@ impl SizeLimits {
             })
     }
 
-    /// Checks the size of a bounding box (metres) whose file was read in metres because no unit was given.
+    /// Returns an error if the size of an object (metres) is not plausible. Its file was read in metres because no unit was given.
     ///
     /// # Errors
     /// If the size is outside the limits; the error begins with `place` and suggests the likely unit.
@@ -72,7 +72,7 @@ impl SizeLimits {
     }
 }
 
-/// Formats a length with three digits: `17 m`, `17 mm`.
+/// Formats a length with three digits, such as `17 m` or `17 mm`.
 fn in_words(metres: f64) -> String {
     let (value, unit) = if metres >= 1.0 {
         (metres, "m")

@@ -7,16 +7,16 @@ use super::{BoxTree, Triangle};
 use glam::DVec3;
 use std::ops::Range;
 
-/// Slab between two parallel planes: the points x with `normal · x` in a range.
+/// Space between two parallel planes: the points x with `normal · x` in a range.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slab {
-    /// Mean unit normal; zero if the triangles have no normal.
+    /// Mean unit normal of the triangles; zero if the triangles have no normal.
     normal: DVec3,
     low: f64,
     high: f64,
 }
 
-/// Returns the slab of each node of a tree; `triangles` are in the order of the tree.
+/// Returns the slab around the triangles of each node of a tree; `triangles` are in the order of the tree.
 pub(super) fn slabs(tree: &BoxTree, triangles: &[Triangle]) -> Vec<Slab> {
     let mut places: Vec<Range<usize>> = vec![0..0; tree.n_nodes()];
     // Children come after their parents, and their triangles are adjacent.
@@ -41,7 +41,7 @@ impl Slab {
         Self { normal, low, high }
     }
 
-    /// Returns whether the slab is certainly farther from a point than the square root of `limit`.
+    /// Returns whether the slab is certainly farther from a point than the square root of `limit` (a squared distance).
     pub fn is_beyond(&self, point: DVec3, limit: f64) -> bool {
         let height = self.normal.dot(point);
         let away = (self.low - height).max(height - self.high).max(0.0);

@@ -43,7 +43,7 @@ pub fn read_stl(place: &str, mut source: impl BufRead) -> Result<MeshFile> {
     ))
 }
 
-/// Returns whether the content has exactly the length that its number of triangles requires.
+/// Returns whether the content is a binary STL file: its length equals the length that its number of triangles requires.
 fn is_binary(content: &[u8]) -> bool {
     let Some(&[a, b, c, d]) = content.get(80..HEADER) else {
         return false;
@@ -52,7 +52,7 @@ fn is_binary(content: &[u8]) -> bool {
     content.len() - HEADER == n_triangles.saturating_mul(TRIANGLE)
 }
 
-/// Returns three corners per triangle of a binary file.
+/// Returns the corners of the triangles in a binary STL file, three per triangle.
 fn binary_corners(content: &[u8]) -> Vec<DVec3> {
     let triangles = content[HEADER..].chunks_exact(TRIANGLE);
     let corners = triangles.flat_map(|triangle| triangle[12..48].chunks_exact(12));
@@ -69,7 +69,7 @@ fn binary_corners(content: &[u8]) -> Vec<DVec3> {
         .collect()
 }
 
-/// Returns three corners per facet of all solids of an ASCII file. Keywords may be in upper case.
+/// Returns the corners of the facets in an ASCII STL file with any number of solids, three per facet. Keywords may be in upper case.
 fn ascii_corners(place: &str, content: &[u8]) -> Result<Vec<DVec3>> {
     let mut corners = Vec::new();
     // State of the reader: whether a solid and a facet are open, and the number of corners of the current facet.
@@ -123,7 +123,8 @@ fn ascii_corners(place: &str, content: &[u8]) -> Result<Vec<DVec3>> {
     Ok(corners)
 }
 
-/// Returns the mesh of triangles with consecutive corners; corners with identical coordinates become one vertex, in the order of first occurrence.
+/// Returns the mesh whose triangles have three consecutive `corners` each. Corners with identical coordinates become one vertex, in the order of first
+/// occurrence.
 fn merged(place: &str, corners: &[DVec3]) -> Result<MeshFile> {
     let (mut numbers, mut vertices) = (HashMap::new(), Vec::new());
     let number = |&corner: &DVec3| {

@@ -8,7 +8,7 @@ use super::{Bvh, Closest, Triangle, TriangleMesh};
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// Triangle mesh with the data structures for distance and inside queries.
+/// Triangle mesh with the search structures for nearest-point, distance and inside queries.
 #[derive(Clone, Debug)]
 pub struct Surface {
     mesh: TriangleMesh,
@@ -19,12 +19,12 @@ pub struct Surface {
     is_balanced: bool,
 }
 
-/// Smallest cosine between a pseudonormal and the direction to the point for which the pseudonormal's sign is used. Below this cosine the winding number
-/// decides, because thin triangles have no weight in a pseudonormal.
+/// Smallest cosine between a pseudonormal and the direction to the query point for which the pseudonormal determines inside or outside. Below this cosine the
+/// winding number decides, because thin triangles have no weight in a pseudonormal.
 const FLAT: f64 = 0.05;
 
 impl Surface {
-    /// Prepares a mesh for queries; takes a few microseconds per triangle.
+    /// Prepares a mesh for nearest-point, distance and inside queries; takes a few microseconds per triangle.
     pub fn new(mesh: TriangleMesh) -> Self {
         let bvh = Bvh::new(&mesh);
         let welded = Welded::new(&mesh);
@@ -53,17 +53,17 @@ impl Surface {
         self.bvh.bounds()
     }
 
-    /// Returns whether every edge has exactly two consistently oriented faces.
+    /// Returns whether the mesh is closed: every edge has exactly two consistently oriented faces.
     pub fn is_closed(&self) -> bool {
         self.is_closed
     }
 
-    /// Returns the nearest point of the mesh that is closer than `within` metres; no limit if `within` is infinite.
+    /// Returns the nearest point of the mesh if it is closer than `within` metres, otherwise `None`. If `within` is infinite, the distance is not limited.
     pub fn closest(&self, point: DVec3, within: f64) -> Option<Closest> {
         self.bvh.closest(point, within)
     }
 
-    /// Returns the outward normal at a nearest point, of any length; zero on faces too thin to have one.
+    /// Returns the outward normal of the mesh at a nearest point. The vector has any length; it is zero on faces too thin to have a normal.
     pub fn pseudonormal(&self, closest: &Closest) -> DVec3 {
         self.normals.at(closest.triangle, closest.feature)
     }
@@ -114,7 +114,7 @@ impl Surface {
         }
     }
 
-    /// Returns whether a point is outside the mesh, given its nearest point.
+    /// Returns whether a point is outside the mesh, given the nearest point of the mesh.
     pub fn is_outside(&self, point: DVec3, closest: &Closest) -> bool {
         if self.is_closed {
             let normal = self.pseudonormal(closest);

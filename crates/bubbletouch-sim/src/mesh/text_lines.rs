@@ -6,7 +6,7 @@ use std::io::BufRead;
 /// Byte order mark of UTF-8.
 pub(super) const BYTE_ORDER_MARK: [u8; 3] = [0xEF, 0xBB, 0xBF];
 
-/// Calls `visit` with the number (from 1) and the text of each non-empty line.
+/// Calls `visit` with the line number (from 1) and the text of each non-empty line of a text file.
 ///
 /// A backslash at the end of a line continues it on the next one. Invalid UTF-8 (names and comments in other
 /// encodings) is replaced by U+FFFD. Line ends are LF, CR LF or CR.
@@ -51,7 +51,7 @@ pub(super) fn each_line(
     visit(first, &line)
 }
 
-/// Reads three finite coordinates from the words of a line; further words are ignored.
+/// Reads three finite coordinates from the first three words of a line; further words are ignored.
 ///
 /// # Errors
 /// If there are fewer words, or one is not a finite number; the error begins with `place`.

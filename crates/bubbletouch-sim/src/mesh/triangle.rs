@@ -7,7 +7,7 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle(pub [DVec3; 3]);
 
-/// Part of a triangle that contains a point: the face, an edge or a corner.
+/// Part of a triangle on which a point lies: the face, an edge or a corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Feature {
     /// Interior of the triangle.
@@ -32,13 +32,14 @@ impl Triangle {
         }
     }
 
-    /// Returns the centroid of the triangle, the mean of its corners, metres.
+    /// Returns the centroid of the triangle, which is the mean of its corners, metres.
     pub fn middle(&self) -> DVec3 {
         let [a, b, c] = self.0;
         (a + b + c) / 3.0
     }
 
-    /// Returns the unnormalised normal, whose length is twice the area, m². The normal points outwards if the corners are counter-clockwise seen from outside.
+    /// Returns the normal vector of the triangle with twice the triangle's area as length, m². The normal points outwards if the corners are
+    /// counter-clockwise seen from outside.
     pub fn double_area(&self) -> DVec3 {
         let [a, b, c] = self.0;
         (b - a).cross(c - a)
@@ -63,7 +64,7 @@ impl Triangle {
         ab.max(b.distance_squared(c)).max(c.distance_squared(a))
     }
 
-    /// Returns the two halves of the triangle, cut at the middle of the longest edge.
+    /// Returns the two halves of the triangle, which is cut from the middle of its longest edge to the opposite corner.
     pub fn bisected(&self) -> [Self; 2] {
         let [a, b, c] = self.0;
         let (ab, bc, ca) = (
@@ -82,7 +83,7 @@ impl Triangle {
         [Self([from, middle, apex]), Self([middle, to, apex])]
     }
 
-    /// Returns the point of the triangle nearest to `point`, and the part of the triangle that contains it.
+    /// Returns the point of the triangle nearest to `point`, and the part of the triangle on which the nearest point lies.
     pub fn closest(&self, point: DVec3) -> (DVec3, Feature) {
         let [a, b, c] = self.0;
         let n = self.double_area();
@@ -124,7 +125,7 @@ impl Triangle {
     }
 }
 
-/// Returns the nearest point of the edge with index `k`.
+/// Returns the point nearest to `point` on the edge between two corners, where `k` is the index of the edge.
 fn closest_on_edge(from: DVec3, to: DVec3, k: u8, point: DVec3) -> (DVec3, Feature) {
     let along = to - from;
     let t = (point - from).dot(along);

@@ -15,7 +15,7 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Creates a box about the origin with these side lengths, metres: 8 vertices and 12 triangles that face outwards.
+    /// Creates a box about the origin with the given side lengths, metres: 8 vertices and 12 triangles that face outwards.
     ///
     /// # Errors
     /// If a side length is not finite; errors begin with `place`.
@@ -36,7 +36,7 @@ impl TriangleMesh {
         Self::new(place, (0..8).map(corner).collect(), halves.concat())
     }
 
-    /// Creates a mesh and checks the invariant. Vertices are in metres.
+    /// Creates a triangle mesh and checks the invariant. Vertices are in metres.
     ///
     /// # Errors
     /// If the invariant does not hold; errors begin with `place` and count from 1.
@@ -75,7 +75,7 @@ impl TriangleMesh {
         self.triangles.len()
     }
 
-    /// Returns a triangle by its index.
+    /// Returns the triangle with the given index.
     pub fn triangle(&self, triangle: usize) -> Triangle {
         Triangle(self.triangles[triangle].map(|corner| self.vertices[corner as usize]))
     }
@@ -86,7 +86,7 @@ impl TriangleMesh {
         Aabb::around(boxes).expect("a mesh has at least one triangle")
     }
 
-    /// Returns the mesh with the marked triangles turned, which exchanges their second and third corners.
+    /// Returns the mesh with the marked triangles turned: their second and third corners are exchanged.
     pub(super) fn with_turned(mut self, is_turned: &[bool]) -> Self {
         for (triangle, _) in self
             .triangles
@@ -99,7 +99,7 @@ impl TriangleMesh {
         self
     }
 
-    /// Returns the mesh moved by a rigid motion.
+    /// Returns the mesh after a rigid motion by `pose`.
     pub fn moved(&self, pose: &Pose) -> Self {
         let vertices = self.vertices.iter().map(|&v| pose.transform_point(v));
         Self {
@@ -109,7 +109,7 @@ impl TriangleMesh {
     }
 }
 
-/// Checks that there is at least one vertex and that all coordinates are finite.
+/// Returns an error if there is no vertex or if a coordinate is not finite.
 pub(super) fn check_vertices(place: &str, vertices: &[DVec3]) -> Result<()> {
     if vertices.is_empty() {
         return Err(Error::input(place, "no vertices", "at least one vertex"));

@@ -4,10 +4,10 @@ use super::TriangleMesh;
 use crate::geometry::place_bits;
 use std::collections::HashMap;
 
-/// Triangles over welded corners, with all sides of all triangles sorted by edge.
+/// Triangles of a mesh whose corners with equal coordinates share one index, with the sides of all triangles sorted by edge.
 #[derive(Clone, Debug)]
 pub struct Welded {
-    /// Corners of each triangle. Vertices with equal coordinates share the index of the first of them.
+    /// Corners of each triangle. Vertices with equal coordinates share the index of the first of these vertices.
     pub corners: Vec<[u32; 3]>,
     /// Sides of all triangles with three different corners, sorted by edge.
     pub sides: Vec<Side>,
@@ -16,9 +16,9 @@ pub struct Welded {
 /// Side of a triangle, with the edge of the mesh on which it lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Side {
-    /// Corners of the side, the smaller index first.
+    /// Corners of the edge, the smaller index first.
     pub edge: [u32; 2],
-    /// Index of the triangle.
+    /// Index of the triangle that has this side.
     pub triangle: u32,
     /// First corner of the side in the triangle (0, 1 or 2); the side ends at the next corner.
     pub side: u8,
@@ -27,7 +27,7 @@ pub struct Side {
 }
 
 impl Welded {
-    /// Welds the corners of a mesh and sorts its sides.
+    /// Merges the corners of a mesh that have equal coordinates, and sorts the sides of its triangles by edge.
     pub fn new(mesh: &TriangleMesh) -> Self {
         let places = places(mesh);
         let corners: Vec<[u32; 3]> = mesh
@@ -54,7 +54,7 @@ impl Welded {
         Self { corners, sides }
     }
 
-    /// Returns the sides of the triangles, grouped by edge.
+    /// Returns groups of sides, one group for each edge of the mesh.
     pub fn edges(&self) -> impl Iterator<Item = &[Side]> {
         self.sides.chunk_by(|a, b| a.edge == b.edge)
     }
@@ -75,7 +75,7 @@ impl Welded {
     }
 }
 
-/// Returns whether a triangle has a repeated corner.
+/// Returns whether two of a triangle's three corners are equal.
 pub(super) fn has_equal([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }

@@ -7,11 +7,11 @@ use super::{Bvh, Triangle};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Distance, in multiples of a part's radius, beyond which the part is replaced by its dipole. If larger, queries are slower; if smaller, the error exceeds a
-/// tenth on real meshes.
+/// Distance beyond which a group of triangles is replaced by a dipole, in multiples of the group's radius. If larger, queries are slower; if smaller, the
+/// error exceeds a tenth on real meshes.
 const FAR: f64 = 2.5;
 
-/// Tree with one dipole per node of a [`Bvh`].
+/// Tree for fast winding numbers: one dipole for each node of a [`Bvh`].
 #[derive(Clone, Debug)]
 pub(super) struct WindingTree {
     dipoles: Vec<Dipole>,
@@ -21,9 +21,9 @@ pub(super) struct WindingTree {
 struct Dipole {
     /// Mean of the triangles' centroids, weighted by their areas, metres.
     center: DVec3,
-    /// Area vector Σ area · normal of the triangles, m².
+    /// Area vector of the triangles, the sum of area times unit normal, m².
     area: DVec3,
-    /// Squared distance beyond which the dipole replaces the triangles, m².
+    /// Squared distance beyond which the dipole replaces the triangles of the node, m².
     far2: f64,
 }
 
@@ -60,7 +60,7 @@ impl WindingTree {
         }
     }
 
-    /// Returns the winding number at a point.
+    /// Returns the winding number of the mesh around a point, with an error of about 0.1.
     pub fn winding_number(&self, bvh: &Bvh, point: DVec3) -> f64 {
         self.solid_angle(bvh, 0, point) / (4.0 * PI)
     }
@@ -85,9 +85,9 @@ impl WindingTree {
 #[derive(Clone, Copy, Debug, Default)]
 struct Moments {
     area: f64,
-    /// Sum of the triangles' areas times centroids.
+    /// Sum of area times centroid over the triangles.
     first: DVec3,
-    /// Sum of the triangles' areas times normals.
+    /// Sum of area times unit normal over the triangles.
     vector: DVec3,
 }
 
@@ -112,7 +112,7 @@ impl Moments {
     }
 }
 
-/// Returns the solid angle of a triangle seen from a point, positive from behind its front \[VS\].
+/// Returns the solid angle of a triangle seen from a point; positive if the point is behind the triangle's front \[VS\].
 pub(super) fn solid_angle(triangle: &Triangle, point: DVec3) -> f64 {
     let [a, b, c] = triangle.0.map(|corner| corner - point);
     let (la, lb, lc) = (a.length(), b.length(), c.length());

@@ -4,46 +4,46 @@ use super::target::{Body, Target};
 use crate::objects::Sphere;
 use glam::DVec3;
 
-/// Ball around a point inside a mesh. Enlarged by a fraction of the tolerance, it becomes a sphere of the packing.
+/// Ball whose centre is a point inside a mesh. The ball, enlarged by a fraction of the tolerance, is a sphere of the packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ball {
     /// Centre of the ball, inside the mesh or on it, metres.
     pub center: DVec3,
     /// Distance from the centre to the nearest point of the mesh, metres.
     pub depth: f64,
-    /// Surface point (foot) that the ball must cover.
+    /// Surface point that the ball must cover; in most cases the ball touches the mesh there.
     pub foot: DVec3,
 }
 
-/// Maximum number of queries per ball; most balls take three to eight. A ball that needs more is rejected.
+/// Maximum number of nearest-point queries per ball; most balls need three to eight. A ball that needs more is rejected.
 const MAX_STEPS: usize = 60;
 
-/// Maximum distance that spheres reach outside the mesh, as a fraction of the tolerance. Gaps inside the mesh use the whole tolerance.
+/// Largest height to which spheres protrude from the mesh, as a fraction of the tolerance. Gaps inside the mesh may use the whole tolerance.
 ///
 /// With 1 the number of spheres is lowest, a quarter fewer than with ½. The mean of their rough surface then lies half the tolerance outside the mesh, which
 /// changes the deflections. On eight scans with a tolerance of 0.1 mm, the mean deflection error is 0.059 mm with 1,
 /// 0.033 mm with 0.6 and 0.027 mm with 0.45.
 const PROTRUSION: f64 = 0.5;
 
-/// Returns the maximum height difference between the spheres' surface and the mesh for a tolerance `e`, metres.
+/// Returns the largest allowed height difference between the spheres' surface and the mesh, metres, for the tolerance `e`.
 pub(super) fn relief(e: f64) -> f64 {
     (1.0 + PROTRUSION) * e
 }
 
-/// Distance from a ball's centre on the surface, relative to the tolerance, at which the code tests whether the centre lies in the solid. If larger than the
-/// target's rounding reserve, the protrusion exceeds the tolerance; if too small, rounding decides the test.
+/// Length of a test step, relative to the tolerance. From a ball's centre on the surface, the code tests whether a point at this distance lies in the solid.
+/// If the step is larger than the target's rounding reserve, the protrusion exceeds the tolerance; if too small, rounding decides the test.
 const BESIDE: f64 = 1e-7;
 
 impl Ball {
-    /// Returns the largest ball that touches the surface from inside at `foot`. If the mesh represents a surface without thickness, returns a ball of radius 0
-    /// at `foot`.
+    /// Returns the largest ball inside the mesh that touches the surface at the point `foot`. If the mesh represents a surface without thickness, returns a
+    /// ball of radius 0 at `foot`.
     pub fn at(target: &Target, foot: DVec3, normal: DVec3) -> Self {
         let largest = Self::largest(target, foot, -normal, 0.0, target.largest_radius());
         largest.unwrap_or(Self::on_surface(foot))
     }
 
-    /// Shifts the centre, and returns the largest ball that touches the surface at the point nearest to the shifted centre. If the mesh represents a surface
-    /// without thickness, returns a ball of radius 0 at this point. Returns `None` if the shifted centre is outside a solid.
+    /// Shifts the centre by `shift`, and returns the largest ball that touches the surface at the point nearest to the shifted centre. If the mesh represents
+    /// a surface without thickness, returns a ball of radius 0 at this point. Returns `None` if the shifted centre is outside a solid.
     pub fn beside(&self, target: &Target, shift: DVec3) -> Option<Self> {
         let center = self.center + shift;
         let nearest = target.surface.closest(center, f64::INFINITY)?;
@@ -58,7 +58,7 @@ impl Ball {
         Self::largest(target, nearest.point, inward, 0.0, target.largest_radius())
     }
 
-    /// Returns whether the ball's centre is in the solid. A centre on a face can lie outside the boundary of the solid if parts overlap.
+    /// Returns whether the ball's centre is in the solid. A centre on a face can lie outside the solid if parts of the mesh overlap.
     pub fn has_center_in(&self, target: &Target) -> bool {
         if target.body == Body::Sheet {
             return true;
@@ -70,7 +70,7 @@ impl Ball {
         target.surface.contains(self.center - lift) || target.surface.contains(self.center + lift)
     }
 
-    /// Returns the largest ball inside the mesh that touches the point `foot` of the surface, if the surface may reach into the ball by up to `slack`.
+    /// Returns the largest ball inside the mesh that touches the surface point `foot`. The surface may penetrate the ball by up to `slack`.
     ///
     /// The ball has the centre `foot + t·inward` and the largest radius t for which no surface point is closer to the centre than t − `slack`. Without slack
     /// this is the largest ball inside the mesh that touches the mesh at the foot \[MBC\]. With slack, bumps lower than the slack are ignored. For a surface
@@ -125,7 +125,7 @@ impl Ball {
         None
     }
 
-    /// Returns a ball of radius 0 at a surface point. This ball covers all surface within [`relief`] of the point, for any surface.
+    /// Returns a ball of radius 0 at a surface point. On any surface, this ball covers all surface within [`relief`] of the point.
     pub fn on_surface(foot: DVec3) -> Self {
         Self {
             center: foot,
@@ -134,7 +134,7 @@ impl Ball {
         }
     }
 
-    /// Returns the sphere of the packing, which reaches at most [`PROTRUSION`] times `e` outside the mesh.
+    /// Returns the sphere of the packing for this ball, which protrudes from the mesh by at most [`PROTRUSION`] times the tolerance `e`.
     pub fn sphere(&self, e: f64) -> Sphere {
         Sphere {
             center: self.center,
@@ -142,12 +142,12 @@ impl Ball {
         }
     }
 
-    /// Returns the largest distance between the centre of the ball and a surface point to which the sphere comes within `e`; metres.
+    /// Returns the radius within which the ball covers surface points, metres: its sphere is nearer to these points than the tolerance `e`.
     pub fn reach(&self, e: f64) -> f64 {
         self.depth + relief(e)
     }
 
-    /// Returns the radius of the disc that the ball covers on a flat face at the distance `depth`.
+    /// Returns the radius of the disc that the ball covers on a flat face that touches the ball, metres, for the tolerance `e`.
     pub fn half_width(&self, e: f64) -> f64 {
         let relief = relief(e);
         (relief * (2.0 * self.depth + relief)).sqrt()

@@ -12,14 +12,14 @@ enum Node {
     Plane {
         axis: usize,
         at: f64,
-        /// Index of the child below the plane; the child above the plane has the next index.
+        /// Index of the child cell below the plane; the child cell above the plane has the next index.
         below: usize,
     },
     Cell(usize),
 }
 
 impl Cells {
-    /// Builds cells of at most `most` points. Each cut divides the points along the longest axis; the fraction `share` of them lies below the cut.
+    /// Builds cells of at most `most` points each. Each cut divides the points along the longest axis; the fraction `share` of the points lies below the cut.
     pub fn new(points: &[DVec3], most: usize, share: f64) -> Self {
         let mut cells = Self {
             nodes: vec![Node::Cell(0)],

@@ -16,19 +16,19 @@ use super::target::Target;
 use crate::mesh::{Bvh, Triangle};
 use glam::DVec3;
 
-/// Size, relative to the tolerance, below which a piece counts as a gap if no single ball contains it.
+/// Size of a piece of surface, relative to the tolerance, below which the piece counts as a gap if no single ball covers it.
 const SMALLEST: f64 = 0.02;
 
-/// Places where the surface is farther than `e` from the spheres, or is not proved to be closer.
+/// Gaps: pieces of the mesh's surface that are not proved to lie within the tolerance of the spheres.
 #[derive(Debug, Default)]
 pub(super) struct Gaps {
-    /// Middles of the pieces, with their sizes; empty if the tolerance is proved.
+    /// Centres and sizes of the gaps; empty if the tolerance is proved everywhere.
     pub places: Vec<Sample>,
-    /// Indices of the triangles that contain the places.
+    /// Indices of the triangles that contain gaps.
     pub triangles: Vec<usize>,
 }
 
-/// Returns the gaps that `balls` leave in `triangles`. A triangle without gaps has none after more balls are added.
+/// Returns the gaps that `balls` leave in the given triangles of the target. A triangle without gaps has none after more balls are added.
 pub(super) fn gaps(target: &Target, triangles: &[usize], balls: &[Ball]) -> Gaps {
     let Target { surface, e, .. } = *target;
     let mut balls_near = vec![Vec::new(); triangles.len()];

@@ -11,7 +11,7 @@ use crate::random::Seed;
 use glam::DVec3;
 use rand::Rng;
 
-/// Maximum number of samples per cell. If larger, there are fewer borders between cells, but the data of the search exceed the processor's cache.
+/// Maximum number of surface samples per cell. If larger, there are fewer borders between cells, but the data of the search exceed the processor's cache.
 const CELL: usize = 24_000;
 
 /// Fraction of the total time that sampling takes, for progress reports.
@@ -19,15 +19,15 @@ const SAMPLING_TIME: f64 = 0.2;
 
 /// Parameters of one optimisation pass over all cells.
 struct Pass {
-    /// Fraction of a cell's samples below the plane that divides the cell. Passes with different fractions have different cell borders.
+    /// Fraction of a cell's samples on the lower side of the plane that divides the cell. Passes with different fractions have different cell borders.
     cut: f64,
-    /// Fraction of the search steps per ball that this pass may use to exchange balls.
+    /// Fraction of the allowed search steps per ball that this pass uses to exchange balls.
     steps: f64,
-    /// Fraction of the moves per ball that this pass may use to shift copies of balls.
+    /// Fraction of the allowed moves per ball that this pass uses to create shifted copies of balls.
     moves: f64,
 }
 
-/// Passes that reduce the number of balls; after each pass the remaining gaps become samples.
+/// Optimisation passes that reduce the number of balls. After each pass, the remaining gaps become samples.
 const PASSES: [Pass; 3] = [
     Pass {
         cut: 0.5,
@@ -49,8 +49,8 @@ const PASSES: [Pass; 3] = [
 /// Maximum number of rounds that add balls at the remaining gaps. Usually no gap remains after three rounds.
 const MAX_REPAIRS: usize = 40;
 
-/// Returns balls whose spheres come within `e` of every point of the outer surface, and the number of remaining gaps, which is 0 unless
-/// [`MAX_REPAIRS`] rounds were reached.
+/// Returns balls whose spheres come within the tolerance of every point of the outer surface, and the number of remaining gaps. This number is 0 unless
+/// [`MAX_REPAIRS`] rounds were needed.
 pub(super) fn cover_surface(
     target: &Target,
     watch: &mut dyn FnMut(f64),
@@ -87,11 +87,11 @@ struct Covering<'a> {
     chosen: Vec<Ball>,
     /// Number of chosen balls that cover each sample.
     counts: Vec<u32>,
-    /// Row of each sample in the current cell; [`NOT_HERE`] for samples that do not belong to the cell.
+    /// Index of each sample among the rows of the current cell; [`NOT_HERE`] for samples that do not belong to the cell.
     row_of: Vec<u32>,
 }
 
-/// Value for samples that do not belong to the current cell.
+/// Index that marks samples outside the current cell.
 const NOT_HERE: u32 = u32::MAX;
 
 impl<'a> Covering<'a> {
@@ -115,7 +115,7 @@ impl<'a> Covering<'a> {
         gaps(self.target, triangles, &self.chosen)
     }
 
-    /// Optimises the cells one after another in one pass.
+    /// Optimises the balls of all cells, one cell after another, in one pass.
     fn pass(&mut self, pass: &Pass, number: u64, watch: &mut dyn FnMut(f64)) {
         let positions: Vec<DVec3> = self.sampling.samples.iter().map(|s| s.position).collect();
         let cells = Cells::new(&positions, CELL, pass.cut);
@@ -141,7 +141,8 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Chooses the balls of one cell again, so that they cover the cell's samples and all samples that only the removed balls covered.
+    /// Chooses the balls of one cell again from `freed` and `candidates`. The new balls cover the cell's samples and all samples that only the balls in
+    /// `freed` covered.
     fn work_on(
         &mut self,
         freed: Vec<Ball>,
@@ -206,7 +207,7 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Returns shifted copies of balls, about `n_moves` per ball, each shifted by up to half of the radius that it covers.
+    /// Returns shifted copies of balls, about `n_moves` per ball. Each copy is shifted by up to half of the radius that the ball covers on a flat face.
     fn moved(&self, balls: &[Ball], n_moves: f64, rng: &mut impl Rng) -> Vec<Ball> {
         let n_moves = n_moves * balls.len() as f64;
         let mut moved = Vec::new();
@@ -219,7 +220,7 @@ impl<'a> Covering<'a> {
         moved
     }
 
-    /// Returns for each gap one ball that covers it.
+    /// Returns one ball for each gap; the ball covers the centre of the gap.
     fn balls_at(&self, gaps: &[Sample]) -> Vec<Ball> {
         let ball = |gap: &Sample| {
             let normal = self.target.normal_at(gap.position);
@@ -228,7 +229,7 @@ impl<'a> Covering<'a> {
         gaps.iter().map(ball).collect()
     }
 
-    /// Adds gaps to the samples, and balls that cover them to the candidates.
+    /// Adds the gaps to the samples, and balls that cover the gaps to the candidates.
     fn sample_gaps(&mut self, gaps: &[Sample]) {
         self.sampling.balls.extend(self.balls_at(gaps));
         self.sampling.samples.extend_from_slice(gaps);
@@ -243,7 +244,7 @@ impl<'a> Covering<'a> {
         }
     }
 
-    /// Adds a small number of balls that cover the gaps. A gap remains if no ball with its centre in the solid covers it.
+    /// Adds a small number of balls that cover the gaps. A gap remains if every ball that covers it has its centre outside the solid.
     fn fill(&mut self, gaps: &[Sample]) {
         let target = self.target;
         let held = |ball: Ball| ball.has_center_in(target).then_some(ball);

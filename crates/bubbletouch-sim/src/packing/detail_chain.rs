@@ -15,7 +15,7 @@ pub struct DetailChain {
 }
 
 impl DetailChain {
-    /// Packs a mesh to each of several tolerances (metres, in any order; repeated values count once).
+    /// Packs a mesh with spheres for each of several tolerances (metres, in any order; repeated values count once).
     ///
     /// # Errors
     /// If there are no tolerances, or if [`pack_mesh`] fails.

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::mesh::Surface;
 use crate::objects::{MAX_SPHERES, SphereUnion};
 
-/// Spheres that approximate a mesh, with the proved tolerance.
+/// Spheres that approximate a mesh, with the tolerance that has been proved for them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
     /// Spheres, in the frame of the mesh.
@@ -16,7 +16,7 @@ pub struct Packing {
     pub tolerance: f64,
 }
 
-/// Packs the solid of a mesh with few spheres, within `tolerance` (metres, positive).
+/// Approximates the solid of a mesh by few spheres, within `tolerance` (metres, positive).
 ///
 /// The tolerance is proved, as [the module](super#the-promise) describes. No sphere reaches more than half the tolerance outside the solid. Every point of
 /// the solid's surface is within the tolerance of the spheres. Equal meshes give equal spheres.
@@ -58,14 +58,14 @@ pub fn pack_mesh_watched(
     })
 }
 
-/// Minimum number of spheres for which [`slow_packing`] returns a sentence: about half a minute on one processor. If larger, long packings start without a
-/// notice; if smaller, packings of a few seconds are announced.
+/// Minimum number of spheres for which [`slow_packing`] returns a sentence; so many take about half a minute on one processor. If larger, long packings start
+/// without a notice; if smaller, packings of a few seconds are announced.
 const MANY_SPHERES: f64 = 5_000.0;
 
-/// Approximate computing time per sphere on one processor, milliseconds: 13 s for 2201 spheres of a scan.
+/// Approximate computing time of a packing per sphere on one processor, milliseconds: 13 s for 2201 spheres of a scan.
 const MS_A_SPHERE: f64 = 6.0;
 
-/// Returns a sentence about the expected time of a packing if it is likely to take minutes; `None` otherwise.
+/// Returns a sentence about the expected computing time of a packing if it is likely to take minutes; `None` otherwise.
 pub fn slow_packing(surface: &Surface, body: Body, tolerance: f64) -> Option<String> {
     let target = Target::new(surface, body, tolerance).ok()?;
     let n_spheres = estimated_spheres(&target);
@@ -79,7 +79,7 @@ pub fn slow_packing(surface: &Surface, body: Body, tolerance: f64) -> Option<Str
     })
 }
 
-/// Adds the name of the file and `advice` to an error of [`pack_mesh`] about the mesh. Other errors are returned unchanged.
+/// Adds the name of the mesh file and `advice` to an error of [`pack_mesh`] about the mesh. Other errors are returned unchanged.
 pub fn error_of_file(error: Error, file: &str, advice: &str) -> Error {
     match error {
         Error::Input {

@@ -8,7 +8,7 @@ use crate::random::Seed;
 use glam::DVec3;
 use rand::Rng;
 
-/// Mean, 95th percentile and maximum of some distances, metres.
+/// Mean, 95th percentile and maximum of the distances at many points, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
     /// Mean distance over all points, zeros included, metres.
@@ -22,13 +22,13 @@ pub struct Spread {
 /// Distances between the surfaces of a mesh and of spheres, at points distributed uniformly over the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PackingError {
-    /// Distance of the spheres' surface outside the mesh, along the normal of the mesh; 0 where the spheres' surface lies inside.
+    /// Height of the spheres' surface above the mesh, along the normal of the mesh; 0 where the spheres' surface lies inside the mesh.
     pub protrusion: Spread,
-    /// Distance of the mesh's surface outside the spheres; 0 where the mesh's surface lies inside.
+    /// Distance from the mesh's surface to the spheres; 0 where the mesh's surface lies inside the spheres.
     pub gap: Spread,
-    /// Number of tested points of the outer surface.
+    /// Number of tested points on the outer surface of the mesh.
     pub n_points: usize,
-    /// Fraction of all points that lie inside other parts of the mesh, and therefore not on the outer surface.
+    /// Fraction of all points that are not on the outer surface, because they lie inside other parts of the mesh.
     pub buried_share: f64,
 }
 
@@ -64,7 +64,7 @@ pub fn packing_error(
     }
 }
 
-/// Returns how far the spheres reach outside the mesh along the normal of a point of the mesh, metres. The point must be inside the spheres.
+/// Returns how far the spheres protrude from the mesh along `normal` at a point of the mesh, metres. The point must be inside the spheres.
 fn protrusion(surface: &Surface, tree: &SphereTree, point: DVec3, normal: DVec3) -> f64 {
     let end = tree.end(point, normal);
     match surface.closest(end, f64::INFINITY) {
@@ -149,7 +149,7 @@ impl SphereTree {
         least
     }
 
-    /// Returns the point at which a ray from a point inside the spheres first leaves all spheres.
+    /// Returns the point at which a ray leaves all spheres for the first time. The ray starts at a point inside the spheres.
     fn end(&self, start: DVec3, direction: DVec3) -> DVec3 {
         let mut along = 0.0;
         loop {

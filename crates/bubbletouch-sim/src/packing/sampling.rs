@@ -8,49 +8,50 @@ use crate::mesh::{BoxTree, Triangle};
 use crate::objects::MAX_SPHERES;
 use glam::DVec3;
 
-/// Surface point that some ball must cover; it represents the surface around it.
+/// Surface point that some ball must cover, as a representative of the surface around it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub position: DVec3,
-    /// Radius of the represented surface around the point, metres.
+    /// Radius of the piece of surface that the sample represents, metres.
     pub radius: f64,
 }
 
-/// Samples to cover, and candidate balls.
+/// Surface samples to be covered, and candidate balls that cover them.
 pub(super) struct Sampling {
     pub effort: Effort,
-    /// Indices of the triangles that are not proved to lie inside the solid.
+    /// Indices of the triangles that are not proved to lie inside the solid and may therefore be part of the outer surface.
     pub outer: Vec<usize>,
     pub samples: Vec<Sample>,
     pub balls: Vec<Ball>,
 }
 
-/// Distance up to which the size of a ball is reused, relative to the radius that the ball covers. If larger, edges and thin ends have too few samples; if
-/// smaller, sampling is slower.
+/// Distance up to which the size of a computed ball is reused, relative to the radius that the ball covers. If larger, edges and thin ends have too few
+/// samples; if smaller, sampling is slower.
 const NEAR: f64 = 0.3;
-/// Area per disc in the best covering of a plane by discs of unit radius: 3·√3/2, the area of a hexagon.
+/// Area per disc in the best covering of a plane by discs of radius 1: 3·√3/2, the area of a hexagon.
 const HEXAGON: f64 = 2.598_076_211_353_316;
 
-/// Effort of a packing; the effort per sphere decreases with the number of spheres.
+/// Numbers of samples, candidates and search steps of a packing, which determine its computing time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Effort {
-    /// Number of samples in the area that one ball covers in the best covering of a plane. If larger, sampling is slower and leaves fewer gaps to repair; if
-    /// smaller, the local search overlooks gaps.
+    /// Number of samples per ball, on the area that one ball covers in the best covering of a plane. If larger, sampling is slower and leaves fewer gaps to
+    /// repair; if smaller, the local search overlooks gaps.
     pub samples_a_ball: f64,
-    /// Number of candidate balls in the area that one ball covers in the best covering of a plane. A larger number reduces the number of spheres and takes
-    /// longer.
+    /// Number of candidate balls per required ball, on the area that one ball covers in the best covering of a plane. A larger number reduces the number of
+    /// spheres and takes longer.
     pub feet_a_ball: f64,
     /// Number of exchanges of the local search per chosen ball.
     pub steps_a_ball: f64,
-    /// Number of shifted copies per chosen ball that the next search may choose instead.
+    /// Number of shifted copies per chosen ball that the next local search may choose instead.
     pub moves_a_ball: f64,
-    /// Number of passes over all cells.
+    /// Number of optimisation passes over all cells.
     pub n_passes: usize,
 }
 
 impl Effort {
-    /// Returns the full effort up to 2,000 spheres, then less per sphere, so that the time grows more slowly than the number of spheres. From 30,000 spheres
-    /// on, there are also fewer candidate balls. Candidates are reduced further, to no fewer than about 1,000, where a ball covers much more than on a plane.
+    /// Returns the numbers for a packing of the expected size. The numbers per sphere are largest up to 2,000 spheres and then decrease, so that the time
+    /// grows more slowly than the number of spheres. From 30,000 spheres on, there are also fewer candidate balls. Candidates are reduced further, to no
+    /// fewer than about 1,000, where a ball covers much more than on a plane.
     /// An example is a sphere, whose centre is equally far from its whole surface; there a ball takes longest to compute.
     fn for_about(demand: &Demand) -> Self {
         let share = (2000.0 / demand.flat).clamp(0.03, 1.0);
@@ -72,7 +73,7 @@ impl Effort {
     }
 }
 
-/// Samples the outer surface and computes candidate balls. Equal meshes give equal samples.
+/// Samples the outer surface of the target and computes candidate balls. Equal meshes give equal samples.
 ///
 /// Returns an error if the tolerance needs more than about [`MAX_SPHERES`] spheres.
 pub(super) fn sample(target: &Target) -> Result<Sampling> {
@@ -132,16 +133,16 @@ pub(super) fn estimated_spheres(target: &Target) -> f64 {
     demand.bent.min(demand.flat)
 }
 
-/// Approximate number of balls that cover a surface.
+/// Estimated number of balls that are needed to cover a surface.
 struct Demand {
-    /// Number of balls if each ball covers as much as on a plane.
+    /// Number of balls if each ball covers as much surface as on a plane.
     flat: f64,
-    /// Number of balls if each ball covers its actual area; lower where the surface is curved as much as the balls.
+    /// Number of balls if each ball covers its actual area. This number is lower than `flat` where the surface is curved as much as the balls.
     bent: f64,
 }
 
 impl Demand {
-    /// Estimates the number of balls from every eighth triangle; in large meshes from about 4,000 triangles.
+    /// Estimates the number of balls from every eighth triangle of the target; in large meshes from about 4,000 triangles.
     fn new(target: &Target) -> Self {
         let mesh = target.surface.mesh();
         let every = (mesh.n_triangles() / 4096).max(8);
@@ -179,16 +180,16 @@ impl Demand {
 struct Sampler<'a> {
     sizes: Sizes<'a>,
     effort: Effort,
-    /// Accumulated fraction of the next sample; a sample is placed whenever this value reaches one, so samples are uniform for any triangulation.
+    /// Accumulated fraction of the next sample. A sample is placed whenever this value reaches one, so samples are uniform for any triangulation.
     due_samples: f64,
     due_feet: f64,
     sampling: Sampling,
 }
 
-/// Area of the surface per ball, computed as a function of position.
+/// Area of the surface that one ball covers, computed as a function of position.
 struct Sizes<'a> {
     target: &'a Target<'a>,
-    /// The last position for which a ball was computed, stored as its surface normal and the largest ball that covers it.
+    /// Surface normal and largest covering ball at the last position for which a ball was computed.
     known: Option<(DVec3, Ball)>,
 }
 
@@ -241,12 +242,12 @@ impl<'a> Sizes<'a> {
         }
     }
 
-    /// Returns the area per ball at a surface point, m².
+    /// Returns the area that one ball covers at a surface point, m².
     fn share(&mut self, foot: DVec3, normal: DVec3) -> f64 {
         HEXAGON * self.ball(foot, normal).half_width(self.target.e).powi(2)
     }
 
-    /// Returns the largest ball that covers a surface point, or the ball of a previous point nearby.
+    /// Returns the largest ball that covers a surface point, or the ball of a previous point if it is near enough.
     fn ball(&mut self, foot: DVec3, normal: DVec3) -> Ball {
         let e = self.target.e;
         if let Some((known_normal, ball)) = &self.known
@@ -263,13 +264,13 @@ impl<'a> Sizes<'a> {
     }
 }
 
-/// Tree of samples.
+/// Search tree over the samples.
 pub(super) struct SampleTree {
     tree: BoxTree,
 }
 
-/// Factor of the margin around a sample that a ball must also cover. The margin is this factor times the sample's radius times the slope of the ball. If
-/// larger, more spheres are needed; if smaller, more gaps must be repaired, which needs more spheres in the end.
+/// Factor of the margin around a sample that a ball must also cover. The margin is this factor times the sample's radius times the slope of the ball's
+/// surface. If larger, more spheres are needed; if smaller, more gaps must be repaired, which needs more spheres in the end.
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {
@@ -284,7 +285,7 @@ impl SampleTree {
         }
     }
 
-    /// Calls `visit` with the index of each sample that a ball covers.
+    /// Calls `visit` with the index of each sample that a ball covers with the tolerance `e`.
     pub fn each_covered(
         &self,
         samples: &[Sample],

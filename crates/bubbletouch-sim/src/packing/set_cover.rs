@@ -35,7 +35,7 @@ impl Lists {
         &self.items[self.starts[list]..self.starts[list + 1]]
     }
 
-    /// Returns the transposed relation: for each of `n` numbers, the lists that contain it, ascending.
+    /// Returns the transposed relation: for each of `n` numbers, the indices of the lists that contain it, ascending.
     pub fn transposed(&self, n: usize) -> Self {
         let mut starts = vec![0; n + 1];
         for &item in &self.items {
@@ -91,31 +91,31 @@ impl Members {
     }
 }
 
-/// Partial set cover: the chosen sets, and the scores of all sets for the next exchange.
+/// Partial set cover: the sets chosen so far, and the scores of all sets for the next exchange.
 pub(super) struct Cover<'a> {
     rows_of: &'a Lists,
     sets_of: Lists,
     chosen: Members,
     uncovered: Members,
-    /// Weight of each row.
+    /// Weight of each row (element to be covered).
     weights: Vec<i32>,
     /// Number of chosen sets that contain each row.
     counts: Vec<u32>,
-    /// For each row, the exclusive or (XOR) of the indices of the chosen sets that contain it. If only one chosen set contains the row, this is the index of
-    /// that set.
+    /// For each row, the exclusive or (XOR) of the indices of the chosen sets that contain the row. If only one chosen set contains the row, the value is the
+    /// index of this set.
     holders: Vec<u32>,
-    /// Score of each set for the next exchange. For a set that is not chosen: the weight that it would cover. For a chosen set: minus the weight that only this
-    /// set covers.
+    /// Score of each set for the next exchange. For a set that is not chosen: the weight of the rows that it would cover. For a chosen set: minus the weight
+    /// of the rows that only this set covers.
     scores: Vec<i32>,
-    /// Step at which each set was last added or removed.
+    /// Search step at which each set was last added or removed.
     moved_at: Vec<u32>,
 }
 
-/// Number of randomly drawn chosen sets among which the removed set is selected. If larger, the search is greedier and slower.
+/// Number of randomly drawn chosen sets among which the next set to remove is selected. If larger, the search is greedier and slower.
 const TRIED: usize = 64;
 
 impl<'a> Cover<'a> {
-    /// Creates a cover without chosen sets. `rows_of` lists the rows of each set; rows that no set contains are ignored.
+    /// Creates a set cover without chosen sets. `rows_of` lists the rows of each set; rows that no set contains are ignored.
     pub fn new(rows_of: &'a Lists, n_rows: usize) -> Self {
         let sets_of = rows_of.transposed(n_rows);
         let mut uncovered = Members::none_of(n_rows);
@@ -187,7 +187,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// Completes the cover greedily: adds the set that covers the most weight until all rows are covered, then removes redundant sets.
+    /// Completes the cover greedily. The function adds the set that covers the most weight until all rows are covered, and then removes redundant sets.
     pub fn complete(&mut self) {
         let candidates = (0..self.rows_of.len()).filter(|&set| !self.chosen.contains(set));
         let entry = |set: usize, score: i32| (score, Reverse(set));
@@ -210,7 +210,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// Searches for fewer sets in `n_steps` exchanges. All rows must be covered before, and are covered afterwards.
+    /// Searches for a cover with fewer sets in `n_steps` exchanges of sets. All rows must be covered before, and are covered afterwards.
     pub fn improve(&mut self, n_steps: usize, rng: &mut impl RngCore) {
         let mut best = self.chosen.members.clone();
         let mut just_added = None;
@@ -243,7 +243,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// Returns the sort key of a set: the highest score first, then the set that was moved least recently.
+    /// Returns the sort key of a set: sets with the highest score come first, then sets that were moved least recently.
     fn merit(&self, set: u32) -> (i32, Reverse<u32>, u32) {
         let index = set as usize;
         (self.scores[index], Reverse(self.moved_at[index]), set)
@@ -294,7 +294,7 @@ mod tests {
     use crate::random::Seed;
     use rand::Rng;
 
-    /// Returns sets of random rows; every row is in at least one set.
+    /// Returns sets of random rows for tests; every row is in at least one set.
     fn random_sets(n_sets: usize, n_rows: usize, case: u64) -> Lists {
         let mut rng = Seed::new(case).named("sets").rng();
         let mut rows_of = Lists::new();

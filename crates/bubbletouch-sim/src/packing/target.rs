@@ -7,7 +7,7 @@ use glam::DVec3;
 /// Name of the mesh in error messages if its file is not known.
 pub(super) const MESH: &str = "mesh";
 
-/// Height above a face, as a fraction of the tolerance, at which the code tests whether the face lies inside the solid; narrower clefts count as closed. If
+/// Height above a face, as a fraction of the tolerance, at which the code tests whether the face lies inside the solid. Narrower clefts count as closed. If
 /// larger, wider clefts are closed; if smaller, rounding decides where faces coincide.
 const LIFT: f64 = 1e-3;
 
@@ -25,7 +25,7 @@ pub enum Body {
 pub(super) struct Target<'a> {
     pub surface: &'a Surface,
     pub body: Body,
-    /// Maximum distance between the spheres and the outer surface, metres.
+    /// Largest allowed distance between the spheres and the outer surface, metres.
     pub e: f64,
 }
 
@@ -50,38 +50,39 @@ impl<'a> Target<'a> {
         Ok(Self { surface, body, e })
     }
 
-    /// Returns an upper bound of the radius of a ball, metres.
+    /// Returns an upper bound of the radius of a ball inside the mesh, metres.
     pub fn largest_radius(&self) -> f64 {
         0.5 * self.surface.bounds().size().length()
     }
 
-    /// Returns the outward unit normal near a surface point; zero if it is undefined.
+    /// Returns the outward unit normal of the mesh near a surface point; zero if the normal is undefined.
     pub fn normal_at(&self, point: DVec3) -> DVec3 {
         let nearest = self.surface.closest(point, f64::INFINITY);
         let normal = nearest.map(|nearest| self.surface.pseudonormal(&nearest));
         normal.unwrap_or_default().normalize_or_zero()
     }
 
-    /// Returns whether the solid contains a point of one of its faces after a shift by [`LIFT`] along the normal.
+    /// Returns whether a point of a face, moved outwards by [`LIFT`] times the tolerance, lies in the solid. Faces inside the solid occur where parts
+    /// overlap.
     pub fn is_buried(&self, point: DVec3, normal: DVec3) -> bool {
         self.body == Body::Solid && self.surface.contains(point + normal * (LIFT * self.e))
     }
 
-    /// Returns whether the winding number is proved to be constant over a part of a face, shifted by [`LIFT`] along the normal. The proof is that no face of
-    /// the mesh crosses the shifted part.
+    /// Returns whether the winding number is proved to be constant over a piece of a face that is moved outwards by [`LIFT`] times the tolerance. The proof
+    /// is that no face of the mesh crosses the moved piece.
     pub fn is_uncrossed(&self, piece: &Triangle, normal: DVec3) -> bool {
         let lift = normal * (LIFT * self.e);
         let lifted = piece.0.map(|corner| corner + lift);
         !self.surface.may_cross(&Triangle(lifted))
     }
 
-    /// Returns whether a part of a face is proved to lie inside the solid entirely.
+    /// Returns whether a piece of a face is proved to lie inside the solid entirely.
     pub fn buries(&self, piece: &Triangle, normal: DVec3) -> bool {
         self.is_buried(piece.middle(), normal) && self.is_uncrossed(piece, normal)
     }
 }
 
-/// Returns an error unless each edge has equally many faces in both directions and the enclosed volume is positive.
+/// Returns an error unless each edge has equally many faces in both directions and the mesh encloses a positive volume.
 ///
 /// The condition is weaker than two faces per edge: if four faces meet at an edge, inside and outside are still defined everywhere.
 fn check_enclosure(mesh: &TriangleMesh) -> Result<()> {

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::objects::Sphere;
 use crate::world::{Extrusion, Layout, Patch, Rule, Taxel, Taxels};
 
-/// Patch of a whole body, stored with few bytes per taxel.
+/// Patch of taxels of a whole body, stored with few bytes per taxel.
 #[derive(Clone, Debug)]
 pub struct BodyPatch {
     name: String,
@@ -21,9 +21,9 @@ pub struct BodyPatch {
 pub(super) enum Surface {
     /// One row of taxels repeated along a line.
     Rows(RowPatch),
-    /// Rings of taxels on a sphere.
+    /// Rings of taxels on a part of a sphere.
     Dome(DomePatch),
-    /// Arbitrary positions, each with its own axis.
+    /// Taxels at arbitrary positions, each with its own axis.
     Draped(DrapedPatch),
 }
 
@@ -67,7 +67,7 @@ impl BodyPatch {
         &self.name
     }
 
-    /// Returns the rest centre and axis of every taxel, in the patch frame.
+    /// Returns the centre (at rest) and the axis of every taxel, in the patch frame.
     pub fn layout(&self) -> Layout {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().clone().into(),
@@ -76,7 +76,7 @@ impl BodyPatch {
         }
     }
 
-    /// Returns the properties that all taxels share.
+    /// Returns the properties that all taxels of the patch share.
     pub fn taxel(&self) -> &Taxel {
         &self.taxel
     }
@@ -86,8 +86,8 @@ impl BodyPatch {
         self.n_taxels
     }
 
-    /// Returns the patch's bounding ball in the patch frame. A sphere can push a taxel only if its distance from the ball's centre is less than both radii plus
-    /// ρ.
+    /// Returns the patch's bounding ball in the patch frame. A sphere can push a taxel only if its distance from the ball's centre is less than the sum of
+    /// both radii and the taxel's radius.
     pub fn ball(&self) -> Sphere {
         match &self.surface {
             Surface::Rows(rows) => rows.ball(),
@@ -101,7 +101,7 @@ impl BodyPatch {
         &self.surface
     }
 
-    /// Returns the number of rows, rings, or blocks of tiles, depending on the arrangement.
+    /// Returns the number of rows, rings, or blocks of tiles, depending on the arrangement of the taxels.
     pub(super) fn n_rows(&self) -> usize {
         match &self.surface {
             Surface::Rows(rows) => rows.extrusion().rows().len(),
@@ -110,7 +110,7 @@ impl BodyPatch {
         }
     }
 
-    /// Returns the index of the first taxel of a row.
+    /// Returns the index of the first taxel of a row, ring, or block of tiles.
     #[inline(always)]
     pub(super) fn row_start(&self, row: u32) -> u32 {
         match &self.surface {
@@ -121,7 +121,7 @@ impl BodyPatch {
     }
 }
 
-/// Whole body: all patches of skin of a robot.
+/// Whole body: all skin patches of a robot.
 ///
 /// Taxels are numbered patch by patch, each patch in the order of its layout.
 #[derive(Clone, Debug)]
@@ -133,8 +133,8 @@ pub struct WholeBody {
 }
 
 impl WholeBody {
-    /// Creates a body from patches, each with equal taxels. Patches other than grids, extrusions and domes are fast only if neighbouring taxels have close
-    /// indices, which `with_neighbours_together` ensures.
+    /// Creates a body from patches whose taxels are equal within each patch. Patches other than grids, extrusions and domes are fast only if neighbouring
+    /// taxels have close indices, which `with_neighbours_together` ensures.
     ///
     /// # Errors
     /// If two patches have equal names, a patch has taxels of more than one kind, or a dome is smaller than the depth of its taxels.
@@ -170,7 +170,7 @@ impl WholeBody {
         &self.firsts
     }
 
-    /// Returns the index of the patch that contains a taxel, and the taxel's index in this patch.
+    /// Returns the index of the patch that contains a taxel, and the index of the taxel in this patch.
     ///
     /// # Panics
     /// If the taxel does not exist.
@@ -184,7 +184,7 @@ impl WholeBody {
     pub fn n_taxels(&self) -> usize {
         self.n_taxels
     }
-    /// Returns the memory of the body in bytes, excluding its `BodyState`.
+    /// Returns the memory that the body uses in bytes, excluding its `BodyState`.
     pub fn n_bytes(&self) -> usize {
         let patch = |patch: &BodyPatch| {
             let surface = match &patch.surface {

@@ -7,38 +7,39 @@ use crate::geometry::Pose;
 use crate::objects::{Sphere, SphereClusters};
 use crate::sensing::Columns;
 
-/// Number of deflected taxels at the last step above which several threads are used. If smaller, the work ends before a second thread has started.
+/// Number of taxels deflected in the last step above which several threads compute a step. If smaller, the work ends before a second thread has started.
 pub const WORTH_THREADS: usize = 4000;
 
-/// Deflections of a whole body, carried from step to step. Reuse avoids allocations once the largest touch has been computed.
+/// Deflections of the taxels of a whole body, carried from one time step to the next. Reuse avoids allocations once the largest touch has been computed.
 #[derive(Clone, Debug, Default)]
 pub struct BodyState {
     patches: Vec<PatchState>,
     world_from_patches: Vec<Pose>,
-    /// Bounding ball of each patch, including the taxels' radius ρ, in the world frame, metres.
+    /// Bounding ball of each patch, enlarged by the taxels' radius, in the world frame, metres.
     balls: Vec<Sphere>,
-    /// Bounding ball of each object at this step, in the world frame, metres.
+    /// Bounding ball of each object at the present time step, in the world frame, metres.
     object_balls: Vec<Sphere>,
-    /// Indices of the patches that this step must evaluate, ascending.
+    /// Indices of the patches that the present time step must evaluate, ascending.
     busy: Vec<u32>,
-    /// Length of the last step, seconds.
+    /// Duration of the last time step, seconds.
     dt: f64,
     instructions: Instructions,
     contact: BodyContact,
 }
 
-/// Summary of one step of a whole body.
+/// Summary of one time step of a whole body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BodyContact {
     /// Number of taxels with a deflection above zero.
     pub n_touched: usize,
-    /// Number of saturated taxels, that is, taxels at their stroke that an object would push further.
+    /// Number of saturated taxels, which an object pushes beyond the end of their stroke.
     pub n_saturated: usize,
-    /// Number of patches with a deflected taxel.
+    /// Number of patches with at least one deflected taxel.
     pub n_patches: usize,
-    /// Number of evaluated pairs of a sphere and a patch, for which rows, rings or tiles were computed. The candidates are all spheres of objects near a patch.
+    /// Number of pairs of a sphere and a patch for which rows, rings or tiles of taxels were evaluated. The candidates are all spheres of objects near a
+    /// patch.
     pub n_evaluated: usize,
-    /// Number of candidate pairs excluded by their clusters or by their distance from the whole patch.
+    /// Number of candidate pairs (sphere and patch) that were excluded by the bounding ball of a cluster or by their distance from the whole patch.
     pub n_rejected: usize,
 }
 
@@ -53,12 +54,12 @@ impl BodyState {
         state
     }
 
-    /// Selects the vector instructions for later steps, for comparisons.
+    /// Selects the vector instructions for later time steps, for comparisons.
     pub fn use_instructions(&mut self, instructions: Instructions) {
         self.instructions = instructions;
     }
 
-    /// Moves the patches to the poses `world_from_patches`, one per patch. A fixed body is placed once.
+    /// Moves the patches to the poses `world_from_patches`, one per patch. A fixed body needs this only once.
     ///
     /// # Panics
     /// If the number of poses differs from the number of patches.
@@ -79,7 +80,7 @@ impl BodyState {
             }));
     }
 
-    /// Advances the state by `dt` seconds (positive; irrelevant for taxels without dampers) to the objects' poses `world_from_objects`, one per object.
+    /// Advances the deflections by `dt` seconds (positive; irrelevant for taxels without dampers) to the objects' poses `world_from_objects`, one per object.
     ///
     /// Only patches near an object or with deflected taxels are evaluated. The result does not depend on the number of threads.
     ///
@@ -117,7 +118,7 @@ impl BodyState {
         self.count()
     }
 
-    /// Returns the deflected taxels of the last step, ascending, as pairs of index and deflection (metres).
+    /// Returns the taxels that were deflected in the last step, ascending, as pairs of index and deflection (metres).
     pub fn touched(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
         self.touched_of_patches(body).flat_map(|(first, touched)| {
             let touched = touched.iter();
@@ -134,7 +135,7 @@ impl BodyState {
         columns.measure_touched(self.touched(body), measurements);
     }
 
-    /// Returns the deflected taxels patch by patch: the index of the patch's first taxel, and the touched taxels with indices relative to it.
+    /// Returns the deflected taxels patch by patch: the index of the patch's first taxel, and the touched taxels with indices relative to this taxel.
     pub(crate) fn touched_of_patches(
         &self,
         body: &WholeBody,
@@ -157,12 +158,12 @@ impl BodyState {
         })
     }
 
-    /// Returns the number of patches that the last step evaluated: patches near an object or with deflected taxels.
+    /// Returns the number of patches that the last time step evaluated: patches near an object or with deflected taxels.
     pub fn n_visited(&self) -> usize {
         self.busy.len()
     }
 
-    /// Returns the memory of the state in bytes.
+    /// Returns the memory that the state uses in bytes.
     pub fn n_bytes(&self) -> usize {
         let patches = self.patches.iter().map(PatchState::n_bytes).sum::<usize>();
         patches + self.patches.len() * (size_of::<Pose>() + size_of::<Sphere>() + size_of::<u32>())
@@ -204,7 +205,7 @@ impl BodyState {
     }
 }
 
-/// Returns the bounding ball of an object at a pose.
+/// Returns the bounding ball of an object at a pose, in the world frame.
 fn in_world((object, pose): (&SphereClusters, &Pose)) -> Sphere {
     let Sphere { center, radius } = object.ball();
     Sphere {
@@ -219,7 +220,8 @@ fn are_near(a: &Sphere, b: &Sphere) -> bool {
     a.center.distance_squared(b.center) <= reach * reach
 }
 
-/// Calls `step` with the index of each state and the state; `first` is the index of the first of `states`. Threads share the work by recursive halving.
+/// Calls `step` with the index of each listed state and the state itself; `first` is the index of the first element of `states`. Threads share the work by
+/// recursive halving.
 fn step_each(
     numbers: &[u32],
     first: u32,

@@ -16,14 +16,14 @@ pub struct CoveredRobot {
     mounts: Vec<Mount>,
 }
 
-/// Mounting of a patch: its link, and its pose on the link.
+/// Mounting of a patch: the index of its link, and its pose on the link.
 #[derive(Clone, Copy, Debug)]
 struct Mount {
     link: usize,
     link_from_patch: Pose,
 }
 
-/// Properties of a cover of skin: the type of the taxels, their pitch, and the size of the patches.
+/// Properties of a skin cover: the type of the taxels, their pitch, and the size of the patches.
 #[derive(Clone, Copy)]
 struct Cover {
     taxel: Taxel,
@@ -34,20 +34,20 @@ struct Cover {
 }
 
 impl Cover {
-    /// Returns the number of patches along a length, metres.
+    /// Returns the number of patches along an edge or arc of the given length, metres.
     fn parts(&self, length: f64) -> f64 {
         (length / self.side).round().max(1.0)
     }
 }
 
-/// Patches and mountings created so far.
+/// Patches created so far, with their mountings on the links.
 #[derive(Default)]
 struct Covered {
     patches: Vec<Patch>,
     mounts: Vec<Mount>,
 }
 
-/// Shape on a link that is being covered.
+/// Shape of a link that is being covered with skin.
 struct On<'a> {
     name: &'a str,
     link: usize,
@@ -73,8 +73,8 @@ impl CoveredRobot {
         Self::with_cover(robot, Cover { taxel, pitch, side }, &[])
     }
 
-    /// Covers a robot as `new` does, and also covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`. An
-    /// end that lies on another cylinder, sphere or box when all joints are at zero cannot be touched and is omitted.
+    /// Covers a robot with skin as `new` does, and also covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`. An end
+    /// that lies on another cylinder, sphere or box when all joints are at zero cannot be touched and is omitted.
     ///
     /// # Errors
     /// If `new` fails for these arguments.
@@ -130,12 +130,12 @@ impl CoveredRobot {
         &self.body
     }
 
-    /// Returns, for each patch, the index of the link that carries it.
+    /// Returns, for each patch, the index of the link on which it is mounted.
     pub fn links(&self) -> impl ExactSizeIterator<Item = usize> {
         self.mounts.iter().map(|mount| mount.link)
     }
 
-    /// Writes the poses `world_from_patch` for given link poses `world_from_links`, in the order of the patches.
+    /// Writes the poses `world_from_patch` of all patches, in order, for given link poses `world_from_links`.
     ///
     /// # Panics
     /// If the number of poses differs from the number of links.
@@ -183,7 +183,7 @@ impl Covered {
         Ok(())
     }
 
-    /// Adds the faces of a box; the x and y axes of each patch are the two axes that follow its normal cyclically.
+    /// Adds patches on the faces of a box; the x and y axes of each patch are the two axes that follow its normal cyclically.
     fn add_faces(&mut self, on: &On, size: DVec3, cover: Cover) -> Result<()> {
         for (face, (axis, side)) in (0..6).map(|face| (face, (face / 2, face % 2))) {
             let outwards = DVec3::AXES[axis] * if side == 0 { 1.0 } else { -1.0 };

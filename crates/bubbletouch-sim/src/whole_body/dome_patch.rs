@@ -10,12 +10,12 @@ pub(super) struct DomePatch {
     dome: Dome,
     /// Radius of the sphere that contains the substrate, metres.
     pub substrate: f64,
-    /// Ball around all taxels, from their rest centres back to the substrate, in the patch frame.
+    /// Ball around all taxels (their centres at rest and the substrate below them), in the patch frame.
     pub ball: Sphere,
 }
 
 impl DomePatch {
-    /// Creates the patch. The substrate is at the height `behind`, metres, which must be above minus the dome's radius.
+    /// Creates the patch of a dome. The substrate is at the height `behind`, metres, which must be above minus the dome's radius.
     pub fn new(dome: Dome, behind: f64) -> Self {
         let (outer, substrate) = (dome.radius(), dome.radius() + behind);
         let ends = dome
@@ -28,18 +28,19 @@ impl DomePatch {
         }
     }
 
-    /// Returns the dome with the rest centres and axes of the taxels.
+    /// Returns the dome, which contains the centres (at rest) and the axes of the taxels.
     #[inline]
     pub fn dome(&self) -> &Dome {
         &self.dome
     }
 
-    /// Returns the heap memory of the patch in bytes.
+    /// Returns the heap memory that the patch uses in bytes.
     pub fn n_bytes(&self) -> usize {
         size_of_val(self.dome.rings()) + size_of_val(self.dome.directions())
     }
 
-    /// Returns the value of t = c·n (sphere centre along the taxel's axis), metres, above which a taxel is pushed.
+    /// Returns the smallest coordinate of a sphere's centre along a taxel's axis, metres, for which the sphere pushes the taxel. `power` is the squared
+    /// distance of the sphere's centre from the dome's centre minus the squared sum of radii.
     #[inline]
     pub fn least_along(&self, power: f64) -> f64 {
         let radius = self.dome.radius();

@@ -20,13 +20,13 @@ use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// Bound of rounding errors of an interval, radians: far above 1e-16 and far below any measurable angle.
+/// Bound of rounding errors in the angles of an interval, radians: far above 1e-16 and far below any measurable angle.
 const ROUNDING: f64 = 1e-9;
-/// Bound of rounding errors of an arc cosine, radians: near 1 it turns an error of 1e-16 into one of 1e-8.
+/// Bound of the rounding error of an arc cosine, radians: near 1 the arc cosine turns an error of 1e-16 into an error of 1e-8.
 const ACOS_ROUNDING: f64 = 1e-7;
 
 impl Pushed for DomePatch {
-    /// Always returns true, because the bounding ball, which has been tested already, is the only bound.
+    /// Always returns true: the caller has already tested the bounding ball, and a dome has no narrower bound.
     #[inline(always)]
     fn is_near(&self, _: DVec3, _: f64) -> bool {
         true
@@ -65,7 +65,7 @@ impl Pushed for DomePatch {
     }
 }
 
-/// Returns the largest distance from φ_c, radians, at which `around · cos(φ − φ_c)` is at least `least`, plus rounding; `None` if there is no such angle.
+/// Returns the largest angle φ, radians, for which `around · cos φ` is at least `least`, plus a rounding margin; `None` if there is no such angle.
 fn half_width(least: f64, around: f64) -> Option<f64> {
     if least > around * (1.0 + ROUNDING) {
         return None;
@@ -76,7 +76,7 @@ fn half_width(least: f64, around: f64) -> Option<f64> {
     Some((least / around).min(1.0).acos() + ACOS_ROUNDING)
 }
 
-/// Returns the columns of a ring within `half_width` radians of an angle. There are up to three ranges if the ring is closed.
+/// Returns the taxels of a ring within `half_width` radians of an angle. There are up to three ranges if the ring is closed.
 fn covered(ring: &DomeRing, angle: f64, half_width: f64) -> [Range<usize>; 3] {
     [-TAU, 0.0, TAU].map(|turn| {
         let middle = (angle + turn - ring.start) / ring.step;

@@ -8,27 +8,27 @@ use crate::objects::Sphere;
 use crate::world::Layout;
 use glam::DVec3;
 
-/// Number of taxels that share one touched range.
+/// Number of taxels in a block, for which one range of touched taxels is stored.
 pub(super) const BLOCK: usize = LANES * LANES;
 
-/// Equal taxels at arbitrary positions; 61 bytes per taxel including the state.
+/// Equal taxels at arbitrary positions; patch and state together need 61 bytes per taxel.
 #[derive(Clone, Debug)]
 pub(super) struct DrapedPatch {
     pub n_taxels: usize,
-    /// Height of the substrate relative to the rest centres, metres.
+    /// Height of the substrate relative to the taxels' centres at rest, metres.
     pub behind: f64,
     pub tiles: Vec<Tile>,
-    /// Balls of the tree, level by level. The first level is one block of at most eight balls. Ball k bounds block k of the next level; on the last level ball
-    /// k bounds tile k.
+    /// Bounding balls of the search tree, level by level. The first level is one block of at most eight balls. Ball k bounds block k of the next level; on
+    /// the last level ball k bounds tile k.
     pub levels: Vec<Vec<Balls>>,
-    /// Ball around all taxels, from their rest centres back to the substrate, in the patch frame.
+    /// Ball around all taxels (their centres at rest and the substrate below them), in the patch frame.
     pub ball: Sphere,
 }
 
-/// Tile of eight taxels, coordinate by coordinate. The last tile is padded with taxels far away.
+/// Tile of eight neighbouring taxels, stored coordinate by coordinate. The last tile is padded with taxels far away.
 #[derive(Clone, Debug)]
 pub(super) struct Tile {
-    /// Rest centres of the taxels: x, y, z, metres.
+    /// Centres of the taxels at rest: x, y, z, metres.
     pub centers: [[f64; LANES]; 3],
     /// Axes of the taxels: x, y, z, unit vectors.
     pub axes: [[f64; LANES]; 3],
@@ -58,7 +58,7 @@ impl DrapedPatch {
         }
     }
 
-    /// Returns the layout, in the order of the taxels.
+    /// Returns the layout of the patch, in the order of the taxels.
     pub fn layout(&self) -> Layout {
         let lane = |lanes: &[[f64; LANES]; 3], k| DVec3::new(lanes[0][k], lanes[1][k], lanes[2][k]);
         let all = |of: fn(&Tile) -> &[[f64; LANES]; 3]| {
@@ -70,7 +70,7 @@ impl DrapedPatch {
             .expect("it has been a layout before")
     }
 
-    /// Returns the heap memory of the patch in bytes.
+    /// Returns the heap memory that the patch uses in bytes.
     pub fn n_bytes(&self) -> usize {
         let levels = self.levels.iter().map(|balls| size_of_val(&balls[..]));
         size_of_val(&self.tiles[..]) + levels.sum::<usize>()

@@ -8,7 +8,7 @@ use crate::contact::LanesBelow;
 use crate::contact::law::{beats, indent, squares_in_front};
 use glam::DVec3;
 
-/// Maximum number of levels of the tree of balls; each level allows eight times as many taxels.
+/// Maximum number of levels of the tree of bounding balls; each level allows eight times as many taxels.
 const MAX_LEVELS: usize = 10;
 
 impl Pushed for DrapedPatch {
@@ -26,7 +26,8 @@ impl Pushed for DrapedPatch {
 }
 
 impl DrapedPatch {
-    /// Pushes the taxels of a tile by a sphere with its centre in the patch frame.
+    /// Raises the deflections of the taxels in a tile by a sphere. `center` is in the patch frame, and `reach` is the sum of the radii of sphere and taxel,
+    /// metres.
     #[inline(always)]
     fn push_tile(&self, state: &mut PatchState, tile: usize, center: DVec3, reach: f64) {
         // Squares S² − b² and heights h of each taxel.
@@ -59,14 +60,14 @@ impl DrapedPatch {
     }
 }
 
-/// Iterator over the tiles near a sphere, ascending.
+/// Iterator over the tiles of taxels near a sphere, ascending.
 struct Descent<'a> {
     levels: &'a [Vec<Balls>],
     center: DVec3,
     reach: f64,
-    /// Present level of the tree.
+    /// Present level of the tree of bounding balls.
     level: usize,
-    /// Block of each level down to the present one, and the balls of this block that are still to be visited.
+    /// For each level down to the present one, the index of the visited block and its balls that are still to be visited.
     blocks: [(usize, LanesBelow); MAX_LEVELS],
 }
 

@@ -6,8 +6,8 @@ use crate::geometry::Pose;
 use crate::world::{LinkGeometry, LinkShape, Robot};
 use glam::DVec3;
 
-/// Returns the flat ends link by link, in the order of the file, the lower end of a cylinder first. An end is omitted if, with all joints at zero, its middle
-/// is in or on another collision shape. An omitted end is rounded by a sphere, or joined to another link.
+/// Returns the flat ends of a robot's cylinders, link by link in the order of the file, the lower end of a cylinder first. An end is omitted if its middle is
+/// in or on another collision shape when all joints are at zero. An omitted end is rounded by a sphere, or joined to another link.
 pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<End>> {
     let world_from_links = robot.forward(&Pose::IDENTITY, &vec![0.0; robot.n_positions()])?;
     let links = robot.links().iter().zip(&world_from_links).enumerate();
@@ -42,7 +42,7 @@ pub(super) fn flat_ends(robot: &Robot) -> Result<Vec<End>> {
     Ok(found)
 }
 
-/// Returns whether a point in a shape's own frame is in or on the shape; false for a mesh.
+/// Returns whether a point in a shape's own frame lies in the shape or on it; false for a mesh.
 fn holds(shape: &LinkGeometry, point: DVec3) -> bool {
     let beside = point.truncate().length();
     match *shape {

@@ -8,10 +8,10 @@ use glam::{DQuat, DVec3};
 /// Difference below which distances and radii count as equal, metres.
 pub(super) const SAME: f64 = 1e-6;
 
-/// Hemisphere or flat end of a cylinder, on a link.
+/// Hemisphere on a link, or flat end of a link's cylinder.
 pub(super) struct End {
     pub link: usize,
-    /// Pose of the end on the link: origin at the centre, +z towards the pole or outwards.
+    /// Pose of the hemisphere or flat end on the link: origin at its centre, +z towards the pole or outwards.
     pub link_from_end: Pose,
     /// Radius of the hemisphere or flat end, metres.
     pub radius: f64,

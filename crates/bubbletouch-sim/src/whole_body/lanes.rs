@@ -8,10 +8,10 @@ use glam::{DMat3, DVec3};
 pub(super) const LANES: usize = 8;
 /// Factor that covers rounding of a radius: far above 1e-16 and far below any measurable difference.
 pub(super) const ROUNDING: f64 = 1.0 + 1e-9;
-/// Coordinate of padding entries in a block, metres: beyond the reach of any sphere.
+/// Coordinate of padding entries in a block, metres: so far away that no sphere touches them.
 pub(super) const FAR: f64 = 1e100;
 
-/// Eight balls, coordinate by coordinate, metres.
+/// Eight balls, stored coordinate by coordinate, metres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Balls {
     x: [f64; LANES],
@@ -21,7 +21,7 @@ pub(super) struct Balls {
 }
 
 impl Balls {
-    /// Creates blocks of balls, in order; the last one is padded with balls far away.
+    /// Creates blocks of eight balls, in order; the last block is padded with balls far away.
     pub fn blocks(balls: &[Sphere]) -> Vec<Self> {
         let nowhere = Sphere {
             center: DVec3::splat(FAR),
@@ -39,7 +39,7 @@ impl Balls {
         balls.chunks(LANES).map(block).collect()
     }
 
-    /// Returns the balls that a sphere with the radius `reach` comes near.
+    /// Returns the indices of the balls whose distance from `center` is less than their radius plus `reach`, metres.
     #[inline(always)]
     pub fn near(&self, center: DVec3, reach: f64) -> LanesBelow {
         let mut gaps = [0.0; LANES];
@@ -58,12 +58,12 @@ impl Balls {
 
 /// Transform from an object's frame to a patch frame, with the region of the patch where taxels can be pushed.
 pub(super) struct View {
-    /// Rows of the rotation matrix.
+    /// Rows of the rotation matrix from the object's frame to the patch frame.
     rows: DMat3,
     translation: DVec3,
-    /// Radius ρ of the taxels, metres.
+    /// Radius of the taxels, metres.
     taxel_radius: f64,
-    /// Ball around all taxels, from their rest centres back to the substrate.
+    /// Ball around all taxels (their centres at rest and the substrate below them), in the patch frame.
     ball: Sphere,
 }
 
@@ -98,8 +98,8 @@ impl View {
         dx * dx + dy * dy + dz * dz - reach * reach
     }
 
-    /// Computes for each cluster a bound of its distance from the patch, as a difference of squares, m². The bound is negative if one of the cluster's spheres
-    /// may touch.
+    /// Writes for each cluster of spheres a bound of its distance from the patch, as a difference of squares, m². The bound is negative if a sphere of the
+    /// cluster may touch the patch.
     #[inline(always)]
     pub fn lay_gaps(&self, bounds: &ClusterBounds, gaps: &mut [f64]) {
         let n = gaps.len();
@@ -111,7 +111,7 @@ impl View {
         }
     }
 
-    /// Returns the bounding ball of a cluster: its centre in the patch frame, and its radius plus ρ, metres.
+    /// Returns the bounding ball of a cluster of spheres: its centre in the patch frame, and its radius plus the taxels' radius, metres.
     #[inline(always)]
     pub fn ball(&self, bounds: &ClusterBounds, cluster: usize) -> (DVec3, f64) {
         let [x, y, z] = &bounds.middle;
@@ -146,12 +146,12 @@ impl View {
     }
 }
 
-/// Spheres of a cluster in the patch frame, coordinate by coordinate, metres.
+/// Spheres of a cluster in the patch frame, stored coordinate by coordinate, metres.
 pub(super) struct Placed {
     x: [f64; MAX_IN_CLUSTER],
     y: [f64; MAX_IN_CLUSTER],
     z: [f64; MAX_IN_CLUSTER],
-    /// Sum of the radii S = ρ + R of each sphere, metres.
+    /// Sum of the radii of taxel and sphere, for each sphere, metres.
     reaches: [f64; MAX_IN_CLUSTER],
     /// Bounds of the spheres' distances from the patch, m²; negative for spheres that may touch the patch.
     gaps: [f64; MAX_IN_CLUSTER],
@@ -164,7 +164,7 @@ impl Placed {
         LanesBelow::new(&self.gaps, 0.0)
     }
 
-    /// Returns the centre and the sum of radii S of one sphere, metres.
+    /// Returns the centre of one sphere, and the sum of the radii of taxel and sphere, metres.
     #[inline(always)]
     pub fn at(&self, k: usize) -> (DVec3, f64) {
         (DVec3::new(self.x[k], self.y[k], self.z[k]), self.reaches[k])
@@ -180,7 +180,7 @@ pub(super) fn filled<T>(items: &[T], behind: &T, value: fn(&T) -> f64) -> [f64; 
     values
 }
 
-/// Returns a ball around some points (at least one), centred at their mean.
+/// Returns a ball that contains the given points (at least one), centred at their mean.
 pub(super) fn ball_around(points: impl Iterator<Item = DVec3> + Clone) -> Sphere {
     let center = points.clone().sum::<DVec3>() / points.clone().count() as f64;
     let distances = points.map(|point| point.distance(center));

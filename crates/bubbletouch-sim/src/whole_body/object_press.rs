@@ -10,10 +10,12 @@ use glam::{DMat3, DVec3};
 
 /// Surface with taxels that spheres push. A trait is used because closures would be compiled without vector instructions.
 pub(super) trait Pushed {
-    /// Returns whether a ball comes near any taxel. The centre is in the surface's frame, and `reach` is the radius plus ρ; metres.
+    /// Returns whether a ball comes near any taxel. `center` is in the frame of the surface; `reach` is the radius of the ball plus the taxels' radius;
+    /// metres.
     fn is_near(&self, center: DVec3, reach: f64) -> bool;
 
-    /// Pushes the taxels by a sphere. The centre is in the surface's frame, and `reach` is the sum of radii S; metres.
+    /// Raises the deflections of the taxels by a sphere. `center` is in the frame of the surface; `reach` is the sum of the radii of sphere and taxel;
+    /// metres.
     fn push(&self, state: &mut PatchState, center: DVec3, reach: f64);
 }
 
@@ -35,7 +37,7 @@ impl PatchState {
 }
 
 for_instructions! {
-    /// Pushes the taxels of a patch by one object.
+    /// Raises the deflections of a patch's taxels by one object at the pose `patch_from_object`.
     fn push_object(
         state: &mut PatchState,
         patch: &BodyPatch,

@@ -6,18 +6,18 @@ use super::row_patch::SphereOverBundle;
 use crate::contact::{Relaxation, relaxation_factor, saturation_limit};
 use std::ops::Range;
 
-/// Deflection below which a relaxing taxel counts as at rest, metres; a ten-thousandth of the resolution of the finest skins.
+/// Deflection below which a relaxing taxel counts as undeflected, metres: a ten-thousandth of the resolution of the finest skins.
 pub const AT_REST: f64 = 1e-9;
 
-/// State of one patch: 8 bytes per taxel, and 8 more per deflected taxel.
+/// Deflections of one patch: 8 bytes per taxel, and 8 more per deflected taxel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PatchState {
-    /// Deflections, metres, shape (n_taxels,), padded by one block so that the last row also consists of whole blocks.
+    /// Deflections, metres, shape (n_taxels,), padded so that the last row also consists of whole blocks.
     deflections: Vec<f64>,
     n_taxels: usize,
-    /// Range of columns in each row outside of which all taxels are at rest; empty if the whole row is at rest.
+    /// Range of columns in each row outside of which all taxels are undeflected; empty if the whole row is undeflected.
     spans: Vec<Range<u32>>,
-    /// Indices of the rows that are not at rest.
+    /// Indices of the rows with deflected taxels.
     active: Vec<u32>,
     /// Deflected taxels as pairs of index and deflection (metres).
     touched: Vec<(u32, f64)>,
@@ -28,9 +28,9 @@ pub(super) struct PatchState {
     pub n_evaluated: usize,
     /// Number of spheres near the patch that were excluded before evaluating rows, rings or tiles.
     pub n_rejected: usize,
-    /// Scratch memory of a search: for each cluster of an object a bound, negative if one of its spheres may touch.
+    /// Scratch memory of a search: a bound for each cluster of an object's spheres, negative if a sphere of the cluster may touch the patch.
     pub gaps: Vec<f64>,
-    /// Scratch memory for one sphere: the bundles of columns under it, with their first columns.
+    /// Scratch memory for one sphere: the bundles of columns near it, with the index of each bundle's first column.
     pub under: Vec<(u32, SphereOverBundle)>,
 }
 
@@ -54,12 +54,12 @@ impl PatchState {
         &self.touched
     }
 
-    /// Returns the number of taxels at their stroke that an object would push further.
+    /// Returns the number of saturated taxels, which an object pushes beyond the end of their stroke.
     pub fn n_saturated(&self) -> usize {
         self.n_saturated
     }
 
-    /// Returns the memory of the state in bytes.
+    /// Returns the memory that the state uses in bytes.
     pub fn n_bytes(&self) -> usize {
         size_of::<Self>()
             + size_of_val(&self.deflections[..])
@@ -75,7 +75,7 @@ impl PatchState {
         &self.deflections[..self.n_taxels]
     }
 
-    /// Begins a step by relaxing the deflected taxels for `dt` seconds.
+    /// Begins a time step by relaxing the deflected taxels for `dt` seconds.
     pub fn begin_step(&mut self, patch: &BodyPatch, dt: f64) {
         (self.n_evaluated, self.n_rejected) = (0, 0);
         if patch.taxel().damping > 0.0 {
@@ -96,7 +96,7 @@ impl PatchState {
         })
     }
 
-    /// Raises the deflections of a row's `columns` to the values that `needed` returns, metres.
+    /// Raises the deflections in the `columns` of a row to the values that `needed` returns, metres.
     #[inline(always)]
     pub fn push_row(
         &mut self,
@@ -113,7 +113,7 @@ impl PatchState {
         }
     }
 
-    /// Extends a row's range of deflected columns to contain `columns`, and marks the row as active.
+    /// Extends the range of deflected columns of a row to contain `columns`, and marks the row as active.
     #[inline(always)]
     pub fn widen(&mut self, row: usize, columns: &Range<u32>) {
         widen(&mut self.spans[row], columns, row as u32, &mut self.active);
@@ -145,7 +145,7 @@ impl PatchState {
         });
     }
 
-    /// Ends a step: limits deflections to the stroke and lists the deflected taxels.
+    /// Ends a time step: limits deflections to the stroke and lists the deflected taxels.
     pub fn end_step(&mut self, patch: &BodyPatch) {
         let stroke = patch.taxel().stroke;
         self.active.sort_unstable();
@@ -161,7 +161,7 @@ impl PatchState {
     }
 }
 
-/// Limits the deflections of consecutive taxels to the stroke, lists the deflected ones, and counts the saturated ones.
+/// Limits the deflections of consecutive taxels to the stroke, appends the deflected taxels to `touched`, and returns the number of saturated taxels.
 ///
 /// A separate function keeps its few values in registers; inlined, it takes a sixth longer.
 #[inline(never)]
@@ -179,7 +179,7 @@ fn read_row(taxels: &mut [f64], first: u32, stroke: f64, touched: &mut Vec<(u32,
     n_saturated
 }
 
-/// Extends a row's range of deflected columns to contain another range, and marks the row as active.
+/// Extends `span`, the range of deflected columns of a row, to contain another range, and marks the row as active.
 #[inline(always)]
 fn widen(span: &mut Range<u32>, by: &Range<u32>, row: u32, active: &mut Vec<u32>) {
     if span.start >= span.end {

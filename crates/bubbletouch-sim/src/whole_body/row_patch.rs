@@ -7,20 +7,21 @@ use crate::objects::Sphere;
 use crate::world::Extrusion;
 use glam::{DVec2, DVec3};
 
-/// Equal taxels in a repeated row, with the structures that find the taxels near a sphere.
+/// Equal taxels in a row that is repeated along a line, with the structures that find the taxels near a sphere.
 #[derive(Clone, Debug)]
 pub(super) struct RowPatch {
     extrusion: Extrusion,
-    /// Height of the substrate relative to the rest centres, metres.
+    /// Height of the substrate relative to the taxels' centres at rest, metres.
     behind: f64,
     bundles: Vec<Bundle>,
     circles: Vec<Balls>,
     lines: Lines,
-    /// Ball around all taxels, from their rest centres back to the substrate, in the coordinates u, v, w.
+    /// Ball around all taxels (their centres at rest and the substrate below them), in the coordinates u, v (across the rows) and w (along them).
     ball: Sphere,
 }
 
-/// Bundle of neighbouring columns, coordinate by coordinate: rest centres (metres) and axes. The last bundle is padded with columns far away.
+/// Bundle of neighbouring columns: centres of the taxels at rest (metres) and axes, stored coordinate by coordinate. The last bundle is padded with columns
+/// far away.
 #[derive(Clone, Debug)]
 pub(super) struct Bundle {
     pub u: [f64; LANES],
@@ -30,7 +31,7 @@ pub(super) struct Bundle {
 }
 
 impl RowPatch {
-    /// Creates the patch, with the substrate at the height `behind`, metres, relative to the rest centres.
+    /// Creates the patch of an extrusion. The substrate is at the height `behind`, metres, relative to the taxels' centres at rest.
     pub fn new(extrusion: Extrusion, behind: f64) -> Self {
         let columns = extrusion.places().iter().copied();
         let columns: Vec<_> = columns.zip(extrusion.axes().iter().copied()).collect();
@@ -60,12 +61,12 @@ impl RowPatch {
         }
     }
 
-    /// Returns the extrusion with the rest centres and axes of the taxels.
+    /// Returns the extrusion, which contains the centres (at rest) and the axes of the taxels.
     pub fn extrusion(&self) -> &Extrusion {
         &self.extrusion
     }
 
-    /// Returns the height of the substrate relative to the rest centres, metres.
+    /// Returns the height of the substrate relative to the taxels' centres at rest, metres.
     #[inline(always)]
     pub fn behind(&self) -> f64 {
         self.behind
@@ -84,7 +85,7 @@ impl RowPatch {
         self.ball
     }
 
-    /// Returns the heap memory of the patch in bytes.
+    /// Returns the heap memory that the patch uses in bytes.
     pub fn n_bytes(&self) -> usize {
         size_of_val(self.extrusion.places())
             + size_of_val(self.extrusion.axes())
@@ -94,7 +95,7 @@ impl RowPatch {
             + size_of_val(&self.lines.positions[..])
     }
 
-    /// Returns the positions of the rows.
+    /// Returns the positions of the rows along the line of repetition.
     pub fn lines(&self) -> &Lines {
         &self.lines
     }
@@ -104,7 +105,7 @@ impl RowPatch {
         &self.bundles
     }
 
-    /// Returns circles around the bundles in the plane across the rows, as balls with their centres at w = 0.
+    /// Returns circles around the bundles of columns in the plane across the rows, stored as balls with their centres at w = 0.
     pub fn circles(&self) -> &[Balls] {
         &self.circles
     }
@@ -124,18 +125,18 @@ impl Bundle {
     }
 }
 
-/// Quantities of a sphere above the columns of a bundle, equal for all rows.
+/// Position of a sphere relative to the columns of a bundle; equal for all rows.
 #[derive(Clone, Debug)]
 pub(super) struct SphereOverBundle {
-    /// Square S² − b² of each column, m².
+    /// For each column, the squared sum of the radii of taxel and sphere minus the squared distance of the sphere from the column's axis, m².
     pub squares: [f64; LANES],
-    /// Height h of the sphere above each column, metres.
+    /// Height of the sphere along the axis of each column, metres.
     pub heights: [f64; LANES],
 }
 
 impl SphereOverBundle {
-    /// Returns the sphere's quantities above the columns, and the square of the largest distance along the rows, m², at which it pushes a taxel from the front.
-    /// The square is zero or less if the sphere pushes no taxel.
+    /// Returns the sphere's position relative to the columns. Also returns the square of the largest distance along the rows, m², at which the sphere pushes
+    /// a taxel from the front; zero or less if it pushes no taxel.
     #[inline(always)]
     pub fn new(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -152,7 +153,7 @@ impl SphereOverBundle {
         (Self { squares, heights }, largest(&spares))
     }
 
-    /// Raises the deflections of the taxels in a row at the distance √`along2` from the sphere along the rows; `along2` is in m².
+    /// Raises the deflections of the taxels in one row of the bundle. `along2` is the squared distance along the rows from the sphere to this row, m².
     #[inline(always)]
     pub fn push(&self, along2: f64, is_small: bool, taxels: &mut [f64; LANES]) {
         let mut squares = self.squares;
@@ -164,7 +165,8 @@ impl SphereOverBundle {
         }
     }
 
-    /// Returns S² − b² − `along2`, m², for substrates at the height `behind`; the value is zero or less if the sphere does not reach through a substrate.
+    /// Returns for each column the value `squares` − `along2`, m², from which deflections are computed. The value is −1 if the sphere does not push the
+    /// column's taxel, whose substrate has the height `behind`.
     #[inline(always)]
     pub fn through(&self, along2: f64, behind: f64) -> [f64; LANES] {
         let mut squares = self.squares;

@@ -12,8 +12,8 @@ use crate::contact::LanesBelow;
 use crate::contact::law::{beats, indent};
 use glam::DVec3;
 
-/// Maximum number of bundles for which a sphere counts as small. For a small sphere, testing whether contact requires more than the present deflection takes as
-/// long as the root.
+/// Maximum number of bundles of columns for which a sphere counts as small. For a small sphere, testing whether contact requires more than the present
+/// deflection takes as long as the root.
 const FEW: usize = 3;
 
 impl Pushed for RowPatch {
@@ -54,7 +54,7 @@ impl Pushed for RowPatch {
     }
 }
 
-/// Replaces each value by the smaller of `lowest` and `heights`.
+/// Replaces each value of `lowest` by the value in `heights` if the latter is smaller.
 #[inline(always)]
 fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
     for k in 0..LANES {
@@ -66,14 +66,14 @@ fn lower(lowest: &mut [f64; LANES], heights: &[f64; LANES]) {
     }
 }
 
-/// Returns whether no row is within `reach` of a position w along the rows, metres.
+/// Returns whether no row is within the distance `reach` of the position `w` along the rows, metres.
 #[inline(always)]
 fn is_beside(patch: &RowPatch, w: f64, reach: f64) -> bool {
     let rows = &patch.lines().positions;
     w + reach <= rows[0] || w - reach >= rows[rows.len() - 1]
 }
 
-/// Pushes the rows within a distance of w, metres, for bundles given by their first columns.
+/// Raises the deflections of the rows within a distance of the position `w`, metres, in the bundles of columns given by their first columns.
 #[inline(always)]
 fn push_rows(
     state: &mut PatchState,
@@ -96,7 +96,7 @@ fn push_rows(
     }
 }
 
-/// Pushes the rows by a sphere whose centre is behind a substrate.
+/// Raises the deflections of the rows by a sphere whose centre is behind the substrate of a taxel.
 #[inline(always)]
 fn push_through(
     state: &mut PatchState,
