@@ -7,14 +7,14 @@ use crate::report::swept::{Setting, Swept};
 use crate::table::{Better, Column, Role, Scale, Table, Value, column_name, front};
 use std::collections::HashSet;
 
-/// Selector of a table column, by role and name.
+/// Selector of a value or cost column of a table, by role and name.
 struct ColumnSelector {
-    /// Command-line option that sets the column's name.
+    /// Name of the command-line option that selects the column, for error messages.
     option: &'static str,
-    /// Default column name, used if no name is given and a table has this column. If a table has no column of this name, the first column of the role is used.
+    /// Default column name, used if no name is given and at least one table has this column. Otherwise, the first column with the role is used.
     usual: &'static str,
     has_role: fn(Role) -> bool,
-    /// Column names that are valid for all kinds of studies, each with the columns that it selects.
+    /// Column names that are valid for all kinds of studies, each with the columns of single kinds that it stands for.
     shared: &'static [(&'static str, &'static [&'static str])],
 }
 
@@ -40,7 +40,7 @@ const COST: ColumnSelector = ColumnSelector {
     ],
 };
 
-/// Query for advice; a field of `None` is chosen automatically.
+/// Query for advice about a design; fields that are `None` are filled in automatically.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AdviceQuery {
     /// File name of the table to search.
@@ -49,9 +49,9 @@ pub struct AdviceQuery {
     pub value: Option<String>,
     /// Name of the cost column to minimise, or a name that is valid for all kinds of studies.
     pub cost: Option<String>,
-    /// Fixed conditions, each of the form `noise=0.05`.
+    /// Fixed conditions, each as text of the form `noise=0.05`.
     pub given: Vec<String>,
-    /// Upper bounds of cost columns, by column name; rows above a bound are omitted.
+    /// Upper bounds of cost columns, as pairs (column name, bound); rows above a bound are omitted.
     pub limits: Vec<(String, f64)>,
 }
 
@@ -66,7 +66,7 @@ pub enum Requirement {
     Best,
 }
 
-/// Candidate for advice: a row of the table with its value and its cost.
+/// Candidate for advice: a row of the table, with its value and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
     /// Index of the candidate's row in the table.
@@ -77,18 +77,18 @@ pub struct Candidate {
     pub cost: f64,
 }
 
-/// Advice for one condition.
+/// Advice for one condition: the selected choice and alternatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advice {
-    /// Advised choice: the cheapest with a sufficient value, or the best within the budget.
+    /// Advised choice: the cheapest one with a sufficient value, or the best one within the budget.
     pub choice: Candidate,
-    /// Cheapest choice whose whole confidence interval is sufficient; `None` if it equals `choice` or does not exist.
+    /// Cheapest choice whose whole confidence interval meets the requirement; `None` if this is `choice` or does not exist.
     pub certain: Option<Candidate>,
-    /// Next choice on the Pareto front: the cheapest one with a better value than `choice`.
+    /// Next better choice: the cheapest one whose value is better than the value of `choice`.
     pub next_up: Option<Candidate>,
 }
 
-/// Candidates of one table that satisfy the given conditions.
+/// Rows of one table among which advice selects, limited to the given conditions.
 pub struct Candidates<'a> {
     /// Table that contains the candidates.
     pub table: &'a Table,
@@ -97,7 +97,7 @@ pub struct Candidates<'a> {
     /// Cost column to minimise.
     pub cost: &'a Column,
     swept: Swept<'a>,
-    /// Rows that satisfy the given conditions and have both a value and a cost.
+    /// Indices of the rows that satisfy the given conditions and have both a value and a cost.
     rows: Vec<usize>,
 }
 
@@ -136,7 +136,7 @@ impl<'a> Candidates<'a> {
         Ok(found)
     }
 
-    /// Removes all rows whose cost in the named column exceeds the limit or is absent.
+    /// Removes all candidates whose cost in the named column is absent or exceeds `most`.
     ///
     /// # Errors
     /// If no such cost column exists, the limit is not a positive number, or no row satisfies the limit.
@@ -195,7 +195,7 @@ impl<'a> Candidates<'a> {
         is_known.then_some(Candidate { row, value, cost })
     }
 
-    /// Returns the candidates grouped by condition, in the order in which the conditions first occur.
+    /// Returns the candidates in one group per condition, in the order in which the conditions first occur in the table.
     pub fn by_condition(&self) -> Vec<Vec<Candidate>> {
         let conditions = self.swept.by_condition(&self.rows).into_iter();
         let offers =
@@ -203,8 +203,8 @@ impl<'a> Candidates<'a> {
         conditions.map(offers).collect()
     }
 
-    /// Returns each choice with its worst value and its highest cost over all conditions, which hold for any of these conditions. Choices that were not
-    /// measured in every condition are omitted.
+    /// For each choice, returns a candidate with its worst value and its highest cost over all conditions. Choices that were not measured in every condition
+    /// are omitted.
     pub fn worst(&self) -> Vec<Candidate> {
         let n_conditions = self.swept.by_condition(&self.rows).len();
         let choices = self.swept.of_role(Role::Choice);
@@ -225,7 +225,7 @@ impl<'a> Candidates<'a> {
         measured.filter_map(worst).collect()
     }
 
-    /// Returns the advice for a requirement, selected from the candidates of one condition.
+    /// Returns the advice that meets a requirement, selected from the candidates of one condition.
     ///
     /// # Errors
     /// If the requirement is out of range, there are no candidates, or no candidate meets the requirement; the error names the nearest candidate.
@@ -287,8 +287,8 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// Returns the Pareto front, cheapest first: each candidate is better than all candidates of equal or lower cost. Among equal candidates, the first is
-    /// kept.
+    /// Returns the Pareto front, cheapest first: each candidate is better than all candidates of equal or lower cost. Among equal candidates, only the first is
+    /// returned.
     pub fn front(&self, offers: &[Candidate]) -> Vec<Candidate> {
         let points: Vec<(f64, f64)> = offers.iter().map(|o| (o.cost, o.value)).collect();
         let is_on = front(&points, |a, b| self.is_better(a, b));
@@ -312,7 +312,7 @@ impl<'a> Candidates<'a> {
         value == wanted || self.is_better(value, wanted)
     }
 
-    /// Returns the worse end of the value's confidence interval, or NaN if there is no interval.
+    /// Returns the worse end of the confidence interval of a candidate's value, or NaN if the value has no interval.
     fn worse_end(&self, offer: &Candidate) -> f64 {
         let ends = self.table.interval(self.value, offer.row);
         ends.map_or(
@@ -321,7 +321,7 @@ impl<'a> Candidates<'a> {
         )
     }
 
-    /// Describes value, interval and cost, such as `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
+    /// Returns the value, interval and cost of a candidate as text, such as `accuracy 0.830 (0.800 to 0.860), time of a decision 210 µs`.
     pub fn gives(&self, offer: &Candidate) -> String {
         let interval = match self.table.interval(self.value, offer.row) {
             Some(ends) => {
@@ -335,7 +335,7 @@ impl<'a> Candidates<'a> {
         format!("{} {value}{interval}, {cost}", self.value.words)
     }
 
-    /// Formats a value or a difference of two values. Fractions have three decimal places.
+    /// Formats a value of the value column, or a difference of two values. Fractions have three decimal places.
     pub fn value_words(&self, value: f64) -> String {
         match self.value.scale == Scale::Share && self.value.unit.is_empty() {
             true => format!("{value:.3}"),
@@ -343,12 +343,12 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    /// Describes value, cost and choices, such as `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
+    /// Returns the value, cost and choices of a candidate as text, such as `accuracy 0.830, time of a decision 210 µs: RBF SVM, m = 64`.
     pub fn in_words(&self, offer: &Candidate) -> String {
         format!("{}: {}", self.gives(offer), self.setting(offer))
     }
 
-    /// Describes the candidate's choices, or returns "the only setting" if no choice varies.
+    /// Returns the choices of a candidate as text, or "the only setting" if no choice varies in the table.
     pub fn setting(&self, offer: &Candidate) -> String {
         match self.choices(offer) {
             words if words.is_empty() => "the only setting".to_owned(),
@@ -356,17 +356,17 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    /// Describes the candidate's choices; empty if no choice varies.
+    /// Returns the choices of a candidate as text; empty if no choice varies in the table.
     pub fn choices(&self, offer: &Candidate) -> String {
         self.swept.choice_words(offer.row)
     }
 
-    /// Describes the candidate's condition; empty if there is only one condition.
+    /// Returns the condition of a candidate as text; empty if the table has only one condition.
     pub fn condition(&self, offer: &Candidate) -> String {
         self.swept.condition_words(offer.row)
     }
 
-    /// Returns the candidate as a JSON object: its choices and condition as text, and the entry of every column by name.
+    /// Returns the candidate as a JSON object: choices and condition as text, and the entries of all columns by name.
     pub fn json(&self, offer: &Candidate) -> serde_json::Value {
         let mut row = serde_json::Map::new();
         row.insert("setting".to_owned(), self.setting(offer).into());
@@ -381,7 +381,7 @@ impl<'a> Candidates<'a> {
 }
 
 impl ColumnSelector {
-    /// Returns the numeric columns of a table that match a name or, if `name` is `None`, that have the role. Columns that vary come first.
+    /// Returns the numeric columns of a table that match a name, or have the role if `name` is `None`. Columns that vary come first.
     fn columns<'t>(&self, table: &'t Table, name: Option<&str>) -> Vec<&'t Column> {
         let shared = self.shared.iter().find(|(known, _)| Some(*known) == name);
         let is_named = |column: &str| match name {
@@ -398,7 +398,7 @@ impl ColumnSelector {
         found.into_iter().map(|one| one.column).collect()
     }
 
-    /// Removes the tables without the requested column, or without the default column if any table has it. Returns the column name that was used.
+    /// Removes the tables that lack the requested column. Without a request, the default column is required if any table has it. Returns the required name.
     fn narrow<'n>(
         &self,
         tables: &mut Vec<&Table>,
@@ -429,7 +429,7 @@ fn refuse_none<T>(found: &[T], (option, given): (&str, &str), mut known: Vec<&st
     }
 }
 
-/// Returns the rows that satisfy a condition of the form `noise=0.05`.
+/// Returns those of the rows that satisfy a condition of the form `noise=0.05`.
 fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
     let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
     let (key, value) = text.split_once('=').ok_or_else(refuse)?;
@@ -482,7 +482,7 @@ fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>>
     }
 }
 
-/// Parses a word, or a number with an optional unit (`0.5 mm`, `5 %`). Returns `None` if the unit differs from the column's unit.
+/// Parses the value of a condition: a word, or a number with an optional unit (`0.5 mm`, `5 %`). Returns `None` if the unit differs from the column's unit.
 fn given_value(text: &str, unit: &str) -> Option<Value> {
     if let Ok(number) = text.parse() {
         return Some(Value::Number(number));
@@ -565,7 +565,7 @@ mod tests {
         }
     }
 
-    /// Returns the design names of `choice`, `certain` and `next_up`.
+    /// Returns the design names of the advised choice, the certain choice and the next better choice.
     fn advised(asked: &AdviceQuery, wish: Requirement) -> Result<[Option<String>; 3]> {
         let tables = settings();
         let offers = Candidates::new(&tables, asked)?;

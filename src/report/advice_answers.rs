@@ -5,13 +5,13 @@ use crate::error::{Error, Result};
 
 /// Advice for one condition, or the reason why no advice exists.
 pub struct Answer {
-    /// Description of the condition; empty if there is only one condition.
+    /// Condition as text; empty if the table has only one condition.
     pub condition: String,
-    /// Advice, or an error with the requirement and the nearest candidate.
+    /// Advice for the condition, or an error that contains the requirement and the nearest candidate.
     pub advice: Result<Advice>,
 }
 
-/// Returns one answer per condition. If `worst` is true, returns a single answer that is based on the worst value of each choice over all conditions.
+/// Returns one answer for each condition. If `worst` is true, returns a single answer that is based on the worst value of each choice over all conditions.
 ///
 /// # Errors
 /// If no condition has advice; returns the error of the first condition.
@@ -43,7 +43,7 @@ pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Ve
     })
 }
 
-/// Returns the answers as JSON: the table, its value and cost columns, and the advised choices of each condition with all columns by name.
+/// Returns the answers as JSON: the table, its value and cost columns, and for each condition the advised choices with all columns by name.
 pub fn answers_json(offers: &Candidates, answers: &[Answer]) -> serde_json::Value {
     let in_json = |offer: &Candidate| offers.json(offer);
     let answers = answers

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// File formats of charts. Pictures of frames and objects are always PNG files.
+/// File formats in which charts are written. Pictures of frames and objects are always PNG files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChartFormat {
@@ -11,6 +11,6 @@ pub enum ChartFormat {
     Svg,
     /// PNG files only, with two pixels per unit of the SVG file.
     Png,
-    /// One SVG file and one PNG file per chart.
+    /// Two files per chart: SVG and PNG.
     Both,
 }

@@ -11,12 +11,12 @@ use std::path::Path;
 /// File name of the table of failed work items.
 pub const FAILURES_FILE: &str = "failures.csv";
 
-/// File name of the table of reached limits of the model.
+/// File name of the table that counts how often each limit of the model was reached.
 pub const LIMITS_FILE: &str = "limits.csv";
-/// Name of the row in [`LIMITS_FILE`] that counts touches without contact.
+/// Name of the row in [`LIMITS_FILE`] that counts touches in which the object met no taxel.
 pub const MISSED_TOUCHES: &str = "touches that met nothing";
 
-/// Description of the expected content, for error messages.
+/// Description of a valid table file, for error messages.
 const A_TABLE: &str = "a table of results as bubbletouch run writes it";
 
 /// Reads the rows of a table from a CSV file.

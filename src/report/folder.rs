@@ -6,10 +6,10 @@ use crate::table::Table;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Name and content of a file in a folder.
+/// Name and content of a file that is written to a folder.
 pub type NamedFile = (String, Vec<u8>);
 
-/// Returns the CSV files of all tables.
+/// Returns one CSV file for each table, with its name and content.
 pub fn table_files(tables: &[Table]) -> Vec<NamedFile> {
     // A table that is derived from others has no file.
     let files = tables.iter().filter(|table| !table.csv.is_empty());
@@ -17,7 +17,7 @@ pub fn table_files(tables: &[Table]) -> Vec<NamedFile> {
     files.collect()
 }
 
-/// Creates a folder if it is missing and writes all files in order, each completely or not at all. Returns the paths of the files.
+/// Creates a folder if it is missing and writes all files in order. Each file is written completely or not at all. Returns the paths of the files.
 ///
 /// # Errors
 /// If the folder's path is a file, or a file cannot be written.

@@ -16,13 +16,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 use std::{fmt, thread};
 
-/// Time between two reports on a stage, even without progress. If longer, reports are delayed; if shorter, more lines are written.
+/// Time between two progress reports, even if nothing has changed. With a larger value, reports are delayed; with a smaller value, more lines are written.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// Template of a progress bar.
+/// Layout of a progress bar's line, in the notation of the library indicatif.
 const BAR: &str = "{prefix:>14} [{bar:32}] {pos}/{len}, {rate}, {left}";
 
-/// Creates the progress listener for standard error: bars, or plain lines if it is not a terminal.
+/// Creates the progress listener that writes to standard error: bars on a terminal, otherwise plain lines.
 pub fn to_stderr() -> Box<dyn Progress> {
     let is_dumb = std::env::var("TERM").is_ok_and(|term| term == "dumb");
     match std::io::stderr().is_terminal() && !is_dumb {
@@ -36,7 +36,7 @@ pub fn json_lines(writer: impl Write + Send + 'static) -> Box<dyn Progress> {
     Box::new(Events::new(Form::Json, writer))
 }
 
-/// Current stage of a run.
+/// Current stage of a run, such as the training of classifiers.
 struct Stage {
     name: String,
     total: u64,
@@ -58,14 +58,14 @@ impl Stage {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// Returns the line that remains on the terminal after the end of the stage.
+    /// Returns the line that describes the finished stage and remains on the terminal.
     fn summary(&self) -> String {
         let Self { name, done, .. } = self;
         format!("{name:>14}: {done} in {:.1} s", self.seconds())
     }
 }
 
-/// Progress bars: one for the current stage and one for all work items of the run.
+/// Progress bars on a terminal: one for the current stage and one for all work items of the run.
 struct Bars {
     screen: MultiProgress,
     shown: Mutex<Shown>,
@@ -99,7 +99,7 @@ impl Bars {
         bar
     }
 
-    /// Prints a line above the bars. A closed standard error does not stop the run.
+    /// Prints a line above the progress bars. A closed standard error does not stop the run.
     fn print(&self, line: &str) {
         let _ = self.screen.println(line);
     }
@@ -156,13 +156,13 @@ impl Drop for Bars {
     }
 }
 
-/// Writes the number of steps per second of a bar.
+/// Writes how many steps per second a progress bar makes.
 fn write_rate(state: &ProgressState, text: &mut dyn fmt::Write) {
     // Writing to the text of a bar cannot fail.
     let _ = write!(text, "{:.2}/s", state.per_sec());
 }
 
-/// Writes the estimated remaining time of a bar.
+/// Writes the estimated remaining time of a progress bar.
 fn write_left(state: &ProgressState, text: &mut dyn fmt::Write) {
     let _ = match state.pos() {
         0 => write!(text, "no rate yet"),
@@ -170,7 +170,7 @@ fn write_left(state: &ProgressState, text: &mut dyn fmt::Write) {
     };
 }
 
-/// Format of progress output without a terminal.
+/// Format of progress output that is not shown as bars.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {
     /// One line at the end of each stage.
@@ -179,7 +179,7 @@ enum Form {
     Json,
 }
 
-/// Progress listener that writes lines or JSON events. All threads of a run share its state.
+/// Progress listener that writes plain lines or JSON events. All threads of a run share its state.
 struct Events<W: Write>(Arc<Mutex<State<W>>>);
 
 struct State<W: Write> {
@@ -246,7 +246,7 @@ impl<W: Write + Send + 'static> Progress for Events<W> {
     }
 }
 
-/// Writes a progress event at every interval until the run ends.
+/// Writes a progress event at regular intervals until the run ends.
 fn report_regularly<W: Write>(state: &Weak<Mutex<State<W>>>) {
     loop {
         thread::sleep(INTERVAL);
@@ -286,7 +286,7 @@ impl<W: Write> State<W> {
         self.write(&event);
     }
 
-    /// Writes the last line of a stage.
+    /// Writes the line that ends a stage.
     fn end_stage(&mut self) {
         if self.form == Form::Json {
             self.write_progress();
@@ -353,7 +353,7 @@ mod tests {
         assert_eq!(written.text(), text, "no bar is drawn later");
     }
 
-    /// Test writer and terminal of 100 columns that stores all output.
+    /// Test output that stores all that is written to it, with the width of a terminal of 100 columns.
     #[derive(Clone, Debug, Default)]
     struct Written(Arc<Mutex<Vec<u8>>>);
 

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-/// Clock of a run, started when the run announces its work items.
+/// Clock that measures the duration of a run and the number of its finished work items.
 #[derive(Clone, Debug)]
 pub struct RunClock {
     start: Instant,
@@ -20,7 +20,7 @@ impl RunClock {
         }
     }
 
-    /// Counts one finished work item.
+    /// Increases the number of finished work items by one.
     pub fn item_finished(&mut self) {
         self.n_finished += 1;
     }

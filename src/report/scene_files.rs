@@ -7,7 +7,8 @@ use crate::scene::{Frame, FrameSink, PatchReading, PlannedPatch, PlannedSignal, 
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Row of `wrenches.csv`: wrench and contact counts of one patch at one time, in the patch frame. Numbers have enough digits to read back as the same bits.
+/// Row of `wrenches.csv`: force, torque and contact counts of one patch at one time, in the patch frame. Numbers have enough digits to read back as the same
+/// bits.
 #[derive(Serialize)]
 struct WrenchRow<'a> {
     time_s: f64,
@@ -21,11 +22,11 @@ struct WrenchRow<'a> {
     tx_nm: f64,
     ty_nm: f64,
     tz_nm: f64,
-    /// Centre of pressure along x, metres; empty without contact.
+    /// Centre of pressure along x, metres; empty if no taxel is in contact.
     cop_x_m: Option<f64>,
     cop_y_m: Option<f64>,
     cop_z_m: Option<f64>,
-    /// Number of sticking contacts; empty for a patch without friction.
+    /// Number of taxels with sticking contacts; empty for a patch without friction.
     n_sticking: Option<usize>,
     n_slipping: Option<usize>,
 }
@@ -34,8 +35,8 @@ const RECORDING: &str = "recording.npz";
 const WRENCHES: &str = "wrenches.csv";
 const SCENE: &str = "scene.toml";
 
-/// Writer of a scene's output files in one folder: `recording.npz`, `wrenches.csv` (wrenches on each patch, in its frame) and `scene.toml`.
-/// The method `finish` completes the files. If the writer is dropped before completion, no file remains.
+/// Writer of a scene's output files in one folder: `recording.npz`, `wrenches.csv` (force and torque on each patch, in its frame) and `scene.toml`. The method
+/// `finish` completes the files. If the writer is dropped before completion, no file remains.
 pub struct SceneFiles {
     folder: PathBuf,
     claimed: DataFolder,

@@ -5,7 +5,7 @@ use crate::scene::{Movement, PoseControl, ScenePlan, Summary};
 use crate::table::short_number;
 use crate::world::Motion;
 
-/// Returns the summary: a table of patches with their largest values over all frames, and a table of objects with their final states.
+/// Returns the summary of a scene as text: a table of patches with their largest values, and a table of objects with their final states.
 pub fn scene_table(plan: &ScenePlan, summary: &Summary) -> String {
     let mut text = format!("{}\n", patches(plan, summary));
     for patch in &plan.patches {
@@ -81,7 +81,7 @@ fn objects(plan: &ScenePlan, summary: &Summary) -> String {
     rows_text(&["object", "parts", "at the end"], &[0, 1, 2], rows)
 }
 
-/// Describes the final state of an object in words.
+/// Returns the final state of an object as text.
 fn ending(movement: &Movement, held: &PoseControl) -> String {
     match held {
         PoseControl::Imposed => match movement {

@@ -3,7 +3,7 @@
 use crate::report::page::Section;
 use crate::table::{ChartSpec, Table};
 
-/// Picture that is not a chart, for example of frames, spheres or objects.
+/// Picture in a report that is not a chart, for example of frames, spheres or objects.
 pub struct NamedPicture {
     /// File name of the picture, without extension.
     pub name: String,
@@ -15,7 +15,7 @@ pub struct NamedPicture {
     pub size: (usize, usize),
 }
 
-/// Results of a study, as input of reports.
+/// Results of a study, from which reports are made.
 #[derive(Clone, Copy)]
 pub struct Found<'a> {
     /// All tables of the study.
@@ -29,8 +29,8 @@ pub struct Found<'a> {
 /// Additional content of a study's result folder, besides tables and charts.
 #[derive(Default)]
 pub struct Beyond {
-    /// Pictures that are not charts.
+    /// Pictures that are not charts, for example of frames or objects.
     pub pictures: Vec<NamedPicture>,
-    /// Additional sections of the page.
+    /// Additional sections of the study's HTML page.
     pub sections: Vec<Section>,
 }

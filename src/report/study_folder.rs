@@ -10,11 +10,12 @@ use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
 
-/// Maximum number of charts on the page, and of drawn charts unless all are requested. With a larger value, the page is too large for a phone and drawing takes
-/// minutes.
+/// Maximum number of charts on the page, and of drawn charts unless all charts are requested. With a larger value, the page is too large for a phone and
+/// drawing takes minutes.
 pub const MAX_CHARTS: usize = 24;
 
-/// Returns the files of charts, pictures and the page. `beyond` computes additional content while charts are drawn. Charts without drawable rows are omitted.
+/// Returns the files of a result folder with charts, pictures and the page. `beyond` computes additional content while charts are drawn. Charts without
+/// drawable rows are omitted.
 ///
 /// # Errors
 /// If a chart or picture cannot be drawn.
@@ -62,7 +63,7 @@ pub fn files_with(
     Ok(files)
 }
 
-/// Returns only the page of a result folder, as HTML.
+/// Returns only the HTML page of a result folder, without other files.
 ///
 /// # Errors
 /// If a chart cannot be drawn.
@@ -91,7 +92,7 @@ pub fn words_of(tables: &[&Table], answers: &[String], width: usize) -> String {
     words
 }
 
-/// Returns the first table that has rows and a value or outcome column.
+/// Returns the first table that has rows and a column of values or outcomes.
 pub fn first_found(tables: &[Table]) -> Option<&Table> {
     let is_found = |role: Role| matches!(role, Role::Value(_) | Role::Outcome);
     let mut tables = tables.iter().filter(|table| table.n_rows > 0);

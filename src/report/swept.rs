@@ -6,8 +6,8 @@
 use crate::table::{Column, Data, Role, Table, Value};
 use std::collections::HashSet;
 
-/// Order in which dependent settings are removed. For one array, m and the ratio are equivalent; if nx is constant, the side lengths depend on the pitch.
-/// Settings that a study can only choose directly come last.
+/// Names of settings in the order in which they are omitted if other settings determine them. For one array, `measurements` and `ratio` determine each other;
+/// if `nx` is constant, `size_mm` depends on `pitch_mm`. Settings that a study can only choose directly come last.
 const GIVEN_UP_FIRST: [&str; 16] = [
     "nx",
     "ny",
@@ -27,41 +27,42 @@ const GIVEN_UP_FIRST: [&str; 16] = [
     "features",
 ];
 
-/// Setting: a column and its values.
+/// Setting of a table (choice, condition or subject): a column and its values.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
     /// Description of the column.
     pub column: &'a Column,
-    /// Values of the column, one per row.
+    /// Values of the setting, one per row of the table.
     pub data: &'a Data,
 }
 
-/// Choices and conditions of a table, divided into varying, dependent and constant ones.
+/// Settings of a table, divided into varying, dependent and constant ones.
 pub struct Swept<'a> {
     table: &'a Table,
-    /// Independent varying settings, in the order of the table.
+    /// Varying settings that no other settings determine, in the order of the table.
     pub free: Vec<Setting<'a>>,
-    /// Dependent settings, which vary only because other settings vary.
+    /// Varying settings whose values are determined by other settings.
     pub following: Vec<Setting<'a>>,
-    /// Independent settings, if each row changes at most one of them from its value in the first row. Empty otherwise, or if there are fewer than two settings.
+    /// Independent settings, if each row changes at most one of them from its value in the first row. The list is empty otherwise, or if there are fewer than
+    /// two such settings.
     pub one_at_a_time: Vec<Setting<'a>>,
-    /// Settings with the same value in all rows.
+    /// Settings that have an equal value in all rows.
     pub fixed: Vec<Setting<'a>>,
 }
 
 impl<'a> Setting<'a> {
-    /// Iterates over all columns of a table.
+    /// Returns an iterator over all columns of a table.
     pub fn all(table: &'a Table) -> impl Iterator<Item = Self> {
         let columns = table.columns.iter().zip(&table.data);
         columns.map(|(column, data)| Self { column, data })
     }
 
-    /// Iterates over the columns that have one of the given roles.
+    /// Returns an iterator over the columns of a table that have one of the given roles.
     pub fn of_roles(table: &'a Table, roles: &[Role]) -> impl Iterator<Item = Self> {
         Self::all(table).filter(|one| roles.contains(&one.column.role))
     }
 
-    /// Groups rows by the values of the given settings, in the order in which the values first occur.
+    /// Groups rows of a table by the values of the given settings, in the order in which the values first occur.
     pub fn groups(settings: &[Self], table: &Table, rows: &[usize]) -> Vec<Vec<usize>> {
         let names: Vec<&str> = settings.iter().map(|one| &one.column.name[..]).collect();
         table.groups(&names, rows.iter().copied())
@@ -83,7 +84,7 @@ impl<'a> Setting<'a> {
         matches!(self.data, Data::Numbers(_))
     }
 
-    /// Describes the setting in a row by name and value, such as `m = 64`. A word that needs no name is returned alone.
+    /// Returns the name and value of the setting in a row as text, such as `m = 64`. A word that needs no name is returned alone.
     pub fn phrase(&self, row: usize) -> String {
         match self.data.value(row) {
             Some(value) => self.column.phrase(&value),
@@ -91,7 +92,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Formats the value in a row. For an absent value, returns the column's name for it, or "none".
+    /// Returns the value of the setting in a row as text. For an absent value, returns the column's name for it, or "none".
     pub fn label(&self, row: usize) -> String {
         match self.data.value(row) {
             Some(value) => self.column.value_words(&value),
@@ -101,7 +102,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Formats the value in a row for a title; a number includes the column's name.
+    /// Returns the value of the setting in a row as text for a title; a number includes the column's name.
     pub fn title(&self, row: usize) -> String {
         match self.is_number() {
             true => self.phrase(row),
@@ -109,7 +110,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// Returns one row for each distinct value: numbers ascending, words in the order of first occurrence.
+    /// For each distinct value of the setting, returns one row: numbers ascending, words in the order of first occurrence.
     pub fn levels(&self, rows: &[usize]) -> Vec<usize> {
         let mut firsts = rows.to_vec();
         if let Data::Numbers(numbers) = self.data {
@@ -162,7 +163,7 @@ impl<'a> Swept<'a> {
         Setting::groups(settings, self.table, rows)
     }
 
-    /// Returns the varying settings that have a given role.
+    /// Returns the varying settings that have the given role.
     pub fn of_role(&self, role: Role) -> Vec<Setting<'a>> {
         let of_role = self.varying().filter(|one| one.column.role == role);
         of_role.copied().collect()
@@ -173,9 +174,9 @@ impl<'a> Swept<'a> {
         self.free.iter().chain(&self.following)
     }
 
-    /// Returns the main setting for charts and tables: the independent numeric setting with the most values. If several have equally many, the last column is
-    /// taken, because columns follow the order of processing. A setting that is absent in some rows comes after words, because its axis has no place for such a
-    /// row.
+    /// Returns the main setting for charts and tables: the independent numeric setting with the most values. If several have equally many values, the last
+    /// column is taken, because columns follow the order of processing. A setting that is absent in some rows is ranked after words, because its axis has no
+    /// place for such a row.
     pub fn main(&self, rows: &[usize]) -> Option<Setting<'a>> {
         let numbers = self.free.iter().filter(|setting| setting.is_number());
         let numbers = numbers.filter(|setting| numbers_are_there(setting, rows));
@@ -184,7 +185,8 @@ impl<'a> Swept<'a> {
         main.or(words).or(self.free.first()).copied()
     }
 
-    /// Describes the conditions of a row. If at most one condition differs at a time, only this one is stated. Returns an empty text if there is one condition.
+    /// Returns the conditions of a row as text. If at most one condition differs at a time, only this condition is stated. The text is empty if there is one
+    /// condition.
     pub fn condition_words(&self, row: usize) -> String {
         let conditions = self.of_role(Role::Condition);
         let is_absent = |setting: &Setting| {
@@ -200,7 +202,7 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// Describes the varying choices of a row.
+    /// Returns the varying choices of a row as text.
     pub fn choice_words(&self, row: usize) -> String {
         // Choices that do not apply to the row are omitted.
         let applies =
@@ -221,7 +223,7 @@ fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
     rows.iter().all(|&row| setting.data.value(row).is_some())
 }
 
-/// Returns all settings except one.
+/// Returns all given settings except one.
 pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> {
     let others = settings.iter().copied();
     others

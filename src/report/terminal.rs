@@ -10,13 +10,13 @@ use comfy_table::{
 };
 use std::io::IsTerminal;
 
-/// Maximum number of rows of a table.
+/// Maximum number of rows of a table that are shown on the terminal.
 const MAX_LINES: usize = 40;
 
-/// Number of spaces between two columns.
+/// Number of spaces between two columns of a table.
 const COLUMN_GAP: usize = 3;
 
-/// Colours that an output stream supports.
+/// Number of colours that a terminal or another output supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
     /// No colours: the output is a pipe or a file, `TERM=dumb`, or `NO_COLOR` is set.
@@ -41,17 +41,17 @@ impl Ink {
         }
     }
 
-    /// Returns the escape code for a text colour; empty without colours.
+    /// Returns the escape code that sets the text colour; empty if colours are not supported.
     pub fn letter(self, colour: Rgb) -> String {
         self.code(38, colour)
     }
 
-    /// Returns the escape code for a background colour; empty without colours.
+    /// Returns the escape code that sets the background colour; empty if colours are not supported.
     pub fn ground(self, colour: Rgb) -> String {
         self.code(48, colour)
     }
 
-    /// Returns the escape code for the terminal's default colours.
+    /// Returns the escape code that restores the terminal's default colours; empty if colours are not supported.
     pub fn reset(self) -> &'static str {
         match self {
             Self::Plain => "",
@@ -72,10 +72,10 @@ impl Ink {
     }
 }
 
-/// Table column as text.
+/// Column of a table on the terminal, converted to text.
 struct TextColumn {
     head: String,
-    /// Text of the column in each line.
+    /// Text of the column in each line of the table.
     said: Vec<String>,
     is_number: bool,
 }
@@ -110,7 +110,7 @@ pub fn table_text(table: &Table, width: usize) -> String {
     text
 }
 
-/// Returns the columns to show: varying settings, then values and outcomes, then costs.
+/// Returns the columns of a table that are shown: varying settings, then values and outcomes, then costs.
 fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
     let rank = |setting: &Setting| match setting.column.role {
         Role::Choice | Role::Condition | Role::Subject => 0,
@@ -124,7 +124,7 @@ fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
     shown
 }
 
-/// Returns whether a column contains information about the rows.
+/// Returns whether a column is worth showing because its entries differ between rows or are results.
 fn is_telling(table: &Table, setting: &Setting) -> bool {
     let mut rows = 0..table.n_rows;
     match setting.column.role {
@@ -141,7 +141,7 @@ fn is_telling(table: &Table, setting: &Setting) -> bool {
     }
 }
 
-/// Returns the first `n_lines` lines of as many columns as fit, and the number of these columns.
+/// Returns the first `n_lines` lines of as many columns as fit into `width`, and the number of these columns.
 fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (String, usize) {
     let mut used = 0;
     let fits = |column: &TextColumn| {
@@ -189,7 +189,7 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
     (lines, columns.len())
 }
 
-/// Describes the settings that are equal in all rows; empty if there are none.
+/// Returns the settings that are equal in all rows as text; empty if there are none.
 fn constants(table: &Table, width: usize) -> String {
     let rows: Vec<usize> = (0..table.n_rows).collect();
     if rows.len() < 2 {
@@ -262,7 +262,7 @@ fn pivot_text(table: &Table, width: usize) -> Option<String> {
     Some(constants(table, width) + &head + &text + &paragraph(&remark, width))
 }
 
-/// Formats rows as aligned columns without ruled lines. The columns with indices in `texts` are left-aligned, all others right-aligned.
+/// Formats rows of text as aligned columns without ruled lines. The columns with indices in `texts` are left-aligned, all others right-aligned.
 pub fn rows_text(
     header: &[&str],
     texts: &[usize],

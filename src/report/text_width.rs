@@ -1,6 +1,6 @@
 //! Text width in DejaVu Sans, the font of the pictures.
 
-/// Advance widths of U+0020 … U+007E in thousandths of the font size (DejaVu Sans 2.37, read with fontTools 4).
+/// Widths of the ASCII characters U+0020 to U+007E in thousandths of the font size (DejaVu Sans 2.37, read with fontTools 4).
 const ASCII: [u16; 95] = [
     318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636, 636,
     636, 636, 636, 636, 636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632,
@@ -21,7 +21,7 @@ pub fn text_width(text: &str, size: f64) -> f64 {
     thousandths as f64 * size / 1000.0
 }
 
-/// Wraps a text at spaces (not at U+00A0) into lines of at most `width`. A longer word has a line of its own.
+/// Wraps a text at spaces (not at U+00A0) into lines of at most `width`, in the unit of the font size. A longer word has a line of its own.
 pub fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     break_lines(text, |line| text_width(line, size) <= width)
 }
@@ -42,7 +42,7 @@ pub(super) fn break_lines(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String
     lines
 }
 
-/// Returns the text, or the longest prefix that fits together with an ellipsis.
+/// Returns the text if it fits into `width`; otherwise its longest prefix that fits together with an ellipsis.
 pub fn shorten(text: &str, size: f64, width: f64) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();

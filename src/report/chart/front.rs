@@ -5,23 +5,23 @@ use crate::report::swept::Setting;
 use crate::table::{Better, Role, front};
 use std::collections::HashMap;
 
-/// Maximum number of front points that are numbered and listed below a chart.
+/// Maximum number of points on Pareto fronts that are numbered and listed below a chart.
 const MAX_NAMED: usize = 24;
 
-/// Pareto fronts of a chart.
+/// Pareto fronts of a chart: points that no other point of their condition surpasses in both axes.
 pub(super) struct Front<'a> {
     view: &'a View<'a>,
-    /// Panel index and points along x of each front.
+    /// Panel index of each Pareto front, and the points of the front along x.
     pub fronts: Vec<(usize, Vec<&'a Place>)>,
 }
 
-/// Returns whether larger values of y are better.
+/// Returns whether larger values on the y axis are better.
 pub(super) fn is_more_better(view: &View) -> bool {
     let y = view.column(&view.spec.y).map(|y| y.column.role);
     !matches!(y, Ok(Role::Value(Better::Less) | Role::Cost))
 }
 
-/// Returns the legend text of the front.
+/// Returns the legend text that explains the Pareto front.
 pub(super) fn words(view: &View) -> String {
     let cost = match view.column(&view.spec.x) {
         Ok(x) if matches!(&x.column.unit[..], "s" | "ms" | "us" | "µs") => "faster",
@@ -31,7 +31,7 @@ pub(super) fn words(view: &View) -> String {
 }
 
 impl<'a> Front<'a> {
-    /// Computes the Pareto fronts of a chart; none if the specification requests no front.
+    /// Computes the Pareto fronts of a chart; the list is empty if the specification requests no front.
     pub fn new(view: &'a View) -> Self {
         let conditions = Setting::of_roles(view.table, &[Role::Condition]);
         let conditions: Vec<Setting> = conditions.collect();
@@ -57,13 +57,13 @@ impl<'a> Front<'a> {
         Self { view, fronts }
     }
 
-    /// Returns whether a row is on a Pareto front.
+    /// Returns whether the table row with this index is on a Pareto front.
     pub fn has(&self, row: usize) -> bool {
         let mut points = self.fronts.iter().flat_map(|(_, front)| front);
         points.any(|place| place.row == row)
     }
 
-    /// Returns the front points with their numbers, panel by panel along x; none if there are more than can be listed.
+    /// Returns the points of all Pareto fronts with their numbers, panel by panel along x; none if there are more than can be listed.
     pub fn numbered(&self) -> impl Iterator<Item = (usize, &'a Place)> {
         let all = self.fronts.iter().flat_map(|front| &front.1);
         let n = all.clone().count();
@@ -71,12 +71,12 @@ impl<'a> Front<'a> {
         all.enumerate().map(|(number, place)| (number + 1, place))
     }
 
-    /// Returns one line of text for each numbered point.
+    /// Returns one line of text for each numbered point of a Pareto front.
     pub fn list(&self) -> Vec<String> {
         self.said(self.numbered().map(|(_, place)| place))
     }
 
-    /// Describes each point by its settings, its value and its cost.
+    /// Describes each point of a Pareto front by its settings, its value and its cost.
     fn said(&self, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
         let view = self.view;
         let settings =

@@ -7,21 +7,21 @@ use crate::report::pictures::colours::{GRID, INK, MUTED};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{shorten, text_width, wrap};
 
-/// Font size of tick labels, pixels.
+/// Font size of the labels of axis ticks, pixels.
 pub(super) const TICK: f64 = 12.0;
-/// Font size of titles, pixels.
+/// Font size of axis and panel titles, pixels.
 const LABEL: u32 = 13;
-/// Gap between panels, pixels.
+/// Gap between neighbouring panels, pixels.
 const GAP: f64 = 26.0;
 /// Minimum width of a chart, pixels; leaves enough space for the title.
 const NARROWEST: f64 = 560.0;
-/// Maximum width of a label beside a row, pixels.
+/// Maximum width of the label on the left of a row of panels or tiles, pixels.
 const WIDEST: f64 = 230.0;
-/// Maximum height of a rotated label below a column, pixels.
+/// Maximum height of a rotated label below a panel, pixels.
 const DEEPEST: f64 = 160.0;
-/// Maximum number of lines of a label below a column.
+/// Maximum number of lines of a label below a panel.
 const MAX_LINES: usize = 3;
-/// Line height of a panel's title, pixels.
+/// Height of a line in a panel's title, pixels.
 const TITLE_LINE: f64 = 16.0;
 
 /// Pixel positions of the panels of a chart, with their titles and labels.
@@ -31,9 +31,9 @@ pub(super) struct Layout {
     size: (f64, f64),
     /// Left edge of the first panel, pixels.
     left: f64,
-    /// Width of the chart, pixels.
+    /// Width of the whole chart, pixels.
     pub width: f64,
-    /// Title lines above each panel.
+    /// For each panel, the lines of the title above it.
     titles: Vec<Vec<String>>,
     /// Height above each row of panels, and additional height above the first row, pixels.
     above: f64,
@@ -42,16 +42,16 @@ pub(super) struct Layout {
     heading: Heading,
 }
 
-/// Labels below a panel: the lines of each tick's label. A label without space has no lines.
+/// Labels of the horizontal axis below a panel, wrapped into lines. A label for which there is no space has no lines.
 struct XLabels {
     is_turned: bool,
     lines: Vec<Vec<String>>,
-    /// Height of the labels below a panel, pixels.
+    /// Height of the axis labels below a panel, pixels.
     depth: f64,
 }
 
 impl Layout {
-    /// Creates the layout of panels of a given size in a number of columns.
+    /// Creates the layout of a chart whose panels have the given size (width, height) and are arranged in `columns` columns.
     pub fn new(view: &View, entries: Vec<LegendEntry>, columns: usize, size: (f64, f64)) -> Self {
         let labels = view.y.ticks.iter();
         let labels = labels.map(|tick| text_width(&tick.label, TICK).min(WIDEST));
@@ -82,7 +82,7 @@ impl Layout {
         }
     }
 
-    /// Returns the lower edge of the heading, pixels.
+    /// Returns the lower edge of the heading of the chart, pixels.
     pub fn bottom(&self) -> f64 {
         let panels = self.panels();
         panels.y + panels.height + self.labels.depth + 26.0
@@ -110,7 +110,7 @@ impl Layout {
         Area::new((x, y), self.size)
     }
 
-    /// Draws the heading and the common axis titles.
+    /// Draws the heading of the chart and the axis titles that all panels share.
     pub fn draw_titles(&self, drawing: &mut Drawing, view: &View) {
         self.heading.draw(drawing);
         let panels = self.panels();
@@ -124,7 +124,7 @@ impl Layout {
         drawing.text(beside, &text, style.angle(-90.0));
     }
 
-    /// Draws the title, grid and labels of a panel.
+    /// Draws the title, the grid and the axis labels of a panel.
     pub fn draw_axes(&self, drawing: &mut Drawing, view: &View, panel: usize) {
         let frame = self.frame(panel);
         let style = TextStyle::new(LABEL);
@@ -177,7 +177,7 @@ fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
 }
 
 impl XLabels {
-    /// Wraps the tick labels of the horizontal axis. If one is too wide or has too many lines, all labels are rotated.
+    /// Wraps the labels of the horizontal axis. If one label is too wide or has too many lines, all labels are rotated.
     fn new(scale: &Scale, width: f64) -> Self {
         let labels = scale.ticks.iter().map(|tick| &tick.label[..]);
         let mut is_turned = false;

@@ -4,21 +4,21 @@ use crate::report::pictures::colours::{INK, LINES, MUTED};
 use crate::report::pictures::drawing::{Area, Drawing, Stroke, TextStyle};
 use crate::report::text_width::{text_width, wrap};
 
-/// Left margin of a chart, pixels.
+/// Left margin of all charts, pixels.
 pub(super) const LEFT: f64 = 66.0;
-/// Right margin of a chart, pixels.
+/// Right margin of all charts, pixels.
 pub(super) const RIGHT: f64 = 18.0;
-/// Radius of a marker, pixels.
+/// Radius of a marker in a chart, pixels.
 pub(super) const MARKER_RADIUS: f64 = 4.2;
-/// Line style of a Pareto front.
+/// Style of the line that joins the points of a Pareto front.
 pub(super) const FRONT: Stroke = Stroke::new(INK, 1.4);
 const TITLE: u32 = 16;
 const SMALL: u32 = 12;
-/// Width and height of the mark before a text, pixels.
+/// Width and height of the mark (line or marker) before the text of a legend entry, pixels.
 const SWATCH: (f64, f64) = (28.0, 16.0);
-/// Gap between mark and text, pixels.
+/// Gap between the mark and the text of a legend entry, pixels.
 const SWATCH_GAP: f64 = 6.0;
-/// Gap between two entries, pixels.
+/// Gap between two legend entries, pixels.
 const GAP: f64 = 20.0;
 
 /// Heading of a chart: title, fixed settings and legend, above the panels, so that nothing covers data.
@@ -28,20 +28,20 @@ pub(super) struct Heading {
     legend: Vec<Vec<LegendEntry>>,
 }
 
-/// Function that draws a mark into an area.
+/// Function that draws the mark of a legend entry into an area.
 type DrawMark = Box<dyn Fn(&mut Drawing, Area)>;
 
-/// Legend entry: a mark and its meaning.
+/// Legend entry: a mark and a text with its meaning.
 pub(super) struct LegendEntry {
     text: String,
-    /// Function that draws the mark; `None` for a text without a mark, such as the legend's title.
+    /// Function that draws the mark of the entry; `None` for a text without a mark, such as the legend's title.
     mark: Option<DrawMark>,
-    /// Whether the entry is a series of marks, which readers of the page can hide.
+    /// Whether the entry is a series that readers of the page can hide by a click.
     is_series: bool,
 }
 
 impl Heading {
-    /// Creates a heading for a drawing of the given width. Lines and legend entries wrap within the margins.
+    /// Creates a heading for a drawing of the given width. Lines of text and legend entries wrap within the margins.
     pub(super) fn new(title: &str, settings: &str, entries: Vec<LegendEntry>, width: f64) -> Self {
         let inner = width - LEFT - RIGHT;
         Self {
@@ -101,7 +101,7 @@ impl LegendEntry {
         }
     }
 
-    /// Creates the legend entry of a series. On a page, a click on it hides or shows the groups whose `data-series` equals its text.
+    /// Creates the legend entry of a series. On a page, a click on the entry hides or shows the groups whose `data-series` equals its text.
     pub(super) fn series(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         Self {
             is_series: true,
@@ -153,7 +153,7 @@ fn flow(entries: Vec<LegendEntry>, width: f64) -> Vec<Vec<LegendEntry>> {
     rows
 }
 
-/// Returns the stroke of the line with this index. If there are more lines than marker shapes, the shapes repeat with other colours.
+/// Returns the stroke (colour, width and dashes) of the line with this index. If there are more lines than marker shapes, the shapes repeat with other colours.
 pub(super) fn line_stroke(line: usize) -> Stroke {
     let colour = line + 3 * (line / LINES.len());
     Stroke::new(LINES[colour % LINES.len()], 2.0)

@@ -6,10 +6,10 @@ use crate::report::pictures::colours::{INK, MUTED, PAPER};
 use crate::report::pictures::drawing::{Area, Drawing, Point, Stroke};
 use crate::table::{Along, At, Rule};
 
-/// Dash patterns of the reference lines, in order: lengths of dash and gap, pixels.
+/// Dash patterns of the reference lines in a chart: length of a dash and of a gap, pixels.
 const DASHES: [(u32, u32); 4] = [(5, 4), (2, 3), (9, 3), (1, 2)];
 
-/// Returns one legend entry per reference line; lines with equal labels share an entry.
+/// Returns the legend entries of the reference lines; lines with equal labels share an entry.
 pub(super) fn entries(view: &View) -> Vec<LegendEntry> {
     let rules = view.spec.rules.iter().enumerate();
     let rules = rules.filter(|(number, rule)| first_of(view, rule) == *number);

@@ -3,24 +3,24 @@
 use crate::report::pictures::even_ticks::{even_ticks, tick_step};
 use crate::table::{Along, Column, Role, Scale as Spacing};
 
-/// Fraction of a logarithmic axis that is reserved for the value zero.
+/// Fraction of a logarithmic axis that is reserved for the value zero, which has no logarithm.
 pub(super) const SHELF: f64 = 0.09;
-/// Maximum number of distinct values of a swept axis for which each value has a tick. With more values, ticks are at round numbers.
+/// Maximum number of distinct values of a swept setting for which each value has a tick on the axis. With more values, ticks are at round numbers.
 const MAX_SWEPT: usize = 40;
 
-/// Axis scale: maps values to fractions of the axis length.
+/// Scale of an axis, which converts values to fractions of the axis length.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scale {
-    /// Values (or their logarithms) in ascending order, with their positions. Between two of them, positions are interpolated linearly.
+    /// Values (or their logarithms) in ascending order, with their positions on the axis. Between two values, positions are interpolated linearly.
     anchors: Vec<(f64, f64)>,
     is_log: bool,
-    /// End of the range that a logarithmic axis reserves for zero, as a fraction of the axis; `None` without zero.
+    /// End of the part of a logarithmic axis that is reserved for zero, as a fraction of the axis length; `None` if no value is zero.
     pub shelf: Option<f64>,
-    /// Number of words or tiles along the axis; 0 for a continuous axis.
+    /// Number of distinct positions on an axis of words or tiles; 0 for a continuous axis.
     pub n_levels: usize,
-    /// Whether the axis shows words, with nothing between them.
+    /// Whether the axis shows words; positions between two words have no meaning.
     pub is_words: bool,
-    /// Possible labels, in ascending order of their values.
+    /// Ticks that may have a label, in ascending order of their values.
     pub ticks: Vec<Tick>,
     /// Title of the axis.
     pub title: String,
@@ -33,7 +33,7 @@ pub(super) struct Tick {
     pub at: f64,
     /// Text of the tick's label.
     pub label: String,
-    /// Whether the label has priority over others if there is not enough space for all.
+    /// Whether the tick is at a round number, so that its label has priority over others if there is not enough space.
     pub is_round: bool,
 }
 
@@ -78,7 +78,7 @@ impl Scale {
         scale.with_ticks(&ticks, |&tick| column.tick(tick))
     }
 
-    /// Creates a scale with one position per value of a column. Words keep the given order (from the top along y); numbers of tiles are ascending.
+    /// Creates a scale with one position for each value of a column. Words keep the given order (from the top along y); numbers of tiles are ascending.
     pub fn of_levels(column: &Column, (values, words): (&[f64], &[String]), along: Along) -> Self {
         let is_words = column.scale == Spacing::Words;
         let levels = match is_words {
@@ -128,7 +128,7 @@ impl Scale {
         }
     }
 
-    /// Returns the position of a value as a fraction of the axis, or `None` if it has no position.
+    /// Returns the position of a value as a fraction of the axis length; `None` if the value has no position.
     pub fn place(&self, value: f64) -> Option<f64> {
         if self.is_log && value == 0.0 {
             return self.shelf.map(|shelf| 0.5 * shelf);
@@ -158,7 +158,7 @@ fn distinct(values: &[f64]) -> Vec<f64> {
     distinct
 }
 
-/// Returns the ends of a logarithmic axis, with a margin of at least a twelfth of a decade around the values.
+/// Returns the lower and upper end of a logarithmic axis, with a margin of at least a twelfth of a decade around the values.
 fn log_ends(values: &[f64]) -> (f64, f64) {
     let mut positive = values.iter().copied().filter(|&v| v > 0.0);
     let (low, high) = match (positive.next(), values.last()) {
@@ -169,7 +169,7 @@ fn log_ends(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Returns round ends of an axis around the values; includes zero if it is near.
+/// Returns round numbers as the lower and upper end of an axis around the values; includes zero if zero is near.
 fn round_ends(values: &[f64]) -> (f64, f64) {
     let (mut low, mut high) = ends(values);
     if low > 0.0 && low < 0.6 * high {
@@ -185,7 +185,7 @@ fn round_ends(values: &[f64]) -> (f64, f64) {
     )
 }
 
-/// Returns the first and the last of sorted values; adds a margin if they are equal.
+/// Returns the first and the last of sorted values; if they are equal, moves both outwards.
 fn ends(values: &[f64]) -> (f64, f64) {
     let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
         return (0.0, 1.0);
@@ -197,8 +197,8 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Returns the ticks of a logarithmic axis: powers of ten. If there are fewer than three, 1, 2 and 5 times powers of ten; if still too few, evenly spaced
-/// numbers.
+/// Returns the ticks of a logarithmic axis: powers of ten. If there are fewer than three, also 2 and 5 times powers of ten. If these are still too few, returns
+/// evenly spaced numbers.
 fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     let multiples = |factors: &[u32]| -> Vec<f64> {
         let powers = low.floor() as i32..=high.ceil() as i32;
@@ -214,7 +214,7 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     enough.unwrap_or_else(|| even_ticks(10f64.powf(low), 10f64.powf(high)))
 }
 
-/// Selects the ticks whose labels have enough space, `half` of the axis length on either side. Priority: the ends, round ticks, other ticks.
+/// For each tick, returns whether its label is shown. A label needs `half` of the axis length on either side. Priority: the ends, round ticks, other ticks.
 pub(super) fn thin(ticks: &[Tick], half: impl Fn(&Tick) -> f64) -> Vec<bool> {
     let last = ticks.len().saturating_sub(1);
     let rank = |place: usize| match (place == 0 || place == last, ticks[place].is_round) {

@@ -8,9 +8,9 @@ use super::view::{Place, View};
 use crate::report::pictures::colours::{INK, MUTED, Rgb};
 use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, TextStyle};
 
-/// Number of points above which all markers are small.
+/// Number of points in a chart above which all markers are small.
 const MANY: usize = 400;
-/// Line height in the list of a front, pixels.
+/// Line height in the list of Pareto-front points below a chart, pixels.
 const LINE: f64 = 17.0;
 
 /// Draws a chart of series.
@@ -135,7 +135,7 @@ impl Panel<'_> {
         self.draw_numbers(drawing);
     }
 
-    /// Draws a part of a line inside a group with the line's name; without a group if the chart has only one line.
+    /// Draws a part of a line inside an SVG group with the line's name; without a group if the chart has only one line.
     fn draw_series(&self, drawing: &mut Drawing, line: usize, draw: impl FnOnce(&mut Drawing)) {
         match &self.view.lines.names[line][..] {
             "" => draw(drawing),
@@ -187,7 +187,7 @@ impl Panel<'_> {
         self.frame.at(place.x, place.y)
     }
 
-    /// Returns radius and colour of markers that are not on the front: paler if there is a front, smaller if there are many points.
+    /// Returns the radius and colour of markers that are not on the Pareto front: paler if there is a front, smaller if there are many points.
     fn behind(&self, colour: Rgb) -> (f64, Rgb) {
         let radius = match self.view.places.len() > MANY {
             true => 0.55 * MARKER_RADIUS,
@@ -211,7 +211,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the numbers of front points on the side without points. If two numbers overlap, the later one is omitted.
+    /// Draws the numbers of the points on Pareto fronts, on the side without other points. If two numbers overlap, the later one is omitted.
     fn draw_numbers(&self, drawing: &mut Drawing) {
         let up = match front::is_more_better(self.view) {
             true => -8.0,

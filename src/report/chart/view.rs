@@ -7,34 +7,34 @@ use crate::report::swept::Setting;
 use crate::table::{Along, At, ChartSpec, Data, Role, Scale as Spacing, Table, Value};
 use std::collections::{HashMap, HashSet};
 
-/// Maximum number of lines with confidence bands. Bands of more lines would hide each other, so error bars replace them.
+/// Maximum number of lines whose confidence intervals are drawn as bands. More bands would hide each other, so error bars replace them.
 const MAX_BANDS: usize = 4;
 /// Maximum number of points with error bars; more bars would not be distinguishable.
 const MAX_WHISKERS: usize = 80;
 
-/// Chart specification applied to its table.
+/// Chart specification together with the table rows, groups and positions that it selects.
 pub(super) struct View<'a> {
     pub spec: &'a ChartSpec,
     pub table: &'a Table,
-    /// Rows that pass the filters.
+    /// Indices of the table rows that pass the filters of the chart.
     pub rows: Vec<usize>,
-    /// Line index of each row, and the names of the lines.
+    /// Groups of rows that form the lines of the chart.
     pub lines: Groups,
-    /// Panel index of each row, and the names of the panels.
+    /// Groups of rows that form the panels of the chart.
     pub panels: Groups,
     pub x: Scale,
     pub y: Scale,
     /// Whether points are joined by lines along x; words and named numbers are not joined.
     pub is_joined: bool,
-    /// Title of each panel, such as `noise 10 %` or `RBF SVM`. Empty if there is one panel, and in later rows of tiles.
+    /// Title of each panel, such as `noise 10 %` or `RBF SVM`. A title is empty if there is one panel, and in later rows of tiles.
     pub titles: Vec<String>,
-    /// Title of each row of panels. A tile chart has one row of panels per line group.
+    /// Title of each row of panels. A tile chart has one row of panels for each line group.
     pub row_titles: Vec<String>,
-    /// Positions of the rows, line by line along x.
+    /// Positions of the rows in their panels, line by line along x.
     pub places: Vec<Place>,
 }
 
-/// Position of a row in its panel.
+/// Position of a table row in its panel of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// Index of the row in the table.
@@ -43,29 +43,29 @@ pub struct Place {
     pub panel: usize,
     /// Index of the line (series) to which the row belongs.
     pub line: usize,
-    /// Horizontal position as a fraction of the panel's width, from the left.
+    /// Horizontal position of the row as a fraction of the panel's width, from the left.
     pub x: f64,
-    /// Vertical position as a fraction of the panel's height, from below.
+    /// Vertical position of the row as a fraction of the panel's height, from below.
     pub y: f64,
-    /// Ends of the confidence interval, on the scale of `y`; `None` without an interval.
+    /// Ends of the row's confidence interval as fractions of the panel's height; `None` if there is no interval.
     pub interval: Option<[f64; 2]>,
 }
 
-/// Groups of rows with equal values in some columns.
+/// Groups of table rows with equal values in some columns.
 #[derive(Default)]
 pub(super) struct Groups {
-    /// Names of the grouping columns, such as `classifier`; empty without columns.
+    /// Names of the columns by which rows are grouped, such as `classifier`; empty if there are no such columns.
     pub heading: String,
-    /// Values of each group as text; a single empty text without columns.
+    /// For each group, the values of the grouping columns as text; a single empty text if there are no such columns.
     pub names: Vec<String>,
-    /// Values of each group as a title, in which numbers include the column's name.
+    /// For each group, its values as a title, in which numbers include the column's name.
     titles: Vec<String>,
-    /// Group index of each table row; 0 for rows that are not shown.
+    /// For each table row, the index of its group; 0 for rows that are not shown.
     pub of: Vec<usize>,
 }
 
 impl<'a> View<'a> {
-    /// Applies a chart specification to its table.
+    /// Selects the rows, groups and positions of a chart from the table that the specification names.
     pub fn new(spec: &'a ChartSpec, tables: &'a [Table]) -> Result<Self> {
         let table = tables.iter().find(|table| table.file == spec.table);
         let table = table.ok_or_else(|| {
@@ -166,7 +166,7 @@ impl<'a> View<'a> {
         places
     }
 
-    /// Returns the horizontal offset of a line on a word axis, so that error bars of several lines do not overlap.
+    /// Returns the horizontal offset of a line on an axis of words, so that error bars of several lines do not overlap.
     fn beside(&self, line: usize) -> f64 {
         if !self.x.is_words || self.spec.mark.about().path.is_none() {
             return 0.0;
@@ -181,12 +181,12 @@ impl<'a> View<'a> {
         self.spec.mark.about().is_tiled
     }
 
-    /// Returns whether intervals are drawn as bands, which is the case for charts with few lines.
+    /// Returns whether confidence intervals are drawn as bands, which is the case for charts with few lines.
     pub fn has_bands(&self) -> bool {
         self.has_interval() && self.is_joined && self.lines.names.len() <= MAX_BANDS
     }
 
-    /// Returns whether intervals are drawn, as bands or as error bars.
+    /// Returns whether confidence intervals are drawn, as bands or as error bars.
     pub fn has_interval(&self) -> bool {
         let is_joinable = self.spec.mark.about().path.is_some();
         let is_many = !is_joinable && self.places.len() > MAX_WHISKERS;
@@ -204,7 +204,7 @@ impl<'a> View<'a> {
         column_of(self.spec, self.table, name)
     }
 
-    /// Draws the mark of a row inside a group with its data: row number, and values along the axes with their units.
+    /// Draws the mark of a row inside an SVG group with its data: row number, and values along the axes with their units.
     pub fn draw_mark(&self, drawing: &mut Drawing, place: &Place, draw: impl FnOnce(&mut Drawing)) {
         let spec = self.spec;
         let words = |name: &str| {
@@ -238,7 +238,8 @@ impl<'a> View<'a> {
         drawing.group(&data, draw);
     }
 
-    /// Describes the interval by the common text of both column names before a comma, or by both names; `None` without an interval.
+    /// Returns the name of the confidence interval from the names of its two columns: their common text before a comma, or both names. Returns `None` if there
+    /// is no interval.
     pub fn interval_words(&self) -> Option<String> {
         let words = |name: &str| Some(self.column(name).ok()?.column.words.as_ref());
         let [low, high] = self.column(&self.spec.y).ok()?.column.interval.as_ref()?;
@@ -249,7 +250,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// Describes the rows that are not drawn: their number and the reasons. The text is empty if all rows are drawn.
+    /// Returns a text about the rows that are not drawn: their number and the reasons. The text is empty if all rows are drawn.
     pub fn omitted(&self) -> String {
         let (n, n_shown) = (self.table.n_rows, self.rows.len());
         let drawn = self.drawn();
@@ -284,7 +285,7 @@ impl<'a> View<'a> {
         format!("{n_drawn} of {n} rows are drawn; {}.", said.join(", "))
     }
 
-    /// Returns the visible rows; a tile hides earlier tiles at the same position.
+    /// Returns the rows whose marks are visible; a tile hides earlier tiles at the same position.
     pub fn drawn(&self) -> Vec<usize> {
         let Some(fill) = self.spec.mark.fill() else {
             return self.places.iter().map(|place| place.row).collect();
@@ -303,7 +304,7 @@ impl<'a> View<'a> {
         rows
     }
 
-    /// Describes the choices and conditions that are constant in the chart and not shown elsewhere in it.
+    /// Returns a text with the choices and conditions that are constant in the chart and not shown elsewhere in it.
     pub fn constants(&self) -> String {
         let spec = self.spec;
         let mut rows: Vec<usize> = self.places.iter().map(|place| place.row).collect();

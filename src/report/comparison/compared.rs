@@ -19,7 +19,7 @@ use crate::table::{
 const VALUES: File<Difference> = File::new("differences.csv", "Values of both runs", "");
 const COSTS: File<Difference> = File::new("costs.csv", "Costs of both runs", "");
 
-/// Returns the differences as sentences and a table, wrapped at `width` characters. The most significant differences come first.
+/// Returns the differences between two result folders as sentences and a table, wrapped at `width` characters. The most significant differences come first.
 ///
 /// # Errors
 /// If rows cannot be serialised as CSV.
@@ -74,7 +74,7 @@ pub fn differences_page(
     )
 }
 
-/// Returns the chart of one column: values of the second run against values of the first run.
+/// Returns the chart that compares one column of two runs: values of the second run against values of the first run.
 fn chart(
     values: &Table,
     one: &ColumnDifferences,
@@ -109,7 +109,7 @@ fn values(found: &[ColumnDifferences]) -> Result<Table> {
     table(&VALUES, found.iter().filter(|one| !is_cost(one)))
 }
 
-/// Returns the table of a column's differences, the most significant rows first.
+/// Returns the table of the differences in one column, the most significant rows first.
 fn table<'a>(
     file: &File<Difference>,
     columns: impl Iterator<Item = &'a ColumnDifferences>,
@@ -128,7 +128,7 @@ fn table<'a>(
     file.table(&rows)
 }
 
-/// Describes the differences in sentences: for each table, the number of common settings, then its values, then its costs.
+/// Returns sentences about the differences. For each table, they state the number of common settings, then the differences of values, then of costs.
 fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     let mut said = Vec::new();
     let mut last = "";
@@ -153,7 +153,7 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     said
 }
 
-/// Describes rows and entries that differ but are not part of the means in `sentences`: outcomes, numbers absent in one run, and all other columns.
+/// Returns sentences about rows and entries that differ but do not enter the means in `sentences`: outcomes, numbers absent in one run, and all other columns.
 pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Vec<String> {
     let has_moved = |file: &str, column: &str| {
         let mut of_column = found.iter().filter(|one| one.column.name == column);
@@ -175,8 +175,8 @@ pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Ve
     said.flatten().collect()
 }
 
-/// Describes the differing rows and entries of one table. `counts_rows`: another sentence counts its rows. `has_moved`: another sentence reports a column's
-/// means.
+/// Returns sentences about the differing rows and entries of one table. `counts_rows` is true if another sentence counts its rows. `has_moved` returns whether
+/// another sentence reports the mean of a column.
 fn table_words(
     table: &TableEntries,
     counts_rows: bool,
@@ -226,10 +226,10 @@ fn table_words(
     said
 }
 
-/// Maximum number of changes of an outcome that a sentence lists.
+/// Maximum number of changes of an outcome, such as from `right` to `wrong`, that a sentence lists.
 const MAX_CHANGES: usize = 8;
 
-/// Describes an outcome column, such as `stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).`
+/// Returns a sentence about an outcome column, such as `stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).`
 fn outcome_words(file: &str, entries: &ColumnEntries) -> String {
     let listed = entries.changes.iter().take(MAX_CHANGES);
     let listed = listed.map(|(from, to, n)| format!("{n} from {from} to {to}"));
@@ -246,7 +246,7 @@ fn outcome_words(file: &str, entries: &ColumnEntries) -> String {
     )
 }
 
-/// Describes a cost column, such as `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`
+/// Returns a sentence about a cost column, such as `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`
 fn cost_words(one: &ColumnDifferences) -> String {
     let mut ratios: Vec<f64> = one.rows.iter().map(|row| row.second / row.first).collect();
     let [middle, least, most] = [0.5, 0.0, 1.0].map(|q| short_number(quantile(&mut ratios, q)));
@@ -263,7 +263,7 @@ fn cost_words(one: &ColumnDifferences) -> String {
     format!("{words}: median {middle} times that of the first run, {least} to {most} times.{small}")
 }
 
-/// Describes a value column: the numbers of settings that are better and worse, and how many of these differences are significant.
+/// Returns sentences about a value column: how many settings are better and worse, and how many of these differences are significant.
 fn value_words(one: &ColumnDifferences) -> Vec<String> {
     let words = match one.column.role {
         Role::Value(Better::Neither) => ["larger", "smaller"],

@@ -21,7 +21,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 pub enum Significance {
     /// Significant difference: p < 0.05 after correction, or disjoint intervals.
     Significant,
-    /// Difference without a test: there are no intervals, and no trials or too few.
+    /// Difference that could not be tested: there are no intervals, and no trials or too few.
     Untested,
     /// Difference that is not significant: chance can explain it.
     NotSignificant,
@@ -37,17 +37,17 @@ const SIGNIFICANCE: &[(&str, &str)] = &[
 ];
 
 row! {
-/// Comparison of one number in two result folders: a row of the tables that `bubbletouch compare` writes.
+/// Comparison of one number in two result folders, as a row of the tables that `bubbletouch compare` writes.
 pub struct Difference {
     /// File name of the table that contains the number.
     table: String => Subject;
     /// Name of the column that contains the number.
     column: String => Subject;
-    /// Description of the choices, conditions and subjects that vary.
+    /// Choices, conditions and subjects of the compared rows that vary in the table, as text.
     setting: String => Subject;
-    /// Row index of this setting in the second folder's table, counted from 0; the first such row.
+    /// Index of the first row with this setting in the second folder's table, counted from 0.
     row: usize => Note: Linear;
-    /// Number of common trials; 1 if the setting is not repeated.
+    /// Number of trials that both folders contain; 1 if the setting is not repeated.
     n_trials: usize => Note "trials of both": Linear;
     /// Value in the first folder, averaged over common trials.
     first: f64 => Value(Neither): Linear;
@@ -65,13 +65,13 @@ pub struct Difference {
     p_value: Option<f64> => Note "p-value": Linear;
     /// p-value after Holm's correction over all settings of the column.
     p_holm: Option<f64> => Value(Neither) "p (Holm)": Linear;
-    /// Reason why the p-value is present or empty.
+    /// Status of the p-value: present, or the reason why it is empty.
     p_status: Option<PStatus> => Outcome "test";
-    /// Number of trials that a p-value requires; empty if no number of trials is sufficient.
+    /// Number of trials that a p-value needs; empty if no number of trials is sufficient.
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }
 
-/// Differences in one column of a table that both folders contain.
+/// Differences between two folders in one column of a table.
 pub struct ColumnDifferences {
     /// Description of the compared column.
     pub column: Column,
@@ -120,12 +120,12 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
     }
 }
 
-/// Settings of a table and their rows.
+/// Settings that occur in a table, with the rows of each setting.
 struct Settings<'a> {
     table: &'a Table,
-    /// Columns whose values distinguish the settings.
+    /// Columns whose values together identify a setting.
     columns: Vec<Setting<'a>>,
-    /// Groups of rows with equal settings, one row per trial, in the order of first occurrence.
+    /// For each setting, its rows (one per trial), in the order of first occurrence.
     groups: Vec<Vec<usize>>,
     is_repeated: bool,
 }
@@ -151,7 +151,7 @@ impl<'a> Settings<'a> {
         })
     }
 
-    /// Returns the setting of a row as a set of values with their units; absent values are omitted.
+    /// Returns the setting of a row as a set of texts, each a value with its unit; absent values are omitted.
     fn key(&self, row: usize) -> BTreeSet<String> {
         let columns = self.columns.iter();
         let said = columns.filter_map(|Setting { column, data }| {
@@ -161,7 +161,7 @@ impl<'a> Settings<'a> {
         said.collect()
     }
 
-    /// Describes the setting of a row by the columns that vary.
+    /// Returns the setting of a row as text, limited to the columns that vary.
     fn words(&self, row: usize) -> String {
         let columns = self.columns.iter();
         let varying = columns.filter(|one| one.data.varies(0..self.table.n_rows));
@@ -169,13 +169,13 @@ impl<'a> Settings<'a> {
         said.collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns a count from a column; `None` if the table does not have the column or the row has no number there.
+    /// Returns the number in a column and row of the table as a count; `None` if the column or the number does not exist.
     fn count(&self, column: &str, row: usize) -> Option<usize> {
         let number = self.table.numbers(column)?[row];
         (!number.is_nan()).then_some(number as usize)
     }
 
-    /// Returns the numbers of a column in the given rows as scores of trials.
+    /// Returns the numbers of a column in the given rows as scores, each with the trial of its row.
     fn repeats(&self, column: &str, rows: &[usize]) -> Vec<Repeat> {
         let repeats = rows.iter().map(|&row| {
             let trial = self.count("trial", row).unwrap_or(0);
@@ -193,7 +193,7 @@ impl<'a> Settings<'a> {
         repeats.filter(|repeat| !repeat.score.is_nan()).collect()
     }
 
-    /// Returns the numbers of training and test touches of a row's trial, or `None` if the table does not contain them.
+    /// Returns the numbers of training and test touches in the trial of a row; `None` if the table does not contain them.
     fn trial_size(&self, row: usize) -> Option<TrialSize> {
         self.is_repeated.then_some(())?;
         Some(TrialSize {
@@ -241,7 +241,7 @@ fn explained(is_by_chance: bool) -> Significance {
 
 type Rows<'a> = (&'a Settings<'a>, &'a [usize]);
 
-/// Compares one setting in both folders; returns `None` if a number is absent.
+/// Compares the numbers of one setting in both folders; returns `None` if a number is absent.
 fn of_setting(
     column: &Column,
     (first, theirs): Rows,
@@ -295,8 +295,8 @@ fn of_setting(
 }
 
 impl ColumnDifferences {
-    /// Returns the numbers of selected rows that improved and that became worse. If neither direction is better, returns the numbers of larger and smaller
-    /// values.
+    /// Returns how many of the selected rows improved and how many became worse. If neither direction is better, returns how many numbers became larger and how
+    /// many smaller.
     pub fn counts(&self, is_counted: impl Fn(&Difference) -> bool) -> [usize; 2] {
         let less = matches!(self.column.role, Role::Cost | Role::Value(Better::Less));
         let count = |better: bool| {

@@ -7,16 +7,16 @@ use crate::report::swept::Setting;
 use crate::table::{Column, Role, Table, Value};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Columns whose numbers identify configurations; another run may number the configurations differently.
+/// Columns that identify configurations by number; another run may number the configurations differently.
 const CONFIGURATION_NUMBERS: [&str; 2] = ["configuration", "best_configuration"];
 
-/// Roles of the columns that identify a row.
+/// Roles of the columns whose entries together identify a row.
 const KEY_ROLES: [Role; 3] = [Role::Choice, Role::Condition, Role::Subject];
 
-/// Row indices of a pair of corresponding rows: in the first version and in the second version.
+/// Row indices of two corresponding rows: in the first and in the second version of a table.
 type Pair = (usize, usize);
 
-/// Result of comparing the rows of two versions of a table.
+/// Result of comparing two versions of a table row by row.
 pub struct TableEntries {
     /// File name of the table.
     pub file: &'static str,
@@ -26,34 +26,34 @@ pub struct TableEntries {
     pub n_first_only: usize,
     /// Number of rows that only the second version contains.
     pub n_second_only: usize,
-    /// Names of the columns that only one version contains.
+    /// Names of the columns that only one version of the table contains.
     pub one_sided: Vec<String>,
-    /// Columns in which corresponding rows differ.
+    /// Columns in which corresponding rows of the two versions differ.
     pub columns: Vec<ColumnEntries>,
 }
 
-/// Column in which corresponding rows differ.
+/// Differences in one column between corresponding rows of two versions of a table.
 pub struct ColumnEntries {
     /// Description of the compared column.
     pub column: Column,
     /// Number of corresponding rows with equal entries.
     pub n_same: usize,
-    /// Changed entries as text (first version, second version), each with its number of rows, in the order of first occurrence.
+    /// Changes of entries, as (text in the first version, text in the second version, number of rows), in the order of first occurrence.
     pub changes: Vec<(String, String, usize)>,
-    /// Number of rows with a value in the first version only.
+    /// Number of rows that have an entry in the first version only.
     pub n_first_only: usize,
-    /// Number of rows with a value in the second version only.
+    /// Number of rows that have an entry in the second version only.
     pub n_second_only: usize,
 }
 
 impl ColumnEntries {
-    /// Returns the number of rows whose entries differ.
+    /// Returns the number of rows whose entries differ between the two versions.
     pub fn n_changed(&self) -> usize {
         self.changes.iter().map(|(.., n)| n).sum()
     }
 }
 
-/// Compares the table files that both folders contain, in the order of the second folder.
+/// Compares the tables that both folders contain, in the order of the second folder.
 pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
     let numbers = [first, second].map(configurations);
     let with_files = second.iter().filter(|table| !table.csv.is_empty());
@@ -64,14 +64,14 @@ pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
     found.collect()
 }
 
-/// Returns the names of the table files that `one` contains and `other` lacks.
+/// Returns the names of the table files that the first list contains and the second list lacks.
 pub fn files_of_one<'a>(one: &'a [Table], other: &[Table]) -> Vec<&'a str> {
     let files = one.iter().filter(|table| !table.csv.is_empty());
     let alone = files.filter(|table| other.iter().all(|known| known.file != table.file));
     alone.map(|table| table.file).collect()
 }
 
-/// Settings of each configuration, by the configuration's number.
+/// Settings of each configuration as text, by the configuration's number.
 type Configurations = HashMap<u64, String>;
 
 fn configurations(tables: &[Table]) -> Configurations {
@@ -104,14 +104,14 @@ fn configurations(tables: &[Table]) -> Configurations {
     known
 }
 
-/// Returns the settings of a row with their units. An absent entry and an absent column are equivalent: the setting does not apply.
+/// Returns the settings of a row as text with units. An absent entry and an absent column are treated alike: the setting does not apply.
 fn settings(table: &Table, row: usize, roles: &[Role], configurations: &Configurations) -> String {
     let columns = Setting::of_roles(table, roles);
     let said = columns.filter_map(|one| entry(one, row, configurations));
     said.collect()
 }
 
-/// Returns an entry with the name and unit of its column. A configuration number is replaced by the settings of the configuration.
+/// Returns the entry of a row as text, with the name and unit of its column. A configuration number is replaced by the settings of the configuration.
 fn entry(one: Setting, row: usize, configurations: &Configurations) -> Option<String> {
     let value = one.data.value(row)?;
     let name = &one.column.name;
@@ -154,7 +154,7 @@ fn of_table(tables: [&Table; 2], configurations: &[Configurations; 2]) -> TableE
     }
 }
 
-/// Compares a column of both versions; returns `None` if all entries are equal.
+/// Compares one column in the corresponding rows of both versions; returns `None` if all entries are equal.
 fn of_column(
     one: Setting,
     [first, _]: [&Table; 2],
@@ -193,7 +193,7 @@ fn of_column(
     })
 }
 
-/// Formats an entry; numbers are not rounded.
+/// Formats the entry of a row; numbers are not rounded.
 fn words(one: Setting, row: usize) -> String {
     match one.data.value(row) {
         None => "nothing".to_owned(),

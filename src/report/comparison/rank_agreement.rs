@@ -13,9 +13,9 @@ use crate::table::{Column, Role, Table, Value, short_number};
 use bubbletouch_sim::statistics::interval::Interval;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Name of the column by which designs are ranked.
+/// Name of the column by whose values designs are ranked.
 const RANKED: &str = "accuracy";
-/// Minimum number of common designs for a comparison of rankings.
+/// Minimum number of designs in both studies for which their rankings are compared.
 const FEWEST: usize = 5;
 
 /// Agreement between the rankings of designs in two studies.
@@ -23,16 +23,17 @@ const FEWEST: usize = 5;
 pub struct RankAgreement {
     /// Number of designs that both studies contain.
     pub n_designs: usize,
-    /// Kendall's τ of the accuracies, −1 ≤ τ ≤ 1.
+    /// Kendall's rank correlation τ of the designs' accuracies in the two studies, −1 ≤ τ ≤ 1.
     pub tau: f64,
-    /// Bootstrap confidence interval of τ over designs.
+    /// Bootstrap confidence interval of the rank correlation over designs.
     pub interval: Interval,
     /// Description of each choice, with two counts of pairs of designs that differ only in this choice. The first is the number of pairs that both studies
     /// order alike; the second is the number of all pairs without a tie.
     pub choices: Vec<(String, usize, usize)>,
 }
 
-/// Compares the first table with accuracies of each study. Returns `None` if the studies have too few common designs.
+/// Compares the rankings of designs in two studies, from the first table with accuracies of each study. Returns `None` if the studies have too few common
+/// designs.
 pub fn rank_agreement(first: &[Table], second: &[Table]) -> Option<RankAgreement> {
     let ranked = |tables: &'_ [Table]| {
         let mut places = 0..tables.len();
@@ -69,7 +70,7 @@ pub fn rank_agreement(first: &[Table], second: &[Table]) -> Option<RankAgreement
 }
 
 impl RankAgreement {
-    /// Describes the agreement in two sentences.
+    /// Returns two sentences that describe the agreement of the rankings.
     pub fn words(&self) -> Vec<String> {
         let [tau, low, high] = [self.tau, self.interval.low, self.interval.high].map(short_number);
         let choices = self.choices.iter();
@@ -92,19 +93,19 @@ impl RankAgreement {
     }
 }
 
-/// Choice that distinguishes designs, with the values that both tables contain.
+/// Choice by which designs differ, with the values that occur in both tables.
 struct Choice<'a> {
     column: &'a Column,
     values: BTreeSet<String>,
 }
 
-/// Values of all choices of a design.
+/// Design, given by the values of all its choices.
 type Design = Vec<String>;
 
-/// Table, with a mapping from its compression ratios to the ratios of the other table.
+/// Table of a study whose compression ratios can be replaced by equivalent ratios of another table.
 struct Ranked<'a> {
     table: &'a Table,
-    /// Equal ratio of the other table for each ratio of this table, by the bits of the ratio.
+    /// For the bits of each ratio in this table, the equivalent ratio in the other table.
     ratios: HashMap<u64, f64>,
 }
 
@@ -114,7 +115,7 @@ impl<'a> Ranked<'a> {
         Self { table, ratios }
     }
 
-    /// Maps each ratio to the nearest ratio of the other table for which one nominal ratio gives both.
+    /// Pairs each ratio with the nearest ratio of the other table, if both can result from rounding one nominal ratio to whole measurements.
     fn like(table: &'a Table, other: &Table) -> Self {
         let (ours, theirs) = (nominal_ratios(table), nominal_ratios(other));
         let nearest = |of: &NominalRatio, among: &[NominalRatio]| {
@@ -130,7 +131,7 @@ impl<'a> Ranked<'a> {
         Self { table, ratios }
     }
 
-    /// Returns a value with its unit: empty if the setting does not apply, `None` if the table lacks the column.
+    /// Returns the entry of a row as text with its unit: empty if the setting does not apply, `None` if the table lacks the column.
     fn value(&self, column: &str, row: usize) -> Option<String> {
         let (column, data) = self.table.column(column)?;
         Some(match data.value(row) {
@@ -145,7 +146,7 @@ impl<'a> Ranked<'a> {
     }
 }
 
-/// Compression ratio, with the range of nominal ratios that give its number of measurements.
+/// Compression ratio, with the range of nominal ratios that round to its number of measurements.
 #[derive(Clone, Copy, PartialEq)]
 struct NominalRatio {
     ratio: f64,
@@ -163,7 +164,7 @@ impl NominalRatio {
     }
 }
 
-/// Returns the distinct ratios of a table. Without numbers of measurements, each ratio is its own nominal ratio.
+/// Returns the distinct compression ratios of a table. Without numbers of measurements, each ratio is its own nominal ratio.
 fn nominal_ratios(table: &Table) -> Vec<NominalRatio> {
     let rows = table.groups(&["ratio"], 0..table.n_rows);
     let ratios = rows.iter().map(|rows| {
@@ -200,7 +201,7 @@ fn shared_choices<'a>(first: &Ranked<'a>, second: &Ranked) -> Vec<Choice<'a>> {
     choices.collect()
 }
 
-/// Returns the mean accuracy of each design that has only common values.
+/// For each design whose choices occur in both tables, returns its mean accuracy.
 fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     let mut sums: BTreeMap<Design, (f64, f64)> = BTreeMap::new();
     for row in 0..ranked.table.n_rows {
@@ -221,7 +222,7 @@ fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     means.collect()
 }
 
-/// Counts the pairs of designs without a tie that differ only in one choice. Returns the number of pairs that both studies order alike, and of all pairs.
+/// Counts pairs of designs that differ only in one choice and have no tie. Returns how many pairs both studies order alike, and the number of all such pairs.
 fn in_order(designs: &[(&Design, [f64; 2])], choice: usize) -> (usize, usize) {
     let without = |design: &Design| {
         let mut others = design.clone();
@@ -247,25 +248,25 @@ mod tests {
     use crate::table::File;
 
     crate::row! {
-    /// A design of a study.
+    /// Row of a test table: a design of a study and its accuracy.
     pub struct DesignRow {
         /// Number of taxels.
         taxels: usize => Choice: Linear;
-        /// Name of the ensemble.
+        /// Name of the measurement ensemble.
         ensemble: String => Choice;
-        /// Compression ratio.
+        /// Compression ratio (taxels per measurement).
         ratio: f64 => Choice in ":1": Log;
-        /// Number of measurements.
+        /// Number of compressed measurements.
         measurements: usize => Choice "m": Log;
-        /// Standard deviation of the noise.
+        /// Standard deviation of the sensor noise.
         noise_std: f64 => Condition: Linear;
-        /// Accuracy, the ranked value.
+        /// Accuracy of the design, by which designs are ranked.
         accuracy: f64 => Value(More): Share;
     } }
 
     const FILE: File<DesignRow> = File::new("accuracy.csv", "Accuracy", "");
 
-    /// Returns a table of three ensembles (block averages, Gaussian, subsampling) at two ratios and the given noises, for an array of `n_taxels` taxels.
+    /// Returns a test table of three ensembles (block averages, Gaussian, subsampling) at two ratios and the given noises, for an array of `n_taxels` taxels.
     fn table(n_taxels: usize, accuracies: [f64; 6], noises: &[f64]) -> Vec<Table> {
         let mut rows = Vec::new();
         for (design, accuracy) in accuracies.into_iter().enumerate() {

@@ -10,7 +10,7 @@ pub struct StudyAbout {
     pub name: String,
     /// Question that the study answers, in one sentence.
     pub question: String,
-    /// Answer that the author expected before the run; may be empty.
+    /// Answer that the author of the study expected before the run; may be empty.
     pub expected: String,
     /// Duration of the run, seconds; NaN if unknown.
     pub wall_s: f64,
@@ -18,7 +18,7 @@ pub struct StudyAbout {
     pub command: String,
     /// Name and version of the program, such as `bubbletouch 0.1.0`.
     pub program: String,
-    /// Provenance of the results, if known.
+    /// Provenance of the results (program, machine, times and hashes), if known.
     pub manifest: Option<Manifest>,
     /// Whether all charts are written as files, without a maximum number.
     pub all_charts: bool,

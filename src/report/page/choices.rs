@@ -6,11 +6,11 @@ use crate::report::study_content::Found;
 use crate::report::swept::Setting;
 use crate::table::{Role, Value};
 
-/// Maximum number of listed rows per Pareto front.
+/// Maximum number of rows that are listed for each Pareto front.
 const MAX_ROWS: usize = 200;
 
-/// Returns the HTML of one table per cost. Each table lists, for each condition, the choices that are better than all choices of equal or lower cost. Empty if
-/// no table has choices with costs.
+/// Returns one table per cost as HTML. For each condition, the table lists the choices that are better than all choices of equal or lower cost. The HTML is
+/// empty if no table has choices with costs.
 pub(crate) fn choices_html(found: &Found) -> String {
     let Ok(offers) = Candidates::new(found.tables, &AdviceQuery::default()) else {
         return String::new();

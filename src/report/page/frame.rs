@@ -5,26 +5,26 @@ use crate::report::pictures::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-/// Scripts of the page. `elements.js` comes first, because the other scripts use it.
+/// JavaScript files of the page. `elements.js` comes first, because the other scripts use it.
 const SCRIPT: [&str; 3] = [
     include_str!("script/elements.js"),
     include_str!("script/charts.js"),
     include_str!("script/tables.js"),
 ];
 
-/// Section of a page.
+/// Section of an HTML page.
 #[derive(Clone, Debug, Default)]
 pub struct Section {
-    /// Anchor for links to the section; letters and hyphens only.
+    /// Anchor by which links refer to the section; letters and hyphens only.
     pub id: &'static str,
     /// Heading of the section.
     pub title: &'static str,
-    /// HTML below the heading. Sections with an empty body are omitted.
+    /// HTML of the section below its heading. Sections with an empty body are omitted.
     pub body: String,
 }
 
 impl Section {
-    /// Creates a section with an anchor, a heading and a body.
+    /// Creates a section of a page with an anchor, a heading and HTML below the heading.
     pub fn new(id: &'static str, title: &'static str, body: String) -> Self {
         Self { id, title, body }
     }
@@ -41,7 +41,7 @@ impl Section {
     }
 }
 
-/// Returns a page of sections as HTML. `foot` is the HTML of the footer. Sections without a body are omitted.
+/// Returns a page as HTML, with the metadata of a study and the given sections. `foot` is the HTML of the footer. Sections without a body are omitted.
 pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> String {
     let sections = sections.iter().filter(|section| !section.body.is_empty());
     let paragraph = |class: &str, before: &str, text: &str| match text {
@@ -76,7 +76,7 @@ pub(crate) fn definition(name: &str, value: &str) -> String {
     format!("<div{class}><dt>{name}</dt><dd>{value}</dd></div>")
 }
 
-/// Returns the first sentence in large type and the others as a list; empty if there are no sentences.
+/// Returns sentences as HTML: the first sentence in large type, the others as a list. The HTML is empty if there are no sentences.
 pub(crate) fn sentences_html(sentences: &[String]) -> String {
     let Some((first, others)) = sentences.split_first() else {
         return String::new();
@@ -98,7 +98,7 @@ pub(crate) fn unbroken(text: &str) -> String {
     })
 }
 
-/// Replaces each `{{name}}` of a template once, from left to right; inserted text is not searched.
+/// Replaces each `{{name}}` in a template by the text that `value` returns for the name. Inserted text is not searched for names.
 fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
     let mut parts = template.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();

@@ -2,7 +2,7 @@
 
 use crate::report::pictures::drawing::escape;
 
-/// Returns the HTML element of a PNG file with its width and height in pixels. The title is the text for screen readers.
+/// Returns an HTML element that contains a PNG file and shows it with the given width and height in pixels. The title is the text for screen readers.
 pub(crate) fn png_element(png: &[u8], (width, height): (usize, usize), title: &str) -> String {
     let (data, title) = (base64(png), escape(title));
     format!(

@@ -12,19 +12,21 @@ use crate::report::study_content::{Beyond, Found, NamedPicture};
 use crate::table::{ChartSpec, Table, short_number};
 use std::collections::HashMap;
 
-/// Maximum size of all charts on a page, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become links.
+/// Maximum size of all charts on a page together, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become
+/// links.
 const MAX_CHART_BYTES: usize = 1_200_000;
-/// Maximum size of all tables on a page, bytes. With a larger value, the page is slow; with a smaller value, tables of some hundred rows are truncated.
+/// Maximum size of all tables on a page together, bytes. With a larger value, the page is slow; with a smaller value, tables of some hundred rows are
+/// truncated.
 const MAX_TABLE_BYTES: usize = 1_200_000;
 
-/// Parts of a page besides tables and answers.
+/// Parts of a study's page besides its tables and answers.
 #[derive(Default)]
 pub(crate) struct Beside {
     /// Charts as SVG with the data of their marks, in the order of the specifications.
     pub charts: Vec<String>,
-    /// Names of the charts that were not drawn.
+    /// Names of the charts that were not drawn because there are too many.
     pub left_out: Vec<String>,
-    /// Pictures that are not charts, and additional sections, which come before the tables.
+    /// Additional content of the page: pictures that are not charts, and sections, which come before the tables.
     pub beyond: Beyond,
 }
 
@@ -96,7 +98,7 @@ fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     charts.collect::<String>() + &not_drawn(&beside.left_out)
 }
 
-/// Describes the charts that have no file, and how to draw them.
+/// Returns a sentence about the charts that have no file, and how to draw them.
 fn not_drawn(left_out: &[String]) -> String {
     let (Some(first), Some(last)) = (left_out.first(), left_out.last()) else {
         return String::new();

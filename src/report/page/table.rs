@@ -3,27 +3,27 @@
 use crate::report::pictures::drawing::escape;
 use crate::table::{Better, Column, Data, Role, Table};
 
-/// Number of rows shown of a table that does not fit into the page.
+/// Number of first rows that the page shows of a table that is too large for it.
 const N_FIRST_ROWS: usize = 100;
 
-/// Table as HTML, with the number of rows that it contains.
+/// HTML of a table, with the number of rows that it contains.
 pub(crate) struct TableHtml {
     pub html: String,
     /// Number of table rows in the HTML.
     pub n_rows: usize,
 }
 
-/// Column of an HTML table.
+/// Column of an HTML table, which may combine several columns of the result table.
 struct Shown<'a> {
     column: &'a Column,
     is_number: bool,
-    /// Indices of the file columns whose fields a cell contains: its own column, and the columns of its interval's ends.
+    /// Indices of the result-table columns that a cell of this HTML column contains: the value, and the ends of its interval.
     held: Vec<usize>,
-    /// Whether any of the columns in `held` varies between rows.
+    /// Whether any of the result-table columns in `held` varies between rows.
     varies: bool,
 }
 
-/// Returns a table as HTML of at most `most_letters` bytes. If all rows together are longer, only the first rows are included.
+/// Returns a table as HTML of at most `most_letters` bytes. If all rows together are longer, the HTML contains only the first rows.
 pub(crate) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
     let mut fields = fields(table).enumerate().peekable();
     let first = fields.peek().map(|(_, fields)| fields.clone());
@@ -55,7 +55,7 @@ pub(crate) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
     TableHtml { html, n_rows }
 }
 
-/// Iterates over the fields of the table's file, row by row. For a table without a file, the values are formatted as in a file.
+/// Iterates over the rows of the table's CSV file, each a list of fields. For a table without a file, the values are formatted as in a file.
 fn fields(table: &Table) -> Box<dyn Iterator<Item = Vec<String>> + '_> {
     if table.csv.is_empty() {
         let field = |data: &Data, row| {
@@ -70,7 +70,7 @@ fn fields(table: &Table) -> Box<dyn Iterator<Item = Vec<String>> + '_> {
     Box::new(rows.map(|row| row.iter().map(str::to_owned).collect()))
 }
 
-/// Returns the columns of the HTML table. Ends of intervals have no column of their own, because the cells of the values contain them.
+/// Returns the columns of the HTML table. Ends of intervals have no column of their own, because the cells of the value column contain them.
 fn shown(table: &Table) -> Vec<Shown<'_>> {
     let ends = |column: &Column| -> Vec<usize> {
         let ends = column.interval.iter().flatten();
@@ -93,8 +93,8 @@ fn shown(table: &Table) -> Vec<Shown<'_>> {
 }
 
 impl Shown<'_> {
-    /// Returns the header cell of a column. If the fields of its cells are equal in all rows, its attribute `data-v` contains them. Tooltips of charts list the
-    /// columns with `data-setting` or `data-found`, whose content precedes the value.
+    /// Returns the header cell of an HTML column. If the fields of its cells are equal in all rows, the attribute `data-v` of the header contains them.
+    /// Tooltips of charts list the columns with `data-setting` or `data-found`, whose content precedes the value.
     fn head(&self, first: Option<&Vec<String>>) -> String {
         let column = self.column;
         let name = match column.words.chars().count() {
@@ -125,7 +125,7 @@ impl Shown<'_> {
         )
     }
 
-    /// Returns the HTML of a table cell. If its fields vary and differ from the text, its attribute `data-v` contains them.
+    /// Returns the HTML of a table cell. If the fields of the cell vary between rows and differ from its text, the attribute `data-v` contains them.
     fn cell(&self, table: &Table, row: usize, fields: &[String]) -> String {
         let said = with_interval(table, self.column, row);
         let values = self.joined(fields);
@@ -140,7 +140,7 @@ impl Shown<'_> {
         format!("<td{}{value}>{}</td>", self.class(), escape(&said))
     }
 
-    /// Returns the fields of a cell, separated by spaces. Several fields of one cell are numbers, which contain no spaces.
+    /// Returns the fields that a cell of this HTML column contains, joined by spaces. If a cell has several fields, they are numbers without spaces.
     fn joined(&self, fields: &[String]) -> String {
         let values = self.held.iter().map(|&place| &fields[place][..]);
         values.collect::<Vec<_>>().join(" ")
@@ -155,7 +155,7 @@ impl Shown<'_> {
     }
 }
 
-/// Formats a value with its unit and its interval, such as `0.93 [0.9, 0.95]`; empty if the value is absent.
+/// Returns the value of a column in a row with its unit and its interval, such as `0.93 [0.9, 0.95]`; empty if the value is absent.
 fn with_interval(table: &Table, column: &Column, row: usize) -> String {
     let said = table.words(&column.name, row);
     match table.interval(column, row) {

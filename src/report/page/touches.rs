@@ -12,14 +12,14 @@ use crate::report::pictures::snapshots::Snapshots;
 use crate::table::short_number;
 use ndarray::Array2;
 
-/// Maximum number of pixels along each side of a heat map. In larger frames, each pixel shows the largest value of a block of taxels.
+/// Maximum number of pixels along each side of a frame's heat map. In larger frames, each pixel shows the largest value of a block of taxels.
 const MAX_CELLS: usize = 96;
-/// Maximum number of touches on a page; each needs some kilobytes.
+/// Maximum number of touches whose frames a page shows; each frame needs some kilobytes.
 const MAX_TOUCHES: usize = 120;
-/// Number of colour steps of a heat map.
+/// Number of distinct colours in a heat map.
 const N_COLOURS: f64 = 128.0;
 
-/// Returns a set of touches as HTML. An error contains the name of the frame that cannot be drawn.
+/// Returns the frames of a set of touches as HTML. An error contains the name of the frame that cannot be drawn.
 pub fn touches_html(set: &Snapshots) -> Result<String> {
     for (name, frame) in &set.frames {
         check_frame(frame).map_err(|error| error.under(format!("{name}: ")))?;
@@ -71,7 +71,7 @@ fn image(places: &Array2<f64>, title: &str) -> Result<String> {
     Ok(png_element(&pixels.png()?, size, title))
 }
 
-/// Returns a picture with one pixel per value from 0 to 1. Row 0, the lowest y, is at the bottom.
+/// Returns a picture with one pixel per value (0 to 1). Row 0 of the values, the lowest y, is at the bottom.
 fn pixels(places: &Array2<f64>) -> Picture {
     let (height, width) = places.dim();
     let rows = places.outer_iter().rev();

@@ -3,7 +3,7 @@
 pub use bubbletouch_sim::raster::Rgb;
 use kuva::plot::ColorMap;
 
-/// Colour of objects without colours of their own: slate blue.
+/// Default colour of objects in pictures: slate blue.
 pub(crate) const PAINT: Rgb = [142, 178, 214];
 
 /// Colour of text and axes.
@@ -32,7 +32,8 @@ pub fn heat(value: f64) -> Rgb {
     of_map(&ColorMap::Viridis, value)
 }
 
-/// Returns a blue for a value from 0 to 1 (other values are clamped), from pale to dark. The colour of 0 is not white, because white means absent.
+/// Returns a shade of blue for a value from 0 to 1 (other values are clamped), from pale to dark. The colour of 0 is not white, because white means that a
+/// value is absent.
 pub fn tint(part: f64) -> Rgb {
     of_map(&ColorMap::Blues, 0.12 + 0.88 * part.clamp(0.0, 1.0))
 }
@@ -46,7 +47,7 @@ fn of_map(map: &ColorMap, value: f64) -> Rgb {
     map.map_rgb(value).map_or(INK, |(r, g, b)| [r, g, b])
 }
 
-/// Returns black or white, whichever has more contrast with the background.
+/// Returns the colour for text, black or white, that has more contrast with the background.
 pub fn text_on(ground: Rgb) -> Rgb {
     let [r, g, b] = ground.map(f64::from);
     // Rec. 709 luma is sufficient to distinguish light and dark colours.

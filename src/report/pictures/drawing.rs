@@ -12,12 +12,12 @@ use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
 use kuva::render::render::{PathData, Primitive, Scene, TextSpan, build_path};
 
-/// Scale at which kuva renders before blocks of 2 × 2 pixels are averaged.
+/// Number of image pixels per drawing pixel at which kuva (the rendering library) renders; blocks of 2 × 2 image pixels are then averaged.
 ///
 /// kuva renders rotated text and slanted lines with jagged edges. At a scale of 4 they are smooth; at a smaller scale they are not.
 const FINE: u32 = 4;
 
-/// Position in a drawing, pixels from the top left corner: `(x, y)`.
+/// Position (x, y) in a drawing, pixels to the right of and below the top left corner.
 pub type Point = (f64, f64);
 
 /// Axis-aligned rectangle of a drawing.
@@ -65,7 +65,7 @@ pub struct TextStyle {
     pub size: u32,
     /// Colour of the text.
     pub colour: Rgb,
-    /// Part of the text that is placed at the given position.
+    /// Part of the text that is at the given position: its start, middle or end.
     pub align: Align,
     /// Clockwise rotation about the given position, degrees.
     pub angle: f64,
@@ -105,7 +105,7 @@ pub struct Stroke {
     pub colour: Rgb,
     /// Width of the line, pixels.
     pub width: f64,
-    /// Lengths of dashes and gaps, pixels. `None` for a solid line.
+    /// Length of a dash and of a gap, pixels; `None` for a solid line.
     pub dash: Option<(u32, u32)>,
 }
 
@@ -120,7 +120,7 @@ impl Stroke {
     }
 }
 
-/// Number of different marker shapes, so that lines differ not only by colour.
+/// Number of different marker shapes, by which lines can be distinguished without colours.
 pub const N_MARKERS: usize = 8;
 
 /// Vector drawing on a white background.
@@ -220,8 +220,8 @@ impl Drawing {
         self.polyline(&corners, stroke);
     }
 
-    /// Draws a filled marker of a given radius (pixels). The shape of the marker depends on the line's index. A white rim separates the marker from the
-    /// background.
+    /// Draws a filled marker with a given radius (pixels) at a point. The shape of the marker depends on the index of the line. A white rim separates the
+    /// marker from the background.
     pub fn marker(&mut self, line: usize, at: Point, radius: f64, fill: Rgb) {
         for (radius, fill) in [(radius + 1.2, PAPER), (radius, fill)] {
             match line % N_MARKERS {
@@ -239,7 +239,7 @@ impl Drawing {
         }
     }
 
-    /// Draws a group of elements with `data-` attributes. Only the SVG with data contains the group element.
+    /// Draws elements inside an SVG group with `data-` attributes. The group is only written by `svg_with_data`.
     pub fn group(&mut self, data: &[(&str, &str)], draw: impl FnOnce(&mut Self)) {
         let attributes = data
             .iter()
@@ -262,7 +262,7 @@ impl Drawing {
         self.svg_of(elements.cloned().collect(), title)
     }
 
-    /// Returns the SVG file with the groups and their `data-` attributes, for the script of a page.
+    /// Returns the drawing as an SVG file that contains the groups and their `data-` attributes, which scripts of a page read.
     pub fn svg_with_data(&self, title: &str) -> String {
         self.svg_of(self.elements.clone(), title)
     }
@@ -336,12 +336,12 @@ pub fn escape(text: &str) -> String {
         .replace(is_forbidden, " ")
 }
 
-/// Escapes `$`, because kuva parses `$…$` as mathematics.
+/// Escapes `$` in a text, because the rendering library kuva parses `$…$` as mathematics.
 fn literal(text: &str) -> String {
     visible(text).replace('$', "\\$")
 }
 
-/// Replaces control characters by spaces: XML forbids most of them, and they are invisible.
+/// Replaces control characters in a text by spaces: XML forbids most of them, and they are invisible.
 fn visible(text: &str) -> String {
     text.replace(char::is_control, " ")
 }
@@ -355,7 +355,7 @@ fn colour([r, g, b]: Rgb) -> Color {
     Color::Rgb(r, g, b)
 }
 
-/// Returns the corners of a marker: square, triangle up, diamond, triangle down, pentagon, hexagon, or a star with four points.
+/// Returns the corners of a marker around a point. The shapes are: square, triangle up, diamond, triangle down, pentagon, hexagon, and a star with four points.
 fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
     let (corners, turn, scale) = match shape {
         1 => (4, 45.0, 1.25),
@@ -376,7 +376,7 @@ fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
 }
 
 impl Picture {
-    /// Draws a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
+    /// Copies a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
     pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
         darken(&mut self.rgb, &drawing.pixels(1)?.rgb);
         Ok(())

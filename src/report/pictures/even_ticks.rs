@@ -1,6 +1,6 @@
 //! Round, evenly spaced numbers for axes.
 
-/// Returns the multiples of a round step size between two ends.
+/// Returns the multiples of a round step size that lie between `low` and `high`.
 pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {
     let step = tick_step(high - low);
     let (first, last) = (

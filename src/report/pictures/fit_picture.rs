@@ -14,9 +14,9 @@ use bubbletouch_sim::raster::{Canvas, Hit, Lighting, three_quarter_view};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Object that is approximated by spheres.
+/// Object whose approximation by spheres is drawn.
 pub enum Original {
-    /// Mesh, with its interpretation as a solid body or an open surface.
+    /// Triangle mesh, which is interpreted as a solid body or as an open surface.
     Mesh(Box<Surface>, Body),
     /// Solid that consists of primitive shapes.
     Solid(Solid),
@@ -94,7 +94,8 @@ pub fn fit_picture(
 }
 
 impl Original {
-    /// Returns the point and unit normal where a ray first hits the object, within a length. The normal points towards the start of the ray.
+    /// Returns the point where a ray first hits the object, and the unit normal there, if the distance is at most `length`. The normal points towards the start
+    /// of the ray.
     fn first_hit(&self, start: DVec3, direction: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
         match self {
             Self::Mesh(surface, _) => {
@@ -124,7 +125,7 @@ impl Original {
     }
 }
 
-/// Finds a hit by sphere tracing (Hart 1996): each step equals the distance to the surface, so that no step passes the surface.
+/// Finds the point where a ray hits a solid by sphere tracing (Hart 1996). Each step equals the distance to the surface, so that no step passes the surface.
 fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
     const MAX_STEPS: usize = 400;
     let near = 1e-6 * length;
@@ -147,16 +148,16 @@ fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(
     None
 }
 
-/// Colour scale of the distances in the third panel, metres.
+/// Colour scale of the distances between spheres and original object in the third panel, metres.
 struct Scale {
     lowest: f64,
     highest: f64,
-    /// Largest absolute distance of the scale: the colours cover −`end` to `end`.
+    /// Largest absolute distance that the colours show: they cover −`end` to `end`.
     end: f64,
 }
 
 impl Scale {
-    /// Creates a scale for all visible distances except the extreme 1 %, which would make the other colours pale.
+    /// Creates a scale that covers all visible distances except the extreme 1 %, which would make the other colours pale.
     fn new(seen: &[Option<Hit>], distances: &[f64]) -> Self {
         let of_hit = |(hit, &distance): (&Option<Hit>, &f64)| hit.is_some().then_some(distance);
         let mut distances: Vec<f64> = seen.iter().zip(distances).filter_map(of_hit).collect();
@@ -168,7 +169,7 @@ impl Scale {
         }
     }
 
-    /// Draws a colour bar below the third panel, with its ends and its middle in millimetres.
+    /// Draws the colour bar below the third panel, labelled at its ends and its middle in millimetres.
     fn draw(&self, drawing: &mut Drawing, side: f64, style: TextStyle) {
         let corner = (2.25 * side, (13.0 / 14.0 * side).floor());
         let bar = Area::new(corner, (0.5 * side, (0.02 * side).max(4.0)));
@@ -184,7 +185,7 @@ impl Scale {
     }
 }
 
-/// Formats a length in millimetres with its sign; a negative number has a true minus sign.
+/// Formats a length in metres as millimetres with its sign; a negative number has a true minus sign.
 fn signed_millimetres(metres: f64) -> String {
     let sign = if metres < 0.0 { "−" } else { "+" };
     format!("{sign}{}", short_number((1e6 * metres.abs()).round() / 1e3))
@@ -210,7 +211,7 @@ mod tests {
         SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
     }
 
-    /// Returns the sum of red minus blue over the third panel above its colour bar.
+    /// Returns the sum of the red values minus the blue values over the third panel, without its colour bar.
     fn redness(picture: &Picture) -> i64 {
         let tile = picture.height;
         let pixels = picture.rgb.chunks(3).enumerate();

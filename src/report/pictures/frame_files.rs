@@ -14,7 +14,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Writes deflections of a grid (ny × nx, metres) as `.csv`, `.npz` or `.png`, depending on the file extension.
+/// Writes one frame of deflections of a grid (ny × nx, metres) as `.csv`, `.npz` or `.png`, depending on the file extension.
 ///
 /// - `.csv`: ny lines of nx numbers with 17 significant digits, no header.
 /// - `.npz`: arrays `deflection` (ny × nx), `x` (nx) and `y` (ny), metres, f64; opens with `np.load`.
@@ -55,7 +55,7 @@ pub fn write_frame(path: &Path, deflection: &Array2<f64>, grid: &Grid) -> Result
     }
 }
 
-/// Formats a frame as CSV. Each number has 17 significant digits, so that it reads back as the same bits.
+/// Formats a frame as CSV. Each number has 17 significant digits, so that reading the file returns the same bits.
 pub fn frame_csv(frame: &Array2<f64>) -> String {
     let line = |row: ArrayView1<f64>| {
         let numbers: Vec<String> = row.iter().map(|value| format!("{value:.16e}")).collect();

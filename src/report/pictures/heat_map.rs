@@ -6,12 +6,12 @@ use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::{Array2, ArrayView2};
 
-/// Describes the size and pitch of a grid, such as `64 × 64 taxels, pitch 3.5 mm`.
+/// Returns the size and pitch of a grid of taxels as text, such as `64 × 64 taxels, pitch 3.5 mm`.
 pub(crate) fn grid_sentence((nx, ny): (usize, usize), pitch_mm: f64) -> String {
     format!("{nx} × {ny} taxels, pitch {} mm", short_number(pitch_mm))
 }
 
-/// Describes cells of `block` × `block` taxels, as the end of a sentence; empty for single taxels.
+/// Returns a text that states that each cell shows `block` × `block` taxels; empty for single taxels.
 pub(crate) fn block_sentence(block: usize) -> String {
     match block {
         1 => String::new(),
@@ -22,16 +22,16 @@ pub(crate) fn block_sentence(block: usize) -> String {
 /// Colour scale of a heat map: the values of the darkest and lightest colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
-    /// Physical quantity of the values, which sets their unit.
+    /// Physical quantity of the values, which determines their unit.
     pub quantity: Quantity,
-    /// Value of the darkest colour, in displayed units: 0, or the lowest value if it is negative.
+    /// Value of the darkest colour, in displayed units: 0, or the lowest value if some values are negative.
     pub low: f64,
     /// Value of the lightest colour, in displayed units.
     pub high: f64,
 }
 
 impl ColourScale {
-    /// Creates the scale that covers the given stored values. If all values are zero, the scale is 0 to 1.
+    /// Creates the colour scale that covers the given values (metres or newtons). If all values are zero, the scale is 0 to 1.
     pub fn over<'a>(values: impl IntoIterator<Item = &'a f64>, quantity: Quantity) -> Self {
         let mut scale = Self {
             quantity,
@@ -48,13 +48,13 @@ impl ColourScale {
         scale
     }
 
-    /// Returns the position of a stored value on the scale, 0 to 1.
+    /// Returns the position of a value (metres or newtons) on the colour scale, 0 to 1.
     pub fn place(&self, value: f64) -> f64 {
         let shown = value * self.quantity.factor();
         ((shown - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 
-    /// Returns the colour of a stored value.
+    /// Returns the colour of a value (metres or newtons).
     pub(crate) fn colour(&self, value: f64) -> Rgb {
         heat(self.place(value))
     }
@@ -84,7 +84,8 @@ pub fn check_frame(frame: &Array2<f64>) -> Result<()> {
     }
 }
 
-/// Returns a smaller frame with the largest value of each block of taxels. `block` is (rows, columns); blocks at the upper and right edge may be smaller.
+/// Returns a smaller frame that contains the largest value of each block of taxels. `block` is (rows, columns); blocks at the upper and right edge may be
+/// smaller.
 pub fn largest_of_blocks(frame: &Array2<f64>, block: (usize, usize)) -> Array2<f64> {
     let (ny, nx) = frame.dim();
     let (down, across) = (block.0.max(1), block.1.max(1));

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use bubbletouch_sim::raster::pixels::{halved, without_opacity};
 use bubbletouch_sim::raster::{BACKGROUND, Canvas, Hit, Lighting, Rgb};
 
-/// Opaque raster picture; rows from the top, 3 bytes per pixel.
+/// Opaque raster picture: rows of pixels from the top, 3 bytes per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// Width of the picture, pixels.
@@ -53,7 +53,7 @@ impl Picture {
         }
     }
 
-    /// Creates a blank picture; each side has 64 to 20,000 pixels.
+    /// Creates a white picture whose sides have 64 to 20,000 pixels each.
     pub(crate) fn blank(width: usize, height: usize) -> Result<Self> {
         // The maximum is the side of a table of 100 × 100 tiles of 200 pixels.
         let sides = 64..=20_000;
@@ -68,7 +68,7 @@ impl Picture {
         Ok(Self { width, height, rgb })
     }
 
-    /// Paints the hits of all rays of a canvas on the part of the picture with the given top left corner.
+    /// Paints the points where the rays of a canvas hit an object, on the part of the picture with the given top left corner.
     pub(crate) fn paint(
         &mut self,
         canvas: &Canvas,
@@ -92,7 +92,7 @@ impl Picture {
     }
 }
 
-/// Converts an error of the PNG or drawing crate to an error of this crate.
+/// Converts an error of the PNG or drawing library to an error of this crate.
 pub(crate) fn unfit(said: impl std::fmt::Display) -> Error {
     Error::input("picture", said, "a size that fits into a PNG file")
 }

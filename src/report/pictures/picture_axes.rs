@@ -6,7 +6,7 @@ use crate::report::pictures::drawing::{Align, Area, Drawing, Point, Stroke, Text
 use crate::report::pictures::heat_map::ColourScale;
 use crate::table::short_number;
 
-/// Side of an area at which an axis is drawn.
+/// Side of an area (below, left or right) at which an axis is drawn.
 #[derive(Clone, Copy)]
 pub(crate) enum Side {
     Below,
@@ -43,7 +43,7 @@ pub(crate) fn draw_axis(
     drawing.text(at, title, style.align(Align::Middle).angle(angle));
 }
 
-/// Draws an axis in millimetres beside a map that is centred on its origin: x below, y on the left. `length` is the length of the map, mm.
+/// Draws an axis in millimetres beside a map whose centre is the origin: x below, y on the left. `length` is the length of the map, mm.
 pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, length: f64) {
     let title = match side {
         Side::Below => "x (mm)",
@@ -52,7 +52,7 @@ pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, lengt
     draw_axis(drawing, area, side, (-0.5 * length, 0.5 * length), title);
 }
 
-/// Draws a colour bar in an area, with its axis on the right.
+/// Draws a colour bar with the given scale in an area, with its axis on the right.
 pub(crate) fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, area: Area) {
     draw_colours(drawing, area, heat);
     drawing.frame(area, Stroke::new(INK, 1.0));
@@ -60,7 +60,7 @@ pub(crate) fn draw_colour_bar(drawing: &mut Drawing, scale: ColourScale, area: A
     draw_axis(drawing, area, Side::Right, (scale.low, scale.high), &title);
 }
 
-/// Draws the colours of 0 to 1 along the longer side of an area, to the right or upwards.
+/// Draws the colours of all values from 0 to 1 along the longer side of an area, to the right or upwards.
 pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f64) -> Rgb) {
     const STEPS: usize = 64;
     for step in 0..STEPS {
@@ -76,7 +76,7 @@ pub(crate) fn draw_colours(drawing: &mut Drawing, area: Area, colour: impl Fn(f6
     }
 }
 
-/// Draws a scale bar of a round length, at most `longest` pixels, with the length written above it.
+/// Draws a scale bar: a line of a round length, at most `longest` pixels, with the length written above it.
 pub(crate) fn draw_scale_bar(
     drawing: &mut Drawing,
     (x, y): Point,
@@ -90,7 +90,7 @@ pub(crate) fn draw_scale_bar(
     drawing.text((x, y - 5.0), &text, TextStyle::new(12).align(Align::Middle));
 }
 
-/// Returns the largest number of the series 1, 2, 5, 10, … that is at most `largest`.
+/// Returns the largest number in the series …, 1, 2, 5, 10, … that is at most `largest`.
 fn bar_length(largest: f64) -> f64 {
     let power = 10f64.powf(largest.log10().floor());
     let steps = [5.0, 2.0, 1.0].map(|step| step * power);

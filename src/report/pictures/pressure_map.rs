@@ -10,7 +10,7 @@ use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::Array2;
 
-/// Characters of the colourless pressure map, from zero to the peak.
+/// Characters that represent values in a pressure map without colours, from zero to the largest value.
 const RAMP: &[u8] = b" .:-=+*#%@";
 
 /// Draws a frame as text, at most `width` columns wide, with the highest y at the top.
@@ -66,7 +66,7 @@ pub fn pressure_text(
     Ok(text)
 }
 
-/// Describes the position of the largest value and the number of taxels above zero.
+/// Returns a sentence with the position of the largest value of a frame and the number of taxels above zero.
 pub(crate) fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
     let (ny, nx) = frame.dim();
     let touched = frame.iter().filter(|&&value| value > 0.0).count();

@@ -12,21 +12,21 @@ use crate::signal::Quantity;
 use crate::world::Grid;
 use ndarray::Array2;
 
-/// Maximum number of cells along each side of a frame. In a larger frame, each cell shows the largest value of a block of taxels.
+/// Maximum number of cells along each side of a frame's picture. In a larger frame, each cell shows the largest value of a block of taxels.
 const MAX_CELLS: usize = 128;
-/// Maximum number of frames per row of the picture.
+/// Maximum number of frames side by side in a picture.
 const MAX_COLUMNS: usize = 4;
 
-/// Frames of touches with a common colour scale.
+/// Frames of several touches, which are drawn with a common colour scale.
 #[derive(Clone, Debug)]
 pub struct Snapshots {
-    /// Names and frames (ny × nx, row = y ascending), metres or newtons.
+    /// Name and values of each frame (ny × nx, row = y ascending), metres or newtons.
     pub frames: Vec<(String, Array2<f64>)>,
     /// Distance between neighbouring taxels, millimetres.
     pub pitch_mm: f64,
-    /// Physical quantity of the frames, which sets their unit.
+    /// Physical quantity of the values in the frames, which determines their unit.
     pub quantity: Quantity,
-    /// Caption: the objects, the touches and the noise.
+    /// Caption of the picture: the objects, the touches and the noise.
     pub caption: String,
 }
 

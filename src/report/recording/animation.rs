@@ -11,13 +11,14 @@ use crate::signal::Quantity;
 use png::{BitDepth, BlendOp, ColorType, Encoder, EncodingError};
 use std::path::Path;
 
-/// Maximum number of frames of an animation. Longer recordings show fewer frames per second, because larger files are slow in browsers.
+/// Maximum number of frames in an animation. Longer recordings show fewer frames per second, because larger files are slow in browsers.
 pub const MAX_SHOWN: usize = 600;
 
 /// Playback settings of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Playback {
-    /// Playback speed, seconds of the recording per second of the animation, positive. At 0.1, the animation is ten times slower than real time.
+    /// Playback speed: seconds of the recording that are shown in one second of the animation, positive. At 0.1, the animation is ten times slower than real
+    /// time.
     pub speed: f64,
     /// Maximum number of pictures per second, above 0 and at most 50, the limit of browsers.
     pub fps: f64,
@@ -122,7 +123,7 @@ pub fn write_animation(
     Ok(shown)
 }
 
-/// Returns the line above a frame: its index and its time, with as many digits as the time steps of the recording need.
+/// Returns the line of text above a frame: its index and its time, with as many digits as the time steps of the recording need.
 pub fn frame_note(time: &[f64], frame: usize) -> String {
     let n = time.len();
     let step = (time[n - 1] - time[0]) / n.saturating_sub(1).max(1) as f64;
@@ -150,8 +151,8 @@ fn start(
     encoder.write_header()
 }
 
-/// Appends a frame to the animation: only the rows that changed since the previous frame, with unchanged pixels transparent. The file is ten times smaller than
-/// with whole frames.
+/// Appends a frame to the animation. Only the rows that changed since the previous frame are written, with unchanged pixels transparent. The file is ten times
+/// smaller than with whole frames.
 fn add(
     film: &mut png::Writer<&mut Vec<u8>>,
     before: Option<&Picture>,
@@ -180,7 +181,7 @@ fn add(
     film.write_image_data(&part)
 }
 
-/// Returns a delay in the form of APNG: a fraction of seconds with a 16-bit numerator and denominator.
+/// Converts a delay to the form that APNG files use: a fraction of seconds with a 16-bit numerator and denominator.
 fn delay(milliseconds: u64) -> (u16, u16) {
     match u16::try_from(milliseconds) {
         Ok(milliseconds) => (milliseconds, 1000),

@@ -11,42 +11,42 @@ use crate::world::Grid;
 use bubbletouch_sim::raster::pixels::{CellShape, paint_cells};
 use glam::DVec2;
 
-/// Height of a map, pixels; the width is at most twice the height.
+/// Height of the map of a patch, pixels; the width of the map is at most twice the height.
 const SIDE: f64 = 400.0;
-/// Maximum number of cells along each side of a grid. In a larger grid, each cell shows the largest value of a block of taxels.
+/// Maximum number of cells along each side of a grid's picture. In a larger grid, each cell shows the largest value of a block of taxels.
 const MAX_CELLS: usize = 400;
-/// Left edge of all maps, pixels.
+/// Distance of all maps from the left edge of the drawing, pixels.
 pub(super) const LEFT: f64 = 70.0;
 const TOP: f64 = 76.0;
-/// Maximum radius of a disc, pixels.
+/// Maximum radius of the disc that represents a taxel, pixels.
 const LARGEST_DISC: f64 = 24.0;
 
-/// Cells of a skin picture, in pixels from the top left corner of the drawing.
+/// Cells of a picture of a patch (one per taxel or block of taxels), in pixels from the top left corner of the drawing.
 pub(crate) struct Cells {
     /// Area that contains all cells, pixels.
     pub area: Area,
-    /// Centres of the cells: for a grid row by row, otherwise one per taxel.
+    /// Centres of the cells: row by row for a grid, otherwise one centre per taxel.
     pub places: Vec<DVec2>,
-    /// Half the side of a square, or the radius of a disc, pixels.
+    /// Half the side of a square cell, or the radius of a disc, pixels.
     pub radius: f64,
-    /// Norm of a cell's shape, from distances along x and y: the maximum norm gives squares, the Euclidean norm gives discs.
+    /// Shape of a cell: square or disc.
     pub shape: CellShape,
-    /// Number of taxels along each side of a cell, for a grid.
+    /// Number of taxels along each side of a cell, if the taxels form a grid.
     pub block: usize,
-    /// Sentence for the reader that describes the view.
+    /// Sentence below the picture that describes the view of the patch.
     pub sentence: String,
     pub pixels_per_metre: f64,
 }
 
 impl Cells {
-    /// Paints all cells, one colour each, in a picture that is `fine` times as large as the drawing.
+    /// Paints all cells, each in its colour, onto a picture that is `fine` times as large as the drawing.
     pub fn paint(&self, picture: &mut Picture, fine: f64, colours: &[Rgb]) {
         let places: Vec<DVec2> = self.places.iter().map(|&place| fine * place).collect();
         let rgb = (&mut picture.rgb[..], picture.width);
         paint_cells(rgb, &places, (self.shape, fine * self.radius), colours);
     }
 
-    /// Creates the cells of a patch: squares for a grid, discs for another layout.
+    /// Creates the cells of a patch: squares if the taxels form a grid, discs for any other layout.
     pub fn new(patch: &RecordedPatch) -> Self {
         match &patch.grid {
             Some(grid) => {
@@ -59,7 +59,7 @@ impl Cells {
         }
     }
 
-    /// Creates cells for blocks of grid taxels, starting at a top left corner. `side` is the side length of a cell, pixels.
+    /// Creates square cells of `side` pixels, each for a block of `block` × `block` taxels of a grid. The first cell starts at the given top left corner.
     pub fn of_grid(grid: &Grid, block: usize, side: f64, (x, y): Point) -> Self {
         let (rows, columns) = (grid.ny.div_ceil(block), grid.nx.div_ceil(block));
         let area = Area::new((x, y), (side * columns as f64, side * rows as f64));
@@ -109,7 +109,7 @@ impl Cells {
         }
     }
 
-    /// Draws axes in millimetres for a grid, or a scale bar for another layout.
+    /// Draws axes in millimetres if the taxels form a grid, or a scale bar for another layout.
     pub fn draw_frame(&self, drawing: &mut Drawing, is_grid: bool) {
         let area = self.area;
         if is_grid {
@@ -126,12 +126,13 @@ impl Cells {
     }
 }
 
-/// Returns the cell size for `n_cells` cells in the given space: a whole number of pixels, so that there are no gaps between cells.
+/// Returns the size of a cell so that `n_cells` cells fit into `room` pixels: a whole number of pixels, so that there are no gaps between cells.
 pub(crate) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
     (room / n_cells as f64).floor().max(1.0)
 }
 
-/// Returns the median distance to the nearest taxel, metres, estimated from about 200 taxels. The distance affects only the appearance of the picture.
+/// Returns the median distance of a taxel to its nearest neighbour, metres, estimated from about 200 taxels. The distance affects only the appearance of the
+/// picture.
 fn typical_distance(places: &[DVec2]) -> Option<f64> {
     let sample = places.iter().step_by(places.len().div_ceil(200).max(1));
     let nearest = sample.filter_map(|place| {

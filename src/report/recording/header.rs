@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashSet;
 
-/// Form of the recorded forces: normal forces or force vectors.
+/// Kind of the recorded forces: one number or one vector per taxel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceKind {
@@ -18,7 +18,7 @@ pub enum ForceKind {
     Vector,
 }
 
-/// Patch of a recording: its name, its taxels, and the form of the recorded data.
+/// Description of a patch in a recording: its name, its taxels, and the kinds of recorded data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedPatch {
     /// Name of the patch, unique among patches and objects.
@@ -26,15 +26,15 @@ pub struct RecordedPatch {
     /// Rest centres of the taxels in the patch frame, metres; at least one.
     #[serde(skip)]
     pub centers: Vec<DVec3>,
-    /// Axes of the taxels: unit vectors away from the substrate, one per taxel.
+    /// Unit axis vector of each taxel, pointing away from the substrate.
     #[serde(skip)]
     pub axes: Vec<DVec3>,
     /// Grid layout, if the taxels form a grid, with taxel = row · nx + column; `None` otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grid: Option<Grid>,
-    /// Form of the recorded forces.
+    /// Kind of the recorded forces: one number or one vector per taxel.
     pub force: ForceKind,
-    /// Quantity of the signal; `None` if the patch has no signal chain.
+    /// Physical quantity of the sensor signal; `None` if the patch has no signal chain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub signal: Option<Quantity>,
 }
@@ -45,7 +45,7 @@ impl RecordedPatch {
         self.centers.len()
     }
 
-    /// Creates a patch with a grid of taxels in the plane z = 0 and axes along +z.
+    /// Creates a patch whose taxels form a grid in the plane z = 0 and have axes along +z.
     pub fn of_grid(name: impl Into<String>, grid: Grid, force: ForceKind) -> Self {
         let centers = (0..grid.n_taxels())
             .map(|taxel| DVec3::new(grid.x(taxel % grid.nx), grid.y(taxel / grid.nx), 0.0))
@@ -88,28 +88,28 @@ impl RecordedPatch {
 /// Header of a recording: patches, objects and metadata.
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct RecordingHeader {
-    /// Patches whose readings are recorded.
+    /// Patches of skin whose readings are recorded.
     pub patches: Vec<RecordedPatch>,
-    /// Names of the objects with recorded poses.
+    /// Names of the objects whose poses are recorded.
     pub objects: Vec<String>,
-    /// Additional metadata as JSON, for example seed, step and scene.
+    /// Additional metadata as JSON, for example the seed, the time step and the scene.
     #[serde(default)]
     pub about: Value,
 }
 
-/// Little-endian floating-point type of array elements; NumPy's names are `<f4` and `<f8`.
+/// Floating-point type of the elements of a recorded array, in little-endian byte order; NumPy's names are `<f4` and `<f8`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Element {
     Single = 4,
     Double = 8,
 }
 
-/// Numeric array in the zip file, with one row per frame.
+/// Numeric array in a recording (a zip file), with one row per frame.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Member {
     pub name: String,
     pub element: Element,
-    /// Shape of one row, without the frame dimension.
+    /// Shape of one row of the array, without the dimension of the frames.
     pub row: Vec<usize>,
 }
 
@@ -122,29 +122,29 @@ impl Member {
         }
     }
 
-    /// Returns the NumPy name of the element type: `<f4` or `<f8`.
+    /// Returns NumPy's name of the element type: `<f4` or `<f8`.
     pub fn descr(&self) -> String {
         format!("<f{}", self.element as usize)
     }
 
-    /// Returns the number of elements per row.
+    /// Returns the number of elements in one row of the array.
     pub fn n_numbers(&self) -> usize {
         self.row.iter().product()
     }
 
-    /// Returns the size of one row in bytes.
+    /// Returns the size of one row of the array in bytes.
     pub fn row_bytes(&self) -> usize {
         self.n_numbers() * self.element as usize
     }
 
-    /// Returns the shape of the array with `n_rows` rows.
+    /// Returns the shape of the whole array if it has `n_rows` rows.
     pub fn shape(&self, n_rows: usize) -> Vec<usize> {
         [&[n_rows], &self.row[..]].concat()
     }
 }
 
 impl RecordingHeader {
-    /// Checks that the header is valid for a recording.
+    /// Checks that a recording with this header can be written.
     ///
     /// # Errors
     /// If a patch is invalid, or if a name occurs twice or cannot be the name of an archive member.
@@ -189,7 +189,7 @@ impl RecordingHeader {
         members
     }
 
-    /// Returns the array that contains a quantity of a patch.
+    /// Returns the array that contains the given quantity of a patch in all frames.
     pub(super) fn member(&self, patch: usize, quantity: Quantity) -> Member {
         let name = format!("{}/{}", self.patches[patch].name, quantity.name());
         let mut members = self.members().into_iter();
@@ -197,7 +197,7 @@ impl RecordingHeader {
         member.expect("a patch has a member of each quantity")
     }
 
-    /// Returns the JSON text of the archive member `meta`.
+    /// Returns the header as JSON text, which is stored as the archive member `meta`.
     pub(super) fn meta(&self) -> String {
         let mut meta = serde_json::to_value(self).expect("strings and numbers make JSON");
         for (number, patch) in self.patches.iter().enumerate() {
@@ -208,7 +208,7 @@ impl RecordingHeader {
         meta.to_string()
     }
 
-    /// Parses the JSON text of `meta`. The header has no centres and axes yet. An error describes the defect.
+    /// Parses the JSON text of the archive member `meta`. The resulting header has no taxel centres and axes yet. An error describes the defect.
     pub(super) fn of_meta(text: &str) -> std::result::Result<Self, String> {
         let meta: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
         let (format, version) = (&meta["format"], &meta["version"]);

@@ -11,10 +11,10 @@ use std::path::{Path, PathBuf};
 use zip::ZipArchive;
 use zip::read::ZipFile;
 
-/// Description of the expected content, for error messages.
+/// Description of a valid recording, for error messages.
 const A_RECORDING: &str = "a whole recording as bubbletouch writes it";
 
-/// Recording that is open for reading. Header and times are in memory (8 bytes per frame, 48 per taxel); the other data stay on disk.
+/// Recording that is open for reading. Header and times are in memory (8 bytes per frame, 48 per taxel); all other data stay on disk.
 pub struct RecordingFile {
     path: PathBuf,
     archive: ZipArchive<BufReader<File>>,
@@ -71,8 +71,8 @@ impl RecordingFile {
         &self.time
     }
 
-    /// Returns a quantity of a patch in one frame, one number per taxel: metres, or newtons (length of vectors). The file is read only at this row, and no
-    /// checksum is checked.
+    /// Returns a quantity of a patch in one frame, one number per taxel: metres, or newtons (the length of force vectors). Only this row of the file is read,
+    /// and no checksum is checked.
     ///
     /// # Errors
     /// If there is no such frame, or the file cannot be read.
@@ -114,7 +114,7 @@ impl RecordingFile {
         visited.map_err(|e| self.damaged(&member.name, e))
     }
 
-    /// Reads the JSON text of `meta`.
+    /// Reads the JSON text of the archive member `meta`.
     fn meta(&mut self) -> io::Result<String> {
         let mut entry = self.archive.by_name("meta.npy")?;
         read_npy_header(&mut entry)?;
@@ -142,8 +142,8 @@ impl RecordingFile {
     }
 }
 
-/// Opens an archive member, reads its header, and returns the member and its number of rows. This number is computed from the size in the zip directory and
-/// must agree with the header, so no memory is allocated for a wrong header. An error describes a missing or invalid member.
+/// Opens an archive member and reads its header; returns the member and its number of rows. This number is computed from the size in the zip directory and must
+/// agree with the header, so no memory is allocated for a wrong header. An error describes a missing or invalid member.
 fn open_rows<'a>(
     archive: &'a mut ZipArchive<BufReader<File>>,
     member: &Member,
@@ -162,7 +162,7 @@ fn open_rows<'a>(
     }
 }
 
-/// Calls `visit` for each row of a member. The zip checksum is compared at the end.
+/// Calls `visit` for each row of an archive member. The zip checksum is compared at the end.
 fn visit_rows(
     archive: &mut ZipArchive<BufReader<File>>,
     member: &Member,
@@ -192,7 +192,7 @@ fn read_row(
     Ok(decode(&bytes, member))
 }
 
-/// Decodes the numbers of a row; force vectors are converted to their lengths, one per taxel.
+/// Decodes the numbers in one row of an array; force vectors are converted to their lengths, one per taxel.
 fn decode(bytes: &[u8], member: &Member) -> Vec<f64> {
     let numbers: Vec<f64> = match member.element {
         Element::Single => {

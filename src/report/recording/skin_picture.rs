@@ -12,12 +12,12 @@ use crate::report::text_width::text_width;
 use crate::world::Grid;
 use ndarray::ArrayView2;
 
-/// Top, height and minimum width of the note above the map, pixels; the note changes from frame to frame.
+/// Top, height and minimum width of the text line above the map, pixels; the text changes from frame to frame.
 const NOTE: (f64, f64, f64) = (48.0, 18.0, 320.0);
-/// Number of image pixels per drawing pixel, along each side.
+/// Number of image pixels for each drawing pixel along each side.
 const FINE: f64 = 2.0;
 
-/// Parts that all pictures of a patch have in common: background, axes or scale bar, colour bar, and positions of the taxels.
+/// Constant parts of all pictures of a patch: background, axes or scale bar, colour bar, and positions of the taxels.
 pub struct SkinPicture {
     background: Picture,
     cells: Cells,
@@ -27,7 +27,7 @@ pub struct SkinPicture {
 }
 
 impl SkinPicture {
-    /// Prepares the pictures of a patch with one colour scale.
+    /// Prepares pictures of a patch that all have one colour scale.
     ///
     /// A grid is drawn as a heat map with axes in millimetres. In any other layout, each taxel is drawn as a disc. A flat patch is seen from above, a cylinder
     /// is unrolled, and a part of a sphere is flattened about its middle. Any other patch is seen from the side to which its axes point, and from behind. The
@@ -53,7 +53,7 @@ impl SkinPicture {
         (self.background.width, self.background.height)
     }
 
-    /// Returns the picture of a frame, given one value per taxel (metres or newtons). `note` is a line above the map, such as the time.
+    /// Returns the picture of one frame, given one value per taxel (metres or newtons). `note` is the line of text above the map, such as the time.
     ///
     /// # Errors
     /// If the number of values differs from the number of taxels, or a value is not finite.
@@ -93,7 +93,7 @@ impl SkinPicture {
     }
 }
 
-/// Draws the title, the line below the title, and the colour bar.
+/// Draws the background of the pictures: the title, the line below the title, and the colour bar.
 fn paper(name: &str, cells: &Cells, scale: ColourScale) -> Drawing {
     let (area, below) = (cells.area, &cells.sentence);
     let corner = (area.x + area.width + 18.0, area.y);

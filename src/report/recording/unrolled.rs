@@ -8,34 +8,37 @@
 use crate::table::short_number;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Minimum cosine between the axes of a flat skin and their mean (10°). The projection then shortens lengths by at most 1.5 %.
+/// Minimum cosine of the angle between each taxel axis and the mean axis of a skin that counts as flat (10°). The projection then shortens lengths by at most
+/// 1.5 %.
 const FLAT: f64 = 0.985;
-/// Maximum residual of p = c + R n, relative to R. With a larger value, ellipsoids are accepted as spheres; with a smaller value, printed shapes are rejected.
+/// Maximum deviation of the taxels from a fitted sphere or cylinder, relative to its radius. With a larger value, ellipsoids are accepted as spheres; with a
+/// smaller value, printed shapes are rejected.
 const FIT: f64 = 0.05;
-/// Maximum angle from the middle of a flattened sphere, radians. At larger angles, the rim would be drawn more than twice as long as it is.
+/// Maximum angle between a taxel and the middle of a part of a sphere that is flattened, radians. At larger angles, the rim would be drawn more than twice as
+/// long as it is.
 const WIDEST_CAP: f64 = 1.9;
 
-/// Positions of the taxels in a plane.
+/// Positions of the taxels of a skin after projection onto a plane.
 pub(super) struct Unrolled {
-    /// Position of each taxel to the right and up, metres.
+    /// Position of each taxel in the plane, to the right and up, metres.
     pub places: Vec<DVec2>,
-    /// Sentence for the reader that describes the projection.
+    /// Sentence below the picture that describes the projection.
     pub sentence: String,
 }
 
-/// Returns the axes right, up and towards the viewer. If the view is along z, y is up, as in a heat map; otherwise z is up.
+/// Returns the directions right, up and towards the viewer of a picture. If the view is along z, y is up, as in a heat map; otherwise z is up.
 fn view_from(towards_eye: DVec3) -> DMat3 {
     let is_above = towards_eye.z.abs() > 0.7;
     upright(towards_eye, if is_above { DVec3::Y } else { DVec3::Z })
 }
 
-/// Returns the axes right, up and towards the viewer for a given up direction, which must not be parallel to the view.
+/// Returns the directions right, up and towards the viewer of a picture, given the up direction, which must not be parallel to the view.
 fn upright(towards_eye: DVec3, up: DVec3) -> DMat3 {
     let right = up.cross(towards_eye).normalize();
     DMat3::from_cols(right, towards_eye.cross(right), towards_eye).transpose()
 }
 
-/// Projects a skin onto a plane. `axes` are unit vectors, one for each centre (metres).
+/// Projects the taxels of a skin onto a plane. `axes` are unit vectors, one for each centre (metres).
 pub(super) fn unroll(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
     let middle = mean(axes).normalize_or_zero();
     let round = match axes.iter().all(|axis| axis.dot(middle) > FLAT) {
@@ -49,7 +52,7 @@ fn mean(vectors: &[DVec3]) -> DVec3 {
     vectors.iter().sum::<DVec3>() / vectors.len() as f64
 }
 
-/// Returns the radius R of p = c + R n if all places satisfy this equation. A negative R means a concave surface.
+/// Returns the radius R if all places p and axes n satisfy p = c + R n for one centre c. A negative R means a concave surface.
 fn radius_of(places: &[DVec3], axes: &[DVec3]) -> Option<f64> {
     let (mean_place, mean_axis) = (mean(places), mean(axes));
     let pairs = || places.iter().zip(axes);
@@ -122,7 +125,8 @@ fn cap(centers: &[DVec3], axes: &[DVec3]) -> Option<Unrolled> {
     })
 }
 
-/// Projects a skin from the mean direction of its axes. If there is no mean direction, it is projected from its broad side along +x, +y or +z.
+/// Projects the taxels of a skin along the mean direction of their axes. If there is no mean direction, they are projected from the broad side along +x, +y or
+/// +z.
 fn sides(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
     let mean = mean(axes);
     let towards_eye = if mean.length() > 0.1 {
@@ -162,14 +166,14 @@ fn larger(a: f64, b: f64) -> f64 {
     if b.abs() > a.abs() { b } else { a }
 }
 
-/// Describes a shape in words, such as `a sphere of radius 20 mm`. A negative radius means the inside of the shape.
+/// Returns a shape and its radius as text, such as `a sphere of radius 20 mm`. A negative radius means the inside of the shape.
 fn round(shape: &str, radius: f64) -> String {
     let side = if radius < 0.0 { "the inside of " } else { "" };
     let radius_mm = short_number(radius.abs() * 1e3);
     format!("{side}a {shape} of radius {radius_mm} mm")
 }
 
-/// Describes a direction in words: `+z` if it is within half a degree of an axis, otherwise three components.
+/// Returns a direction as text: `+z` if it is within half a degree of an axis, otherwise three components.
 fn direction(vector: DVec3) -> String {
     for (axis, name) in DVec3::AXES.into_iter().zip(["x", "y", "z"]) {
         let along = vector.dot(axis);

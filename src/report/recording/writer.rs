@@ -13,11 +13,11 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// Maximum size of the rows in memory, bytes. With a smaller value, there are more and shorter reads and writes; with a larger value, the rows exceed the
-/// processor's cache.
+/// Maximum size of the recorded rows that are kept in memory, bytes. With a smaller value, there are more and shorter reads and writes; with a larger value,
+/// the rows exceed the processor's cache.
 const BLOCK: usize = 2 << 20;
 
-/// Writer of an `.npz` recording. The method `finish` completes the file. If the writer is dropped before, no file remains.
+/// Writer of a recording as an `.npz` file. The method `finish` completes the file. If the writer is dropped before, no file remains.
 ///
 /// The writer keeps about 2 MiB of rows in memory (or one frame, if it is larger), for any number of frames. Because a member of a zip file is contiguous,
 /// earlier rows are stored in an unnamed temporary file beside the target. While the recording is completed, the disk contains the data twice.
@@ -27,7 +27,7 @@ pub struct RecordingWriter {
     header: RecordingHeader,
     target: WholeFile,
     members: Vec<Member>,
-    /// Rows of each member since the last complete block.
+    /// For each member of the archive, the rows since the last complete block.
     rows: Vec<Vec<u8>>,
     rows_per_block: usize,
     blocks: File,
@@ -37,7 +37,7 @@ pub struct RecordingWriter {
 }
 
 impl RecordingWriter {
-    /// Creates a recording at `path`.
+    /// Creates a recording at `path`, to which frames are appended.
     ///
     /// # Errors
     /// If the header is invalid, or the file cannot be created.
@@ -145,7 +145,7 @@ impl RecordingWriter {
     }
 }
 
-/// Returns the size of a frame over all members, in bytes.
+/// Returns the size of one frame in bytes, summed over all members of the archive.
 fn frame_bytes(members: &[Member]) -> usize {
     members.iter().map(Member::row_bytes).sum()
 }
@@ -159,7 +159,7 @@ fn start(zip: &mut ZipWriter<&mut BufWriter<File>>, name: &str) -> io::Result<()
     Ok(zip.start_file(format!("{name}.npy"), options)?)
 }
 
-/// Returns the members that do not change over time: `meta`, centres and axes.
+/// Returns the archive members that do not change over time: `meta`, and the centres and axes of the taxels.
 fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
     let meta = header.meta();
     let code_points = meta.chars().flat_map(|c| u32::from(c).to_le_bytes());
@@ -176,7 +176,7 @@ fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
     members
 }
 
-/// Returns the numbers of a frame for each member.
+/// For each member of the archive, returns the numbers of one frame.
 fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
     let mut numbers = vec![vec![frame.time]];
     for patch in &frame.patches {

@@ -5,13 +5,13 @@ use crate::error::Result;
 use crate::report::pictures::drawing::{Drawing, Point};
 use crate::table::{Mark, for_each_mark};
 
-/// Descriptor of a mark.
+/// Descriptor of a mark type of charts, for example lines or tiles.
 pub(in crate::report) struct MarkAbout {
-    /// Draws a chart with this mark.
+    /// Function that draws a chart with marks of this type.
     pub(super) draw: fn(&View) -> Result<Drawing>,
-    /// Path through the points of a line, from left to right. `None` if points are not joined.
+    /// Function that returns the path through the points of a line, from left to right. `None` if points are not joined.
     pub path: Option<fn(&[Point]) -> Vec<Point>>,
-    /// Whether the values of x and y are rows and columns of tiles.
+    /// Whether each mark is a tile in a row and a column that the values of y and x determine.
     pub is_tiled: bool,
 }
 
@@ -20,7 +20,7 @@ macro_rules! declare_marks {
         $(mod $file;)*
 
         impl Mark {
-            /// Returns the descriptor of the mark.
+            /// Returns the descriptor of the mark type.
             pub(in crate::report) fn about(&self) -> &'static MarkAbout {
                 match self {
                     $(Self::$name { .. } => &$file::ABOUT,)*

@@ -12,19 +12,19 @@ use crate::report::swept::Setting;
 use crate::report::text_width::text_width;
 use crate::table::{Data, Mark, Role, Scale, Value};
 
-/// Colours of outcomes, in the order of first occurrence. The colours also differ in lightness.
+/// Colours of the outcomes in a chart, in the order of first occurrence. The colours also differ in lightness.
 const OUTCOMES: [Rgb; 8] = [
     LINES[5], LINES[4], LINES[1], LINES[7], INK, LINES[2], LINES[3], LINES[0],
 ];
 const SIGN: u32 = 11;
-/// Number of rows and columns above which tiles are small.
+/// Number of rows or columns of tiles above which tiles are small.
 const MANY: usize = 20;
 
 /// Appearance of the tiles: how values are converted to colours and texts.
 struct Look<'a> {
     fill: Setting<'a>,
     sign: Option<Setting<'a>>,
-    /// Smallest and largest number in the chart.
+    /// Smallest and largest value of the tiles in the chart.
     ends: (f64, f64),
 }
 
@@ -85,7 +85,7 @@ fn draw(view: &View) -> Result<Drawing> {
     Ok(drawing)
 }
 
-/// Draws the sign on a background of its own, so that no reference line crosses it; a crossed minus would appear as a plus.
+/// Draws the text of a tile on its own background, so that no reference line crosses it; a crossed minus would appear as a plus.
 fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
     let (x, y) = place.at(0.5, 0.5);
@@ -135,7 +135,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Returns the text on the tile of a row.
+    /// Returns the text on the tile of a table row.
     fn sign(&self, row: usize) -> String {
         let sign = self.sign.filter(|sign| sign.data.value(row).is_some());
         let Setting { column, data } = sign.unwrap_or(self.fill);
@@ -147,7 +147,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Returns the first letters of an outcome that distinguish it from all previous outcomes.
+    /// Returns the first letters of an outcome's name (one to three) that distinguish it from all previous outcomes.
     fn letter(&self, outcome: &str) -> String {
         let Data::Words { levels, .. } = self.fill.data else {
             return String::new();
