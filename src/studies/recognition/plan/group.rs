@@ -7,14 +7,14 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 
-/// Group of configurations that are computed from the same measurements.
+/// Group of configurations whose results are computed from the same measurements of touches.
 #[derive(Clone, Debug)]
 pub struct MeasurementGroup {
-    /// Index of the array in the plan.
+    /// Index of the array in the plan's list of arrays.
     pub array: usize,
-    /// Number of frames per touch.
+    /// Number F of frames per touch.
     pub frames: usize,
-    /// Strengths of the signal steps.
+    /// Condition of the signal: the strengths of noise, smoothing and sensor errors.
     pub condition: Condition,
     /// Skin of the test touches.
     pub test_sensor: TestSensor,
@@ -25,8 +25,8 @@ pub struct MeasurementGroup {
 }
 
 impl MeasurementGroup {
-    /// Returns the configurations by family. The configurations of a family share the rows of features: only C, the number of touches per decision and the
-    /// choice of the next touch differ. Configurations with equal C are adjacent.
+    /// Returns the configurations by family. The configurations of a family use the same rows of features. They differ only in the penalty C, the number of
+    /// touches per decision, and the choice of the next touch. Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {
         let family = |configuration: &Configuration| {
             let (m, kind) = (configuration.measurements, configuration.classifier);
@@ -73,7 +73,8 @@ impl MeasurementGroup {
         all
     }
 
-    /// Returns the numbers of measurements to compute: only the largest m if smaller sets are prefixes of it, otherwise every m.
+    /// Returns the numbers of measurements to compute. If smaller sets of measurements are prefixes of larger ones, this is only the largest number m;
+    /// otherwise every m.
     pub fn projected(&self) -> Vec<usize> {
         let mut counts: Vec<usize> = self.configurations.iter().map(|c| c.measurements).collect();
         counts.sort_unstable();

@@ -16,18 +16,18 @@ use crate::studies::recognition::spec::study::{RecognitionSpec, SensingSpec, Stu
 use crate::world::RestPoses;
 use bubbletouch_sim::features::Features;
 
-/// Default of the maximum tilt of a copy about each axis, degrees. With a larger value, images lack parts that were not touched; with a smaller value, the
-/// copies add no new tilts.
+/// Default of the maximum tilt of a tilted copy about each axis, degrees. With a larger value, copies lack those parts of the object that were not touched;
+/// with a smaller value, copies add no new tilts.
 const DEFAULT_TILT_DEG: f64 = 5.0;
 
-/// Pairs of keys that exclude each other.
+/// Pairs of keys of `[recognition]` that exclude each other.
 const ONE_OF: [[&str; 2]; 3] = [
     ["c", "c_grid"],
     ["gamma", "gamma_grid"],
     ["test_fraction", "folds"],
 ];
 
-/// Keys that require at least one of some other keys.
+/// Keys of `[recognition]`, each with the keys of which at least one must also be given.
 const BESIDE: [(&str, &[&str]); 4] = [
     ("cv_touches", &["c_grid", "gamma_grid"]),
     ("tilt_augmentation_deg", &["tilt_augmentation"]),
@@ -36,7 +36,8 @@ const BESIDE: [(&str, &[&str]); 4] = [
 ];
 
 impl Check<'_> {
-    /// Checks `[sensing]`: a ratio or a number of measurements, at most the number of taxels of every array.
+    /// Checks `[sensing]`: exactly one of a compression ratio and a number of measurements is given. The number may not exceed the number of taxels of any
+    /// array.
     pub fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
         self.table("sensing", sensing)?;
         if sensing.ratio.is_some() && sensing.measurements.is_some() {
@@ -66,7 +67,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Rejects learned ensembles in studies that have no frames to learn from.
+    /// Returns an error if an ensemble is learned from frames and the study has no frames to learn from.
     pub fn drawn(&self, key: &str, ensembles: impl IntoIterator<Item = Ensemble>) -> Result<()> {
         let mut ensembles = ensembles.into_iter();
         match ensembles.find(|ensemble| ensemble.is_learned()) {
@@ -147,7 +148,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the image features, which need one value per taxel.
+    /// Checks that image features are used only if each taxel reads one value.
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
         let mut features = recognition.features.values().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
@@ -184,7 +185,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks `temporal_features`, which must not need more frames than a touch has.
+    /// Checks `temporal_features`: it may not require more frames than a touch has.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
         let values = Axis::optional_values(&recognition.temporal_features);
@@ -210,7 +211,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks a split by poses; no other key may define the split.
+    /// Checks a split that is defined by poses; no other key may then define the split.
     pub fn split(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         if recognition.split == PoseSplit::Random {
@@ -239,7 +240,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks `next_touch`, which needs several touches per decision and poses that a robot can command for any object.
+    /// Checks `next_touch`. The policy requires several touches per decision, and poses that a robot can command for any object.
     pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         let Some(chosen) = recognition.chosen_next().next() else {
@@ -285,7 +286,8 @@ impl Check<'_> {
 }
 
 impl SensingSpec {
-    /// Returns the numbers m of measurements for an array of `n_taxels`, each at least 1; `n_taxels` if neither ratio nor number is given.
+    /// Returns the numbers m of measurements for an array of `n_taxels`, each at least 1. If neither a ratio nor a number is given, the only number is
+    /// `n_taxels`.
     pub fn measurements_on(&self, n_taxels: usize) -> Vec<usize> {
         let of_ratio = |ratio: f64| ((n_taxels as f64 / ratio).round() as usize).max(1);
         match (&self.ratio, &self.measurements) {
@@ -303,12 +305,13 @@ impl RecognitionSpec {
         toml::Table::try_from(usual).expect("every field of a study has a TOML form")
     }
 
-    /// Returns the fraction of touches held out for testing if there are no folds; default 0.25.
+    /// Returns the fraction of the touches that is held out for testing if the study has no folds; the default is 0.25.
     pub fn test_share(&self) -> f64 {
         self.test_fraction.unwrap_or(0.25)
     }
 
-    /// Returns the depth windows of image features, as fractions of the full scale; a single `None` for features of measurements.
+    /// Returns the depth windows of image features, as fractions of the full scale. For features of measurements, which have no window, returns a single
+    /// `None`.
     pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
         match features.of_image() {
             Some(_) => Axis::optional_values(&self.depth_window_full_scale),
@@ -316,7 +319,8 @@ impl RecognitionSpec {
         }
     }
 
-    /// Returns the numbers of tilted copies for image features; a single `None` for features of measurements.
+    /// Returns the numbers of tilted copies per training touch, for image features. For features of measurements, which have no copies, returns a single
+    /// `None`.
     pub fn copies(&self, features: Features) -> Vec<Option<usize>> {
         match features.of_image() {
             Some(_) => Axis::optional_values(&self.tilt_augmentation),
@@ -324,7 +328,8 @@ impl RecognitionSpec {
         }
     }
 
-    /// Returns the policies that choose the touches after the first of k touches. For k = 1, all policies are equal.
+    /// For decisions on `k` touches, returns the policies that choose all touches after the first. For k = 1, all policies are equal, and a single one is
+    /// returned.
     pub fn next_touches(&self, k: usize) -> Vec<Option<NextTouch>> {
         match (k, &self.next_touch) {
             (1, Some(_)) => vec![Some(NextTouch::Random)],
@@ -332,13 +337,13 @@ impl RecognitionSpec {
         }
     }
 
-    /// Returns the policies for the next touch that are not random.
+    /// Returns those policies for the next touch that are not random.
     pub fn chosen_next(&self) -> impl Iterator<Item = NextTouch> {
         let all = self.next_touch.iter().flat_map(Axis::values);
         all.filter(|next| *next != NextTouch::Random)
     }
 
-    /// Returns whether a policy for the next touch uses decisions on training touches.
+    /// Returns whether a policy for the next touch uses the classifier's decisions on training touches.
     pub fn is_informed(&self) -> bool {
         let mut chosen = self.chosen_next();
         chosen.any(|next| next == NextTouch::MostInformative)
@@ -351,12 +356,12 @@ impl RecognitionSpec {
             .to_radians()
     }
 
-    /// Returns the number of folds of the inner cross-validation; default 5.
+    /// Returns the number of folds of the inner cross-validation, by which C and γ are chosen; the default is 5.
     pub fn n_choice_folds(&self) -> usize {
         self.cv_folds.unwrap_or(5)
     }
 
-    /// Returns the rule that groups touches which a split does not divide, with the distances below which drawn values are neighbours.
+    /// Returns the rule that forms groups of touches which a split does not divide; the rule includes the distances below which drawn poses are neighbours.
     pub fn kept_together(&self) -> Option<KeepTogether> {
         Some(KeepTogether {
             kind: self.group_by.or(self.split.group())?,

@@ -13,7 +13,7 @@ use ndarray::Array1;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Rule that defines groups of touches.
+/// Rule that forms groups of touches; a split into training and test touches does not divide a group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepTogether {
     /// Pose parameters whose values define a group.
@@ -25,7 +25,7 @@ pub struct KeepTogether {
 }
 
 impl GroupSpec {
-    /// Returns the touch axes whose values define a group.
+    /// Returns the pose parameters whose values define a group.
     fn axes(self) -> &'static [TouchAxis] {
         use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
         match self {
@@ -40,7 +40,7 @@ impl GroupSpec {
 }
 
 impl KeepTogether {
-    /// Returns the distance below which values of a drawn axis are neighbours, metres or radians.
+    /// Returns the distance below which two drawn values of a pose parameter are neighbours, metres or radians.
     fn distance(&self, axis: TouchAxis) -> Result<f64> {
         let (distance, key) = match axis {
             TouchAxis::Yaw | TouchAxis::TiltX | TouchAxis::TiltY => {
@@ -55,7 +55,7 @@ impl KeepTogether {
         })
     }
 
-    /// Returns the group number of each touch.
+    /// Returns the group number of each touch, in the order of the objects.
     ///
     /// # Errors
     /// If an axis is drawn and no distance is given for it.
@@ -78,7 +78,7 @@ impl KeepTogether {
         Ok(keys.into())
     }
 
-    /// Returns the grouping axes whose values are drawn, with their neighbour distances.
+    /// Returns the grouping parameters whose values are drawn at random, each with its neighbour distance.
     fn drawn(&self, touches: &[Touch]) -> Result<Vec<(TouchAxis, f64)>> {
         let is_drawn = |axis: &&TouchAxis| {
             let mut indices = touches.iter().map(|touch| touch.indices[**axis as usize]);
@@ -88,7 +88,7 @@ impl KeepTogether {
         axes.map(|&axis| Ok((axis, self.distance(axis)?))).collect()
     }
 
-    /// Returns the value indices of a touch on those grouping axes whose values are listed in the study.
+    /// For each grouping parameter whose values are listed in the study, returns the index of the touch's value.
     fn listed(&self, touch: &Touch) -> Vec<usize> {
         let axes = self.kind.axes().iter();
         let indices = axes.map(|&axis| touch.indices[axis as usize]);
@@ -96,7 +96,7 @@ impl KeepTogether {
     }
 }
 
-/// Returns the first touch of each touch's connected component.
+/// Connects touches that are neighbours. For each touch, returns the first touch of its connected component.
 fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)]) -> Vec<usize> {
     let mut first: Vec<usize> = (0..touches.len()).collect();
     let Some(&(along, distance)) = drawn.first() else {
@@ -143,7 +143,7 @@ fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
     drawn.iter().all(|&(axis, distance)| apart(axis) < distance)
 }
 
-/// Returns the root of a touch's component and shortens the path to it (union-find).
+/// Returns the root of the component that contains a touch, and shortens the path to the root (union-find).
 fn root(first: &mut [usize], mut number: usize) -> usize {
     while first[number] != number {
         first[number] = first[first[number]];

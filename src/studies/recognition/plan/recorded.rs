@@ -14,7 +14,7 @@ use crate::world::{ArrayLayout, Grid};
 use glam::DVec2;
 
 impl RecordedSpec {
-    /// Sets the number of values per taxel of the recording, given the quantity that the skin reads.
+    /// Sets the number of values per taxel in the recorded frames, which depends on the quantity that the skin reads.
     pub(crate) fn settle_values(&mut self, skin: &SkinSpec) {
         self.n_values = match skin.sensed.unwrap_or_default() {
             SensedSpec::Shear => 3,
@@ -22,7 +22,7 @@ impl RecordedSpec {
         };
     }
 
-    /// Returns `[touches]` keys that describe the recorded touches: the number of frames, and a speed if time passes between them.
+    /// Returns keys of `[touches]` that describe the recorded touches: the number of frames, and a speed if time passes between the frames of a touch.
     ///
     /// # Errors
     /// If the file of the frames does not exist or has other axes.
@@ -103,7 +103,7 @@ impl Check<'_> {
         Ok(vec![array])
     }
 
-    /// Checks the keys for the speed and for the time between frames.
+    /// Checks the keys for the approach speed and for the time between frames.
     fn of_time(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<()> {
         if spec.skin.damping_n_s_per_m == 0.0
             && recorded.speed_mm_per_s > 0.0

@@ -32,7 +32,7 @@ impl ObjectsSpec {
         self.settle_sizes(arrays);
     }
 
-    /// Sets the allowed sizes of objects whose files have no unit.
+    /// Sets the allowed sizes of those objects whose files state no unit of length.
     pub(crate) fn settle_sizes(&mut self, arrays: &[TaxelArray]) {
         let feels = |array: &TaxelArray| {
             let grid = array.grid();
@@ -44,7 +44,7 @@ impl ObjectsSpec {
 }
 
 impl SkinSpec {
-    /// Returns the taxel parameters of an array with this pitch (mm).
+    /// Returns the parameters of the taxels in an array with the given pitch, mm.
     pub(crate) fn taxel(&self, pitch_mm: f64) -> Taxel {
         Taxel {
             radius: self.taxel_radius_mm.unwrap_or(0.5 * pitch_mm) * MM,
@@ -154,7 +154,7 @@ impl Check<'_> {
         self.arrays(skin)
     }
 
-    /// Checks that the study has a single array, and returns it; `allowed` is the text of the error.
+    /// Returns the array of a study that has a single array, and an error otherwise; `allowed` is the text of the error.
     pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
         let mut arrays = self.grids(skin)?;
         match (arrays.pop(), arrays.len()) {
@@ -178,7 +178,7 @@ impl Check<'_> {
         }
     }
 
-    /// Returns the placement of touches that have one frame and no slide; returns an error for other touches.
+    /// Returns the placement (distribution of touch poses). Returns an error if a touch has several frames or slides.
     pub fn placement(&self, touches: &TouchesSpec) -> Result<Placement> {
         let of_recognition = [
             ("slide_mm", touches.slide_mm.is_some()),
@@ -192,7 +192,7 @@ impl Check<'_> {
         self.placed(touches)
     }
 
-    /// Returns the placement of touches in SI units.
+    /// Returns the placement (distribution of touch poses) in SI units.
     pub fn placed(&self, touches: &TouchesSpec) -> Result<Placement> {
         self.table("touches", touches)?;
         let degree = std::f64::consts::PI / 180.0;
@@ -213,7 +213,7 @@ impl Check<'_> {
         })
     }
 
-    /// Converts the values of an axis to SI units. Depths must be positive, all other values finite. Values that describe the same pose are merged.
+    /// Converts the values of a pose parameter to SI units. Depths must be positive, all other values finite. Values that describe the same pose are merged.
     fn spread(
         &self,
         (axis, key): (TouchAxis, &str),

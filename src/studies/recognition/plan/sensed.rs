@@ -11,13 +11,13 @@ pub enum Sensed {
     Deflection,
     /// Force along the taxel's axis, newtons.
     Force,
-    /// Forces along and across the taxel's axis, newtons, with the given shear springs: three channels. The second and third channel are along x and y of the
-    /// taxel's frame.
+    /// Forces along and across the taxel's axis, newtons: three channels. The second and third channels are along x and y of the taxel's frame. Springs with
+    /// the given parameters produce the forces across the axis.
     Shear(Shear),
 }
 
 impl Sensed {
-    /// Returns the number of values per taxel.
+    /// Returns the number of values that each taxel reads.
     pub fn n_channels(&self) -> usize {
         match self {
             Self::Deflection | Self::Force => 1,
@@ -25,7 +25,7 @@ impl Sensed {
         }
     }
 
-    /// Returns the name of the quantity in words.
+    /// Returns the name of the quantity for texts, such as `force`.
     pub fn words(&self) -> &'static str {
         match self {
             Self::Deflection => "deflection",
@@ -35,7 +35,7 @@ impl Sensed {
     }
 }
 
-/// Returns the random seed of a channel; the first channel has the given seed.
+/// Returns the random seed of a channel. The first channel has the seed `named` itself.
 pub(crate) fn of_channel(named: &Seed, channel: usize) -> Seed {
     match channel {
         0 => *named,

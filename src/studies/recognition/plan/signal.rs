@@ -11,19 +11,19 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
 
-/// Signal condition: one value for each axis of `[signal]`.
+/// Signal condition: the strengths of noise, smoothing and sensor errors, one value for each axis of `[signal]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
-    /// Noise standard deviation, in the noise unit of the plan.
+    /// Noise standard deviation of a reading, in the noise unit of the plan.
     pub noise: f64,
     /// Standard deviation of the Gaussian smoothing, metres.
     pub smoothing: f64,
-    /// Strengths of the sensor errors.
+    /// Strengths of the sensor errors, such as gain errors and drift.
     pub strengths: Strengths,
 }
 
 impl Check<'_> {
-    /// Returns the unit and the values of the noise axis, for the quantity that the taxels read.
+    /// Returns the unit and the values of the noise standard deviation, for the quantity that the taxels read.
     pub fn noise(
         &self,
         signal: &SignalSpec,
@@ -80,7 +80,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that the press moves while frames are read.
+    /// Returns an error that names `key` if the press stands still while frames are read.
     fn moves(&self, key: &str, touches: &TouchesSpec) -> Result<()> {
         if touches.frames.values().iter().all(|&frames| frames < 2) {
             let given = "given, but every touch is read once, at rest";
@@ -107,7 +107,7 @@ impl Check<'_> {
         Err(self.error("signal.test_sensor", given, allowed))
     }
 
-    /// Checks the signal steps: each occurs at most once, a step whose axis is set is listed, and a listed sensor error has at least one strength. Without the
+    /// Checks the signal steps. Each step occurs at most once; a step whose axis is set is listed; a listed sensor error has at least one strength. Without the
     /// check, a key could be ignored silently.
     pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
         const KEY: &str = "signal.steps";
@@ -140,7 +140,7 @@ fn key(strength: &Strength) -> String {
 }
 
 impl SignalSpec {
-    /// Returns the number of signal conditions.
+    /// Returns the number of signal conditions: combinations of noise, smoothing and sensor errors.
     pub(crate) fn n_conditions(&self) -> f64 {
         let axes = self.axes.given();
         let lengths = axes.map(|(.., axis)| axis.values().len() as f64);
@@ -152,7 +152,7 @@ impl SignalSpec {
 }
 
 impl Plan {
-    /// Returns all signal conditions: all combinations of the axes, or each axis alone.
+    /// Returns all signal conditions: all combinations of the values of the axes. With `combine = "one_at_a_time"`, each axis varies alone.
     pub fn conditions(&self) -> Vec<Condition> {
         let signal = &self.spec.signal;
         let first = |condition: Condition, (key, step, axis): &SignalAxis| {
@@ -180,13 +180,13 @@ impl Plan {
 }
 
 impl Condition {
-    /// Returns whether two readings of the same touch differ.
+    /// Returns whether two readings of the same touch differ by random noise.
     pub fn is_random_by_reading(&self) -> bool {
         let mut present = self.strengths.present();
         self.noise > 0.0 || present.any(|(error, ..)| error.about().is_random_by_reading)
     }
 
-    /// Returns a copy of the condition with another value on one axis.
+    /// Returns a copy of the condition in which one strength, given by its key and step, has another value.
     pub(crate) fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
         match step {
             StepSpec::Noise => self.noise = value,

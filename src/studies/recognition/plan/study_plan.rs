@@ -34,17 +34,17 @@ pub struct Plan {
     pub spec: StudySpec,
     /// Arrays, one for each combination of pitch and size.
     pub arrays: Vec<TaxelArray>,
-    /// Distribution of touch poses; unused in studies of human touches.
+    /// Distribution of touch poses; without meaning in studies of human touches.
     pub placement: Placement,
-    /// Approach speed of the press at the time of reading, m/s.
+    /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
-    /// Unit of the noise axis.
+    /// Unit of the noise standard deviation.
     pub noise_unit: NoiseUnit,
     /// Numbers of frames per touch (axis `touches.frames`).
     pub frames: Vec<usize>,
-    /// Rule that groups touches which a split does not divide.
+    /// Rule that forms groups of touches which a split does not divide; `None` if touches are not grouped.
     pub group_by: Option<KeepTogether>,
-    /// Plan of the test touches; `None` unless the study has `[test]`. The study uses only the touches of this plan and their signal.
+    /// Plan of the study with the keys of `[test]`, which gives the test touches and their signal; `None` unless the study has `[test]`.
     pub tested: Option<Arc<Plan>>,
 }
 
@@ -59,7 +59,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Creates the plan of a study, and accepts keys without effect.
+    /// Creates the plan of a study. In contrast to `new`, keys without effect are accepted.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -126,8 +126,8 @@ impl Plan {
         Ok(plan)
     }
 
-    /// Returns one plan for each combination of the values in `[axes]`, or a single plan if there are no axes. Each plan contains the specification of the
-    /// whole study.
+    /// For each combination of the values in the table `[axes]`, returns one plan; if there are no axes, returns a single plan. Each plan contains the
+    /// specification of the whole study.
     ///
     /// # Errors
     /// If a key is out of its range for some combination; the error names the axis.
@@ -153,14 +153,14 @@ impl Plan {
         Ok(plans)
     }
 
-    /// Returns an upper bound of the number of configurations. Equal values of m, or several values of C for a classifier without C, give no further
-    /// configurations.
+    /// Returns an upper bound of the number of configurations. The actual number is smaller if values of m are equal, or if several values of C are given for a
+    /// classifier without C.
     pub fn n_configurations(&self) -> f64 {
         let lengths = self.spec.axis_lengths().map(|(_, n)| n as f64);
         self.spec.signal.n_conditions() * lengths.product::<f64>()
     }
 
-    /// Returns the numbers m of measurements for an array; different ratios may give equal m on a small array.
+    /// Returns the numbers m of measurements for an array and an ensemble. On a small array, different ratios may give equal m.
     pub(crate) fn measurement_counts(&self, array: &TaxelArray, ensemble: Ensemble) -> Vec<usize> {
         let n_values = array.n_values();
         if ensemble.about().is_whole_frame {

@@ -12,10 +12,10 @@ use ndarray::Array2;
 use std::fmt;
 use std::sync::Arc;
 
-/// Picture cells per pitch. With a smaller value, the offset of staggered rows is not visible.
+/// Number of picture cells per pitch of the taxels, for layouts other than the grid. With a smaller value, the offset of staggered rows is not visible.
 const PICTURE_CELLS: f64 = 3.0;
 
-/// Array of taxels: its layout, the quantity that it reads, and its slide along the object. All layouts have the density and the size of a square grid.
+/// Array of taxels: its layout, the quantity that its taxels read, and its slide along the object. Every layout has the density and size of a square grid.
 #[derive(Clone)]
 pub struct TaxelArray {
     grid: Grid,
@@ -55,7 +55,7 @@ impl TaxelArray {
         })
     }
 
-    /// Sets the quantity that the taxels read, and the slide along the array's x and y axes after the press, metres.
+    /// Sets the quantity that the taxels read, and the distances that the pressed array slides along its x and y axes, metres.
     ///
     /// # Errors
     /// If the shear springs are invalid.
@@ -67,7 +67,7 @@ impl TaxelArray {
         Ok(self)
     }
 
-    /// Returns the array with unknown taxel positions, for recorded skins without a layout.
+    /// Returns the array with its taxel positions marked as unknown; used for recorded skins without a layout.
     pub fn without_places(mut self) -> Self {
         self.is_placed = false;
         self
@@ -83,7 +83,7 @@ impl TaxelArray {
         &self.patch
     }
 
-    /// Returns the square grid of the array, or the grid that defines the density and size of another layout.
+    /// Returns the square grid of the array. For another layout, returns the grid that defines its density and size.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
@@ -110,7 +110,7 @@ impl TaxelArray {
         self.layout.is_image()
     }
 
-    /// Returns the numbers of rows and columns of the array's images, and the side of a pixel, metres. An image is a square around all taxels.
+    /// Returns the numbers of rows and columns of the array's images, and the side length of a pixel, metres. An image is a square around all taxels.
     pub fn image(&self) -> ((usize, usize), f64) {
         let (n, pitch) = (self.grid.nx, self.pitch());
         if self.is_image() {
@@ -122,7 +122,7 @@ impl TaxelArray {
         ((n, n), (2.0 * half + pitch) / n as f64)
     }
 
-    /// Returns the mapping from taxels to image pixels; `None` if taxels are pixels.
+    /// Returns the mapping from taxels to image pixels; returns `None` if each taxel is a pixel.
     pub fn chart(&self) -> Option<Chart> {
         let chart = || Chart::new(&self.chart_places(), self.pitch(), self.image());
         (!self.is_image()).then(chart)
@@ -135,7 +135,7 @@ impl TaxelArray {
         self.patch.layout().centers().iter().map(place).collect()
     }
 
-    /// Returns the slide along the array's x and y axes after the press, metres.
+    /// Returns the distances that the pressed array slides along its x and y axes, metres.
     pub fn slide(&self) -> DVec2 {
         self.slide
     }
@@ -150,22 +150,22 @@ impl TaxelArray {
         self.patch.n_taxels()
     }
 
-    /// Returns the number of values per frame: one or more per taxel, ordered by channel.
+    /// Returns the number of values per frame: one or more per taxel, ordered by channel (quantity that a taxel reads).
     pub fn n_values(&self) -> usize {
         self.sensed.n_channels() * self.n_taxels()
     }
 
-    /// Returns the numbers of rows and columns; `None` if the layout has none.
+    /// Returns the numbers of rows and columns of the taxels; returns `None` if the layout has no rows and columns.
     pub fn sides(&self) -> Option<(usize, usize)> {
         self.layout.sides(&self.grid).filter(|_| self.is_placed)
     }
 
-    /// Returns the numbers of rows and columns of the array; a layout without them counts as one row.
+    /// Returns the numbers of rows and columns of the array. A layout without rows and columns counts as one row.
     pub fn shape(&self) -> (usize, usize) {
         self.sides().unwrap_or((1, self.n_taxels()))
     }
 
-    /// Returns the numbers of rows and columns of a frame; channels are stacked vertically.
+    /// Returns the numbers of rows and columns of a frame. If a taxel has several channels, they are stacked vertically.
     pub fn frame_shape(&self) -> (usize, usize) {
         let (rows, columns) = self.shape();
         (self.sensed.n_channels() * rows, columns)
@@ -203,8 +203,8 @@ impl TaxelArray {
         }
     }
 
-    /// Returns the taxel shown in each cell of a picture, shape (rows, columns). Images have one cell per taxel. Other layouts are projected along the axis of
-    /// the middle, with three cells per pitch. Each cell shows the nearest taxel, or none if all taxels are far away.
+    /// For each cell of a picture, returns the taxel that it shows, shape (rows, columns). A grid has one cell per taxel. Other layouts are projected along the
+    /// axis of the middle, with three cells per pitch. Each cell shows the nearest taxel, or none if all taxels are far away.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
         let (ny, nx) = self.shape();
         if self.is_image() {
@@ -236,7 +236,7 @@ impl TaxelArray {
     }
 }
 
-/// Writes all inputs of the array's frames. The patch is derived from the other fields.
+/// Writes all inputs of the array's frames; the patch is omitted because it is derived from the other fields.
 impl fmt::Debug for TaxelArray {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {
@@ -257,7 +257,7 @@ impl fmt::Debug for TaxelArray {
     }
 }
 
-/// Returns the random seed of an array's skin, which is equal in all touches and trials.
+/// Returns the seed for the sensor errors of an array's skin. The seed is equal in all touches and trials.
 pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
     let (ny, nx) = array.shape();
     let sides = study.named("skin").numbered(nx as u64);
@@ -266,8 +266,8 @@ pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
 }
 
 impl TaxelArray {
-    /// Returns the signal chain of each channel; `steps` returns the steps for a channel's seed. Each channel has its own converter, and therefore its own seed
-    /// and noise; the first channel has the seed of the skin.
+    /// Returns a signal chain for each channel (quantity that a taxel reads). For the seed of a channel, `steps` returns the steps of its chain. Each channel
+    /// has its own converter, and therefore its own seed and noise; the first channel has the seed of the skin.
     ///
     /// # Errors
     /// If a step is invalid for the array.

@@ -21,11 +21,11 @@ use crate::studies::recognition::spec::study::StudySpec;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// Tables whose keys `[test]` may contain: in studies that place objects, and in other studies.
+/// Tables whose keys `[test]` may contain in a study that places objects.
 pub(crate) const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
 const TABLES_OF_OTHERS: &[&str] = &["signal"];
 
-/// Keys that test touches always share with training touches.
+/// Keys whose values test touches always share with training touches.
 pub(crate) const SHARED: [&str; 4] = [
     "touches.per_object",
     "touches.frames",
@@ -34,7 +34,7 @@ pub(crate) const SHARED: [&str; 4] = [
 ];
 
 impl Check<'_> {
-    /// Returns the plan of the test touches, or `None` if they equal the training touches. `plan` is the plan of the study without `[test]`.
+    /// Returns the plan of the test touches; returns `None` if the study has no table `[test]`. `plan` is the plan of the study without `[test]`.
     ///
     /// # Errors
     /// If a key cannot differ for test touches or is out of its range, or if a taxel of the test touches has no counterpart in training touches.
@@ -95,7 +95,7 @@ impl Check<'_> {
         Ok(Some(Arc::new(tested)))
     }
 
-    /// Returns the error with the key as written in `[test]`, if the error concerns a key of that table.
+    /// Returns `error` with the key as it is written in `[test]`, if the error concerns a key of that table.
     fn under_test(&self, error: Error, test: &Table) -> Error {
         let Error::Input {
             place,
@@ -151,14 +151,14 @@ impl Check<'_> {
 }
 
 impl Plan {
-    /// Returns the signal axes that `[test]` sets.
+    /// Returns those signal axes whose values `[test]` sets.
     fn own_signal<'a>(&'a self, test: &'a Table) -> impl Iterator<Item = &'a SignalAxis> {
         let own = test.get("signal").and_then(Value::as_table);
         let given = self.spec.signal.axes.given();
         given.filter(move |(key, ..)| own.is_some_and(|own| own.contains_key(*key)))
     }
 
-    /// Returns the signal condition of test touches for the training condition `learned`.
+    /// Returns the signal condition of the test touches, given the condition `learned` of the training touches.
     pub fn tested_condition(&self, learned: Condition) -> Condition {
         let Some(tested) = &self.tested else {
             return learned;

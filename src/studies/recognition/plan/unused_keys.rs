@@ -8,7 +8,8 @@ use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::spec::study::StudySpec;
 
 impl Check<'_> {
-    /// Checks that dampers, friction and `signal.combine` have an effect. One value of an axis that uses a key suffices, as do separate test touches.
+    /// Checks that the keys of dampers, friction and `signal.combine` have an effect. A key counts as used if one value of an axis or the separate test touches
+    /// use it.
     pub fn unused_keys(&self, spec: &StudySpec) -> Result<()> {
         if !spec.test.is_empty() {
             return Ok(());
@@ -26,7 +27,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that the damper has an effect. A damper acts on moving taxels, and so affects only forces that are read during the press.
+    /// Checks that the taxels' damper has an effect. A damper acts on moving taxels, and so affects only forces that are read during the press.
     fn used_damper(&self, spec: &StudySpec) -> Result<()> {
         let (skin, touches, axes) = (&spec.skin, &spec.touches, &spec.axes);
         let sensed = skin.sensed.unwrap_or_default();
@@ -60,8 +61,8 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that the friction has an effect. Friction acts only on taxels that move along the object, which excludes a flat array that is pressed straight
-    /// on.
+    /// Checks that the taxels' friction has an effect. Friction acts only on taxels that move along the object. On a flat array that is pressed straight on, no
+    /// taxel does.
     fn used_friction(&self, spec: &StudySpec) -> Result<()> {
         let (skin, axes) = (&spec.skin, &spec.axes);
         let rubs = spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)

@@ -19,7 +19,7 @@ pub fn settings_of(configurations: &[&Configuration]) -> Result<Table> {
         .of_columns(columns, configurations)
 }
 
-/// Returns the indices of the configurations of each condition, in the order of first occurrence.
+/// For each condition (settings of the world, such as noise), returns the indices of its configurations. The conditions are in the order of first occurrence.
 ///
 /// # Errors
 /// If [`settings_of`] fails.
@@ -33,7 +33,7 @@ pub fn by_condition<'a>(
     ))
 }
 
-/// Returns the index of the highest accuracy, the first index in a tie; `None` if there are no accuracies.
+/// Returns the index of the highest accuracy; if several are equal, the first index. Returns `None` if there are no accuracies.
 pub fn most_accurate(accuracies: impl IntoIterator<Item = (usize, f64)>) -> Option<usize> {
     let better = |best: (usize, f64), other: (usize, f64)| match other.1 > best.1 {
         true => other,

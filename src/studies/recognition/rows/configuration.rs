@@ -38,7 +38,7 @@ macro_rules! configuration {
             }
         }
 
-        /// Returns all columns except the columns of the axes in `[axes]`.
+        /// Returns the columns of a configuration, without the columns of the axes in the table `[axes]`.
         impl Columns for $configuration {
             fn columns() -> Vec<Column> {
                 let mut columns = Vec::new();
@@ -67,11 +67,11 @@ pub struct Configuration {
     nx: usize => always (Note, "taxels along x", "", Linear);
     /// Number of taxel rows (along y).
     ny: usize => always (Note, "taxels along y", "", Linear);
-    /// Numbers of rows and columns of the array's images.
+    /// Numbers of rows and columns of the images that represent frames of the array.
     image_shape: (usize, usize) => hidden;
     /// Side length of the array along x, mm: nx times the pitch.
     size_mm: f64 => always of "skin.size_mm";
-    /// Noise standard deviation, in `noise_unit`.
+    /// Noise standard deviation of a taxel's reading, in `noise_unit`.
     noise_std: f64 => always of "signal.noise_std_full_scale";
     /// Unit of `noise_std`: fraction of full scale, mm or N.
     noise_unit: NoiseUnit => always (Note, "noise unit", "", Words);
@@ -85,39 +85,41 @@ pub struct Configuration {
     ensemble: Ensemble => always of "sensing.ensemble";
     /// Number m of measurements per frame.
     measurements: usize => always of "sensing.measurements";
-    /// Compression ratio n / m: values of a frame per measurement.
+    /// Compression ratio n / m: number n of values of a frame, divided by the number m of measurements.
     ratio: f64 => always of "sensing.ratio";
-    /// Number F of frames per touch; a row of features has F · m values.
+    /// Number F of frames per touch. If the frames are concatenated, a touch has F times the features of a frame.
     frames: usize => always of "touches.frames";
-    /// Combination of the frames of a touch into features. The column is present only if the study has the key; without the key, frames are concatenated.
+    /// Way in which the frames of a touch are combined into features, such as `deepest`. The column is present only if the study has the key; without the key,
+    /// frames are concatenated.
     temporal_features: Option<TemporalFeatures> => if_given of "recognition.temporal_features";
     /// Features that are computed from the measurements.
     features: Features => always of "recognition.features";
-    /// Depth window of image features behind the foremost point, as a fraction of the full scale; 1 for other features. The column is present only if the study
-    /// has the key.
+    /// Depth window of image features, as a fraction of the full scale. Only deflections within the window below the largest deflection of a frame count. 1 for
+    /// features of measurements, which have no window. The column is present only if the study has the key.
     depth_window_full_scale: Option<f64> => if_given of "recognition.depth_window_full_scale";
-    /// Number of randomly tilted copies of each training touch. The column is present only if the study has the key.
+    /// Number of randomly tilted copies that are added for each training touch. The column is present only if the study has the key.
     tilt_augmentation: Option<usize> => if_given of "recognition.tilt_augmentation";
     /// Kind of classifier.
     classifier: ClassifierKind => always of "recognition.classifier";
-    /// Penalty C; empty if C is chosen by cross-validation or the classifier has no C.
+    /// Penalty C of the classifier; empty if C is chosen by cross-validation or the classifier has no C.
     c: Option<f64> => always of "recognition.c";
     /// Maximum number of training touches per object.
     train_touches: usize => always of "recognition.train_touches";
-    /// Fraction of training touches that are labelled as another object, 0 to 1. The column is present only if the study has the key.
+    /// Fraction of the training touches that are labelled as another object, 0 to 1. The column is present only if the study has the key.
     mislabelled_fraction: Option<f64> => if_given of "recognition.mislabelled_fraction";
-    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1. The column is present only if the study has the key.
+    /// Number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The column is present only if
+    /// the study has the key.
     class_imbalance: Option<f64> => if_given of "recognition.class_imbalance";
-    /// Number of test touches of an object that are combined into one decision by the sum of their scores.
+    /// Number of test touches of an object that are combined into one decision. Their scores are added.
     touches_per_decision: usize => always of "recognition.touches_per_decision";
-    /// Policy that chooses the touches of a decision after the first one. The column is present only if the study has the key.
+    /// Policy that chooses the touches of a decision after the first one, such as `random`. The column is present only if the study has the key.
     next_touch: Option<NextTouch> => if_given of "recognition.next_touch";
-    /// Values of the axes in `[axes]`, one column per axis.
+    /// Values of the further axes in the table `[axes]`, one column per axis.
     variant: AxisValues => each_axis;
 } }
 
 impl Configuration {
-    /// Returns the inputs that determine the configuration's features.
+    /// Returns the inputs that determine the feature rows of the configuration.
     pub fn rows(&self) -> RowInputs {
         let is_of_images = self.features.of_image().is_some();
         RowInputs {
@@ -142,7 +144,7 @@ impl Configuration {
     }
 }
 
-/// Parameters that have a column in every study.
+/// Parameters of a configuration that have a column in every study.
 mod always {
     use super::*;
 
@@ -159,7 +161,7 @@ mod always {
     }
 }
 
-/// Parameters that have a column only in studies with their key.
+/// Parameters of a configuration that have a column only in studies with their key.
 mod if_given {
     use super::*;
 
@@ -179,7 +181,7 @@ mod if_given {
     }
 }
 
-/// Parameters that are derived from others and have no column.
+/// Parameters of a configuration that are derived from others and have no column.
 mod hidden {
     use super::*;
 
@@ -190,7 +192,7 @@ mod hidden {
     }
 }
 
-/// One column for each sensor-error strength that the study sets.
+/// Strengths of sensor errors: one column for each strength that the study sets.
 mod each_strength {
     use super::*;
 
@@ -213,7 +215,7 @@ mod each_strength {
     }
 }
 
-/// One column for each axis in `[axes]`.
+/// Values of the further axes in the table `[axes]`: one column per axis.
 mod each_axis {
     use super::*;
 

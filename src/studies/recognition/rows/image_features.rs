@@ -5,10 +5,11 @@ use bubbletouch_sim::features::Join;
 /// Image features that the configurations of a group use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeaturesOfImages {
-    /// Kinds of image features, joined into one feature vector.
+    /// Kinds of image features; their values are joined into one feature vector.
     pub join: Join,
-    /// Depth window behind the foremost point, as a fraction of the full scale.
+    /// Depth window of the features, as a fraction of the full scale; `None` for the whole image. Only deflections within the window below the largest
+    /// deflection count.
     pub foremost: Option<f64>,
-    /// Number of measurements from which the images are estimated.
+    /// Number of measurements from which the images of frames are estimated.
     pub measurements: usize,
 }

@@ -4,27 +4,28 @@ use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use bubbletouch_sim::features::Features;
 
-/// Inputs that determine the features of a touch.
+/// Inputs that determine how features are computed from the measurements of a touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowInputs {
-    /// Numbers of rows and columns of the images of frames.
+    /// Numbers of rows and columns of the images that represent frames.
     pub image_shape: (usize, usize),
     /// Number m of measurements per frame.
     pub measurements: usize,
     /// Number F of frames per touch.
     pub frames: usize,
-    /// Combination of the frames of a touch into features; `None` if the frames are concatenated.
+    /// Way in which the frames of a touch are combined into features; `None` if the frames are concatenated.
     pub temporal_features: Option<TemporalFeatures>,
     /// Features that are computed from the measurements of a frame.
     pub features: Features,
-    /// Depth window of image features behind the foremost point, as a fraction of the full scale.
+    /// Depth window of image features, as a fraction of the full scale; `None` for no window. Only deflections within the window below the largest deflection
+    /// count.
     pub depth_window_full_scale: Option<f64>,
-    /// Number of tilted copies of each training touch.
+    /// Number of tilted copies that are added for each training touch.
     pub n_copies: usize,
 }
 
 impl RowInputs {
-    /// Returns the image features; `None` if the features are computed from measurements.
+    /// Returns the description of the image features; returns `None` if the features are computed from measurements.
     pub fn of_images(&self) -> Option<FeaturesOfImages> {
         Some(FeaturesOfImages {
             join: self.features.of_image()?,

@@ -17,43 +17,43 @@ pub struct TrialScore {
     /// Number of the split that the trial uses. The column is present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     split: Option<usize> => Note: Linear, optional;
-    /// Number of the projection that the trial uses. The column is present only if the study has `projections_per_split`.
+    /// Number of the projection (measurement matrix) that the trial uses. The column is present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     projection: Option<usize> => Note: Linear, optional;
-    /// Number of the first trial with the same training and test touches (with `projections_per_split`: of the first such split). The column is present only if
-    /// trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count trials of one split once.
+    /// Number of the first trial with the same training and test touches; with `projections_per_split`, number of the first such split. The column is present
+    /// only if trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count all trials of a split once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     distinct_split: Option<usize> => Note "same split as": Linear, optional;
     /// Number of training rows (readings of training touches) of the trial.
     n_train: usize => Note "training rows": Linear;
     /// Number of test rows of the trial. A test row is a group of `touches_per_decision` test touches.
     n_test: usize => Note "test rows": Linear;
-    /// Number of test touches that do not fill a whole group of `touches_per_decision`, over all objects.
+    /// Number of test touches, over all objects, that are left over because they do not fill a whole group of `touches_per_decision`.
     n_left_out: usize => Note "test touches left out": Linear;
     /// Number of test rows whose object is recognised correctly.
     n_correct: usize => Note "test rows recognised": Linear;
     /// Accuracy of the trial, `n_correct / n_test`, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of the 95 % interval of the accuracy: Wilson's interval over test rows, or the interval over held-out groups.
+    /// Lower end of the 95 % interval of the accuracy, 0 to 1: Wilson's interval over test rows, or the interval over held-out groups.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % interval of the accuracy.
+    /// Upper end of the 95 % interval of the accuracy, 0 to 1: Wilson's interval over test rows, or the interval over held-out groups.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of groups behind the interval of the accuracy; the number of test rows if no groups are held out. The column is present only if the study holds
-    /// out groups.
+    /// Number of held-out groups over which the interval of the accuracy is computed; if no groups are held out, the number of test rows. The column is present
+    /// only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// F1 score averaged over all objects, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
     /// Penalty C that the classifier used: given, or chosen by cross-validation within the training rows. Empty if the classifier has no C.
     c_used: Option<f64> => Note "C used": Log;
-    /// Parameter γ that the kernel used: given, scaled or chosen. Empty if the classifier has no γ.
+    /// Parameter γ that the classifier's kernel used: given, scaled or chosen. Empty if the classifier has no γ.
     gamma_used: Option<f64> => Note "γ used": Log;
-    /// Number of optimisation problems of the classifier that stopped at the iteration cap.
+    /// Number of the classifier's optimisation problems that stopped at the solver's maximum number of iterations.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
 impl TrialScore {
-    /// Returns the accuracy of this trial for statistics over trials; each decision uses `n_fused` touches.
+    /// Returns the accuracy of this trial in the form that statistics over trials need; each decision uses `n_fused` touches.
     pub fn repeat(&self, n_fused: usize) -> Repeat {
         let split = self.distinct_split.or(self.split);
         Repeat {
@@ -79,7 +79,7 @@ pub struct ConfigurationScore {
     n_test: usize => Note "test rows": Linear;
     /// Mean accuracy over trials, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Standard deviation of the accuracy over trials; 0 for one trial.
+    /// Standard deviation of the accuracy over trials, 0 to 1; 0 if there is only one trial.
     accuracy_std: f64 => Note "standard deviation over trials": Share;
     /// Lower end of the 95 % interval of the mean accuracy.
     ///
@@ -87,22 +87,22 @@ pub struct ConfigurationScore {
     /// interval over all groups that the trials hold out. Trials split the same touches again, so counting the test rows of all trials would make the interval
     /// too narrow; each fold and each group counts once.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % interval of the mean accuracy.
+    /// Upper end of the 95 % interval of the mean accuracy, computed as `accuracy_low`.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of groups behind the interval, over all trials; the number of test rows of a trial if no groups are held out. The column is present only if the
-    /// study holds out groups.
+    /// Number of held-out groups, over all trials, over which the interval is computed; if no groups are held out, the number of test rows of a trial. The
+    /// column is present only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials: its variation under other splits, projections and noise on the same touches.
     /// Empty with fewer than five trials, splits or projections.
     #[serde(default)]
     bootstrap_low: Option<f64> => Note "mean over trials, lower end": Share;
-    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials, with the conditions of `bootstrap_low`.
+    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials. It is empty under the same conditions as `bootstrap_low`.
     #[serde(default)]
     bootstrap_high: Option<f64> => Note "mean over trials, upper end": Share;
     /// Macro-averaged F1 score, averaged over trials, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
-    /// Number of optimisation problems that stopped at the iteration cap, over all trials.
+    /// Number of optimisation problems, over all trials, that stopped at the solver's maximum number of iterations.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
@@ -110,7 +110,7 @@ row! {
 /// Number of test rows of one object that were recognised as another object, over all trials of a configuration: a row of `confusion.csv`. Zero counts are
 /// omitted.
 pub struct Confusion {
-    /// Number of the configuration.
+    /// Number of the configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
     /// Name of the touched object.
     object: String => Subject;
@@ -127,7 +127,7 @@ row! {
 /// If the study varies `touches_per_decision`, the best configuration with the fewest touches per decision is listed. The confusion of the same pair with the
 /// most touches per decision is given beside it.
 pub struct Confused {
-    /// Number of the best configuration.
+    /// Number of the best configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
     /// Name of the touched object.
     object: String => Subject;
@@ -137,68 +137,69 @@ pub struct Confused {
     count: usize => Note "test rows": Log;
     /// Number of the object's test rows, over all trials.
     n_test: usize => Note "test rows of the object": Linear;
-    /// Fraction of the test rows that were recognised as `predicted`, `count / n_test`.
+    /// Fraction of the object's test rows that were recognised as `predicted`, `count / n_test`, 0 to 1.
     fraction: f64 => Value(Less) "share of the object's test rows": Share between [fraction_low, fraction_high];
-    /// Lower end of the 95 % Wilson interval of `fraction`.
+    /// Lower end of the 95 % Wilson interval of `fraction`, 0 to 1.
     fraction_low: f64 => Note "95 % interval, lower end": Share, optional;
-    /// Upper end of the 95 % Wilson interval of `fraction`.
+    /// Upper end of the 95 % Wilson interval of `fraction`, 0 to 1.
     fraction_high: f64 => Note "95 % interval, upper end": Share, optional;
     /// Largest number of touches per decision in the study. The column is present only if the study combines several touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     max_touches_per_decision: Option<usize> => Note "most touches per decision": Linear, optional;
-    /// Value of `fraction` for decisions on `max_touches_per_decision` touches. The column is present only if the study combines several touches.
+    /// Fraction of the object's test rows that were recognised as `predicted`, 0 to 1, if each decision uses `max_touches_per_decision` touches. The column is
+    /// present only if the study combines several touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     fraction_at_max_touches: Option<f64> => Value(Less) "fraction with most touches": Share, optional;
 } }
 
 row! {
-/// Comparison of a published accuracy with ours. A row of `published.csv` is a [`Configuration`] followed by a `Published`.
+/// Comparison of a published accuracy with the accuracy in this study. A row of `published.csv` is a [`Configuration`] followed by a `Published`.
 ///
-/// The [`Configuration`] is the most accurate one to which the claim applies. A claim has one row for each condition of the matching configurations.
+/// The [`Configuration`] is the most accurate one to which the claim applies. For each condition of the matching configurations, a claim has one row.
 pub struct Published {
-    /// Published claim, in words.
+    /// Published claim in the publication's words.
     claim: String => Subject;
     /// Publication that makes the claim.
     source: String => Subject;
     /// Published accuracy, 0 to 1.
     published_accuracy: f64 => Value(Neither) "published accuracy": Share;
-    /// Our mean accuracy over trials, 0 to 1.
+    /// Mean accuracy of this study's configuration over trials, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of the 95 % interval of our mean accuracy, as in `summary.csv`.
+    /// Lower end of the 95 % interval of `accuracy`, as in `summary.csv`.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % interval of our mean accuracy, as in `summary.csv`.
+    /// Upper end of the 95 % interval of `accuracy`, as in `summary.csv`.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Our accuracy minus the published accuracy, `accuracy − published_accuracy`.
+    /// Accuracy of this study minus the published accuracy, `accuracy − published_accuracy`.
     difference: f64 => Value(More) "difference to what was published": Linear;
     /// Number of configurations in this condition to which the claim applies.
     n_matching: usize => Note "configurations that it is about": Linear;
 } }
 
 row! {
-/// Comparison of a configuration with the best one of its condition, paired over trials: a row of `comparison.csv`.
+/// Comparison of a configuration with the best configuration of its condition, paired over trials: a row of `comparison.csv`.
 pub struct Comparison {
-    /// Number of the configuration.
+    /// Number of the configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
     /// Number of the configuration with the highest mean accuracy in the same condition.
     best_configuration: usize => Note "best configuration": Linear;
-    /// Number of trials that both configurations have finished; trials of one split count once.
+    /// Number of trials that both configurations have finished; all trials of one split count once.
     n_trials: usize => Note "trials of both": Linear;
     /// Accuracy of the configuration minus accuracy of the best configuration, averaged over trials.
     difference: f64 => Value(More) "difference to the best": Linear between [difference_low, difference_high];
-    /// Lower end of the 95 % interval of the difference; empty with one trial.
+    /// Lower end of the 95 % interval of `difference`; empty if there is only one trial.
     difference_low: Option<f64> => Note "difference, lower end": Linear;
-    /// Upper end of the 95 % interval of the difference; empty with one trial.
+    /// Upper end of the 95 % interval of `difference`; empty if there is only one trial.
     difference_high: Option<f64> => Note "difference, upper end": Linear;
-    /// Two-sided p-value of the hypothesis that the difference is zero; empty if there are too few trials.
+    /// Two-sided p-value of the hypothesis that the mean difference is zero; empty if there are too few trials.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
-    /// p-value after Holm's correction over all configurations except the best ones; empty for the best ones.
+    /// `p_value` after Holm's correction for the number of comparisons: all configurations except the best ones. Empty for the best ones.
     #[serde(default)]
     p_holm: Option<f64> => Value(Neither) "p-value, Holm": Linear;
-    /// Reason why the row has a p-value, or why it has none.
+    /// Reason why the row has a p-value, or the reason why it has none.
     #[serde(default)]
     p_status: PStatus => Outcome "test";
-    /// Minimum number of trials for which a p-value exists; with `projections_per_split`, the number of splits.
-    /// Empty if no number suffices, because too many rows are tested or further trials repeat the same splits.
+    /// Minimum number of trials with which the row has a p-value; with `projections_per_split`, the minimum number of splits. Empty if no number suffices,
+    /// because too many rows are tested or further trials repeat the same splits.
     #[serde(default)]
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }
@@ -212,7 +213,7 @@ pub struct TrialTime {
     fit_s: f64 => Cost "time to train" in "s": Log;
     /// Time to score all test touches and to decide all test rows, s. Configurations that differ only in `touches_per_decision` share the scores.
     predict_s: f64 => Cost "time to predict" in "s": Log;
-    /// Time to predict one test touch, µs.
+    /// Time to predict the object of one test touch, µs.
     predict_us_per_touch: f64 => Cost "time to predict a touch" in "µs": Log;
 } }
 
@@ -224,22 +225,22 @@ row! {
 pub struct Pareto {
     /// Mean accuracy over trials, 0 to 1.
     accuracy: f64 => Value(More): Share;
-    /// Mean time to train the classifier, s.
+    /// Time to train the classifier, averaged over trials, s.
     fit_s: f64 => Cost "time to train" in "s": Log;
-    /// Mean training time per training touch, µs.
+    /// Training time divided by the number of training touches, averaged over trials, µs.
     fit_us_per_touch: f64 => Cost "time to train, of a training touch" in "µs": Log;
-    /// Mean time of one decision on `touches_per_decision` touches, µs.
+    /// Time of one decision on `touches_per_decision` touches, averaged over trials, µs.
     predict_us_per_decision: f64 => Cost "time of a decision" in "µs": Log;
-    /// Whether the configuration is on the Pareto front of accuracy against `fit_s`.
+    /// Whether the configuration is on the Pareto front of accuracy against `fit_s`: no other one dominates it in these two values.
     on_training_front: bool => Note;
-    /// Whether the configuration is on the Pareto front of accuracy against `predict_us_per_decision`.
+    /// Whether the configuration is on the Pareto front of accuracy against `predict_us_per_decision`: no other one dominates it in these two values.
     on_prediction_front: bool => Note;
 } }
 
 row! {
-/// Computing time of a stage before recognition: a row of `stages.csv`.
+/// Processor time of a stage before recognition on one array: a row of `stages.csv`.
 pub struct StageTime {
-    /// Name of the stage: `simulate` or `measure` (signal and projection), with the number of frames per touch if it is above one.
+    /// Name of the stage: `simulate`, or `measure` (signal chain and measurement matrix). If touches have several frames, their number is added.
     stage: String => Subject;
     /// Pitch of the taxels, mm.
     pitch_mm: f64 => Subject "pitch" in "mm": Linear;
@@ -256,15 +257,15 @@ pub struct StageTime {
 } }
 
 row! {
-/// Number of times that a limit of the model was reached: a row of `limits.csv`.
+/// Limit of the model and how often it was reached: a row of `limits.csv`.
 pub struct Limit {
-    /// Name of the limit, such as `saturated taxels`.
+    /// Name of the limit of the model, such as `saturated taxels`.
     limit: String => Subject;
     /// Number of cases in which the limit was reached.
     count: u64 => Note: Log;
     /// Total number of cases in which the limit could be reached.
     total: u64 => Note: Linear;
-    /// Meaning of the limit for the results, in words.
+    /// Sentence on the meaning of the limit for the results.
     meaning: String => Note;
 } }
 
@@ -287,21 +288,21 @@ pub struct Tables {
     pub stages: Vec<StageTime>,
     /// Rows of `confused.csv`: the pairs of objects that the best configuration confuses most often, in descending order of the count.
     pub confused: Vec<Confused>,
-    /// Rows of `published.csv`: comparisons of published accuracies with ours.
+    /// Rows of `published.csv`: comparisons of published accuracies with the accuracies of this study.
     pub published: Vec<(Configuration, Published)>,
-    /// Rows of `variance.csv`: three per configuration, for studies with `projections_per_split`.
+    /// Rows of `variance.csv`, three per configuration: one for each source of variance. Empty unless the study has `projections_per_split`.
     pub variance: Vec<Variance>,
-    /// Rows of `limits.csv`: counts of reached limits of the model.
+    /// Rows of `limits.csv`: for each limit of the model, how often it was reached.
     pub limits: Vec<Limit>,
     /// Whether the trials are the folds of a cross-validation.
     pub has_folds: bool,
 }
 
-/// Source of the variance of a configuration's accuracy over trials.
+/// Source from which the variance of a configuration's accuracy over trials comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// Split into training and test touches.
+    /// Split of the touches into training and test touches.
     Split,
     /// Random projection (measurement matrix).
     Projection,
@@ -312,13 +313,13 @@ pub enum Source {
 row! {
 /// Variance of a configuration's accuracy due to one source: a row of `variance.csv`, for studies with `projections_per_split`.
 pub struct Variance {
-    /// Number of the configuration.
+    /// Number of the configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
     /// Source of the variance.
     source: Source => Subject "source of variance";
-    /// Number of random levels of the source; for `rest`, the number of trials.
+    /// Number of random levels of the source: of splits, of projections, or of trials for `rest`.
     n_levels: usize => Note "levels": Linear;
-    /// Degrees of freedom of the source's mean square.
+    /// Degrees of freedom of `mean_square`.
     degrees_of_freedom: usize => Note: Linear;
     /// Mean square of the source in the analysis of variance.
     mean_square: f64 => Note: Linear;
@@ -326,12 +327,12 @@ pub struct Variance {
     estimate: f64 => Note "variance": Linear;
     /// Standard deviation of the accuracy due to this source alone: the square root of `estimate`, or 0 if the estimate is negative.
     accuracy_std: f64 => Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
-    /// Lower end of the 95 % interval of `accuracy_std`: method of modified large samples, or χ² for `rest`.
+    /// Lower end of the 95 % interval of `accuracy_std`, by the method of modified large samples; for `rest`, by the χ² distribution.
     accuracy_std_low: f64 => Note "standard deviation, lower end": Linear;
-    /// Upper end of the 95 % interval of `accuracy_std`.
+    /// Upper end of the 95 % interval of `accuracy_std`, by the method of modified large samples; for `rest`, by the χ² distribution.
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
-    /// Fraction of a trial's variance that is due to the source, with negative estimates counted as zero; empty if nothing varies.
+    /// Fraction of the variance of a trial's accuracy that is due to the source, 0 to 1, with negative estimates counted as zero. Empty if nothing varies.
     fraction: Option<f64> => Value(Less) "share of the variance": Share;
-    /// p-value of the F test of the hypothesis that the source contributes nothing; empty for `rest`.
+    /// p-value of the F test of the hypothesis that the source contributes no variance; empty for `rest`.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }

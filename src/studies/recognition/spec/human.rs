@@ -14,14 +14,14 @@ pub struct HumanTouchSpec {
     #[serde(default = "all_kinds")]
     #[schemars(with = "Vec<Names<TouchKind>>")]
     pub kinds: Vec<TouchKind>,
-    /// Number of touches of each kind, at least 1.
+    /// Number of human touches of each kind, at least 1.
     pub per_kind: usize,
     /// Distance from the axis of the arm to the outside of its skin, mm, positive. Default: 43.
     #[serde(default = "number::<43>")]
     pub arm_radius_mm: f64,
-    /// Frame rate of the skin, Hz.
+    /// Frame rate of the skin, Hz, positive.
     pub frames_hz: f64,
-    /// Duration of each recording, s. The touch begins at a random time such that it ends within the recording.
+    /// Duration of the recording of each touch, s. The touch begins at a random time such that it ends within the recording.
     pub duration_s: f64,
 }
 

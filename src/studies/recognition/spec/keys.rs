@@ -22,17 +22,19 @@ use std::sync::LazyLock;
 
 /// Maximum number of trials of a study; the splits of all trials are in memory before the first trial runs.
 const MAX_TRIALS: usize = 100_000;
-/// Maximum number of copies of a touch; further copies do not improve a classifier.
+/// Maximum number of tilted copies of a training touch; further copies do not improve a classifier.
 const MAX_COPIES: usize = 1000;
 /// Maximum number of readings of a training touch. All are in memory at once, and further readings do not improve training.
 const MAX_READINGS: usize = 100;
-/// Tilt angles, degrees. Much larger tilts add no plane.
+/// Allowed tilt angles, degrees. Much larger tilts make no new part of the object touch the array.
 const TILT: Range = Between(1e-12, 45.0, "above 0, at most 45");
-/// Slide distances, mm. A slide of 1 km has far fewer steps than it passes taxels; the square of 1e160 mm would be infinite.
+/// Allowed slide distances, mm. At the upper bound of 1 km, a slide has far fewer steps than it passes taxels. Without a bound, squares of distances could
+/// overflow.
 const SLIDE: Range = Between(0.0, 1e6, "0 to 1000000");
-/// Noise as a fraction of full scale. At the upper bound, nothing of the signal remains, and squares of features still fit into f32.
+/// Allowed noise standard deviations, as fractions of full scale. At the upper bound, nothing of the signal remains, and squares of features still fit into
+/// f32.
 const NOISE: Range = ZeroOrBetween(1e-12, 1000.0, "0, or 1e-12 to 1000");
-/// Penalty C. At the bounds, no margin or no slack remains.
+/// Allowed penalties C. At the bounds, a classifier has no margin or no slack.
 const PENALTY: Range = Between(1e-12, 1e12, "above 0, 1e-12 to 1e12");
 /// Multiples of the default kernel parameter γ.
 const GAMMA: Range = Between(1e-12, 1e9, "above 0, 1e-12 to 1e9");
@@ -44,7 +46,7 @@ const OVER_TIME: &[(&str, &str)] = &[
 ];
 const CHOSEN: &[(&str, &str)] = &[("", "chosen")];
 
-/// Keys of a recognition study, except the strengths of sensor errors and the parameters of classifiers.
+/// Descriptions of the keys of a recognition study, without the strengths of sensor errors and the parameters of classifiers.
 ///
 /// Roles: depth, slide, number and speed of presses are choices; pose and friction of the object are conditions. The split, its groups and recorded data are
 /// conditions of the experiment: as a choice, the easiest split would always win.
@@ -181,13 +183,13 @@ fn parameter_keys() -> Vec<KeyAbout> {
     declared().map(about).collect()
 }
 
-/// Returns the index after the last key with a prefix.
+/// Returns the index after the last key that begins with `prefix`.
 fn place_after(prefix: &str) -> usize {
     let place = KEYS.iter().rposition(|key| key.path.starts_with(prefix));
     place.map_or(0, |place| place + 1)
 }
 
-/// Returns the descriptions of the keys in `tables` for a kind of study without `[axes]`, in which only keys at `axes` may have a list.
+/// For a kind of study without `[axes]`, returns the descriptions of the keys in `tables`; only keys that are listed in `axes` may have a list of values.
 pub(crate) fn shared_keys(tables: &[&str], axes: &[&str]) -> Vec<KeyAbout> {
     let is_in = |tables: &[&str], path: &str| tables.iter().any(|table| is_at(path, table));
     let shared = recognition_keys().iter().copied();
@@ -212,12 +214,12 @@ pub(crate) fn key(path: &str) -> &'static KeyAbout {
 }
 
 impl Check<'_> {
-    /// Checks the keys of a table of recognition studies; returns the keys that the table contains.
+    /// Checks the keys of a table that recognition studies have; returns the keys that the table contains.
     pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
         self.keys(name, table, recognition_keys())
     }
 
-    /// Checks a number of a key of recognition studies.
+    /// Checks the value of a numeric key of recognition studies, and returns it.
     pub fn number(&self, path: &str, value: f64) -> Result<f64> {
         let range = key(path).range;
         match range.contains(value) {

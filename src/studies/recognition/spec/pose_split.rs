@@ -21,7 +21,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Rule that decides which poses are held out for testing.
+/// Rule that decides which poses are held out for testing, and which are used for training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PoseSplit {
@@ -40,7 +40,7 @@ pub enum PoseSplit {
     UnseenDepth,
 }
 
-/// Touch axes that a block divides into halves.
+/// Pose parameters whose values a block divides into halves.
 const BLOCK: [TouchAxis; 3] = [TouchAxis::OffsetX, TouchAxis::OffsetY, TouchAxis::Yaw];
 
 impl PoseSplit {
@@ -56,7 +56,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns a description of the test touches in words.
+    /// Returns a phrase that describes which touches are tested.
     pub fn words(self) -> &'static str {
         match self {
             Self::Random => "random touches: most have neighbours in the pose that are learned",
@@ -70,7 +70,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the grouping of training touches for the inner cross-validation that chooses C or γ; `None` if touches are drawn one by one.
+    /// Returns the grouping of training touches for the inner cross-validation, which chooses C or γ. Returns `None` if touches are drawn one by one.
     pub(crate) fn group(self) -> Option<GroupSpec> {
         match self {
             Self::Random | Self::OppositeBlocks => None,
@@ -80,7 +80,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the number of the tested block; `None` unless the split holds out blocks of neighbouring poses.
+    /// Returns the number of the block that is tested in a trial; returns `None` unless the split holds out blocks of neighbouring poses.
     pub(crate) fn tested_block(self, trial: usize) -> Option<usize> {
         (self == Self::OppositeBlocks).then_some(trial % (1 << BLOCK.len()))
     }
@@ -96,7 +96,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the side of every touch in a trial: training, test, or left out.
+    /// For each touch, returns its side in a trial: training, test, or left out.
     ///
     /// # Errors
     /// If a required axis has drawn values or fewer than two listed values.
@@ -127,8 +127,8 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the sides for a split by blocks. Each bit of `trial` selects the tested half of one axis; 0 selects the larger values. Touches in the tested
-    /// half of all axes are test touches; touches in the tested half of no axis are training touches.
+    /// Returns the sides of touches for a split by blocks. Each bit of `trial` selects the tested half of one axis; 0 selects the larger values. Touches in the
+    /// tested half of all axes are test touches. Touches in the tested half of no axis are training touches.
     fn blocks(self, touches: &[&Touch], axes: &[TouchAxis], trial: usize) -> Result<Vec<Side>> {
         let block = axes.len();
         // For each touch, the number of its values that lie in the tested halves.
@@ -149,7 +149,7 @@ impl PoseSplit {
         Ok(n_tested.into_iter().map(side).collect())
     }
 
-    /// Returns, for each touch, the index of its combination of values on `axes`; also returns the number of combinations.
+    /// For each touch, returns the index of its combination of values on `axes`; also returns the number of different combinations.
     fn numbered(self, touches: &[&Touch], axes: &[TouchAxis]) -> Result<(Vec<usize>, usize)> {
         let refused = |given: String| {
             let allowed = format!(
@@ -176,7 +176,7 @@ impl PoseSplit {
     }
 }
 
-/// Listed value of a touch axis, ordered by size.
+/// Listed value of a pose parameter, ordered by size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Value(f64);
 
@@ -198,16 +198,16 @@ impl PartialOrd for Value {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GroupSpec {
-    /// Resting pose, offset, yaw and tilt: the whole pose except the depth.
+    /// Touches with equal resting pose, offset, yaw and tilt form a group: the whole pose except the depth.
     Pose,
-    /// Offsets along x and y.
+    /// Touches with equal offsets along x and y form a group.
     Offset,
-    /// Yaw of the object.
+    /// Touches with equal yaw of the object form a group.
     Yaw,
-    /// Tilts about x and y.
+    /// Touches with equal tilts about x and y form a group.
     Tilt,
-    /// Stable resting pose of the object on the table.
+    /// Touches with the object in the same stable resting pose form a group.
     Rest,
-    /// Depth of the press.
+    /// Touches with equal press depth form a group.
     Depth,
 }

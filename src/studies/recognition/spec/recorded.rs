@@ -11,7 +11,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Keys of `[recorded]`: frames of a real skin, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). `[skin]` gives the pitch and the stroke of the taxels.
+/// Keys of `[recorded]`: frames that a real skin recorded, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). The table `[skin]` gives the pitch and the
+/// stroke of the taxels.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedSpec {
@@ -27,7 +28,7 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub shear: Option<PathBuf>,
-    /// File of the class of every touch: integers or texts of shape (n,), or entries 0 and 1 of shape (n, classes).
+    /// File of the class of every touch: integers or texts, shape (n,), or entries 0 and 1, shape (n, classes).
     #[serde(
         default,
         skip_serializing_if = "is_empty",
@@ -41,7 +42,7 @@ pub struct RecordedSpec {
     /// the values of a taxel if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<String>,
-    /// Numbers of rows and columns into which the taxel axis `c` is divided.
+    /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<[usize; 2]>,
     /// File of the frames of a separate test set, with the axes of `frames`; all touches of `frames` are then training touches.
@@ -51,7 +52,7 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub frames_test: Option<PathBuf>,
-    /// File of the tangential forces of the separate test set, newtons, with the axes of `shear`.
+    /// File of the tangential forces of the separate test set, newtons, in the format of `shear`.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
@@ -72,7 +73,7 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub groups_test: Option<PathBuf>,
-    /// Names of the classes, in the order of the labels.
+    /// Names of the classes, in the order of their integer labels.
     pub names: Option<Vec<String>>,
     /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
     #[serde(default)]
@@ -159,7 +160,7 @@ impl<'de> Deserialize<'de> for ZeroSpec {
     }
 }
 
-/// Choice of the touch that precedes each touch, for sensor errors with memory, such as hysteresis.
+/// Rule that determines the touch before each touch, for sensor errors with memory, such as hysteresis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PreviousTouch {
@@ -222,7 +223,7 @@ impl RecordedSpec {
         files.chain(others.into_iter().flatten())
     }
 
-    /// Returns the paths of all files that the study reads.
+    /// Returns the paths of all files that the recording consists of.
     pub fn files(&self) -> Vec<&Path> {
         let labels = Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty());
         let others = [
@@ -243,7 +244,7 @@ impl RecordedSpec {
         files.into_iter().flatten().chain(others).collect()
     }
 
-    /// Returns the file of the array `name`: the given file, or the frame archive if it contains the array.
+    /// Returns the file that contains the array `name`: the file given by its key, or the archive of the frames if that contains the array.
     pub fn file_of(&self, name: &str) -> Option<&Path> {
         let given = match name {
             "frames" => Some(self.frames.as_path()),
@@ -262,7 +263,7 @@ impl RecordedSpec {
         self.file_of("frames_test").is_some()
     }
 
-    /// Returns the axes of the array `frames` or `frames_test`.
+    /// Returns the axes and their lengths of the array `frames` or `frames_test`.
     ///
     /// # Errors
     /// If the file does not exist or its axes are not axes of frames.
@@ -277,7 +278,7 @@ impl RecordedSpec {
         frame_shape(&path.display().to_string(), &shape, axes)
     }
 
-    /// Returns the readings of untouched taxels, shape (rows · columns,), in row-major order.
+    /// Reads the readings of untouched taxels, shape (rows · columns,), in row-major order.
     ///
     /// # Errors
     /// If the file cannot be read or does not have one number for each taxel of `shape`, the axes of `frames`.
@@ -309,7 +310,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns the file of the tangential forces that belong to `frames` or `frames_test`, and the name of the array in it.
+    /// For the array `frames` or `frames_test`, returns the file of its tangential forces, and the name of the array in this file.
     pub fn shear_of(&self, name: &str) -> Option<(&Path, &'static str)> {
         let (path, name) = match name {
             "frames" => (&self.shear, "shear"),

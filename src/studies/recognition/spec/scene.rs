@@ -42,14 +42,14 @@ pub struct SkinSpec {
     pub damping_n_s_per_m: f64,
 }
 
-/// Keys of `[touches]`: poses and depths in which objects are touched.
+/// Keys of `[touches]`: poses and depths at which the array touches objects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct TouchesSpec {
-    /// Resting poses of the object on the table: `as_modelled` (default) or `stable`.
+    /// Poses in which the object lies on the table: `as_modelled` (default), or `stable` (all stable resting poses).
     #[schemars(with = "Names<RestPoses>")]
     pub rest: RestPoses,
-    /// Number of touches per object. Default: one touch per combination of the listed values.
+    /// Number of touches per object, at least 1. Default: one touch per combination of the listed values.
     pub per_object: Option<usize>,
     /// Offset of the patch's centre from the object's centre along the table's x axis, mm. Default: 0.
     pub offset_x_mm: SpreadSpec,
@@ -65,17 +65,18 @@ pub struct TouchesSpec {
     pub depth_mm: SpreadSpec,
     /// Distance that the pressed patch slides along the object, mm. Default: no slide.
     pub slide_mm: Option<f64>,
-    /// Direction of the slide, degrees from the patch's x axis towards its y axis, with `slide_mm`. Default: 0.
+    /// Direction of the slide, degrees from the patch's x axis towards its y axis; used with `slide_mm`. Default: 0.
     pub slide_deg: Option<f64>,
-    /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, each with its own noise. The measurements
-    /// of all frames are the features of the touch.
+    /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, where d is the depth of the touch; each
+    /// has its own noise. The measurements of all frames are the features of the touch.
     pub frames: Axis<usize>,
     /// Approach speed of the press at the time of reading, mm/s, at least 0; it acts on the damper. Default: 0.
     pub speed_mm_per_s: f64,
 }
 
 impl TouchesSpec {
-    /// Returns a text that names the keys of `[touches]` with a list of values, which may be mistaken for axes; `None` if there is no such key.
+    /// Returns a text that names those keys of `[touches]` whose list of values may be mistaken for an axis of the study; returns `None` if there is no such
+    /// key.
     pub fn mixed_values(&self) -> Option<String> {
         let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
         let lists = table.iter().filter_map(|(key, spread)| {
@@ -127,7 +128,7 @@ pub enum SensedSpec {
     Shear,
 }
 
-/// Distribution of a touch parameter over the touches of an object.
+/// Distribution of a pose parameter over the touches of an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(
     untagged,

@@ -20,7 +20,7 @@ use std::sync::LazyLock;
 pub struct SignalSpec {
     /// Steps of the signal chain, applied to the frames in this order; each step at most once. Default: `noise`, `smoothing`.
     pub steps: Vec<StepSpec>,
-    /// Numeric keys of the steps, such as the standard deviation of the noise and the strengths of sensor errors; each is an axis.
+    /// Numeric keys of the steps, such as the standard deviation of the noise and the strengths of sensor errors. Each key is an axis.
     #[serde(flatten)]
     pub axes: SignalAxes,
     /// Axis: skin of the test touches, `same_skin` (default, the skin of the training touches) or `another_skin`.
@@ -41,10 +41,10 @@ pub struct SignalSpec {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalAxes(BTreeMap<usize, SignalAxis>);
 
-/// Key of a signal axis, the step to which it belongs, and its values.
+/// Axis of the signal: its key, the step to which it belongs, and its values.
 pub type SignalAxis = (&'static str, StepSpec, Axis<f64>);
 
-/// Returns all possible signal axes in the order in which conditions iterate over them.
+/// Returns all axes that `[signal]` may contain, in the order in which conditions iterate over them.
 fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
     let errors = all_strengths().map(|(error, strength)| (strength.key, StepSpec::Error(error)));
     NOISES
@@ -61,7 +61,7 @@ impl SignalAxes {
         given.find_map(|(known, _, axis)| (*known == key).then_some(axis))
     }
 
-    /// Returns the axes that the study sets.
+    /// Returns those axes of `[signal]` that the study sets.
     pub fn given(&self) -> impl Iterator<Item = &SignalAxis> {
         self.0.values()
     }
@@ -91,7 +91,7 @@ pub enum StepSpec {
     Noise,
     /// Gaussian smoothing of the readings over the array.
     Smoothing,
-    /// Sensor error; its strengths have keys of their own.
+    /// Sensor error, such as gain errors or drift; its strengths are set by keys of their own.
     Error(SensorError),
 }
 
@@ -106,7 +106,7 @@ impl StepSpec {
         }
     }
 
-    /// Returns all steps of the signal chain.
+    /// Returns all steps that a signal chain may have.
     fn all() -> impl Iterator<Item = Self> {
         let errors = SENSOR_ERRORS.iter().map(|error| Self::Error(*error));
         [Self::Force, Self::Noise, Self::Smoothing]
@@ -138,7 +138,7 @@ fn unknown(what: &str, given: &str, known: impl Iterator<Item = &'static str>) -
     )
 }
 
-/// Name of a key of `[signal]`.
+/// Names of all keys that `[signal]` may contain.
 static KEYS: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
     let axes = all_axes().map(|(key, _)| key);
     ["steps", "test_sensor", "combine"]

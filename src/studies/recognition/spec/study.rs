@@ -53,8 +53,8 @@ pub struct StudySpec {
     /// Number of trials per configuration, at least 1, each with a new split, projection and noise. Default: 1.
     #[serde(default = "count::<1>")]
     pub trials: usize,
-    /// Number P of projections that are combined with each of `trials` / P splits. Default: one projection per trial. The combination separates the effect of
-    /// the projection on the accuracy from the effect of the split (`variance.csv`).
+    /// Number P of projections (measurement matrices) that are combined with each of `trials` / P splits. Default: one projection per trial. With several
+    /// projections, `variance.csv` separates the effect of the projection on the accuracy from the effect of the split.
     pub projections_per_split: Option<usize>,
     /// Table `[objects]`: the touched objects.
     #[serde(default, skip_serializing_if = "is_default")]
@@ -82,12 +82,12 @@ pub struct StudySpec {
     /// Table `[report]`: contents of the report.
     #[serde(default)]
     pub report: ReportSpec,
-    /// Table `[axes]`: further axes, each a key with its values.
+    /// Table `[axes]`: further axes, each consisting of a key and a list of its values.
     #[serde(skip)]
     pub axes: StudyAxes,
 }
 
-/// `[sensing]`: compression of frames into measurements.
+/// Keys of `[sensing]`: compression of frames into measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensingSpec {
@@ -112,11 +112,11 @@ pub struct RecognitionSpec {
     #[serde(default = "default_features")]
     #[schemars(with = "Axis<FeatureNames>")]
     pub features: Axis<Features>,
-    /// Axis: depth window of the image features behind the foremost point, as a fraction of the full scale. The window makes the features invariant to the
-    /// press depth. Default: the whole image.
+    /// Axis: depth window of the image features, as a fraction of the full scale. Only deflections within the window below the largest deflection of a frame
+    /// count, which makes the features independent of the press depth. Default: the whole image.
     pub depth_window_full_scale: Option<Axis<f64>>,
-    /// Axis: number of additional copies of each training touch, tilted at random as far as its images allow. The copies make recognition robust to tilts that
-    /// do not occur in training. Copies require image features. Default: 0.
+    /// Axis: number of additional copies of each training touch, whose images are tilted at random. The copies make recognition robust to tilts that do not
+    /// occur in training. Copies require image features. Default: 0.
     pub tilt_augmentation: Option<Axis<usize>>,
     /// Maximum tilt of a copy about the array's x and y axes, degrees; tilts are distributed uniformly. Default: 5.
     pub tilt_augmentation_deg: Option<f64>,
@@ -142,13 +142,13 @@ pub struct RecognitionSpec {
     pub c: Option<Axis<f64>>,
     /// Candidate values of C; replaces `c`. Each fit chooses one of them by cross-validation within its training rows.
     pub c_grid: Option<Vec<f64>>,
-    /// Candidate values of γ as multiples of 'scale'; replaces `gamma`. 'scale' is 1 / (F · m · variance); the Laplacian kernel has the standard deviation
-    /// instead of the variance. Each fit chooses one of them together with C.
+    /// Candidate values of the kernel parameter γ, as multiples of its default; replaces `gamma`. The default is 1 / (F · m · variance), where F · m is the
+    /// number of features of a touch. For the Laplacian kernel, the standard deviation replaces the variance. Each fit chooses one candidate together with C.
     pub gamma_grid: Option<Vec<f64>>,
     /// Number of folds of the inner cross-validation, which chooses C and γ, and estimates decisions on unseen touches for `most_informative`. Default: 5.
     /// Folds do not divide groups that the split does not divide.
     pub cv_folds: Option<usize>,
-    /// Maximum number of training touches per object for the choice of C and γ. Default: all. The default γ is computed from all training touches.
+    /// Maximum number of training touches per object that are used to choose C and γ. Default: all. The default γ is computed from all training touches.
     pub cv_touches: Option<usize>,
     /// Number of readings of each training touch, each with its own noise. Default: 1. Without noise, drift or pink noise, all readings of a touch are equal,
     /// and one is used. C and γ are chosen on the first readings.
@@ -196,9 +196,9 @@ pub struct RecognitionSpec {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReportSpec {
-    /// Names of the objects whose touches are drawn side by side. Default: four, spread over the list.
+    /// Names of the objects whose touches the sample picture shows. Default: four, spread over the list of objects.
     pub samples: Option<Vec<String>>,
-    /// Whether to chart accuracy against time with its Pareto front. Default: true if at least three classifiers are swept.
+    /// Whether the report contains charts of accuracy against time with the Pareto front. Default: true if the study has at least three classifiers.
     pub pareto: Option<bool>,
     /// Configurations whose confusion matrix is written to `confusion.csv`: `all` (default) or `best`.
     #[serde(default, skip_serializing_if = "is_default")]
@@ -212,11 +212,11 @@ pub struct ReportSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ConfusionMatrices {
-    /// All configurations of the study.
+    /// Confusion matrices of all configurations of the study.
     #[default]
     All,
-    /// The most accurate configuration and the configurations in `confused.csv`. With many objects, confusion matrices take most of the space of a result
-    /// folder.
+    /// Confusion matrices of the most accurate configuration and of the configurations in `confused.csv`. With many objects, confusion matrices take most of
+    /// the space of a result folder.
     Best,
 }
 
@@ -283,12 +283,12 @@ impl StudySpec {
         Ok(Self { axes, ..spec })
     }
 
-    /// Returns whether the study places objects and touches them.
+    /// Returns whether the study places objects and presses an array on them.
     pub fn places_objects(&self) -> bool {
         self.human_touch.is_none() && self.recorded.is_none()
     }
 
-    /// Returns the number of values of each axis key. Keys of the signal are excluded, because they may be combined differently.
+    /// For each key that is an axis, returns the number of its values. Keys of the signal are excluded, because they may be combined differently.
     pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
         // TOML integers have 63 bits; a seed from the command line may be larger.
         let without_seed = Self {

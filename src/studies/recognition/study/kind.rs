@@ -20,9 +20,9 @@ use crate::studies::source::Source;
 use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{ChartSpec, Table};
 
-/// Columns with the intervals of accuracies.
+/// Names of the tables and columns that contain the intervals of accuracies.
 const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high";
-/// Methods of the accuracy intervals if test rows are held out one by one, and if whole groups are held out.
+/// Statistical method of the accuracy intervals if test rows are held out one by one: the columns and the description.
 const BY_ROWS: (&str, &str) = (
     ACCURACIES,
     "Wilson score interval of the counts of all trials, at the test rows of one trial",
@@ -36,7 +36,7 @@ const BY_GROUPS: (&str, &str) = (
     "score interval of the groups that are held out: Wilson's of the test rows divided by the design effect (Rao, Scott 1992), Student's t of groups - 1",
 );
 
-/// Methods of all other intervals and p-values, by table and columns; all intervals have a confidence of 95 %.
+/// Statistical methods of all intervals and p-values other than accuracy intervals: the columns and the description. All intervals have a confidence of 95 %.
 const METHODS: [(&str, &str); 5] = [
     (
         "summary.csv: bootstrap_low, bootstrap_high",
@@ -105,7 +105,7 @@ impl Study for RecognitionStudy {
         self.scale.clone()
     }
 
-    /// The work items are ordered by trial and family; the items of the touches of each array follow.
+    /// Returns all work items, ordered by trial and family of configurations. The items for the touches of each array follow.
     fn work_items(&self) -> Vec<WorkItem> {
         let families = 0..self.families.len();
         let of_family = |family: usize| {
@@ -172,7 +172,7 @@ impl Study for RecognitionStudy {
         }
     }
 
-    /// A family of configurations is described by the settings of its first configuration.
+    /// Describes the family of configurations by the settings of its first configuration.
     fn item_words(&self, number: usize, item: &WorkItem) -> String {
         if number >= self.touches_item(0) {
             return item.name.clone();
@@ -274,7 +274,7 @@ fn split_words(spec: &StudySpec) -> String {
     held_out.to_owned()
 }
 
-/// Returns pictures of every object, preceded by the sample pictures if they differ.
+/// Returns pictures with a touch of every object. The sample pictures come first if they differ.
 fn gallery(Samples { shown, each }: &Samples) -> Vec<Snapshots> {
     let is_like = |each: &Snapshots| each.caption == shown.caption;
     let shown = Some(shown).filter(|_| !each.as_ref().is_some_and(is_like));

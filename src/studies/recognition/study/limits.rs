@@ -1,4 +1,4 @@
-//! Counts of reached limits of the model.
+//! Counts of how often touches and fits reached a limit of the model.
 
 use crate::report::csv_tables::MISSED_TOUCHES;
 use crate::studies::recognition::rows::configuration::Configuration;
@@ -7,7 +7,7 @@ use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::study::rows::TouchRow;
 
 impl RecognitionStudy {
-    /// Returns the counts of limits that touches and fits reached, over all arrays.
+    /// For each limit of the model, returns how often touches and fits reached it, over all arrays.
     pub(crate) fn limits(
         &self,
         fits: &[(Configuration, TrialScore)],

@@ -60,8 +60,8 @@ pub fn load_study(source: &Source) -> Result<RecognitionStudy> {
 }
 
 impl RecognitionStudy {
-    /// Builds the objects of all plans and draws their touches, if they fit into `ceiling` bytes (`None` for no limit). Packed objects are cached in
-    /// `packings`.
+    /// Builds the objects of all plans and draws their touches. The touches must fit into `ceiling` bytes; `None` sets no limit. Packed objects (sphere models)
+    /// are cached in the folder `packings`.
     ///
     /// # Errors
     /// If an object cannot be built, or there are too many or too few touches; the error names `place` (the file).
@@ -120,7 +120,7 @@ impl RecognitionStudy {
 /// longer; with a smaller value, short waits are announced.
 const MANY_SPLITS: f64 = 7e7;
 
-/// Returns a message if splitting the touches takes a noticeable time.
+/// Returns a message if the split of the touches into training and test touches takes a noticeable time.
 fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
     (n_touches * n_trials as f64 >= MANY_SPLITS)
         .then(|| format!("splitting {n_touches} touches in {n_trials} trials"))
@@ -131,10 +131,10 @@ pub fn touch_content(plan: &Plan) -> String {
     TouchInputs::new(plan).key()
 }
 
-/// Memory per touch, bytes: its pose, its label and its reading parameters.
+/// Memory of a touch, bytes: its pose, its label and its reading parameters.
 const TOUCH_BYTES: f64 = 400.0;
 
-/// Memory per touch and trial for its position in the split, bytes.
+/// Memory of the position that a touch has in the split of a trial, bytes.
 const SPLIT_BYTES: f64 = 8.0;
 
 /// Checks before drawing whether the touches of `n_classes` classes, with one split per trial, fit into `ceiling` bytes (`None`: no limit).

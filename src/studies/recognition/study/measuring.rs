@@ -13,10 +13,10 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Measurement of a group of configurations in a trial, with the pending families that use it.
+/// Measurement to compute: a group of configurations in a trial, and the pending families of configurations that use it.
 pub(crate) struct Job<'a> {
     study: &'a RecognitionStudy,
-    /// Index of the first of the groups that are measured together.
+    /// Index of the group; if several groups have equal measurements, index of the first one.
     group: usize,
     trial: usize,
     n_measurements: usize,
@@ -63,7 +63,7 @@ impl RecognitionStudy {
         self.parts().len() > 1
     }
 
-    /// Returns the sets of touches that pending work items need, each with the measurements to compute from it.
+    /// Returns those sets of touches that pending work items need, each with the measurements to compute from it.
     fn jobs_left(&self, left: &PendingItems<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
         let touches = 0..self.touch_sets.len();
         let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
@@ -73,8 +73,8 @@ impl RecognitionStudy {
         jobs.filter(is_left).collect()
     }
 
-    /// Returns the measurements of a set of touches that pending families need. A group whose smaller sets of measurements are prefixes is measured once for
-    /// all configurations; otherwise, each m is measured separately.
+    /// For a set of touches, returns the measurements that pending families of configurations need. If smaller sets of measurements are prefixes of larger
+    /// ones, a group is measured once for all its configurations. Otherwise, each number m of measurements is measured separately.
     fn jobs(&self, left: &PendingItems<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
@@ -139,8 +139,8 @@ impl RecognitionStudy {
         Ok(())
     }
 
-    /// Simulates a set of touches for the given jobs, and finishes the work item of the touches on the first call for this set. Returns `None` if the touches
-    /// cannot be simulated; the jobs are then recorded as failed.
+    /// Simulates a set of touches for the given jobs. The first call for a set also finishes its work item. Returns `None` if the touches cannot be simulated;
+    /// the jobs are then recorded as failed.
     fn make(
         &self,
         left: &PendingItems<RecognitionRows>,
@@ -189,13 +189,13 @@ impl RecognitionStudy {
 }
 
 impl Job<'_> {
-    /// Returns the numbers of the job's work items.
+    /// Returns the numbers of the work items that the job finishes.
     fn items(&self) -> impl Iterator<Item = usize> + '_ {
         let families = self.families.iter();
         families.map(|&family| self.study.family_item(self.trial, family))
     }
 
-    /// Measures the group, then evaluates its pending families.
+    /// Measures the group of configurations, then evaluates its pending families.
     fn run(&self, left: &PendingItems<RecognitionRows>, frames: [&Frames; 2]) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
         let measured = left.prepare(&need, || self.measure(frames))?;

@@ -27,50 +27,50 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Combination of the values in `[axes]`: the values, the plan, the training touches and the test touches.
+/// Part of the study to add: a combination of the values in `[axes]`, its plan, its training touches and its test touches.
 pub type StudyVariant = (AxisValues, Plan, [Arc<dyn TouchSet + Send>; 2]);
 
 /// Recognition study with its list of work items.
 pub struct RecognitionStudy {
     /// Parts of the study, one for each combination of the values in `[axes]`; a single part if there are no axes.
     parts: Vec<StudyPart>,
-    /// Size of the study: work items, memory and disk space.
+    /// Size of the study: numbers of work items, memory and disk space.
     pub(crate) scale: Scale,
     /// Sample touches for pictures, computed on first use.
     samples: Shared<Samples>,
-    /// All sets of touches to simulate; sets with equal content are listed once.
+    /// All different sets of touches that are simulated.
     pub(crate) touch_sets: Vec<Touches>,
-    /// Groups of all parts, ordered by part.
+    /// Groups of configurations of all parts, ordered by part.
     pub(crate) groups: Vec<PlacedGroup>,
-    /// Families of all groups, ordered by group.
+    /// Families of configurations of all groups, ordered by group.
     pub(crate) families: Vec<Family>,
 }
 
-/// Set of touches on an array, with a fixed number of frames per touch.
+/// Set of touches to simulate: on one array, with a fixed number of frames per touch.
 pub(crate) struct Touches {
-    /// Index of the first group of configurations that reads the touches.
+    /// Index of the first group of configurations that reads these touches.
     pub group: usize,
-    /// Whether this group reads them only as test touches.
+    /// Whether the group `group` reads these touches only for testing.
     is_tested: bool,
-    /// Hash of all inputs of the touches, except the files of objects.
+    /// Hash of all inputs that determine the touches, except the files of objects.
     pub content: String,
 }
 
-/// Group of configurations and its place in the study.
+/// Group of configurations, with its place in the study.
 pub(crate) struct PlacedGroup {
     /// Index of the part that contains the group.
     pub part: usize,
     /// Index of the group in the sweep of its part.
     place: usize,
-    /// Index of the group's training touches among the touch sets of the study.
+    /// Index of the group's training touches in the list of all sets of touches.
     pub touches: usize,
-    /// Index of the group's test touches; equal to `touches` unless the study has `[test]`.
+    /// Index of the group's test touches in the list of all sets of touches; equal to `touches` unless the study has `[test]`.
     pub tested: usize,
-    /// Index of the first group with equal measurements.
+    /// Index of the first group whose measurements are equal to those of this group.
     pub measured_as: usize,
 }
 
-/// Family of configurations: its group and its range of configurations.
+/// Family of configurations: its group, and the range of its configurations within the group.
 pub(crate) struct Family {
     pub group: usize,
     pub configurations: Range<usize>,
@@ -136,7 +136,7 @@ impl RecognitionStudy {
         Ok(study)
     }
 
-    /// Lists all groups and families, and finds groups with equal touches and measurements.
+    /// Lists all groups and families of configurations, and finds groups with equal touches or measurements.
     fn place_groups(&mut self) {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
@@ -184,17 +184,17 @@ impl RecognitionStudy {
         }
     }
 
-    /// Returns the part of the first combination of the values in `[axes]`.
+    /// Returns the part of the study that belongs to the first combination of the values in `[axes]`.
     pub fn first(&self) -> &StudyPart {
         &self.parts[0]
     }
 
-    /// Returns the parts of all combinations of the values in `[axes]`.
+    /// Returns the parts of the study, one for each combination of the values in `[axes]`.
     pub fn parts(&self) -> &[StudyPart] {
         &self.parts
     }
 
-    /// Returns the part that contains the configuration with this number; the last part if no part contains it.
+    /// Returns the part of the study that contains the configuration with this number; if no part contains it, returns the last part.
     pub fn part_of(&self, configuration: usize) -> &StudyPart {
         let has_it = |part: &&StudyPart| {
             part.sweep
@@ -207,7 +207,7 @@ impl RecognitionStudy {
             .unwrap_or_else(|| self.first())
     }
 
-    /// Returns all configurations in the order of their numbers.
+    /// Returns all configurations of the study in the order of their numbers.
     pub fn all_cells(&self) -> impl Iterator<Item = &Configuration> {
         self.parts
             .iter()
@@ -229,7 +229,8 @@ impl RecognitionStudy {
         arrays.collect::<HashSet<_>>().len()
     }
 
-    /// Returns the SHA-256 hash of each object's content, by the object's name. If parts differ in an object, the key also contains the values in `[axes]`.
+    /// Returns the SHA-256 hash of each object's content, by the object's name. If an object differs between parts of the study, the values in `[axes]` are
+    /// added to its name.
     ///
     /// # Errors
     /// If a file of an object cannot be read.
@@ -260,14 +261,14 @@ impl RecognitionStudy {
         self.first().plan.spec.trials
     }
 
-    /// Returns the group with this number and its part.
+    /// Returns the group of configurations with this number, and the part of the study to which it belongs.
     pub(crate) fn group(&self, number: usize) -> (&StudyPart, &MeasurementGroup) {
         let PlacedGroup { part, place, .. } = self.groups[number];
         let part = &self.parts[part];
         (part, &part.sweep.groups[place])
     }
 
-    /// Returns the configurations of a family and their part.
+    /// Returns the configurations of a family, and the part of the study to which they belong.
     pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Configuration]) {
         let Family {
             group,
@@ -277,7 +278,7 @@ impl RecognitionStudy {
         (part, &group.configurations[configurations.clone()])
     }
 
-    /// Returns the number of the work item of a family in a trial.
+    /// Returns the number of the work item for a family of configurations in a trial.
     pub(crate) fn family_item(&self, trial: usize, family: usize) -> usize {
         trial * self.families.len() + family
     }
@@ -287,14 +288,14 @@ impl RecognitionStudy {
         self.family_item(self.n_trials(), 0) + touches
     }
 
-    /// Returns the index of the part and of the array on which a set of touches is simulated, and the number of frames per touch.
+    /// For a set of touches, returns the index of its part of the study, the index of its array, and its number of frames per touch.
     pub(crate) fn made_on(&self, touches: usize) -> (usize, usize, usize) {
         let group = self.touch_sets[touches].group;
         let (_, MeasurementGroup { array, frames, .. }) = self.group(group);
         (self.groups[group].part, *array, *frames)
     }
 
-    /// Returns a set of touches with its array and its number of frames per touch.
+    /// Returns the set of touches with this index, its array, and its number of frames per touch.
     pub(crate) fn on(&self, touches: usize) -> (&dyn TouchSet, &TaxelArray, usize) {
         let Touches {
             group, is_tested, ..
@@ -307,12 +308,12 @@ impl RecognitionStudy {
         (touched, &plan.arrays[group.array], group.frames)
     }
 
-    /// Returns the number of frames per touch of a set of touches, at the first values of the axes.
+    /// Returns the number of frames per touch in a set of touches, for the part with the first values of the axes.
     pub(crate) fn first_frames(&self, touches: usize) -> usize {
         self.group(self.touch_sets[touches].group).0.plan.frames[0]
     }
 
-    /// Returns the rows of `stages.csv`: the times of simulating and measuring touches.
+    /// Returns the rows of `stages.csv`: how long the touches of each array took to simulate and to measure.
     fn stages(&self, rows: &[TouchRow]) -> Vec<StageTime> {
         let mut stages = Vec::new();
         for on in 0..self.touch_sets.len() {
@@ -341,7 +342,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Checks that the test touches correspond one-to-one to the training touches.
+/// Returns an error if the test touches do not correspond one-to-one to the training touches.
 fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<()> {
     let (learned, shown) = (touched.classes(), tested.classes());
     if learned == shown {
@@ -362,7 +363,7 @@ fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<(
     ))
 }
 
-/// Number of hexadecimal digits of the hash of touches. With fewer digits, two sets of touches may get the same hash.
+/// Number of hexadecimal digits of the hash that identifies a set of touches. With fewer digits, two sets may get the same hash.
 const DIGITS: usize = 24;
 
 impl RecognitionStudy {
@@ -407,7 +408,7 @@ impl RecognitionStudy {
         Ok(tables)
     }
 
-    /// Returns the sample touches of the first combination of the values in `[axes]`.
+    /// Returns the sample touches for pictures, from the first combination of the values in `[axes]`.
     pub(crate) fn samples(&self) -> Result<&Samples> {
         let first = self.first();
         let make = || first.touched.samples(&first.plan, &first.sweep.groups);
@@ -415,7 +416,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Returns the name of a stage, followed by the number of frames per touch if it is not one.
+/// Returns the name of a stage. If touches have several frames, the number of frames per touch is added.
 pub(crate) fn in_frames(stage: &str, n_frames: usize) -> String {
     match n_frames {
         1 => stage.to_owned(),

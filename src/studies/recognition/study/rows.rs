@@ -3,33 +3,33 @@
 use crate::studies::recognition::training::trial::Evaluation;
 use serde::{Deserialize, Serialize};
 
-/// Results of work items: of configurations in trials, and of sets of touches that were simulated or measured.
+/// Results of work items. Some items evaluate configurations in a trial; the others simulate or measure sets of touches.
 pub type RecognitionRows = (Vec<ConfigurationRow>, Vec<TouchRow>);
 
 /// Result of one configuration in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConfigurationRow {
-    /// Index of the configuration's group and its index within the group, in the current study.
+    /// Position of the configuration in the current study: index of its group, and index within the group.
     #[serde(skip)]
     pub at: (usize, usize),
-    /// Scores and times of the configuration.
+    /// Scores and times of the configuration in the trial.
     pub evaluation: Evaluation,
 }
 
 /// Result of simulating or measuring a set of touches on an array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TouchRow {
-    /// Index of the set of touches in the current study.
+    /// Index of the set of touches in the list of the current study.
     #[serde(skip)]
     pub on: usize,
     /// Whether the row describes simulation; otherwise it describes measurement.
     pub is_made: bool,
-    /// Number of touches.
+    /// Number of touches that were simulated or measured.
     pub n_touches: usize,
     /// Number of simulated touches that deflected no taxel.
     pub n_missed: usize,
     /// Number of simulated touches with at least one taxel at its stroke.
     pub n_saturated: usize,
-    /// Processor time summed over threads, s.
+    /// Processor time of the simulation or measurement, summed over threads, s.
     pub cpu_s: f64,
 }

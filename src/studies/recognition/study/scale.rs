@@ -15,14 +15,14 @@ use bubbletouch_svm::{Multiclass, Solver};
 
 /// Memory of the result rows of a configuration in a trial, bytes.
 const CELL_BYTES: f64 = 4e3;
-/// Memory per number of the training rows, bytes: original, scaled, sorted by class, and as support vectors.
+/// Memory per value of the training rows, bytes. It covers four copies: original, scaled, sorted by class, and as support vectors.
 const TRAINING_BYTES: f64 = 32.0;
-/// Memory per number of the test rows, bytes: original, scaled, and in the format of the kernel.
+/// Memory per value of the test rows, bytes. It covers three copies: original, scaled, and in the format of the kernel.
 const TEST_BYTES: f64 = 20.0;
 /// Memory of a score and of its contribution to decisions on several touches, bytes.
 const SCORE_BYTES: f64 = 16.0;
 
-/// Returns the size of a recognition study: work items, memory and disk space.
+/// Returns the size of a recognition study: numbers of work items, memory and disk space.
 pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     type Placed<'a> = (&'a StudyPart, &'a MeasurementGroup);
     let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
@@ -69,7 +69,8 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     }
 }
 
-/// Returns the memory of learned ensembles and estimators, bytes: the frames for fitting (n values each, original and centred) and the fitted estimators.
+/// Returns the memory of learned ensembles and image estimators, bytes: the frames to which they are fitted (n values each, original and centred), and the
+/// results of the fit.
 fn learned_bytes(group: &MeasurementGroup, n: f64) -> f64 {
     let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
     let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
@@ -79,8 +80,8 @@ fn learned_bytes(group: &MeasurementGroup, n: f64) -> f64 {
     }
 }
 
-/// Returns the memory of a family of configurations, bytes: its training and test rows, their scores, and the kernel values of its solver. `n_read` is the
-/// number of readings of one touch per class.
+/// Returns the memory to evaluate a family of configurations, bytes: its training and test rows, their scores, and the kernel values of its solver. `n_read` is
+/// the number of readings of one touch per class.
 fn family_bytes(
     plan: &Plan,
     configuration: &Configuration,

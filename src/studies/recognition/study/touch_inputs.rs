@@ -6,7 +6,7 @@ use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::world::Placement;
 
-/// Inputs that determine a plan's touches, apart from the array and the files of its objects. Plans with equal inputs share their touches.
+/// Inputs that determine the touches of a plan, except the array and the files of the objects. Plans with equal inputs share their touches.
 #[derive(Debug)]
 pub(crate) struct TouchInputs<'a> {
     pub(crate) objects: &'a ObjectsSpec,
@@ -17,7 +17,7 @@ pub(crate) struct TouchInputs<'a> {
 }
 
 impl<'a> TouchInputs<'a> {
-    /// Returns the inputs that determine a plan's touches.
+    /// Returns the inputs that determine the touches of a plan.
     pub fn new(plan: &'a Plan) -> Self {
         let spec = &plan.spec;
         Self {
@@ -29,7 +29,7 @@ impl<'a> TouchInputs<'a> {
         }
     }
 
-    /// Returns a text that identifies the inputs; different inputs give different texts.
+    /// Returns a text that identifies the inputs: equal inputs have equal texts, and different inputs have different texts.
     pub fn key(&self) -> String {
         format!("{self:?}")
     }

@@ -48,27 +48,27 @@ pub(crate) use nested;
 pub struct Sweep {
     /// Groups of configurations, ordered by array.
     pub groups: Vec<MeasurementGroup>,
-    /// Split of all touches for each trial.
+    /// For each trial, the split of all touches into training and test touches.
     pub splits: Vec<Hashed<Split>>,
-    /// Number of the first trial with the same split, for each trial; the trial's own number if there is no earlier one.
+    /// For each trial, the number of the first trial with the same split: the trial's own number if no earlier one has it.
     pub first_equal: Vec<usize>,
-    /// Object label of every touch.
+    /// For each touch, the number of the touched object.
     pub labels: Hashed<Array1<usize>>,
-    /// Group number of every touch; `None` if the split may divide groups.
+    /// For each touch, the number of its group; `None` if the split may divide groups.
     pub group_keys: Option<Hashed<Array1<usize>>>,
-    /// Pose of every touch; `None` unless the study chooses touches by their poses.
+    /// For each touch, its pose; `None` unless the study chooses touches by their poses.
     pub poses: Option<Hashed<Poses>>,
 }
 
 /// Part of a study: plan, touches and configurations of one combination of the values in `[axes]`.
 pub struct StudyPart {
-    /// Plan of this combination of values.
+    /// Plan of the study for this combination of values.
     pub plan: Plan,
-    /// Training touches; shared by parts with equal touches.
+    /// Training touches of the part; parts with equal touches share them.
     pub touched: Arc<dyn TouchSet + Send>,
-    /// Test touches, with the numbers of the training touches; the training touches themselves unless the study has `[test]`.
+    /// Test touches of the part, with the numbers of the training touches. Unless the study has `[test]`, they are the training touches themselves.
     pub tested: Arc<dyn TouchSet + Send>,
-    /// Splits and configurations of this combination of values.
+    /// Splits and configurations for this combination of values.
     pub sweep: Sweep,
 }
 
@@ -135,7 +135,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// Assigns the configurations to a combination of the values in `[axes]`, and numbers them from `first`.
+    /// Assigns the configurations to the combination `variant` of the values in `[axes]`, and numbers them from `first`.
     pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
         for configuration in self
             .groups

@@ -13,7 +13,8 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::collections::{HashMap, HashSet};
 
-/// Draws the split of all touches for a trial. The split is given by the data, or drawn by poses, by groups (`keys`), or by single touches.
+/// Draws the split of all touches into training and test touches for a trial. The split is given by the data, or drawn by poses, by groups (`keys`), or by
+/// single touches.
 ///
 /// # Errors
 /// If the split requires listed values but a pose is drawn, or if a class has no training or test rows.
@@ -55,7 +56,7 @@ pub fn draw_split(
     Ok(folds.swap_remove(trial % n_folds))
 }
 
-/// Returns the index of the first split with the same training and test touches in any order, for each split.
+/// For each split, returns the index of the first split that has the same training touches and the same test touches, in any order.
 pub fn first_equal(splits: &[Split]) -> Vec<usize> {
     let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
     let trained = |place: usize| splits[place].train.iter().collect::<HashSet<_>>();
@@ -74,8 +75,9 @@ pub fn first_equal(splits: &[Split]) -> Vec<usize> {
     first
 }
 
-/// Returns the values of the axis `train_touches`; by default, the maximum number that every object has in every training split. Checks that every object has
-/// enough touches in every trial: test touches for at least one group, and training touches for each inner fold and each imbalance.
+/// Returns the values of the axis `train_touches` (training touches per object). The default is the maximum number that every object has in every training
+/// split. Also checks that every object has enough touches in every trial: test touches for at least one group, and training touches for each inner fold and
+/// each imbalance.
 ///
 /// # Errors
 /// If a split has fewer training touches of an object than the study requires.
@@ -117,7 +119,7 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
     Ok(train_touches)
 }
 
-/// Returns the number of touches of the object with the fewest touches in any of the sets.
+/// For each set of touches, counts the touches of each object; returns the smallest number over all sets and objects.
 fn fewest_per_object<'a>(
     sets: impl Iterator<Item = &'a Vec<usize>>,
     labels: &Array1<usize>,

@@ -1,4 +1,4 @@
-//! Comparison of published accuracies with ours: finds the most accurate configuration to which each claim applies.
+//! Comparison of published accuracies with the accuracies of a study: finds the most accurate configuration to which each claim applies.
 
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::number;
@@ -61,7 +61,7 @@ fn check(claim: &PublishedSpec, configurations: &Table) -> Result<()> {
     }
 }
 
-/// Converts a TOML value of a study to a table value.
+/// Converts a value from a study file (TOML) to a value of a result table.
 fn setting(written: &toml::Value) -> Value {
     match (number(written), written.as_str()) {
         (Some(number), _) => Value::Number(number),
@@ -75,7 +75,8 @@ fn is_about(claim: &PublishedSpec, configurations: &Table, row: usize) -> bool {
     keys.all(|(key, wanted)| configurations.has_setting(column_name(key), row, &setting(wanted)))
 }
 
-/// Returns each claim with the most accurate configuration to which it applies (the first in a tie), once for each condition of the matching configurations.
+/// For each claim, returns the most accurate configuration to which it applies (the first in a tie). The result has one row for each condition of the matching
+/// configurations.
 ///
 /// # Errors
 /// If a configuration cannot be written as a row of a table.

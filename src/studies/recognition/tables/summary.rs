@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 /// Row of the table `accuracy.csv`.
 type Row = (Configuration, TrialScore);
 
-/// Returns one row per configuration, given one row per configuration and trial; the trials of a configuration are adjacent. `groups` contains the tested
-/// groups of each row, if there are any. `n_folds` returns the number of folds of a configuration, 1 without folds.
+/// Returns one row per configuration. The argument has one row per configuration and trial; the trials of a configuration are adjacent. For each of these rows,
+/// `groups` contains the tested groups, if there are any. `n_folds` returns the number of folds of a configuration, or 1 without folds.
 ///
 /// # Errors
 /// If the trials of a configuration have no rows.
@@ -43,7 +43,7 @@ pub fn summarise(
         .collect()
 }
 
-/// Returns the group counts of trials that hold out whole groups, for statistics over groups.
+/// Returns those counts of trials that hold out whole groups, in the form that statistics over groups need.
 pub fn grouped_tests<'a>(
     trials: impl Iterator<Item = (&'a TrialScore, &'a Vec<GroupCount>)>,
 ) -> Vec<GroupedTest<'a>> {
@@ -56,7 +56,7 @@ pub fn grouped_tests<'a>(
     tested.collect()
 }
 
-/// Returns the combined score of all trials of a configuration.
+/// Returns the score of a configuration over all its trials.
 fn score(
     trials: &[&TrialScore],
     (groups, n_folds): (&[Vec<GroupCount>], usize),
@@ -111,7 +111,7 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
     trials.iter().map(|(_, t)| value(t)).sum::<f64>() / trials.len() as f64
 }
 
-/// Compares every configuration with the configuration of the highest mean accuracy in its condition (the first in a tie), paired by trial.
+/// Compares every configuration with the best one of its condition, paired by trial. The best one has the highest mean accuracy (the first in a tie).
 ///
 /// # Errors
 /// If a trial has no training or test rows.
@@ -171,11 +171,11 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     })
 }
 
-/// Maximum number of pairs in the list of confusions.
+/// Maximum number of pairs of objects in the table of the most frequent confusions.
 const MAX_CONFUSED: usize = 15;
 
-/// Returns the pairs of objects that a configuration confuses most often, by the fraction of the touched object's test rows. Pairs with equal fractions keep
-/// the order of the table. `fused` is the number of the configuration with the most touches per decision, and this number of touches.
+/// Returns the pairs of objects that a configuration confuses most often. They are ordered by the fraction of the touched object's test rows; pairs with equal
+/// fractions keep the order of the table. `fused` is the number of the configuration with the most touches per decision, and this number of touches.
 ///
 /// # Errors
 /// Returns no error for the counts of a table.
@@ -220,7 +220,7 @@ pub fn most_confused(
     Ok(pairs)
 }
 
-/// Returns the number of test rows of each object in one configuration.
+/// For each object, returns the number of its test rows in one configuration.
 fn rows_of_objects(confusion: &[Confusion], configuration: usize) -> BTreeMap<&str, usize> {
     let mut n_test = BTreeMap::new();
     for row in confusion
@@ -269,7 +269,7 @@ pub fn pareto(
     Ok(table)
 }
 
-/// Marks each configuration that no other configuration of the same condition dominates.
+/// For each condition, marks the configurations that no other configuration dominates.
 fn mark_fronts(table: &mut [(Configuration, Pareto)]) -> Result<()> {
     for alike in by_condition(table.iter().map(|(configuration, _)| configuration))? {
         let on_front = |cost: fn(&Pareto) -> f64| {

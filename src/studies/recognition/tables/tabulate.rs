@@ -12,8 +12,8 @@ use crate::studies::recognition::tables::variance_table::variances;
 use crate::studies::recognition::training::trial::Evaluation;
 use std::collections::BTreeMap;
 
-/// Fills all tables except the stages and the published accuracies. `name` returns the class name of a label in a configuration. `n_folds` returns the number
-/// of folds of a configuration, 1 without folds. `matrices` lists the configurations whose confusion matrix is stored.
+/// Computes all result tables except the stages and the published accuracies. `name` returns the class name of a label in a configuration. `n_folds` returns
+/// the number of folds of a configuration, or 1 without folds. `matrices` lists the configurations whose confusion matrix is stored.
 ///
 /// # Errors
 /// If the trials of a configuration have no rows.
@@ -93,8 +93,8 @@ pub fn tabulate(
     Ok(())
 }
 
-/// Gives all rows the optional columns that any row has. If a combination of axis values holds out no groups, each test row counts as a group. A split without
-/// an earlier equal split is its own first equal split.
+/// Gives all rows the optional columns that any row has. If a combination of axis values holds out no groups, each test row counts as a group. If a split has
+/// no earlier equal split, its first equal split is itself.
 pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
     let has_groups = scores.iter().any(|score| score.n_groups.is_some());
     let has_repeats = scores.iter().any(|score| score.distinct_split.is_some());
@@ -109,8 +109,8 @@ pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
     }
 }
 
-/// Returns the configuration that differs only in its number of touches per decision and has the largest, with this number; `None` if no configuration has
-/// more.
+/// Among the configurations that differ only in their number of touches per decision, returns the one with the largest number, and this number. Returns `None`
+/// if no configuration has a larger number than the given one.
 fn max_touches_per_decision<'a>(
     mut configurations: impl Iterator<Item = &'a Configuration> + Clone,
     of: usize,

@@ -18,7 +18,7 @@ pub struct TouchedObject {
     pub touches: Vec<Touch>,
 }
 
-/// Draws the touches of every object from its own random stream.
+/// Draws the touches of every object. Each object has its own random stream, so its touches do not depend on the other objects.
 ///
 /// # Errors
 /// If a placement is invalid or gives too many touches.
@@ -39,7 +39,7 @@ pub fn draw_touches(
     touched.collect()
 }
 
-/// Returns the label of every touch, given the name and the number of touches of each class.
+/// For each touch, returns its label: the number of its class. The argument contains the name and the number of touches of each class.
 pub fn touch_labels(classes: &[(&str, usize)]) -> Array1<usize> {
     let classes = classes.iter().enumerate();
     let labels = classes.flat_map(|(label, (_, n))| std::iter::repeat_n(label, *n));

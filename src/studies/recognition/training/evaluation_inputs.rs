@@ -21,46 +21,46 @@ use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
 
-/// Number of hexadecimal digits of a hash in a work item's name. With fewer digits, the names of two work items may collide.
+/// Number of hexadecimal digits of the hash in a work item's name. With fewer digits, the names of two work items may collide.
 const DIGITS: usize = 24;
 
-/// Inputs that all families of a trial share.
+/// Inputs of a trial that all families of configurations share.
 #[derive(Clone, Copy, Debug)]
 pub struct TrialInputs<'a> {
     /// Seed of all random numbers.
     pub seed: u64,
     /// Number of the trial, from 0.
     pub number: usize,
-    /// Numbers of the split and of the projection, if each split is combined with several projections.
+    /// Number of the split and number of the projection, if each split is combined with several projections; `None` otherwise.
     pub crossed: Option<(usize, usize)>,
-    /// Split of all touches.
+    /// Split of all touches into training and test touches.
     pub split: &'a Hashed<Split>,
-    /// Number of the first split with the same touches; `None` if this split is the first.
+    /// Number of the first split with the same training and test touches; `None` if this split is the first.
     pub distinct_split: Option<usize>,
-    /// Number of the block of poses that the trial tests; `None` unless the split is by blocks.
+    /// Number of the block of poses that the trial tests; `None` unless the split holds out blocks of poses.
     pub tested_block: Option<usize>,
-    /// Object label of every touch.
+    /// For each touch, the number of the touched object.
     pub labels: &'a Hashed<Array1<usize>>,
-    /// Group number of every touch; `None` if the split may divide groups.
+    /// For each touch, the number of its group; `None` if the split may divide groups.
     pub group_keys: Option<&'a Hashed<Array1<usize>>>,
 }
 
-/// Inputs that all trials of a family share.
+/// Inputs of a family of configurations that all its trials share.
 #[derive(Clone, Debug)]
 pub struct FamilyInputs<'a> {
-    /// Inputs that determine the feature rows.
+    /// Inputs that determine how feature rows are computed from measurements.
     pub rows: RowInputs,
     /// Maximum number of training touches per object; `None` for all training touches of the split.
     pub train_touches: Option<usize>,
-    /// Fraction of training touches that are labelled as another object, 0 to 1.
+    /// Fraction of the training touches that are labelled as another object, 0 to 1; `None` for no such touches.
     pub mislabelled_fraction: Option<f64>,
-    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1.
+    /// Number of training touches of the most frequent object, divided by the number of the least frequent one, at least 1; `None` for equal numbers.
     pub class_imbalance: Option<f64>,
     /// Classifier, with the candidates from which its C and γ are chosen.
     pub training: TrainingInputs,
-    /// Settings of the family's configurations, in order; configurations with equal C are adjacent.
+    /// Settings that differ between the family's configurations, in the order of the configurations. Configurations with equal C are adjacent.
     pub decisions: Vec<Decision>,
-    /// Pose of every touch; `None` unless a configuration chooses touches by their poses.
+    /// For each touch, its pose; `None` unless a configuration chooses touches by their poses.
     pub poses: Option<&'a Hashed<Poses>>,
 }
 
@@ -73,37 +73,37 @@ pub struct TrainingInputs {
     pub c_grid: Option<Vec<f64>>,
     /// Candidate values of γ as multiples of 'scale'; `None` if γ is given.
     pub gamma_grid: Option<Vec<f64>>,
-    /// Maximum number of training touches per object for the choice of C and γ; `None` for all.
+    /// Maximum number of training touches per object that are used to choose C and γ; `None` for all.
     pub cv_touches: Option<usize>,
-    /// Number of inner folds; `None` if no folds are needed.
+    /// Number of folds of the inner cross-validation; `None` if it is not needed.
     pub n_folds: Option<usize>,
 }
 
-/// Settings that differ between the configurations of a family.
+/// Settings in which the configurations of a family differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
-    /// Penalty C; `None` if C is chosen or the classifier has no C.
+    /// Penalty C of the classifier; `None` if C is chosen by cross-validation or the classifier has no C.
     pub c: Option<f64>,
-    /// Number of test touches that are combined into one decision.
+    /// Number of test touches of an object that are combined into one decision.
     pub touches_per_decision: usize,
     /// Policy that chooses the touches of a decision after the first one.
     pub next_touch: NextTouch,
 }
 
 impl TrialInputs<'_> {
-    /// Returns the name of the trial; different inputs give different names.
+    /// Returns the name of the trial, which contains a hash of all its inputs. Different inputs give different names.
     pub fn name(&self) -> String {
         let Self { number, .. } = self;
         format!("trial {number} {}", short_hash(format!("{self:?}"), DIGITS))
     }
 
-    /// Returns the random stream of the trial with this name.
+    /// Returns the seed of the trial's random numbers for the purpose `name`.
     pub fn stream(&self, name: &str) -> Seed {
         let seed = Seed::new(self.seed).named(name);
         seed.numbered(self.number as u64)
     }
 
-    /// Returns the split of a family, reduced to its number of training touches per object and its class imbalance.
+    /// Returns the split into training and test touches for a family. Its training touches are reduced to the family's number per object and class imbalance.
     ///
     /// # Errors
     /// If an object has no training touches after the reduction.
@@ -119,7 +119,7 @@ impl TrialInputs<'_> {
         }
     }
 
-    /// Returns the training labels of all touches, after assigning another object's label to a fraction of the training touches.
+    /// For each touch, returns its label for training. A fraction of the training touches is labelled as another object.
     ///
     /// # Errors
     /// If the fraction is not between 0 and 1.
@@ -135,7 +135,7 @@ impl TrialInputs<'_> {
         Ok(labels)
     }
 
-    /// Returns the group of each test touch; `None` unless whole groups are held out.
+    /// For each test touch, returns its group; returns `None` unless whole groups are held out.
     pub fn test_groups(&self, test: &[usize]) -> Option<Vec<usize>> {
         match (self.tested_block, self.group_keys) {
             (Some(block), _) => Some(vec![block; test.len()]),
@@ -151,7 +151,7 @@ impl TrialInputs<'_> {
 }
 
 impl<'a> FamilyInputs<'a> {
-    /// Returns the inputs of a family that has at least one configuration.
+    /// Returns the inputs of a family, given as a list of at least one configuration.
     pub fn new(plan: &Plan, sweep: &'a Sweep, family: &[Configuration]) -> Self {
         let recognition = &plan.spec.recognition;
         let decisions = family.iter().map(|configuration| Decision {
@@ -179,14 +179,14 @@ impl<'a> FamilyInputs<'a> {
         }
     }
 
-    /// Returns the settings grouped by equal C; each group shares one fit.
+    /// Returns the settings in groups of equal C; each group shares one trained classifier.
     pub fn fits(&self) -> impl Iterator<Item = &[Decision]> {
         self.decisions.chunk_by(|a, b| a.c == b.c)
     }
 }
 
 impl Decision {
-    /// Returns whether a policy for the next touch uses decisions on training touches.
+    /// Returns whether a policy for the next touch uses the classifier's decisions on training touches.
     pub fn is_informed(&self) -> bool {
         self.next_touch == NextTouch::MostInformative
     }

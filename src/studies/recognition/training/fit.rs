@@ -14,7 +14,7 @@ use ndarray::{Array1, Axis};
 use std::collections::HashMap;
 use std::time::Instant;
 
-/// Training rows of a family in one trial, and the training parameters.
+/// Training rows of a family of configurations in one trial, and the parameters of the training.
 pub struct Training<'a> {
     /// Classifier, with the candidates from which its C and γ are chosen.
     pub inputs: &'a TrainingInputs,
@@ -22,9 +22,9 @@ pub struct Training<'a> {
     pub data: Dataset,
     /// Number of rows that are first readings; C and γ are chosen on these rows only.
     pub n_first: usize,
-    /// Group of each row; `None` if the split may divide groups.
+    /// Group of each training row; `None` if the split may divide groups.
     pub group_keys: Option<Array1<usize>>,
-    /// Seed of the random draw of inner folds.
+    /// Seed of the random numbers by which inner folds are drawn.
     pub seed: Seed,
 }
 
@@ -32,16 +32,16 @@ pub struct Training<'a> {
 pub struct Fitted {
     /// Trained classifier, including its scaling.
     pub classifier: TrainedClassifier,
-    /// Penalty C; `None` if the classifier has no C.
+    /// Penalty C with which the classifier was trained; `None` if the classifier has no C.
     pub c: Option<f64>,
-    /// Kernel parameter γ; `None` if the classifier has no γ.
+    /// Kernel parameter γ with which the classifier was trained; `None` if the classifier has no γ.
     pub gamma: Option<f64>,
     /// Time to choose the parameters and to train, s.
     pub fit_s: f64,
 }
 
 impl Training<'_> {
-    /// Trains one classifier for each penalty, in order. A penalty of `None` means that C is chosen, or that the classifier has no C.
+    /// Trains one classifier for each penalty C, in order. `None` stands for a C that is chosen by cross-validation, or for a classifier without C.
     ///
     /// # Errors
     /// If a fold cannot be drawn or the training fails.
@@ -57,7 +57,7 @@ impl Training<'_> {
         self.inputs.gamma_grid.is_some()
     }
 
-    /// Trains classifiers for several given values of C. Common computations are done once, and their time is divided equally.
+    /// Trains one classifier for each given value of C. Common computations are done once, and their time is divided equally among the classifiers.
     fn train_path(&self, path: &[f64]) -> Result<Vec<Fitted>> {
         let start = Instant::now();
         let classifier = &self.inputs.classifier;
@@ -73,7 +73,7 @@ impl Training<'_> {
         Ok(fitted.collect())
     }
 
-    /// Trains one classifier with a given C, a chosen C, or no C; γ is also given or chosen.
+    /// Trains one classifier with a given C, a chosen C, or no C. Its γ is also given or chosen.
     fn train(&self, c: Option<f64>) -> Result<Fitted> {
         let start = Instant::now();
         let classifier = &self.inputs.classifier;
@@ -99,8 +99,8 @@ impl Training<'_> {
         })
     }
 
-    /// Returns the best C, and the classifier with the best γ of the candidates. γ is a multiple of the default γ of all training rows, even if the choice uses
-    /// only some of the rows. A single candidate gives the same result as a given value.
+    /// Chooses the best C and γ among the candidates by cross-validation; returns C, and the classifier with γ. γ is a multiple of the default γ of all
+    /// training rows, even if the choice uses only some of the rows. A single candidate gives the same result as a given value.
     fn choose(&self, classifier: Classifier, candidates: &Candidates) -> Result<(f64, Classifier)> {
         let unit = self.gamma()?;
         let scaled_by = |scale: f64| match unit {
@@ -119,7 +119,8 @@ impl Training<'_> {
         Ok((chosen.best.c, classifier.with_choice(&chosen)))
     }
 
-    /// Returns the predicted label of the first reading of each touch. The classifiers have the parameters of `like` and are trained without the touch's fold.
+    /// For each training touch, returns the label that is predicted for its first reading by a classifier trained without its fold. The classifiers have the
+    /// parameters of `like`.
     ///
     /// # Errors
     /// If a fold cannot be drawn or the training fails.
@@ -150,7 +151,7 @@ impl Training<'_> {
         Ok(answers)
     }
 
-    /// Returns the given γ, or the default computed from the training rows; `None` if the classifier has no γ.
+    /// Returns the γ that is given or computed from the training rows; returns `None` if the classifier has no γ.
     fn gamma(&self) -> Result<Option<f64>> {
         let classifier = &self.inputs.classifier;
         let kernel = classifier.kind.about().kernel;
@@ -177,7 +178,7 @@ impl Training<'_> {
         (0..self.n_first).filter(takes_part).collect()
     }
 
-    /// Returns the inner folds as positions in `rows`. The folds do not divide groups that the study's split does not divide.
+    /// Returns the folds of the inner cross-validation as positions in `rows`. The folds do not divide groups that the study's split does not divide.
     fn folds(&self, rows: &[usize]) -> Result<Vec<Split>> {
         let labels = self.data.targets.select(Axis(0), rows);
         let k = self.inputs.n_folds.expect("folds of a choice");

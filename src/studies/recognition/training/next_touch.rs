@@ -13,7 +13,8 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use rayon::prelude::*;
 
-/// Fits a model of the decisions to training touches, using classifiers that were trained without these touches.
+/// Fits a model that predicts a classifier's decision on a touch from its pose. The decisions come from training touches, with classifiers that were trained
+/// without these touches.
 pub(super) fn answer_model<'a>(
     (trial, family): (&TrialInputs, &FamilyInputs<'a>),
     training: &Training,
@@ -30,8 +31,8 @@ pub(super) fn answer_model<'a>(
     Ok(Some(AnswerModel::new(poses, &touches, trial.n_objects())))
 }
 
-/// Returns groups of k touches, as indices into the test touches, ordered by class. All touches of a group are random, or the first is random and the others
-/// are chosen among all test touches of the object.
+/// Returns groups of k touches, each to be combined into one decision. A touch is given by its index among the test touches; groups are ordered by class. All
+/// touches of a group are random, or the first one is random and the others are chosen among all test touches of the object.
 pub(super) fn choose_touches(
     (family, configuration): (&FamilyInputs, &Decision),
     answered: &AnsweredTouches,
@@ -80,17 +81,17 @@ pub(super) fn choose_touches(
 pub(super) struct AnsweredTouches<'a> {
     pub(super) fitted: &'a Fitted,
     pub(super) test: &'a Dataset,
-    /// Number of the touch of each test row.
+    /// For each test row, the number of its touch.
     pub(super) touches: &'a [usize],
-    /// Group of each test touch; `None` unless whole groups are held out.
+    /// For each test touch, its group; `None` unless whole groups are held out.
     pub(super) groups: Option<&'a [usize]>,
     pub(super) decide: Decide<'a>,
     pub(super) answer_s: f64,
     pub(super) n_train: usize,
-    /// Model of the expected decisions on touches; `None` if no configuration uses it.
+    /// Model that predicts the classifier's decision on a touch from its pose; `None` if no configuration uses it.
     pub(super) model: Option<AnswerModel<'a>>,
     pub(super) model_s: f64,
 }
 
-/// Function that returns one predicted label for each group of touches.
+/// Function that returns one predicted label for each given group of test touches.
 pub(crate) type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;

@@ -25,27 +25,27 @@ use std::time::Instant;
 /// Result of one configuration in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
-    /// Row of the table `accuracy.csv`.
+    /// Score of the configuration in the trial, for the table `accuracy.csv`.
     pub score: TrialScore,
-    /// Row of the table `timing.csv`.
+    /// Computing times of the configuration in the trial, for the table `timing.csv`.
     pub time: TrialTime,
-    /// Non-zero confusion counts: (object, predicted object, count).
+    /// Non-zero counts of the confusion matrix: (object, predicted object, number of test rows).
     pub confusion: Vec<(usize, usize, usize)>,
-    /// Counts for each group of test rows; empty if no groups are held out.
+    /// For each group of test touches, its counts of decisions; empty if no groups are held out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<GroupCount>,
 }
 
-/// Data that all evaluations of a group share in one trial.
+/// Data of a trial that the evaluations of all families in a group share.
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
     /// Labels, split and groups of the trial.
     pub inputs: TrialInputs<'a>,
-    /// Measurements of all touches; each frame has at least as many as a configuration needs.
+    /// Measurements of all touches. Each frame has at least as many measurements as any configuration needs.
     pub measurements: &'a Measurements,
 }
 
-/// Returns the function by which a trained classifier decides on groups of test touches.
+/// Returns the function with which a trained classifier decides on groups of test touches.
 fn decider<'a>(
     fitted: &'a Fitted,
     test: &Dataset,
@@ -68,7 +68,7 @@ fn decider<'a>(
 }
 
 impl Trial<'_> {
-    /// Trains and tests the configurations of a family on the first m measurements, in order.
+    /// Trains and tests the configurations of a family in order. They use the first m measurements of each frame.
     ///
     /// # Errors
     /// If rows of the family cannot be computed, or the training fails.
@@ -113,7 +113,7 @@ impl Trial<'_> {
         Ok(evaluations)
     }
 
-    /// Returns the results for the decisions on groups of k test touches.
+    /// Returns the results of decisions, each on a group of k test touches.
     fn decide(
         &self,
         (family, configuration): (&FamilyInputs, &Decision),
