@@ -18,7 +18,7 @@ pub struct ReconstructionStudySpec {
     pub objects: ObjectsSpec,
     /// Table `[skin]`: a single array of taxels.
     pub skin: SkinSpec,
-    /// Table `[touches]`: random poses and depths of the touches.
+    /// Table `[touches]`: poses and depths of the touches.
     pub touches: TouchesSpec,
     /// Table `[signal]`: noise and processing of frames before compression. Smoothing is not allowed.
     #[serde(default)]

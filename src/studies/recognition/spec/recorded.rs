@@ -73,7 +73,7 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub groups_test: Option<PathBuf>,
-    /// Names of the classes, in the order of their integer labels.
+    /// Names of the classes, in the order of their numbers from 0.
     pub names: Option<Vec<String>>,
     /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
     #[serde(default)]
