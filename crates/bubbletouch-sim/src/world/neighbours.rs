@@ -11,33 +11,33 @@
 use super::Patch;
 use glam::DVec3;
 
-/// Largest distance between neighbours, as a multiple of the local spacing. If smaller, sparse regions of draped layouts lose some neighbours; if larger,
-/// taxels at opposite edges of a gap in the skin become neighbours.
+/// Largest distance between neighbouring taxels, as a multiple of the local spacing. If smaller, sparse regions of draped layouts lose some neighbours; if
+/// larger, taxels at opposite edges of a gap in the skin become neighbours.
 const REACH: f64 = 3.0;
-/// Distance, relative to a taxel's radius, below which two taxels coincide; such a distance does not count as spacing.
+/// Distance, relative to a taxel's radius, below which two taxels count as coincident; smaller distances are ignored when the spacing is computed.
 const COINCIDENT: f64 = 0.01;
-/// Number of taxels in one line after which the search for a taxel beside the line ends. If larger, more distant rows become neighbours and long lines take
-/// longer.
+/// Number of taxels found in one line after which the search for a taxel beside the line ends. If larger, more distant rows become neighbours and long lines
+/// take longer.
 const MAX_IN_LINE: usize = 256;
-/// Cosine between the directions to two taxels above which both lie along one line.
+/// Cosine of the angle between the directions to two taxels above which both taxels count as lying along one line.
 const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Cosine between axes below which two taxels belong to opposite sides of a thin wall.
+/// Cosine of the angle between the axes of two taxels below which they belong to opposite sides of a thin wall.
 const OPPOSED: f64 = -0.5;
 /// Factor that covers rounding of squared distances: the corners of a square lie exactly on the ball around its diagonal.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Neighbours of every taxel of a skin, as a symmetric graph.
+/// Neighbours of every taxel of a skin, as a symmetric graph of taxels.
 ///
 /// Invariant: the relation is symmetric, and the list of each taxel ascends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
-    /// Offset of each taxel's neighbours in the list, followed by the length of the list.
+    /// Index of each taxel's first neighbour in the list of neighbours, followed by the length of the list.
     starts: Vec<usize>,
     taxels: Vec<u32>,
 }
 
 impl Neighbours {
-    /// Finds the neighbours of all taxels; takes about a microsecond per taxel.
+    /// Finds the neighbours of all taxels of a patch; takes about a microsecond per taxel.
     pub fn new(skin: &Patch) -> Self {
         let mut pairs: Vec<[u32; 2]> = Vec::new();
         for taxel in 0..skin.n_taxels() {
@@ -72,14 +72,14 @@ impl Neighbours {
         neighbours.iter().map(|&other| other as usize)
     }
 
-    /// Returns the largest number of neighbours of any taxel.
+    /// Returns the largest number of neighbours that a taxel has.
     pub fn most(&self) -> usize {
         let counts = self.starts.windows(2).map(|ends| ends[1] - ends[0]);
         counts.max().unwrap_or(0)
     }
 
-    /// Returns the taxels within `reach` metres of `taxel` along the surface, including the taxel itself, with their distances. Taxels with opposed axes count
-    /// only if they can be reached by steps between neighbours within `reach`, for example around a thin finger.
+    /// Returns the taxels within `reach` metres of `taxel` along the surface, including the taxel itself, with their distances. Taxels with opposed axes are
+    /// included only if a path of neighbours within this distance leads to them, for example around a thin finger.
     pub fn within(&self, skin: &Patch, taxel: usize, reach: f64) -> Vec<(usize, f64)> {
         let near = others_within(skin, taxel, reach.min(size(skin)));
         let near = near
@@ -110,8 +110,9 @@ fn along_surface(skin: &Patch, [a, b]: [usize; 2]) -> f64 {
     centers[a].distance(centers[b]) * bent
 }
 
-/// Returns the other taxels on this side of the skin within [`REACH`] times the local spacing, nearest first. The spacing is the distance to the nearest taxel
-/// in a direction across the nearest one. Distant rows are therefore neighbours, however dense each row is.
+/// Returns the other taxels within [`REACH`] times the local spacing that lie on the given taxel's side of the skin, nearest first. The spacing is the
+/// distance to the nearest taxel in a direction across the direction to the very nearest taxel. Distant rows are therefore neighbours, however dense each row
+/// is.
 fn around(skin: &Patch, taxel: usize) -> Vec<usize> {
     let centers = skin.layout().centers();
     let away = |other: usize| centers[other] - centers[taxel];
@@ -147,7 +148,7 @@ fn around(skin: &Patch, taxel: usize) -> Vec<usize> {
     }
 }
 
-/// Returns the diagonal of the bounding box of all taxels, metres.
+/// Returns the diagonal of the bounding box of a patch's taxels, metres.
 fn size(skin: &Patch) -> f64 {
     let bounds = skin.tree().bounds();
     bounds.map_or(0.0, |bounds| bounds.size().length())
@@ -167,7 +168,7 @@ fn others_within(skin: &Patch, taxel: usize, radius: f64) -> Vec<usize> {
     others
 }
 
-/// Returns whether none of the taxels `around` lies between the two taxels. A taxel that coincides with one of the two is not between them.
+/// Returns whether no taxel of the list `around` lies between the taxels `a` and `b`. A taxel that coincides with one of the two is not between them.
 fn is_free(skin: &Patch, [a, b]: [usize; 2], around: &[usize]) -> bool {
     let centers = skin.layout().centers();
     let middle: DVec3 = 0.5 * (centers[a] + centers[b]);

@@ -6,7 +6,7 @@ use crate::error::Result;
 use glam::DVec3;
 use std::sync::OnceLock;
 
-/// Rigid substrate with taxels in any layout; their properties are equal or individual.
+/// Rigid substrate with taxels in any layout. The properties of the taxels are equal or individual.
 ///
 /// Invariant: there is one set of taxel properties for all taxels, or one per taxel. The search trees belong to the layout and the taxels.
 #[derive(Clone, Debug)]
@@ -24,26 +24,26 @@ pub struct Patch {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EvenGrid {
     pub grid: Grid,
-    /// Radius ρ of each taxel, metres.
+    /// Radius of each taxel, metres.
     pub radius: f64,
-    /// Stroke s of each taxel, metres.
+    /// Stroke of each taxel, metres.
     pub stroke: f64,
-    /// Height of the substrate relative to the rest centres, −s − ρ, metres.
+    /// Height of the substrate relative to the taxels' centres at rest, metres: minus the sum of stroke and radius.
     pub behind: f64,
 }
 
-/// Copy of a patch's taxels whose axes are a direction of travel.
+/// Copy of a patch's taxels whose axes are replaced by a direction of travel.
 #[derive(Clone, Debug)]
 pub(crate) struct Travelling {
     pub taxels: TaxelTree,
-    /// Largest coordinate of a taxel along the direction, including its radius, metres.
+    /// Largest coordinate of a taxel's surface along the direction of travel, metres.
     pub front: f64,
-    /// Whether the taxels' own axes equal the direction of travel. Each deflection then equals the travel past first contact of the taxel.
+    /// Whether the taxels' own axes equal the direction of travel. If so, each deflection equals the travel past first contact of the taxel.
     pub is_flat: bool,
 }
 
 impl Travelling {
-    /// Creates the copy of the taxels for travel along a unit vector.
+    /// Creates a copy of the patch's taxels whose axes are replaced by the unit vector `direction`.
     pub fn new(patch: &Patch, direction: DVec3) -> Self {
         let (layout, taxels) = (&patch.layout, &patch.taxels);
         let places = layout.centers().iter().enumerate();
@@ -102,7 +102,7 @@ impl Patch {
         &self.name
     }
 
-    /// Returns the rest centres and axes of the taxels.
+    /// Returns the layout of the patch: centres (at rest) and axes of the taxels.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -117,18 +117,18 @@ impl Patch {
         self.layout.n_taxels()
     }
 
-    /// Returns the search tree over the taxels, which finds those near a ball.
+    /// Returns the search tree over the taxels, which finds the taxels near a ball.
     pub fn tree(&self) -> &TaxelTree {
         let make = || TaxelTree::new(&self.layout, &self.taxels);
         self.tree.get_or_init(make)
     }
 
-    /// Returns the copy of the taxels for travel along z.
+    /// Returns the copy of the patch's taxels whose axes are replaced by z, for presses along z.
     pub(crate) fn ahead(&self) -> &Travelling {
         self.ahead.get_or_init(|| Travelling::new(self, DVec3::Z))
     }
 
-    /// Returns the grid if the layout is a grid and all taxels have equal radius and stroke.
+    /// Returns the grid if the layout is a grid and all taxels have equal radius and stroke; otherwise `None`.
     pub(crate) fn even_grid(&self) -> Option<&EvenGrid> {
         self.even_grid.as_ref()
     }

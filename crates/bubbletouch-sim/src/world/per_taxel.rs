@@ -22,7 +22,7 @@ impl<T> From<T> for PerTaxel<T> {
 }
 
 impl<T> PerTaxel<T> {
-    /// Returns the value of one taxel.
+    /// Returns the value of the taxel with the given index.
     ///
     /// # Panics
     /// If the taxel does not exist.
@@ -33,8 +33,8 @@ impl<T> PerTaxel<T> {
         }
     }
 
-    /// Checks that there is one value, or one per taxel of the patch, and that each value is valid. Errors contain the patch's name, and also the taxel (from
-    /// 1) if there is one value per taxel.
+    /// Returns an error unless there is one value, or one per taxel of the patch, and each value is valid. Errors contain the patch's name, and also the
+    /// taxel (from 1) if there is one value per taxel.
     pub(super) fn check(
         &self,
         patch: &str,
@@ -57,7 +57,7 @@ impl<T> PerTaxel<T> {
         Ok(())
     }
 
-    /// Returns the stored values: a single one, or one per taxel.
+    /// Returns the stored values: a single value, or one per taxel.
     pub fn all(&self) -> &[T] {
         match self {
             Self::Equal(equal) => std::slice::from_ref(equal),

@@ -16,17 +16,17 @@ use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Half a turn about x: the patch's z points down. The components are constants, so that the rotation is exact.
+/// Rotation by half a turn about x, after which the patch's z points down. The components are constants, so that the rotation is exact.
 const FACING_DOWN: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
 
-/// Difference, metres or radians, below which two values count as one pose: far below the resolution of any skin and far above rounding. If larger, fine steps
-/// are merged; if smaller, 0.1 + 0.2 and 0.3 are two poses.
+/// Difference, metres or radians, below which two values of a coordinate count as one pose. The value is far below the resolution of any skin and far above
+/// rounding. If larger, fine steps are merged; if smaller, 0.1 + 0.2 and 0.3 are two poses.
 const SAME_POSE: f64 = 1e-9;
 
 /// Values of one coordinate of a touch, in metres or radians: a list, or a uniform range.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Spread {
-    /// List of different values, at least one.
+    /// List of at least one value, all different.
     Values(Vec<f64>),
     /// Uniform distribution from `low` to `high`.
     Uniform {
@@ -37,14 +37,14 @@ pub enum Spread {
     },
 }
 
-/// Resting poses in which an object is touched.
+/// Choice of the resting poses (stable poses on a table) in which an object is touched.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RestPoses {
-    /// The pose of the model in its file, with the object's own z up.
+    /// The pose that the model has in its file, with the object's own z up.
     #[default]
     AsModelled,
-    /// The stable resting poses on the table.
+    /// All stable resting poses on the table.
     Stable,
 }
 
@@ -58,7 +58,7 @@ impl RestPoses {
     }
 }
 
-/// Coordinate of a touch, over which a study can vary.
+/// Coordinate of a touch that a study can vary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TouchAxis {
     /// Resting pose of the object.
@@ -106,7 +106,8 @@ impl TouchAxis {
         Spread::Values(kept.map(|(_, (value, _))| value).collect())
     }
 
-    /// Returns pairs of indices of values that count as one pose: values closer than [`SAME_POSE`], for yaws modulo a full turn.
+    /// Returns pairs of indices of values that count as one pose. Two values count as one if they differ by less than [`SAME_POSE`], for yaws modulo a full
+    /// turn.
     pub(super) fn same_poses(self, values: &[f64]) -> Vec<(usize, usize)> {
         let is_turn = self == Self::Yaw;
         let place = |value: f64| {
@@ -137,7 +138,7 @@ impl TouchAxis {
 /// Drawn touches are nested: the touches for a smaller `per_object` are the first ones for a larger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
-    /// Resting poses of the object.
+    /// Choice of the object's resting poses.
     pub rest: RestPoses,
     /// Range of the offset of the patch's axis along the x axis of the table, from the middle of the object's bounding box; metres.
     pub offset_x: Spread,
@@ -155,12 +156,12 @@ pub struct Placement {
     pub per_object: Option<usize>,
 }
 
-/// One touch of one object: resting pose, offsets, angles and depth.
+/// One touch of one object, given by resting pose, offsets, angles and depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
     /// Index of the resting pose in the object's list of poses.
     pub rest: usize,
-    /// Offset of the patch's axis at the height of the object's top, table x and y, metres.
+    /// Offset of the patch's axis at the height of the object's top, along table x and y, metres.
     pub offset: [f64; 2],
     /// Yaw: rotation of the object about the z axis of the table, radians.
     pub yaw: f64,
@@ -168,7 +169,7 @@ pub struct Touch {
     pub tilt: [f64; 2],
     /// Depth: travel of the patch past first contact, metres.
     pub depth: f64,
-    /// For each [`TouchAxis`], the index among the listed values; `None` if the spread is uniform.
+    /// For each [`TouchAxis`], the index of the touch's value among the listed values; `None` if the values are a uniform range.
     pub indices: [Option<usize>; 7],
 }
 
@@ -232,7 +233,7 @@ impl Touch {
 }
 
 impl Placement {
-    /// Returns the spread of each axis except the resting pose, in the order of the product.
+    /// Returns the values or range of each axis except the resting pose, in the order in which combinations are formed.
     pub fn spreads(&self) -> [(TouchAxis, &Spread); 6] {
         [
             (TouchAxis::OffsetX, &self.offset_x),

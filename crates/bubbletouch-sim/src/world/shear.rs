@@ -4,22 +4,23 @@ use super::{Patch, PerTaxel};
 use crate::error::Result;
 use crate::text::in_range::{not_negative, positive};
 
-/// Shear spring and friction of a taxel, optional for a [`Patch`]; without them taxels move along their axes only.
+/// Shear spring and friction of a taxel, optional for a [`Patch`]; without shear springs, taxels move only along their axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
-    /// Shear stiffness k_t perpendicular to the taxel's axis, N/m, positive.
+    /// Stiffness of the shear spring perpendicular to the taxel's axis, N/m, positive.
     pub stiffness: f64,
-    /// Coefficient of friction μ between taxel and object, zero or positive.
+    /// Coefficient of friction between taxel and object, zero or positive.
     pub friction: f64,
 }
 
 impl Shear {
-    /// Returns the largest shear displacement without slip, metres: μ f / k_t for a normal force f of `force` newtons.
+    /// Returns the largest shear displacement without slip, metres, for a normal force in newtons: friction coefficient times force, divided by the shear
+    /// stiffness.
     pub fn reach(&self, force: f64) -> f64 {
         self.friction * force / self.stiffness
     }
 
-    /// Checks the shear stiffness and the coefficient of friction.
+    /// Returns an error if the shear stiffness or the coefficient of friction is out of range.
     ///
     /// # Errors
     /// If a property is out of its range; the error names the first one.
@@ -29,7 +30,7 @@ impl Shear {
     }
 }
 
-/// Shear springs of a patch: equal or one per taxel.
+/// Shear springs of a patch: equal for all taxels, or one per taxel.
 pub type Shears = PerTaxel<Shear>;
 
 impl Shears {

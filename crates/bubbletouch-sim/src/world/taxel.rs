@@ -7,23 +7,24 @@ use glam::DVec3;
 /// Sensing element: a sphere on a spring and damper that slides along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taxel {
-    /// Radius ρ of the sphere, metres, positive.
+    /// Radius of the taxel's sphere, metres, positive.
     pub radius: f64,
-    /// Stiffness k of the spring, N/m, positive.
+    /// Stiffness of the spring, N/m, positive.
     pub stiffness: f64,
-    /// Damping c of the damper, N·s/m, zero or positive.
+    /// Damping of the damper, N·s/m, zero or positive.
     pub damping: f64,
-    /// Stroke s, metres, positive: deflection at which the taxel is saturated.
+    /// Stroke, metres, positive: the deflection at which the taxel is saturated.
     pub stroke: f64,
 }
 
 impl Taxel {
-    /// Returns the height of the substrate relative to the rest centre, along the axis, metres: −s − ρ. The contact law ignores objects behind the substrate.
+    /// Returns the height of the substrate along the axis, relative to the taxel's centre at rest, metres: minus the sum of stroke and radius. The contact
+    /// law ignores objects behind the substrate.
     pub fn substrate(&self) -> f64 {
         -self.stroke - self.radius
     }
 
-    /// Checks the properties of the taxel.
+    /// Returns an error if a property of the taxel is out of range.
     ///
     /// # Errors
     /// If a property is out of its range; the error names the first one.
@@ -35,7 +36,7 @@ impl Taxel {
     }
 }
 
-/// Rectangular grid of rest centres, centred on the patch's origin.
+/// Rectangular grid of taxels, centred on the patch's origin.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Grid {
     /// Number of columns, along patch x.
@@ -63,7 +64,7 @@ impl Grid {
         (row as f64 - 0.5 * (self.ny as f64 - 1.0)) * self.pitch
     }
 
-    /// Returns rest centres and axes of the grid, row by row (patch y, ascending).
+    /// Returns the centres (at rest, metres) and the axes of the grid's taxels, row by row (patch y, ascending).
     pub(super) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let rows = (0..self.ny).map(|row| self.y(row));
         rows.flat_map(move |y| {
@@ -71,7 +72,7 @@ impl Grid {
         })
     }
 
-    /// Checks the size and pitch of the grid.
+    /// Returns an error if the size or the pitch of the grid is out of range.
     ///
     /// # Errors
     /// If a property is out of its range; the error names the first one.

@@ -8,21 +8,21 @@ use super::{Layout, Taxel, Taxels};
 use crate::geometry::Aabb;
 use glam::DVec3;
 
-/// Maximum number of taxels in a leaf, evaluated with one or two vector instructions. If larger, taxels are evaluated needlessly; if smaller, more boxes are
-/// tested.
+/// Maximum number of taxels in a leaf, evaluated with one or two vector instructions. If larger, taxels are evaluated needlessly; if smaller, more bounding
+/// boxes are tested.
 pub(crate) const LEAF: usize = 8;
-/// Stroke of taxels without a stop, metres.
+/// Stroke that stands for an unlimited stroke, metres.
 const ENDLESS: f64 = 1e6;
-/// Factor that covers rounding of a reach: far above 1e-16 and far below any measurable difference.
+/// Factor that covers rounding of a sum of radii: far above 1e-16 and far below any measurable difference.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// Taxels of a patch, grouped by neighbourhood in a tree of boxes.
+/// Search tree over the taxels of a patch, grouped by neighbourhood in bounding boxes.
 #[derive(Clone, Debug)]
 pub struct TaxelTree {
-    /// Nodes of the tree, each before all nodes below it.
+    /// Nodes of the tree; each node precedes all nodes below it.
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    /// Largest depth s + ρ of a taxel, metres.
+    /// Largest sum of stroke and radius of a taxel, metres.
     depth: f64,
 }
 
@@ -31,44 +31,44 @@ pub struct TaxelTree {
 pub(crate) struct PlacedTaxel {
     /// Index of the taxel in the layout.
     pub number: u32,
-    /// Rest centre p of the taxel, metres.
+    /// Centre of the taxel at rest, metres.
     pub center: DVec3,
     /// Unit vectors perpendicular to the axis; X and Y for a taxel along Z, so that a flat patch is computed exactly as a grid.
     pub across: [DVec3; 2],
-    /// Axis n of the taxel, unit vector.
+    /// Axis of the taxel, unit vector.
     pub axis: DVec3,
-    /// Radius ρ of the taxel, metres.
+    /// Radius of the taxel, metres.
     pub radius: f64,
-    /// Height of the substrate along the axis, relative to the rest centre, −s − ρ, metres.
+    /// Height of the substrate along the axis, relative to the taxel's centre at rest, metres.
     pub behind: f64,
 }
 
-/// Group of neighbouring taxels, coordinate by coordinate. Unused entries repeat the last taxel, with everything behind its substrate.
+/// Group of neighbouring taxels, stored coordinate by coordinate. Unused entries repeat the last taxel, with a substrate so high that nothing pushes them.
 #[derive(Clone, Debug)]
 pub(crate) struct Leaf {
     pub numbers: [u32; LEAF],
-    /// Rest centres p of the taxels: x, y, z, metres.
+    /// Centres of the taxels at rest: x, y, z, metres.
     pub centers: [[f64; LEAF]; 3],
-    /// Two unit vectors perpendicular to each axis.
+    /// Two unit vectors perpendicular to the axis of each taxel.
     pub across: [[[f64; LEAF]; 3]; 2],
-    /// Axes n of the taxels, unit vectors.
+    /// Axes of the taxels, unit vectors.
     pub axes: [[f64; LEAF]; 3],
-    /// Radii ρ of the taxels, metres.
+    /// Radii of the taxels, metres.
     pub radii: [f64; LEAF],
-    /// Heights of the taxels' substrates, −s − ρ, metres.
+    /// Heights of the taxels' substrates along their axes, relative to the taxels' centres at rest, metres.
     pub behind: [f64; LEAF],
 }
 
 /// Taxel index that marks an unused entry of a leaf.
 const NONE: u32 = u32::MAX;
 
-/// Node of the tree: a bounding box around some taxels, from their rest centres back to the substrate.
+/// Node of the tree, with a bounding box around some taxels (their centres at rest and the substrate below them).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub bounds: Aabb,
-    /// Largest radius ρ of the node's taxels, metres.
+    /// Largest radius of the node's taxels, metres.
     pub radius: f64,
-    /// Index of the leaf, if the node is one.
+    /// Index of the leaf; `None` if the node has children.
     leaf: Option<u32>,
     /// Index of the first node after this node's descendants.
     next: u32,
@@ -90,7 +90,7 @@ impl TaxelTree {
         tree
     }
 
-    /// Creates the tree for travel along a direction (unit vector): all axes equal the direction, and strokes are unlimited.
+    /// Creates the search tree of taxels whose axes are replaced by `direction` (unit vector), with unlimited strokes.
     pub fn travelling(layout: &Layout, taxels: &Taxels, direction: DVec3) -> Self {
         let endless = |taxel: &Taxel| Taxel {
             stroke: ENDLESS,
@@ -107,29 +107,30 @@ impl TaxelTree {
         )
     }
 
-    /// Returns the bounding box of all taxels, from their rest centres back to the substrate, metres; `None` if there are no taxels.
+    /// Returns the bounding box of all taxels (their centres at rest and the substrate below them), metres; `None` if there are no taxels.
     pub fn bounds(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
     }
 
-    /// Returns the largest radius ρ of a taxel, metres.
+    /// Returns the largest radius of a taxel, metres.
     pub fn largest_radius(&self) -> f64 {
         self.nodes.first().map_or(0.0, |root| root.radius)
     }
 
-    /// Returns the largest depth s + ρ of a taxel, metres.
+    /// Returns the largest sum of stroke and radius of a taxel, metres.
     pub fn depth(&self) -> f64 {
         self.depth
     }
 
-    /// Returns whether a ball (centre and radius in metres, in the patch frame) may push a taxel. The result may also be true for a ball that only comes near.
+    /// Returns whether a ball (centre and radius in metres, in the patch frame) may push a taxel. The result may also be true for a ball that only comes near
+    /// a taxel.
     #[inline]
     pub fn is_near(&self, center: DVec3, radius: f64) -> bool {
         let root = self.nodes.first();
         root.is_some_and(|root| root.is_near(center, radius))
     }
 
-    /// Calls `visit` with each taxel that a ball can push, and possibly with other taxels nearby; metres, in the patch frame.
+    /// Calls `visit` with each taxel that a ball (metres, in the patch frame) can push, and possibly with other taxels nearby.
     #[inline]
     pub(crate) fn each_near(
         &self,
@@ -143,7 +144,7 @@ impl TaxelTree {
         );
     }
 
-    /// Calls `visit` with each leaf whose parent nodes all satisfy `may_count`.
+    /// Calls `visit` with each leaf if `may_count` returns true for all nodes on the path to the leaf.
     #[inline(always)]
     pub(crate) fn each_leaf(
         &self,
@@ -163,7 +164,8 @@ impl TaxelTree {
         }
     }
 
-    /// Creates the nodes of some taxels, split across the longest side of the box around their centres into full leaves. Returns the index of the first node.
+    /// Creates the nodes for some taxels, split across the longest side of the box around their centres into full leaves. Returns the index of the first
+    /// node.
     fn split(&mut self, of: (&Layout, &Taxels), numbers: &mut [u32]) -> usize {
         let (layout, taxels) = of;
         let index = self.nodes.len();
@@ -221,7 +223,7 @@ impl Leaf {
         }
     }
 
-    /// Returns the k-th taxel's vector from coordinates stored by component.
+    /// Returns the vector of taxel `k` from vectors that are stored by component.
     #[inline(always)]
     pub fn vector(&self, of: &[[f64; LEAF]; 3], k: usize) -> DVec3 {
         DVec3::new(of[0][k], of[1][k], of[2][k])
@@ -243,14 +245,14 @@ impl Leaf {
 }
 
 impl Node {
-    /// Returns an upper bound of the taxels' coordinates along a direction, metres.
+    /// Returns an upper bound of the coordinates of the node's taxels along a direction, metres.
     #[inline(always)]
     pub fn front(&self, direction: DVec3) -> f64 {
         let (least, largest) = (self.bounds.min * direction, self.bounds.max * direction);
         least.max(largest).element_sum()
     }
 
-    /// Placeholder of a node whose contents are not yet known.
+    /// Node with arbitrary contents, which are replaced later.
     const EMPTY: Self = Self {
         bounds: Aabb {
             min: DVec3::ZERO,
@@ -277,7 +279,8 @@ impl Node {
         self.margin(center, radius) >= 0.0
     }
 
-    /// Returns (R + ρ)² minus the squared distance between a ball's centre and the node's box, m². The value is an upper bound for each of the node's taxels.
+    /// Returns the squared sum of the radii of a ball and a taxel, minus the squared distance between the ball's centre and the node's box, m². The value is
+    /// an upper bound for each of the node's taxels.
     #[inline(always)]
     pub fn margin(&self, center: DVec3, radius: f64) -> f64 {
         let reach = (self.radius + radius) * ROUNDING;
@@ -286,7 +289,7 @@ impl Node {
 }
 
 impl PlacedTaxel {
-    /// Creates the placed taxel of a layout by its index.
+    /// Creates the data of the taxel with index `number` in a layout.
     pub fn new(layout: &Layout, taxels: &Taxels, number: usize) -> Self {
         let frame = layout.frame(number);
         let taxel = taxels.at(number);
@@ -300,7 +303,7 @@ impl PlacedTaxel {
         }
     }
 
-    /// Returns the bounding box of the taxel from its rest centre back to the substrate.
+    /// Returns the bounding box of the line from the taxel's centre at rest to the substrate.
     fn stretch(&self) -> Aabb {
         let end = self.center + self.behind * self.axis;
         Aabb {

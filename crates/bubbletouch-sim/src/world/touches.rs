@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Maximum number of touches of one object, far above any study. The limit stops a mistyped list before memory runs out.
 pub const MAX_TOUCHES: usize = 10_000_000;
 
-/// Touches of one object, by the rules of a [`Placement`]. Touches are created one at a time, so even millions need no memory.
+/// Touches of one object, chosen by the rules of a [`Placement`]. Touches are created one at a time, so even millions need no memory.
 #[derive(Clone, Debug)]
 pub struct TouchSource<'a> {
     spreads: [(TouchAxis, &'a Spread); 6],
@@ -32,7 +32,7 @@ enum Order {
 }
 
 impl<'a> TouchSource<'a> {
-    /// Checks a placement for an object with these resting poses; `seed` is the object's seed.
+    /// Prepares the touches of an object with the given resting poses, and checks the placement; `seed` is the object's seed.
     ///
     /// # Errors
     /// - If there is no resting pose, or the probabilities are invalid.
@@ -116,7 +116,7 @@ fn order(
     }
 }
 
-/// Returns the listed values of each axis; an empty list for a uniform axis.
+/// Returns the listed values of each axis; an empty list for an axis with a uniform range.
 fn values<'a>(spreads: &[(TouchAxis, &'a Spread); 6]) -> [&'a [f64]; 6] {
     spreads.map(|(_, spread)| match spread {
         Spread::Values(values) => values.as_slice(),
@@ -124,7 +124,7 @@ fn values<'a>(spreads: &[(TouchAxis, &'a Spread); 6]) -> [&'a [f64]; 6] {
     })
 }
 
-/// Returns the touch of the combination with the given index; the last axis varies fastest.
+/// Returns the touch for the combination of listed values with the given index; the last axis varies fastest.
 fn combined(values: &[&[f64]; 6], mut combination: usize) -> Touch {
     let mut indices = [0; 7];
     for (axis, values) in values.iter().enumerate().rev() {
@@ -136,8 +136,8 @@ fn combined(values: &[&[f64]; 6], mut combination: usize) -> Touch {
     touch_at(coordinates, indices.map(Some))
 }
 
-/// Returns `count` different numbers below n in random order: the start of a shuffle that stores only the moved entries. The result for a smaller count is a
-/// prefix of the result for a larger one.
+/// Returns `count` different numbers below `n` in random order. The function shuffles and stores only the moved entries. The result for a smaller count is a
+/// prefix of the result for a larger count.
 fn without_replacement(n: usize, count: usize, seed: &Seed) -> Vec<usize> {
     let mut rng = seed.named("combinations").rng();
     let mut moved = HashMap::new();
@@ -150,7 +150,7 @@ fn without_replacement(n: usize, count: usize, seed: &Seed) -> Vec<usize> {
         .collect()
 }
 
-/// Draws one touch from its own streams, one per axis, so that changing one spread does not change the other axes' values.
+/// Draws one touch with a random stream for each axis, so that changing one range does not change the values of other axes.
 fn drawn(spreads: &[(TouchAxis, &Spread); 6], rests: &[RestPose], touch: &Seed) -> Touch {
     let draw = |axis: TouchAxis| touch.named(axis.name()).rng();
     let mut indices = [None; 7];
@@ -183,7 +183,7 @@ fn drawn_rest(rests: &[RestPose], position: f64) -> usize {
     rests.len() - 1
 }
 
-/// Creates a touch from coordinates in the order of [`TouchAxis`] after the resting pose.
+/// Creates a touch from six coordinates (in the order of [`TouchAxis`], without the resting pose) and the indices of their values.
 fn touch_at(coordinates: [f64; 6], indices: [Option<usize>; 7]) -> Touch {
     let [offset_x, offset_y, yaw, tilt_x, tilt_y, depth] = coordinates;
     Touch {
@@ -239,7 +239,7 @@ fn check_spread(axis: TouchAxis, spread: &Spread) -> Result<()> {
     }
 }
 
-/// Returns the allowed values of an axis, as a predicate and as text.
+/// Returns the allowed values of an axis, as a function that tests a value and as text.
 fn range_of(axis: TouchAxis) -> (fn(f64) -> bool, &'static str) {
     match axis {
         TouchAxis::Depth => (

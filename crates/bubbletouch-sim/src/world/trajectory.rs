@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 
-/// Phase of a motion, with constant velocity.
+/// Phase of a motion with constant velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
     /// Duration of the phase, seconds, zero or positive.
@@ -15,7 +15,7 @@ pub struct Phase {
     pub angular: DVec3,
 }
 
-/// Pose of a body over time: a start pose, then phases of constant velocity, then rest.
+/// Pose of a body over time: a start pose, then phases of constant velocity, then standstill.
 ///
 /// Rotations are integrated exactly, `R(t) = exp(ω t) R(0)`.
 /// Differences from \[BT\]: the original adds ω × R at each step, so its matrices grow, and it switches phases one step early.
@@ -26,7 +26,7 @@ pub struct VelocityPlan {
 }
 
 impl VelocityPlan {
-    /// Creates a plan that starts from a pose and runs through the phases in order.
+    /// Creates a motion that starts at a pose and runs through the phases in order.
     ///
     /// # Errors
     /// If a phase has a negative duration or a value that is not finite; the error contains the first such phase (from 1).
@@ -56,7 +56,7 @@ impl VelocityPlan {
         self.phases.iter().map(|p| p.duration).sum()
     }
 
-    /// Returns `world_from_body` at a time in seconds: the start pose before time 0, the final pose after the last phase.
+    /// Returns the pose `world_from_body` at a time in seconds: the start pose before time 0, the final pose after the last phase.
     pub fn pose_at(&self, time: f64) -> Pose {
         let mut pose = self.start;
         let mut left = time.max(0.0);

@@ -1,17 +1,17 @@
 //! Time course of a touch: states of the hand, connected by minimum-jerk movements.
 
-/// State of the hand relative to the touched place.
+/// State of a hand relative to the touched point of the arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct State {
-    /// Height of the hand above first contact, metres; negative while the hand presses.
+    /// Height of the hand above its position at first contact, metres; negative while the hand presses.
     pub height: f64,
     /// Displacement of the hand along the skin, metres.
     pub slid: f64,
-    /// Closing of the fingers, 0 to 1.
+    /// Fraction to which the fingers are closed, 0 (open) to 1.
     pub closed: f64,
 }
 
-/// Time course of a touch: a start state, and phases that end in further states.
+/// Time course of a touch by a hand: a start state, and phases that each end in a further state.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Course {
     start: State,
@@ -42,7 +42,7 @@ impl Course {
         self.go(seconds, self.end());
     }
 
-    /// Appends a descent of the hand to the depth `depth`, metres; its last `rise` seconds are spent in contact (height below 0).
+    /// Appends a descent of the hand to `depth` metres below first contact. The hand is in contact with the skin during the last `rise` seconds.
     pub fn press(&mut self, depth: f64, rise: f64) {
         let from = self.end();
         let above = time_of_share(from.height / (from.height + depth));
@@ -53,7 +53,7 @@ impl Course {
         self.go(rise / (1.0 - above), to);
     }
 
-    /// Appends an ascent of the hand to a height, metres; its first `fall` seconds are spent in contact (height below 0).
+    /// Appends an ascent of the hand to `height` metres above first contact. The hand is in contact with the skin during the first `fall` seconds.
     pub fn lift(&mut self, height: f64, fall: f64) {
         let from = self.end();
         let below = time_of_share(-from.height / (height - from.height));
@@ -85,12 +85,12 @@ impl Course {
     }
 }
 
-/// Returns the fraction of a minimum-jerk movement that is completed after the fraction `t` of its time, both 0 to 1 \[FH\].
+/// Returns the completed fraction of a minimum-jerk movement after the fraction `t` of its duration, both 0 to 1 \[FH\].
 fn least_jerk(t: f64) -> f64 {
     t * t * t * (10.0 - t * (15.0 - 6.0 * t))
 }
 
-/// Returns the fraction of the time after which the given fraction of a minimum-jerk movement is completed, both 0 to 1.
+/// Returns the fraction of the duration after which the fraction `way` of a minimum-jerk movement is completed, both 0 to 1.
 fn time_of_share(way: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     // Each bisection determines one of the 53 bits.

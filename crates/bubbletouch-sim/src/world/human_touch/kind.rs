@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TouchKind {
-    /// The hand touches the arm once, briefly.
+    /// The hand touches the arm once, for a short time.
     Tap,
     /// The hand touches the arm once and stays for a while.
     Hold,
@@ -31,7 +31,7 @@ pub const TOUCH_KINDS: [TouchKind; 6] = [
 ];
 
 impl TouchKind {
-    /// Returns the name of the kind in files, a single word.
+    /// Returns the name of the kind of touch in files, a single word.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tap => "tap",

@@ -7,8 +7,8 @@ use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::FRAC_PI_2;
 
-/// Largest distance between the spheres of a hand and its surface, metres. If larger, a finger acts like a row of balls; if smaller, a frame takes longer (10
-/// to 30 µs for 100 spheres).
+/// Largest distance between the spheres that represent a hand and the hand's surface, metres. If larger, a finger acts like a row of balls; if smaller, a
+/// frame takes longer (10 to 30 µs for 100 spheres).
 const SURFACE_ERROR: f64 = 0.5e-3;
 
 /// Largest inclination of a hand against the skin, radians. If larger, a flat hand (which is rigid) touches only with the ball of the thumb or a finger.
@@ -17,21 +17,21 @@ const LEVEL: f64 = 0.03;
 /// Bending of the fingers of a fist, as a fraction of [`Hand::curled`].
 const FIST: f64 = 0.85;
 
-/// Posture of a hand before it moves: finger positions, orientation, and the point above the touched place.
+/// Posture of a hand before it moves: finger positions, orientation, and the point of the hand that lies above the touched point of the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Posture {
     /// Hand with open fingers.
     pub open: Hand,
     /// Hand with closed fingers; equal to the open hand unless the touch is a grab.
     pub closed: Hand,
-    /// Rotation from the hand's frame to the frame of the touched place: x back along the arm, y around it, z away from it.
+    /// Rotation from the hand's frame to a frame at the touched point of the arm: x back along the arm, y around it, z away from it.
     pub place_from_hand: DQuat,
-    /// Point of the hand above the touched place, metres, in the hand's frame.
+    /// Point of the hand that lies above the touched point of the arm, metres, in the hand's frame.
     pub anchor: DVec3,
 }
 
 impl Posture {
-    /// Draws a posture with `fingers` fingertips (1 to 4), the flat hand (5), or the hand of a grab.
+    /// Draws the posture of a hand that touches with 1 to 4 fingertips, with the flat hand (`fingers` = 5), or with a grab.
     pub fn draw(
         kind: TouchKind,
         (length, fingers, yaw): (f64, usize, f64),
@@ -71,8 +71,8 @@ impl Posture {
         }
     }
 
-    /// Closes the fingers until each would be `grip` metres deep in the skin of an arm of radius `surface`, with the hand at the depth `depth`. A finger that
-    /// does not reach the arm closes to a fist.
+    /// Closes each finger until it would be `grip` metres deep in the skin. The hand is at the depth `depth`, on an arm of radius `surface`. A finger that
+    /// misses the arm closes to a fist.
     pub fn close(&mut self, surface: f64, depth: f64, grip: f64) {
         let height = self.first_contact(surface) - depth;
         let fist = Hand::curled(1.0);
@@ -93,7 +93,7 @@ impl Posture {
         }
     }
 
-    /// Returns the hand with its fingers closed by a fraction, 0 to 1.
+    /// Returns the hand with its fingers closed by the fraction `share`, 0 to 1.
     pub fn hand(&self, share: f64) -> Hand {
         let mut hand = self.open;
         for digit in 0..5 {
@@ -102,7 +102,7 @@ impl Posture {
         hand
     }
 
-    /// Returns the height of the anchor above an arm of radius `surface` at first contact of the open hand, metres.
+    /// Returns the height of the anchor point above the skin at first contact of the open hand, metres; `surface` is the radius of the arm.
     pub fn first_contact(&self, surface: f64) -> f64 {
         let hand = spheres(&self.open);
         let heights = hand
@@ -112,7 +112,7 @@ impl Posture {
         heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Returns the height of the anchor at which a ball of the hand touches the arm, metres; `None` if the ball passes beside the arm.
+    /// Returns the height of the anchor point at which a ball of the hand touches the arm, metres; `None` if the ball passes beside the arm.
     fn touches_at(&self, ball: &Sphere, surface: f64) -> Option<f64> {
         let at = self.place_from_hand * (ball.center - self.anchor);
         let reach = ball.radius + surface;
@@ -120,13 +120,13 @@ impl Posture {
         (square > 0.0).then(|| square.sqrt() - at.z - surface)
     }
 
-    /// Returns the penetration of a ball into the arm with the anchor at the given height, metres; negative if the ball is outside.
+    /// Returns the depth to which a ball of the hand penetrates the arm if the anchor point is at `height`, metres; negative if the ball is outside.
     fn sunk(&self, ball: Sphere, surface: f64, height: f64) -> f64 {
         let at = self.place_from_hand * (ball.center - self.anchor);
         ball.radius + surface - at.y.hypot(at.z + height + surface)
     }
 
-    /// Returns `patch_from_hand` with the anchor above the place (along, around) of the arm, `radius` metres from the arm's axis.
+    /// Returns the pose `patch_from_hand` for which the anchor point is above the point (along, around) of the arm, `radius` metres from the arm's axis.
     pub fn pose(&self, (along, around): (f64, f64), radius: f64) -> Pose {
         // Frame of the touched place at +x (its x is −z of the arm, y is unchanged, z is the arm's x), rotated around the arm.
         let rotation = DQuat::from_rotation_z(around) * DQuat::from_rotation_y(FRAC_PI_2);
@@ -142,7 +142,7 @@ pub(super) fn spheres(hand: &Hand) -> SphereUnion {
     solid.pack(SURFACE_ERROR).expect("a hand takes few spheres")
 }
 
-/// Sets one digit (0 to 3 are fingers, 4 is the thumb) by interpolation between two hands.
+/// Bends one digit of `hand` (0 to 3 are fingers, 4 is the thumb) to a posture between those of the hands `from` and `to`.
 fn bend(hand: &mut Hand, from: &Hand, to: &Hand, (digit, share): (usize, f64)) {
     let between = |a: f64, b: f64| a + share * (b - a);
     let pose = |a: &FingerPose, b: &FingerPose| FingerPose {
@@ -159,8 +159,8 @@ fn bend(hand: &mut Hand, from: &Hand, to: &Hand, (digit, share): (usize, f64)) {
     }
 }
 
-/// Returns the smallest fraction, 0 to 1, for which a condition holds, to 1e-4; 1 if there is none. The search proceeds in steps, because a finger can move
-/// past the arm.
+/// Returns the smallest fraction, 0 to 1, for which `is_so` returns true, to an accuracy of 1e-4; 1 if there is none. The search proceeds in steps, because a
+/// finger can move past the arm.
 fn first_share(is_so: impl Fn(f64) -> bool) -> f64 {
     const STEPS: usize = 40;
     let share = |step: usize| step as f64 / STEPS as f64;
@@ -178,7 +178,8 @@ fn first_share(is_so: impl Fn(f64) -> bool) -> f64 {
     high
 }
 
-/// Returns the middle of the touching part of a hand: the fingertips, or a point near the knuckles of the flat hand.
+/// Returns the point of a hand that is placed above the touched point of the arm: the mean of the touching fingertips, or a point near the knuckles of the
+/// flat hand.
 fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
     let strands = hand.strands();
     match fingers {

@@ -11,35 +11,35 @@ use std::ops::RangeInclusive;
 pub struct TouchRanges {
     /// Length of the hand, metres; adults have 0.16 to 0.21 \[BK\].
     pub hand_length: RangeInclusive<f64>,
-    /// Numbers of touching fingers: 1 to 4 are fingertips, 5 is the flat hand. Shove, which always uses the flat hand, and grab ignore this list.
+    /// Numbers of touching fingers: 1 to 4 are fingertips, 5 is the flat hand. The kinds shove (always the flat hand) and grab ignore this list.
     pub fingers: Vec<usize>,
-    /// Position of the touch along the arm's axis, metres from the middle.
+    /// Position of the touch along the arm's axis, metres from the middle of the arm.
     pub along: RangeInclusive<f64>,
     /// Position of the touch around the arm, radians from +x.
     pub around: RangeInclusive<f64>,
-    /// Angle of the fingers from the direction across the arm towards the arm's axis, radians.
+    /// Angle from the direction across the arm to the fingers, positive towards the arm's axis, radians.
     pub yaw: RangeInclusive<f64>,
-    /// Height of the hand above the skin at the start and the end, metres.
+    /// Height of the hand above the skin at the start and the end of the touch, metres.
     pub clearance: RangeInclusive<f64>,
     /// Depth of the hand past first contact, metres.
     pub depth: RangeInclusive<f64>,
-    /// Time from first contact to the largest depth, seconds; the return takes the same time.
+    /// Time from first contact to the largest depth, seconds; the way back to first contact takes equally long.
     pub rise: RangeInclusive<f64>,
-    /// Time at the largest depth, seconds.
+    /// Time that the hand stays at the largest depth, seconds.
     pub hold: RangeInclusive<f64>,
-    /// Number of contacts; used by pat.
+    /// Number of contacts; used by the kind pat.
     pub contacts: RangeInclusive<usize>,
-    /// Height of the hand between contacts, metres; used by pat.
+    /// Height of the hand between contacts, metres; used by the kind pat.
     pub lift: RangeInclusive<f64>,
-    /// Length of the path along the skin, metres; used by stroke and shove.
+    /// Length of the path along the skin, metres; used by the kinds stroke and shove.
     pub travel: RangeInclusive<f64>,
-    /// Mean speed along the skin, metres per second; used by stroke and shove.
+    /// Mean speed along the skin, metres per second; used by the kinds stroke and shove.
     pub speed: RangeInclusive<f64>,
-    /// Direction of the path, radians from the arm's axis; both directions along the arm are equally likely. Used by stroke and shove.
+    /// Direction of the path, radians from the arm's axis; both directions along the arm are equally likely. Used by the kinds stroke and shove.
     pub direction: RangeInclusive<f64>,
-    /// Time in which the fingers close, and time in which they open, seconds each; used by grab.
+    /// Time in which the fingers close, and also time in which they open, seconds; used by the kind grab.
     pub closing: RangeInclusive<f64>,
-    /// Depth of each finger in the skin, metres; used by grab.
+    /// Depth of each finger in the skin, metres; used by the kind grab.
     pub grip: RangeInclusive<f64>,
 }
 
@@ -107,7 +107,7 @@ impl TouchRanges {
         }
     }
 
-    /// Checks that every range is valid.
+    /// Returns an error unless every range is valid.
     ///
     /// # Errors
     /// If a range is empty, not finite, or outside the values for which a touch is defined; the error names the range.

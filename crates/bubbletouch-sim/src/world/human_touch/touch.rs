@@ -12,7 +12,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// Touch of a forearm by a hand: drawn parameters, and the motion of the hand over time.
+/// Touch of a forearm by a hand: randomly drawn parameters, and the motion of the hand over time.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -39,11 +39,11 @@ pub struct HumanTouch {
     pub around: f64,
     /// Largest depth of the hand past first contact, metres; the palm's depth for a grab.
     pub depth: f64,
-    /// Time from first contact to the largest depth, seconds; the return takes the same time.
+    /// Time from first contact to the largest depth, seconds; the way back to first contact takes equally long.
     pub rise: f64,
-    /// Time that each contact lasts at the largest depth, seconds.
+    /// Time that the hand stays at the largest depth in each contact, seconds.
     pub hold: f64,
-    /// Number of contacts.
+    /// Number of contacts between hand and arm.
     pub contacts: usize,
     /// Length of the path along the skin, metres.
     pub travel: f64,
@@ -57,16 +57,16 @@ pub struct HumanTouch {
     course: Course,
 }
 
-/// State of the hand at one instant of a touch.
+/// State of a hand at one instant of a touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandState {
     /// Hand at this instant: its size, and the bending of its fingers.
     pub hand: Hand,
     /// Pose of the hand in the patch frame, whose z axis is the arm's axis; metres.
     pub patch_from_hand: Pose,
-    /// Height of the hand above first contact of the open hand, metres; negative while the hand presses.
+    /// Height of the hand above its position at first contact of the open hand, metres; negative while the hand presses.
     pub height: f64,
-    /// Closing of the fingers, 0 to 1.
+    /// Fraction to which the fingers are closed, 0 (open) to 1.
     pub closed: f64,
 }
 
@@ -198,7 +198,7 @@ impl HumanTouch {
     }
 }
 
-/// Appends a slide along the skin during which the depth changes.
+/// Appends a movement of the hand along the skin during which the depth changes.
 fn slide(course: &mut Course, seconds: f64, travel: f64, depth: f64) {
     let to = State {
         height: -depth,

@@ -26,7 +26,8 @@ impl Layout {
         Ok(Self::from(Extrusion::cylinder(radius, length, arc, pitch)?))
     }
 
-    /// Creates a rectangular grid bent around a cylinder of this radius (to the rest centres, metres). Rows become rings; columns run along z.
+    /// Creates a rectangular grid bent around a cylinder. `radius` is the distance of the taxels' centres (at rest) from the cylinder's axis, metres. Rows
+    /// become rings; columns run along z.
     ///
     /// # Errors
     /// If `cylinder` fails for these arguments.

@@ -6,7 +6,7 @@ use crate::text::in_range::positive;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Lune (slice) of a sphere around the origin, from its pole at +z, divided into rings of taxels whose axes point away from the centre.
+/// Dome: a slice (lune) of a sphere around the origin, from its pole at +z, divided into rings of taxels whose axes point away from the centre.
 ///
 /// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: rings ascend in polar angle, none is empty, and `directions` have
 /// length one.
@@ -14,16 +14,16 @@ use std::f64::consts::{PI, TAU};
 pub struct Dome {
     radius: f64,
     rings: Vec<DomeRing>,
-    /// Cosine and sine of each taxel's angle around the pole, from +x towards +y, shape (n_taxels,).
+    /// Cosine and sine of each taxel's angle around the z axis, from +x towards +y, shape (n_taxels,).
     directions: Vec<DVec2>,
 }
 
 /// Ring of taxels at one polar angle of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DomeRing {
-    /// Cosine of the ring's angle from the pole.
+    /// Cosine of the polar angle of the ring.
     pub cos: f64,
-    /// Sine of the ring's angle from the pole.
+    /// Sine of the polar angle of the ring.
     pub sin: f64,
     /// Index of the ring's first taxel.
     pub first: usize,
@@ -36,13 +36,13 @@ pub struct DomeRing {
 }
 
 impl Dome {
-    /// Returns rest centres (metres) and unit axes of all taxels, ring by ring.
+    /// Returns the centres (at rest, metres) and the unit axes of all taxels, ring by ring.
     pub(crate) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let axes = self.axes().map(DVec3::normalize);
         axes.map(|axis| (self.radius * axis, axis))
     }
 
-    /// Creates a lune: `polar` radians from the pole (above 0 to π), `arc` radians wide (above 0 to 2π), with its middle at +x.
+    /// Creates a dome that extends `polar` radians from the pole (above 0 to π). The dome is `arc` radians wide (above 0 to 2π), with its middle at +x.
     ///
     /// Rings, and the taxels of a ring, are about `pitch` apart, adjusted to whole numbers. Half a step is left at every edge, so that taxels of an adjacent
     /// lune or cylinder continue at equal distances.
@@ -82,7 +82,7 @@ impl Dome {
         })
     }
 
-    /// Returns the radius to the rest centres, metres.
+    /// Returns the distance of the taxels' centres (at rest) from the centre of the sphere, metres.
     pub fn radius(&self) -> f64 {
         self.radius
     }
@@ -92,12 +92,12 @@ impl Dome {
         &self.rings
     }
 
-    /// Returns the cosine and sine of each taxel's angle around the pole, shape (n_taxels,).
+    /// Returns the cosine and sine of each taxel's angle around the z axis, shape (n_taxels,).
     pub fn directions(&self) -> &[DVec2] {
         &self.directions
     }
 
-    /// Returns the number of taxels of the lune.
+    /// Returns the number of taxels of the dome.
     pub fn n_taxels(&self) -> usize {
         self.directions.len()
     }

@@ -5,8 +5,8 @@ use crate::geometry::Aabb;
 use crate::mesh::{Bvh, TriangleMesh};
 use glam::DVec3;
 
-/// Distance of a ray's start from the surface, relative to the mesh's size. If larger, nearer walls do not stop a ray; if smaller, the taxel's own triangle
-/// stops the ray.
+/// Distance between a taxel and the start of its ray, relative to the mesh's size. If larger, nearer walls do not stop the ray; if smaller, the taxel's own
+/// triangle stops the ray.
 const AHEAD: f64 = 1e-6;
 /// Lateral offset of a ray, relative to the mesh's size, so that rays through symmetric meshes do not hit edges.
 const ASIDE: f64 = 1e-8;
@@ -16,14 +16,14 @@ const ASIDE: f64 = 1e-8;
 pub struct DrapeRegion {
     /// Box that contains the region; metres, in the mesh's frame.
     pub bounds: Option<Aabb>,
-    /// Plane that bounds the region, given by a point (metres) and a normal of any length; the region is on the side to which the normal points.
+    /// Plane that bounds the region, given by a point (metres) and a normal of any length. The region lies on the side to which the normal points.
     pub beyond: Option<(DVec3, DVec3)>,
     /// Indices of the triangles that make up the region.
     pub triangles: Option<Vec<usize>>,
 }
 
 impl DrapeRegion {
-    /// Checks the region against a mesh.
+    /// Returns an error if the region does not fit the mesh.
     ///
     /// # Errors
     /// If a number is not finite, a box is empty, a normal is zero, or a triangle does not exist in the mesh.
@@ -48,7 +48,7 @@ impl DrapeRegion {
         }
     }
 
-    /// Returns for each triangle of a mesh whether it may carry taxels.
+    /// Returns for each triangle of a mesh whether the region allows taxels on it.
     pub(crate) fn mask(&self, mesh: &TriangleMesh) -> Vec<bool> {
         let mut mask = vec![self.triangles.is_none(); mesh.n_triangles()];
         for &number in self.triangles.iter().flatten() {
@@ -57,7 +57,7 @@ impl DrapeRegion {
         mask
     }
 
-    /// Returns whether a point is in the box and beyond the plane.
+    /// Returns whether a point lies in the box and on the allowed side of the plane of this region.
     pub(crate) fn contains(&self, place: DVec3) -> bool {
         let is_in_box =
             |bounds: Aabb| place.cmpge(bounds.min).all() && place.cmple(bounds.max).all();
@@ -66,7 +66,7 @@ impl DrapeRegion {
     }
 }
 
-/// Ray casting from points on the surface of a mesh.
+/// Ray casting from points on the surface of a mesh, to find the outer surface.
 pub(crate) struct Rays {
     bvh: Bvh,
     /// Diagonal of the mesh's bounding box, metres.
@@ -80,7 +80,7 @@ impl Rays {
         Self { bvh, size }
     }
 
-    /// Returns whether a ray from a point on the surface along a unit direction meets no triangle.
+    /// Returns whether a ray from a point on the surface along a unit direction hits no triangle of the mesh.
     pub fn is_free(&self, place: DVec3, direction: DVec3) -> bool {
         let (x, y) = direction.any_orthonormal_pair();
         let origin = place + ASIDE * self.size * (0.8 * x + 0.6 * y);

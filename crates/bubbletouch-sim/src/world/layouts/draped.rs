@@ -10,15 +10,15 @@ use glam::DVec3;
 use rand::seq::SliceRandom;
 use std::collections::{BTreeMap, HashMap};
 
-/// Smallest distance between taxels, in pitches. Random points are added until no further point keeps this distance from all others. This process yields about
-/// 0.7 / distance² taxels per square pitch: at 0.83 as many as on a grid of this pitch.
+/// Smallest distance between taxels, in pitches. Random points are added as long as a further point can keep this distance from all others. This process
+/// yields about 0.7 / distance² taxels per square pitch: at 0.83 as many as on a grid of this pitch.
 const LEAST: f64 = 0.83;
 /// Longest edge of a piece of surface, in pitches. If smaller, taxels are packed more densely and more memory is used. If larger, the surface between two
 /// pieces may be farther from a taxel than a pitch (0.83 + 2/3 of this constant).
 const PIECE: f64 = 0.25;
 /// Maximum number of surface pieces: enough for some 100,000 taxels, in 2 GB. The bound also covers long triangles without area.
 const MAX_PIECES: usize = 1 << 24;
-/// Cosine between normals below which two pieces belong to opposite sides of a thin wall; their taxels may then be close together.
+/// Cosine of the angle between normals below which two pieces belong to opposite sides of a thin wall; taxels on them may be close together.
 const OPPOSED: f64 = -0.5;
 
 impl Layout {
@@ -114,9 +114,9 @@ impl Layout {
     }
 }
 
-/// Small triangle of the surface, a candidate for a taxel.
+/// Small triangle of the surface, which may become the position of a taxel.
 struct SurfaceTriangle {
-    /// Index of the mesh's triangle that contains this piece.
+    /// Index of the mesh's triangle that contains this small triangle.
     triangle: usize,
     middle: DVec3,
     /// Unit normal of the triangle.
@@ -125,7 +125,7 @@ struct SurfaceTriangle {
     area: f64,
 }
 
-/// Divides every triangle with a normal until no edge is longer than `longest_edge`; `None` if this takes too many pieces.
+/// Divides every triangle that has a normal until no edge is longer than `longest_edge` (metres). Returns `None` if this takes too many pieces.
 fn subdivide(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<SurfaceTriangle>> {
     // The largest possible piece is an equilateral triangle.
     let largest = 0.25 * 3f64.sqrt() * longest_edge * longest_edge;
@@ -160,8 +160,8 @@ fn subdivide(mesh: &TriangleMesh, longest_edge: f64) -> Option<Vec<SurfaceTriang
     Some(pieces)
 }
 
-/// Returns the mean unit normal of the surface around each taxel, in the order of the taxels' surface pieces. Pieces that face away from the taxel's own piece
-/// are ignored.
+/// Returns the mean unit normal of the surface within a distance of each taxel, by the index of the taxel's surface piece. Pieces that face away from the
+/// taxel's own piece are ignored.
 fn mean_normals(pieces: &[SurfaceTriangle], taxels: &Taken, within: f64) -> BTreeMap<usize, DVec3> {
     let mut sums: BTreeMap<usize, DVec3> = BTreeMap::new();
     for piece in pieces {
@@ -177,7 +177,7 @@ fn mean_normals(pieces: &[SurfaceTriangle], taxels: &Taken, within: f64) -> BTre
     sums
 }
 
-/// Surface pieces that have become taxels, stored by cubic cells of space.
+/// Surface pieces that have been chosen as positions of taxels, stored in cubic cells of space.
 struct Taken {
     /// Side of a cell, metres: twice the search distance, so that a ball with this distance as radius meets at most eight cells.
     side: f64,
@@ -185,7 +185,7 @@ struct Taken {
 }
 
 impl Taken {
-    /// Creates an empty set for searches up to the distance `within`, metres.
+    /// Creates an empty set of taxel positions for searches up to the distance `within`, metres.
     fn new(within: f64) -> Self {
         Self {
             side: 2.0 * within,
@@ -198,7 +198,7 @@ impl Taken {
         self.cubes.entry(cube).or_default().push((piece, place));
     }
 
-    /// Returns the taxels' pieces nearer to a point than `within` metres.
+    /// Returns the surface pieces of the taxels that are nearer to a point than `within` metres.
     fn near(&self, place: DVec3, within: f64) -> impl Iterator<Item = usize> {
         let (low, high) = (self.cube(place - within), self.cube(place + within));
         let columns = (low[0]..=high[0]).flat_map(move |x| (low[1]..=high[1]).map(move |y| [x, y]));

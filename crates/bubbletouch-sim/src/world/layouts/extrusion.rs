@@ -11,7 +11,7 @@ use crate::world::Grid;
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// Row of taxels (in the plane of u and v) that is repeated along w.
+/// Row of taxels in the plane of the coordinates u and v, repeated along the coordinate w.
 ///
 /// Taxel `row · n_columns + column` rests at `places[column]` in the plane and at `rows[row]` along w; its axis is `axes[column]`, in the plane. Invariant:
 /// there are as many axes as places (at least one), all finite. Axes are unit vectors, and rows ascend.
@@ -24,7 +24,7 @@ pub struct Extrusion {
 }
 
 impl Extrusion {
-    /// Returns rest centres (metres) and unit axes of all taxels, row by row.
+    /// Returns the centres (at rest, metres) and the unit axes of all taxels, row by row.
     pub(crate) fn taxels(&self) -> impl Iterator<Item = (DVec3, DVec3)> {
         let patch_from_uvw = self.uvw_from_patch.transpose();
         self.rows.iter().flat_map(move |&w| {
@@ -36,7 +36,7 @@ impl Extrusion {
         })
     }
 
-    /// Creates an extrusion with the taxels of a flat grid; u, v, w are the patch's x, z, y.
+    /// Creates an extrusion with the taxels of a flat grid; the coordinates u, v, w are the patch's x, z, y.
     ///
     /// # Errors
     /// If the grid is invalid.
@@ -53,7 +53,7 @@ impl Extrusion {
         })
     }
 
-    /// Creates a grid bent around a cylinder, with the arguments and taxels of the layout `cylinder`. The directions u, v, w are the patch's x, y, z.
+    /// Creates a grid bent around a cylinder, with the arguments and taxels of the layout `cylinder`. The coordinates u, v, w are the patch's x, y, z.
     ///
     /// # Errors
     /// If an argument is out of its range, or the layout has too many taxels.
@@ -88,12 +88,12 @@ impl Extrusion {
         })
     }
 
-    /// Returns the rest centres of one row in the plane of u and v, metres, shape (n_columns,).
+    /// Returns the centres (at rest) of the taxels in one row, in the plane of u and v, metres, shape (n_columns,).
     pub fn places(&self) -> &[DVec2] {
         &self.places
     }
 
-    /// Returns the unit axes of one row, pointing away from the substrate, in the plane of u and v, shape (n_columns,).
+    /// Returns the unit axes of the taxels in one row, pointing away from the substrate, in the plane of u and v, shape (n_columns,).
     pub fn axes(&self) -> &[DVec2] {
         &self.axes
     }
@@ -103,7 +103,7 @@ impl Extrusion {
         &self.rows
     }
 
-    /// Returns the matrix that maps vectors of the patch frame to u, v, w.
+    /// Returns the matrix that maps vectors of the patch frame to the coordinates u, v, w.
     pub fn uvw_from_patch(&self) -> DMat3 {
         self.uvw_from_patch
     }

@@ -7,14 +7,14 @@ use crate::world::{Dome, Extrusion, Grid};
 use glam::{DMat3, DVec3};
 use std::sync::OnceLock;
 
-/// Largest deviation of an axis's length from one; two written digits cause less. If larger, vectors are accepted that are not unit vectors; if smaller,
-/// typical files are refused.
+/// Largest deviation of a given axis's length from one; axes written with two digits deviate less. If larger, vectors are accepted that are not unit vectors;
+/// if smaller, typical files are refused.
 const MAX_LENGTH_ERROR: f64 = 0.01;
 
 /// Largest deviation of a unit vector's length from one due to rounding of its coordinates.
 const UNIT_ROUNDING: f64 = 1e-9;
 
-/// Rest centres and axes of taxels, in the patch frame.
+/// Arrangement of taxels: their centres (at rest) and axes, in the patch frame.
 ///
 /// Invariant: there are as many axes as centres, all finite, and axes are unit vectors. A layout that follows a rule (a grid, an [`Extrusion`], a [`Dome`])
 /// stores the rule, and computes the 48 bytes per taxel only on demand.
@@ -35,7 +35,7 @@ pub struct Layout {
     n_left_out: usize,
 }
 
-/// Rule by which the taxels of a layout are arranged.
+/// Rule by which the taxels of a layout are arranged, from which their centres and axes are computed.
 #[derive(Clone, Debug)]
 pub(crate) enum Rule {
     /// Rows and columns in a plane.
@@ -62,7 +62,8 @@ impl PartialEq for Layout {
 }
 
 impl Layout {
-    /// Creates a layout from arbitrary rest centres (metres) and axes (unit, away from the substrate). Axes are normalised, because files contain few digits.
+    /// Creates a layout from arbitrary centres of taxels at rest (metres) and axes (unit, away from the substrate). Axes are normalised, because files
+    /// contain few digits.
     ///
     /// # Errors
     /// If the two lists differ in length, or a centre or an axis is invalid; the error contains the first such taxel (from 1). An axis is invalid if its length
@@ -101,7 +102,7 @@ impl Layout {
         Ok(Self::of_places(Places { centers, axes }))
     }
 
-    /// Creates a grid in the plane z = 0, row by row (patch y, ascending), which `as_grid` returns.
+    /// Creates a grid of taxels in the plane z = 0, row by row (patch y, ascending); the method `as_grid` returns this grid.
     ///
     /// # Errors
     /// If the grid is invalid.
@@ -121,7 +122,7 @@ impl Layout {
         }
     }
 
-    /// Returns the number of taxels that a draped layout omitted because their axes would meet the mesh again; 0 for other layouts.
+    /// Returns the number of taxels that a draped layout omitted because a ray along their axis would hit the mesh again; 0 for other layouts.
     pub fn n_left_out(&self) -> usize {
         self.n_left_out
     }
@@ -130,7 +131,7 @@ impl Layout {
         Self { n_left_out, ..self }
     }
 
-    /// Returns the rest centres of the taxels, metres, shape (n_taxels,).
+    /// Returns the centres of the taxels at rest, metres, shape (n_taxels,).
     pub fn centers(&self) -> &[DVec3] {
         &self.places().centers
     }
@@ -177,7 +178,7 @@ impl Layout {
         }
     }
 
-    /// Returns the layout moved by a pose in the patch frame; the result is no longer a grid.
+    /// Returns the layout after a rigid motion in the patch frame; the result is no longer a grid.
     #[must_use]
     pub fn moved(&self, pose: &Pose) -> Self {
         let taxels = self.centers().iter().zip(self.axes());

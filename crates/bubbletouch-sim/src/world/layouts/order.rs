@@ -3,7 +3,7 @@
 use crate::world::Layout;
 use glam::DVec3;
 
-/// Number of taxels in the smallest group of neighbours, a tile of a body's patch.
+/// Number of neighbouring taxels in the smallest group, called a tile.
 const TILE: usize = 8;
 
 impl Layout {
@@ -17,7 +17,8 @@ impl Layout {
     }
 }
 
-/// Splits taxels across the longest side of their bounding box, at a multiple of the largest group size, until a tile remains.
+/// Reorders taxels by repeated halving across the longest side of their bounding box, until groups have the size of a tile. Each cut is at a multiple of the
+/// largest group size.
 fn halve(order: &mut [usize], centers: &[DVec3]) {
     if order.len() <= TILE {
         return;

@@ -26,7 +26,7 @@ impl Ring {
     }
 }
 
-/// Returns the number of equal steps, each between 0.75 and 1.5 pitches, into which a length is divided; 0 if the length is shorter.
+/// Returns the number of equal steps into which a length is divided. Each step is between 0.75 and 1.5 pitches; 0 if the length is shorter than a step.
 pub(crate) fn n_steps(length: f64, pitch: f64) -> usize {
     if length < 0.75 * pitch {
         return 0;
@@ -34,7 +34,7 @@ pub(crate) fn n_steps(length: f64, pitch: f64) -> usize {
     (length / pitch).round() as usize
 }
 
-/// Returns the ends of n equal steps of a length centred at zero, relative to the length: from −0.5 to 0.5, or 0 alone.
+/// Returns the ends of n equal steps of a length centred at zero, as fractions of the length: from −0.5 to 0.5, or only 0 if n is 0.
 pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
     (0..=n).map(move |step| match n {
         0 => 0.0,
@@ -42,7 +42,7 @@ pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
     })
 }
 
-/// Returns the distance from each taxel of a layout to its nearest neighbour, metres.
+/// Returns the distance from each taxel of a layout to its nearest neighbour, metres, from the taxels' centres.
 #[cfg(test)]
 pub(super) fn nearest_distances(centers: &[DVec3]) -> Vec<f64> {
     let nearest = |i: usize| {

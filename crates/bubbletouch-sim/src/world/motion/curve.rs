@@ -12,41 +12,42 @@ pub enum Interpolation {
     /// Cubic spline with continuous acceleration and zero velocity at its first and last waypoint; it may overshoot its waypoints.
     #[default]
     Cubic,
-    /// Cubics with continuous velocity that never leave the range of their two waypoints. The velocity is zero at the first and last waypoint and at reversals.
+    /// Cubic polynomials with continuous velocity that never leave the range of their two waypoints. The velocity is zero at the first and last waypoint and
+    /// at reversals.
     Monotone,
 }
 
-/// One number as a function of time. The owner stores the times of the waypoints, which several curves share.
+/// One coordinate as a function of time. The owner stores the times of the waypoints, which several curves share.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve {
-    /// Coefficients c of each piece: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, with s in seconds after the piece's first waypoint.
+    /// Coefficients c of each piece between two waypoints: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, with s in seconds after the piece's first waypoint.
     pieces: Vec<[f64; 4]>,
     /// Value of the curve at the last waypoint.
     last: f64,
 }
 
-/// Value of a curve, with the time at which it is taken.
+/// Value of a curve or of its velocity, with the time at which this value occurs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Taken {
     pub value: f64,
-    /// Time at which the value is taken, seconds, with the waypoints' origin of time.
+    /// Time at which the value occurs, seconds, with the waypoints' origin of time.
     pub time: f64,
-    /// Index of the preceding waypoint.
+    /// Index of the waypoint before this time.
     pub piece: usize,
 }
 
-/// Extreme values and velocity of a curve over its whole time.
+/// Smallest and largest value, and largest velocity, of a curve over its whole duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extremes {
     pub lowest: Taken,
     pub highest: Taken,
-    /// Velocity with the largest magnitude, signed.
+    /// Velocity with the largest magnitude, including its sign.
     pub fastest: Taken,
 }
 
 impl Curve {
-    /// Creates the curve through `values` at `times` (at least one each, times ascending). Returns `None` if a coefficient is not finite, because waypoints are
-    /// too far apart in value or too close in time.
+    /// Creates the curve through `values` at `times` (at least one each, times ascending). Returns `None` if a coefficient is not finite, because the
+    /// waypoints are too far apart in value or too close in time.
     pub fn through(times: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
         let steps: Vec<f64> = times.windows(2).map(|t| t[1] - t[0]).collect();
         let rises = values.windows(2).map(|x| x[1] - x[0]);
@@ -147,7 +148,7 @@ impl Extremes {
     }
 }
 
-/// Time relative to the waypoints of a trajectory.
+/// Position of a time among the waypoints of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Moment {
     /// Before the first waypoint.
@@ -203,7 +204,7 @@ mod tests {
         Curve::through(&TIMES, &VALUES, interpolation).expect("tame numbers")
     }
 
-    /// Returns value, velocity and acceleration on either side of an inner waypoint.
+    /// Returns value, velocity and acceleration of a curve immediately before and after an inner waypoint.
     fn sides(curve: &Curve, piece: usize) -> [[f64; 3]; 2] {
         let h = TIMES[piece + 1] - TIMES[piece];
         [(piece, h), (piece + 1, 0.0)].map(|(piece, s)| {

@@ -6,12 +6,12 @@ use crate::error::{Error, Result};
 use crate::world::Robot;
 use crate::world::robot::{Dimension, Limits};
 
-/// Tolerance of joint limits: rad or m, or these per second. Files write limits with six digits, so a quarter turn may be 3e-7 beyond 1.570796. If larger,
-/// visible violations are accepted; if smaller, rounded limits are refused.
+/// Amount by which a joint may exceed its limits: rad or m for positions, rad/s or m/s for velocities. Files write limits with six digits, so a quarter turn
+/// may be 3e-7 beyond 1.570796. If larger, visible violations are accepted; if smaller, rounded limits are refused.
 const SLACK: f64 = 1e-6;
 
-/// Checks all joints driven by one coordinate that have limits; `curves` are the robot's positions. Returns a note for each mimicking joint that leaves its own
-/// limits: such a joint follows its `<mimic>`.
+/// Checks the limits of all joints that have one coordinate; `curves` are the robot's positions over time. Returns a note for each mimicking joint that
+/// leaves its own limits: such a joint follows its `<mimic>`.
 ///
 /// # Errors
 /// If a joint that mimics no other joint leaves its limits; the error contains the first such joint and its largest violation.
@@ -47,7 +47,8 @@ pub(super) fn check_limits(
     Ok(notes)
 }
 
-/// Returns the largest violation of the first limit that a joint violates, with the joint's motion at this time and the allowed range.
+/// Returns the largest violation of the first limit that a joint exceeds, with descriptions of the joint's motion and of the allowed range; `None` if there
+/// is no violation.
 fn first_beyond(
     extremes: &Extremes,
     limits: &Limits,
@@ -80,7 +81,7 @@ fn first_beyond(
 }
 
 impl Extremes {
-    /// Returns the extremes of a joint whose position is `multiplier · x + offset`.
+    /// Returns the extremes of a joint whose position is `multiplier` times the curve plus `offset`.
     fn driven(self, multiplier: f64, offset: f64) -> Self {
         let moved = |taken: Taken| Taken {
             value: multiplier * taken.value + offset,
@@ -101,7 +102,7 @@ impl Extremes {
     }
 }
 
-/// Describes the time of a value and the adjacent waypoints.
+/// Describes the time at which a value occurs, and the adjacent waypoints.
 fn when(taken: &Taken, way_points: &WayPoints) -> String {
     let (times, origin) = (&way_points.times, &way_points.origin);
     let time = format!("{:.4} s", taken.time);

@@ -10,20 +10,20 @@ use crate::world::Robot;
 use ndarray::Array2;
 use std::io::Read;
 
-/// Positions of a robot over time, interpolated through waypoints; constant before the first and after the last waypoint.
+/// Joint positions of a robot over time, interpolated through waypoints; constant before the first and after the last waypoint.
 ///
 /// Invariant: a joint that mimics no other joint never violates its limits of position and velocity by more than 1e-6 rad or m, or these per second. A
 /// mimicking joint follows its `<mimic>`; if it leaves its own limits, the trajectory has a note.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTrajectory {
     times: Vec<f64>,
-    /// Curves of the positions, one per position of the robot.
+    /// Curves of the joint positions, one per position of the robot.
     curves: Vec<Curve>,
     notes: Vec<String>,
 }
 
 impl JointTrajectory {
-    /// Creates the trajectory through `positions` (n_way_points × n_positions, rad and m) at `times` (seconds, strictly ascending).
+    /// Creates the trajectory through joint positions (n_way_points × n_positions, rad and m) at `times` (seconds, strictly ascending).
     ///
     /// Limits are checked along the whole curve in closed form, including between waypoints.
     ///
@@ -145,14 +145,14 @@ impl JointTrajectory {
         self.times[self.times.len() - 1]
     }
 
-    /// Returns the robot's positions at a time in seconds, rad and m.
+    /// Returns the robot's joint positions at a time in seconds, rad and m.
     pub fn positions_at(&self, time: f64) -> Vec<f64> {
         let mut positions = vec![0.0; self.curves.len()];
         self.positions_into(time, &mut positions);
         positions
     }
 
-    /// Writes the robot's positions at a time in seconds into a slice, rad and m, without allocation.
+    /// Writes the robot's joint positions at a time in seconds into a slice, rad and m, without allocation.
     ///
     /// # Panics
     /// If the length of the slice differs from the number of positions.
@@ -164,8 +164,8 @@ impl JointTrajectory {
         }
     }
 
-    /// Returns the velocities of the positions, rad/s and m/s; zero before the first and after the last waypoint. At a jump, the velocity after the jump is
-    /// returned.
+    /// Returns the joint velocities, rad/s and m/s; zero before the first and after the last waypoint. Where the velocity jumps, the velocity after the jump
+    /// is returned.
     pub fn velocities_at(&self, time: f64) -> Vec<f64> {
         let at = Moment::new(time, &self.times);
         self.curves.iter().map(|curve| curve.velocity(at)).collect()

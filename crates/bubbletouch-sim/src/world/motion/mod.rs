@@ -29,13 +29,13 @@ use crate::geometry::Pose;
 /// Imposed motion of a robot's base or of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// Constant pose.
+    /// Pose that does not change.
     Fixed(Pose),
-    /// Piecewise-constant velocities.
+    /// Phases with constant velocities.
     Plan(VelocityPlan),
-    /// Interpolation between waypoints.
+    /// Pose interpolated between waypoints.
     WayPoints(PoseTrajectory),
-    /// Sinusoidal motion.
+    /// Sinusoidal motion about a pose.
     Oscillation(Oscillation),
 }
 

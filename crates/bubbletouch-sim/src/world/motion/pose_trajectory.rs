@@ -98,7 +98,7 @@ impl PoseTrajectory {
         })
     }
 
-    /// Returns `world_from_body` at a time in seconds.
+    /// Returns the pose `world_from_body` at a time in seconds.
     pub fn pose_at(&self, time: f64) -> Pose {
         let at = Moment::new(time, &self.times);
         let [x, y, z] = &self.position;
@@ -112,7 +112,7 @@ impl PoseTrajectory {
     }
 }
 
-/// Claims all of the named columns, or none of them.
+/// Marks the columns with the given names as used and returns them. Returns an empty list if the table has none of them, and an error if it has only some.
 fn claim_all(table: &mut Table, names: &[&str], units: Units) -> Result<Vec<Column>> {
     let mut columns = Vec::new();
     let mut missing = None;
@@ -131,7 +131,7 @@ fn claim_all(table: &mut Table, names: &[&str], units: Units) -> Result<Vec<Colu
     }
 }
 
-/// Returns the unit quaternion of each waypoint.
+/// Returns the rotation of each waypoint as a unit quaternion.
 fn rotations(way_points: &WayPoints) -> Result<Vec<DQuat>> {
     let rows = way_points.values.rows().into_iter().enumerate();
     rows.map(|(index, row)| {

@@ -18,9 +18,9 @@ pub(super) struct RotationCurve {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CurveSegment {
     start: DQuat,
-    /// Rotation vectors ω₁, ω₂, ω₃ in the body's frame, radians.
+    /// Rotation vectors of the three control turns whose product is the rotation from start to end, in the body's frame, radians.
     turns: [DVec3; 3],
-    /// Duration h of the piece, seconds.
+    /// Duration of the piece between two waypoints, seconds.
     duration: f64,
 }
 
@@ -114,7 +114,7 @@ fn monotone_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     velocities
 }
 
-/// Returns the rotation vector of a unit quaternion, along the shorter turn, radians.
+/// Returns the rotation vector of a unit quaternion for the shorter of the two possible turns, radians.
 fn rotation_vector(q: DQuat) -> DVec3 {
     let q = if q.w < 0.0 { -q } else { q };
     let sine = q.xyz().length();

@@ -1,7 +1,7 @@
 //! Velocities at waypoints for smooth cubics between them.
 
-/// Returns the n velocities of the C² cubic spline with zero velocity at both ends. `steps` are the n − 1 durations and `secants` the mean
-/// velocities between n values.
+/// Returns the velocities at n waypoints for a cubic spline with continuous acceleration and zero velocity at both ends. `steps` are the n − 1 durations, and
+/// `secants` the mean velocities between the waypoints.
 ///
 /// Adjacent pieces have equal accelerations at their common waypoint: `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`. The symbol h is the duration and
 /// d the secant before and after the waypoint. The equations form a tridiagonal system with a dominant diagonal, solved by elimination.
@@ -23,7 +23,7 @@ pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Returns velocities for which no cubic leaves the range of its two values \[FC\]: zero at the ends, [`monotone_slope`] elsewhere.
+/// Returns velocities at the waypoints for which no cubic piece leaves the range of its two values \[FC\]: zero at the ends, [`monotone_slope`] elsewhere.
 pub(super) fn monotone(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     let mut slopes = vec![0.0; steps.len() + 1];
     for i in 1..steps.len() {
@@ -32,8 +32,8 @@ pub(super) fn monotone(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Returns the velocity between two pieces: zero at reversals, otherwise the weighted harmonic mean of the adjacent secants (Fritsch and Butland's choice). The
-/// mean is at most three times the smaller secant.
+/// Returns the velocity at the waypoint between two pieces of durations `h0`, `h1` and mean velocities `d0`, `d1`. The velocity is zero at reversals,
+/// otherwise the weighted harmonic mean of the mean velocities (Fritsch and Butland's choice). The result is at most three times the smaller mean velocity.
 pub(super) fn monotone_slope([h0, h1]: [f64; 2], [d0, d1]: [f64; 2]) -> f64 {
     match d0 * d1 > 0.0 {
         true => {

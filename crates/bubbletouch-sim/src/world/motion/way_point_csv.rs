@@ -10,14 +10,14 @@ use std::io::Read;
 /// Name of the column with the waypoints' times.
 const TIME: &str = "time_s";
 
-/// Table of waypoints, from which a trajectory claims the columns that it uses, one by one.
+/// Table of waypoints. A trajectory marks the columns that it uses one by one, so that unused columns are detected.
 pub(super) struct Table {
     /// Numbers of the file, one row per waypoint.
     numbers: NumberTable,
     claimed: Vec<bool>,
 }
 
-/// Column of a table that a trajectory uses (claims), with the factor that converts its numbers to SI units.
+/// Column of a table that a trajectory uses, with the factor that converts its numbers to SI units.
 #[derive(Clone, Copy)]
 pub(super) struct Column {
     index: usize,
@@ -28,7 +28,7 @@ pub(super) struct Column {
 pub(super) type Units = &'static [(&'static str, f64)];
 
 impl Table {
-    /// Reads the whole table of waypoints. Errors begin with `place`, the file's name, and contain the line.
+    /// Reads the whole table of waypoints. Errors begin with `place`, the file's name, and contain the line number.
     pub fn read(place: &str, source: impl Read) -> Result<Self> {
         let allowed = format!("a header with {TIME}, then way-points");
         let numbers = NumberTable::read(place, source, &allowed)?;
@@ -38,8 +38,8 @@ impl Table {
         })
     }
 
-    /// Claims the column `name`, optionally with the suffix of a unit. Names in `reserved` are not split into name and unit. Returns an error if two columns
-    /// match.
+    /// Marks the column `name`, optionally with the suffix of a unit, as used. Names in `reserved` are not split into name and unit. Returns an error if two
+    /// columns match; `None` if no column matches.
     pub fn claim(
         &mut self,
         name: &str,

@@ -32,7 +32,7 @@ impl Origin {
         }
     }
 
-    /// Returns the name of one waypoint in messages, by its index.
+    /// Returns the name of one waypoint in error messages, by its index.
     pub fn way_point(&self, index: usize) -> String {
         match self {
             Self::Argument(_) => format!("way-point {}", index + 1),
@@ -42,7 +42,7 @@ impl Origin {
 }
 
 impl WayPoints {
-    /// Returns the checked waypoints, or an error that names the first invalid one.
+    /// Returns the waypoints if they are valid, or an error that names the first invalid waypoint.
     pub fn checked(self) -> Result<Self> {
         let n = self.times.len();
         if n == 0 {
@@ -75,7 +75,7 @@ impl WayPoints {
         Ok(self)
     }
 
-    /// Returns the location of one waypoint in its file or argument.
+    /// Returns the location of one waypoint in its file or argument, for error messages.
     pub fn at(&self, index: usize) -> String {
         format!("{}, {}", self.origin.place(), self.origin.way_point(index))
     }

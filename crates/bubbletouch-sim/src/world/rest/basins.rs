@@ -9,22 +9,22 @@ use super::descent::descend;
 use super::support::Support;
 use glam::{DQuat, DVec3};
 
-/// Spacing of the heights computed along a path, radians: a quarter of the mesh's spacing.
+/// Spacing of the points on a path at which the height is computed, radians: a quarter of the spacing of the mesh of directions.
 const PATH_SPACING: f64 = 0.01;
-/// Maximum number of times that a path between two minima is halved to follow a bent valley; 4 suffices for a quarter circle.
+/// Maximum number of times that a path between two minima is halved so that it follows a bent valley; 4 suffices for a quarter circle.
 const VALLEY_HALVINGS: usize = 4;
-/// Angle below which two minima count as equal, radians: half the spacing of the mesh.
+/// Angle below which two minima count as equal, radians: half the spacing of the mesh of directions.
 const SAME_DIRECTION: f64 = 0.02;
 
-/// Minimum of the support function, and the fraction of directions that lead to it.
+/// Basin: a minimum of the support function, and the fraction of directions from which a rolling object ends there.
 pub(crate) struct Basin {
-    /// Down direction at the minimum, unit vector.
+    /// Direction, in the object's frame, that points down at the minimum; unit vector.
     pub lowest: DVec3,
-    /// Fraction of all directions, 0 to 1; accurate to about 0.01.
+    /// Fraction of all directions that lead to this minimum, 0 to 1; accurate to about 0.01.
     pub share: f64,
 }
 
-/// Returns all basins separated by barriers of at least `barrier` (metres), in the order of the mesh.
+/// Returns all basins that are separated by barriers of at least `barrier` (metres), in the order of the mesh of directions.
 pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
     let label = downhill_labels(support);
     let passes = mesh_passes(support, &label);
@@ -38,13 +38,13 @@ pub(crate) fn basins(support: &Support, barrier: f64) -> Vec<Basin> {
     merging.basins(support, &label)
 }
 
-/// Lowest path (pass) between two basins, given by the basins' labels, with the height of its highest point.
+/// Pass: the lowest path between two basins, given by the basins' labels and the height of the path's highest point.
 struct Pass {
     labels: (usize, usize),
     height: f64,
 }
 
-/// Returns the label of each direction of the mesh: the direction reached by repeatedly moving to the lowest neighbour.
+/// Returns the label of each direction of the mesh, which is the direction reached by repeatedly moving to the lowest neighbour.
 fn downhill_labels(support: &Support) -> Vec<usize> {
     let heights = &support.heights;
     // Between equal heights the smaller index counts as lower, so that flat regions have an end.
@@ -64,13 +64,13 @@ fn downhill_labels(support: &Support) -> Vec<usize> {
     label
 }
 
-/// Returns each side of each triangle, so that every edge of the mesh occurs twice, once in either direction.
+/// Returns the sides of all triangles of the mesh of directions, so that every edge occurs twice, once in either direction.
 fn edges(support: &Support) -> impl Iterator<Item = (usize, usize)> + '_ {
     let sides = |&[a, b, c]: &[usize; 3]| [(a, b), (b, c), (c, a)];
     support.triangles.iter().flat_map(sides)
 }
 
-/// Returns the lowest mesh edge between each pair of neighbouring labels.
+/// Returns the lowest mesh edge between each pair of neighbouring labels, as passes.
 fn mesh_passes(support: &Support, label: &[usize]) -> Vec<Pass> {
     let between = edges(support).filter(|&(a, b)| label[a] < label[b]);
     let pass = |(a, b): (usize, usize)| Pass {
@@ -80,7 +80,7 @@ fn mesh_passes(support: &Support, label: &[usize]) -> Vec<Pass> {
     lowest_of_each(between.map(pass).collect())
 }
 
-/// Keeps the lowest pass between each pair of labels.
+/// Returns only the lowest pass between each pair of labels.
 fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
     passes.sort_by(|a, b| {
         let by_height = a.height.total_cmp(&b.height);
@@ -90,16 +90,16 @@ fn lowest_of_each(mut passes: Vec<Pass>) -> Vec<Pass> {
     passes
 }
 
-/// Set of basins while they are merged (union-find).
+/// Basins of directions while they are merged (union-find).
 struct Merging {
-    /// Parent of each label in the union-find structure: another label of its basin; a root refers to itself.
+    /// Parent of each label in the union-find structure: another label of the same basin. A root is its own parent.
     parent: Vec<usize>,
-    /// Lowest direction of the basin of each root, and its height.
+    /// Lowest direction and its height, metres, for each basin, stored at the label of the basin's root.
     minimum: Vec<(DVec3, f64)>,
 }
 
 impl Merging {
-    /// Starts with one basin per mesh direction.
+    /// Creates one basin for each direction of the mesh.
     fn new(support: &Support) -> Self {
         let pairs = support.directions.iter().zip(&support.heights);
         Self {
@@ -116,8 +116,8 @@ impl Merging {
         label
     }
 
-    /// Merges basins across low passes, lowest pass first. Two basins are merged if the pass between them is less than `barrier` above the higher of their
-    /// minima.
+    /// Merges basins across low passes, lowest pass first. Two basins are merged if the pass between them is less than `barrier` (metres) above the higher of
+    /// their minima.
     fn merge(&mut self, passes: &[Pass], barrier: f64) {
         let mut by_height: Vec<&Pass> = passes.iter().collect();
         by_height.sort_by(|a, b| a.height.total_cmp(&b.height));
@@ -129,7 +129,7 @@ impl Merging {
         }
     }
 
-    /// Merges the basins of two roots; the lower minimum is kept.
+    /// Merges the basins of two labels; the lower minimum is kept.
     fn join(&mut self, a: usize, b: usize) {
         let (keep, drop) = if self.minimum[a].1 <= self.minimum[b].1 {
             (a, b)
@@ -144,8 +144,8 @@ impl Merging {
         self.minimum[a].1.max(self.minimum[b].1)
     }
 
-    /// Moves each minimum from its mesh direction to the true local minimum. If a minimum ends among another basin's directions, the height never increased on
-    /// the path to it, and the two basins are merged.
+    /// Moves each basin's minimum from its mesh direction to the true local minimum. If a minimum ends among another basin's directions, the height never
+    /// increased on the path to it, and the two basins are merged.
     fn descend_minima(&mut self, support: &Support, label: &[usize]) {
         let mut roots: Vec<_> = label.iter().map(|&label| self.root(label)).collect();
         roots.sort_unstable();
@@ -161,7 +161,7 @@ impl Merging {
         }
     }
 
-    /// Returns the passes between the remaining basins: along the mesh, or along a smooth path if this path is lower.
+    /// Returns the passes between the remaining basins: paths along the mesh, or smooth paths where these are lower.
     fn smooth_passes(
         &mut self,
         support: &Support,
@@ -190,7 +190,7 @@ impl Merging {
         left
     }
 
-    /// Returns the remaining basins, each with its fraction of the mesh.
+    /// Returns the remaining basins, each with its fraction of all directions.
     fn basins(mut self, support: &Support, label: &[usize]) -> Vec<Basin> {
         let mut area = vec![0.0; label.len()];
         for corners in &support.triangles {
@@ -211,8 +211,8 @@ impl Merging {
     }
 }
 
-/// Returns the height of the highest point of a path between two minima. The path is the great circle if it stays below `enough`. Otherwise it passes through
-/// the minimum below its middle, which bends the path into the curved valley of a lying cone.
+/// Returns the height of the highest point of a path between two minima, metres. The path is the great circle if it stays below `enough`. Otherwise the path
+/// leads through the minimum below its middle, which bends the path into the curved valley of a lying cone.
 fn valley_pass(support: &Support, ends: (DVec3, DVec3), enough: f64, halvings: usize) -> f64 {
     let (from, to) = ends;
     let direct = highest_between(support, from, to);
@@ -229,7 +229,7 @@ fn valley_pass(support: &Support, ends: (DVec3, DVec3), enough: f64, halvings: u
     direct.min(passes[0].max(passes[1]))
 }
 
-/// Returns the largest height along the shorter great circle between two directions.
+/// Returns the largest height along the shorter great circle between two directions, metres.
 fn highest_between(support: &Support, from: DVec3, to: DVec3) -> f64 {
     let turn = DQuat::from_rotation_arc(from, to);
     let steps = (from.angle_between(to) / PATH_SPACING).ceil().max(1.0);

@@ -5,7 +5,7 @@ use crate::geometry::{Aabb, Pose};
 use crate::objects::{Model, Sphere};
 use glam::{DQuat, DVec3};
 
-/// Volume relative to area^(3/2) below which a mesh counts as hollow. A ball has 0.094, a plate of 100 × 100 × 0.1 mm 0.0004.
+/// Volume relative to area^(3/2) below which a mesh counts as a surface without volume. A ball has 0.094, a plate of 100 × 100 × 0.1 mm 0.0004.
 const HOLLOW: f64 = 1e-4;
 
 impl Model {
@@ -17,7 +17,7 @@ impl Model {
         }
     }
 
-    /// Returns spheres, or points as spheres of zero radius, whose convex hull equals the object's.
+    /// Returns spheres (points are spheres of zero radius) whose convex hull equals the object's convex hull.
     pub(crate) fn extremes(&self) -> Vec<Sphere> {
         let point = |center| Sphere {
             center,

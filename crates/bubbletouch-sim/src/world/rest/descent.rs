@@ -7,16 +7,17 @@ use super::support::Support;
 use crate::objects::Sphere;
 use glam::{DMat3, DVec3};
 
-/// Initial radius of the trust region, radians: about the spacing of the mesh of directions.
+/// Initial radius of the trust region of a descent, radians: about the spacing of the mesh of directions.
 const FIRST_REACH: f64 = 0.04;
 /// Radius of the trust region below which the descent ends, radians.
 const LAST_REACH: f64 = 1e-9;
-/// Predicted decrease that counts as rounding, relative to the farthest point's distance.
+/// Predicted decrease of the height that counts as rounding, relative to the farthest point's distance from the centre of mass.
 const LEAST_GAIN: f64 = 1e-14;
-/// Maximum number of steps; 20 to 60 are usual.
+/// Maximum number of steps of a descent; 20 to 60 are usual.
 const MAX_STEPS: usize = 200;
 
-/// Returns the local minimum of the height reached from `start`; both are unit vectors. The height never increases during the descent.
+/// Returns the direction at the local minimum of the height that a descent from `start` reaches; both are unit vectors. The height never increases during the
+/// descent.
 pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     let mut down = start;
     let mut height = support.height(down);
@@ -54,7 +55,7 @@ pub(crate) fn descend(support: &Support, start: DVec3) -> DVec3 {
     down
 }
 
-/// Linear lower bound of the height due to one sphere: z ≥ `value` + `slope` · t in the tangent plane.
+/// Linear lower bound of the height z due to one sphere: z ≥ `value` + `slope` · t for a step t in the tangent plane.
 #[derive(Clone, Copy)]
 struct LinearBound {
     value: f64,
@@ -67,7 +68,7 @@ impl LinearBound {
     }
 }
 
-/// Returns the tangent step that minimises the linearised height inside the bounding walls, and this height. Spheres below `lowest` are ignored.
+/// Returns the step in the tangent plane that minimises the linearised height inside the bounding walls, and this height. Spheres below `lowest` are ignored.
 fn linear_step(
     spheres: &[Sphere],
     down: DVec3,
@@ -85,8 +86,8 @@ fn linear_step(
     (t[0] * u + t[1] * v, z)
 }
 
-/// Returns three linear functions that keep the step inside a triangle of inradius `reach`. They are steeper than any sphere, exceed `height` outside the
-/// triangle, and stay below every possible minimum well inside it.
+/// Returns three linear functions that keep the step inside a triangle of inradius `reach`. They are steeper than the bound of any sphere, exceed `height`
+/// outside the triangle, and stay below every possible minimum well inside it.
 fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
     let steep = 4.0 * radius;
     [0.0, 1.0, 2.0].map(|third| {
@@ -98,7 +99,8 @@ fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
     })
 }
 
-/// Returns min over t of the maximum of `pieces` and `walls`: a linear program in three variables, by the dual simplex method.
+/// Returns the point t at which the maximum of all linear functions `pieces` and `walls` is lowest, and this maximum. The linear program in three variables
+/// is solved by the dual simplex method.
 ///
 /// The basis contains three pieces whose slopes have the weighted mean 0 with `weights` ≥ 0. The common point of the three pieces is the minimum of their
 /// maximum. The piece that is highest there enters the basis, and the piece whose weight reaches zero first leaves.
@@ -143,7 +145,7 @@ fn lowest_maximum(pieces: &[LinearBound], walls: [LinearBound; 3]) -> ([f64; 2],
     answer
 }
 
-/// Returns the point where three pieces are equally high, and their height; `None` if their slopes lie on a line.
+/// Returns the point where three linear functions are equal, and their value there; `None` if their slopes lie on a line.
 fn common_point(basis: &[LinearBound; 3]) -> Option<([f64; 2], f64)> {
     let row = |p: &LinearBound| DVec3::new(p.slope[0], p.slope[1], -1.0);
     let rows = DMat3::from_cols(row(&basis[0]), row(&basis[1]), row(&basis[2])).transpose();

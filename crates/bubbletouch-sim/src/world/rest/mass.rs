@@ -3,8 +3,8 @@
 use crate::objects::SphereUnion;
 use glam::DVec3;
 
-/// Number of cells along the longest side. A larger value is more accurate, with cubic run time; 48 cells give an error of about 0.2 % of the longest side in
-/// about 2 ms.
+/// Number of cubic cells along the longest side of the bounding box. A larger value is more accurate, with cubic run time; 48 cells give an error of about
+/// 0.2 % of the longest side in about 2 ms.
 const CELLS: f64 = 48.0;
 
 const EMPTY: u8 = 0;
@@ -22,7 +22,7 @@ pub fn center_of_mass(spheres: &SphereUnion) -> DVec3 {
     cells.centroid()
 }
 
-/// Cubes over the union's bounding box, surrounded by one layer of empty cubes.
+/// Cubic cells that fill the union's bounding box, surrounded by one layer of empty cells.
 struct Cells {
     origin: DVec3,
     side: f64,
@@ -55,7 +55,7 @@ impl Cells {
         self.origin[axis] + (place as f64 + 0.5) * self.side
     }
 
-    /// Marks the cells whose centres are inside a sphere, and the cell at each sphere's centre, so that thin parts are not lost.
+    /// Marks the cells whose centres are inside a sphere, and also the cell at each sphere's centre, so that thin parts are not lost.
     fn mark_spheres(&mut self, spheres: &SphereUnion) {
         for sphere in spheres.spheres() {
             let place = |axis: usize, offset: f64| {
@@ -82,7 +82,7 @@ impl Cells {
         }
     }
 
-    /// Marks every empty cell that is connected through faces to the corner of the outer layer as outside.
+    /// Marks as outside every empty cell that is connected to the outer layer through faces.
     fn flood_outside(&mut self) {
         let mut stack = vec![[0usize; 3]];
         self.state[0] = OUTSIDE;

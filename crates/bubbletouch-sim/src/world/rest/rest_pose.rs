@@ -11,10 +11,10 @@ use crate::geometry::Pose;
 use crate::objects::Model;
 use glam::{DQuat, DVec3};
 
-/// Smallest height of the barrier between two resting poses, relative to the farthest point's distance. If smaller, bumps of spheres on a round side become
-/// poses; if larger, stable poses are merged (1 % keeps all poses that withstand ± 8°).
+/// Smallest height of the barrier between two resting poses, relative to the farthest point's distance from the centre of mass. If smaller, bumps of spheres
+/// on a round side become poses; if larger, stable poses are merged (1 % keeps all poses that withstand ± 8°).
 const BARRIER: f64 = 0.01;
-/// Smallest probability of a resting pose that is returned. If smaller, poses are included that rarely occur.
+/// Smallest probability of a resting pose that is returned. If smaller, rare poses are included.
 const LEAST_PROBABILITY: f64 = 0.02;
 
 /// Pose in which an object rests on the table, with its probability.
@@ -22,13 +22,13 @@ const LEAST_PROBABILITY: f64 = 0.02;
 pub struct RestPose {
     /// Pose of the object on the table: it rests on z = 0 with its bounding box centred at x = y = 0.
     pub table_from_object: Pose,
-    /// Height z of the object's top, metres.
+    /// Height of the object's top above the table, metres.
     pub height: f64,
-    /// Probability of this pose among the object's poses, above 0; the probabilities sum to 1.
+    /// Probability of this pose among the object's resting poses, above 0; the probabilities sum to 1.
     pub probability: f64,
 }
 
-/// Returns the pose with the object's own z up.
+/// Returns the pose in which the object's own z points up.
 pub fn as_modelled(object: &Model) -> RestPose {
     resting(object, DVec3::NEG_Z, 1.0)
 }
@@ -58,7 +58,8 @@ pub fn stable_poses_about(object: &Model, center_of_mass: DVec3) -> Vec<RestPose
     poses
 }
 
-/// Returns the pose in which `down` (unit vector in the object's frame) points at the table, reached by the smallest rotation from upright or upside-down.
+/// Returns the pose in which `down` (unit vector in the object's frame) points at the table. The object is rotated by the smallest angle from upright or
+/// upside-down.
 fn resting(object: &Model, down: DVec3, probability: f64) -> RestPose {
     let upside_down = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
     let rotation = if down.z <= 0.0 {

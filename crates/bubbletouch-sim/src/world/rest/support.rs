@@ -7,22 +7,23 @@
 use crate::objects::Sphere;
 use glam::DVec3;
 
-/// Number of subdivisions of the mesh of directions: 10,242 directions, 2.1° apart. One less halves the time and merges basins narrower than 8°; one more takes
-/// four times as long.
+/// Number of subdivisions of the mesh of directions, which gives 10,242 directions, 2.1° apart. One less halves the time and merges basins narrower than 8°;
+/// one more takes four times as long.
 const LEVELS: usize = 5;
 
-/// Support function of a union of spheres about a point, with a mesh of directions for searches.
+/// Support function of a union of spheres about a point, with a mesh of directions for searches. The function is the height of the point above a table on
+/// which the union lies.
 pub(crate) struct Support {
     spheres: Vec<Sphere>,
     /// Unit vectors of the mesh of directions.
     pub directions: Vec<DVec3>,
-    /// Height h at each direction, metres.
+    /// Height of the point above the table for each direction of the mesh, metres.
     pub heights: Vec<f64>,
-    /// Triangles of the finest level, as indices of directions; triangle t of a level contains 4t … 4t + 3 of the next.
+    /// Triangles of the finest level of the mesh, as indices of directions; triangle t of a level contains triangles 4t … 4t + 3 of the next level.
     pub triangles: Vec<[usize; 3]>,
-    /// Triangles of every level except the finest.
+    /// Triangles of every level of the mesh except the finest.
     coarse: Vec<Vec<[usize; 3]>>,
-    /// Spheres that can be highest inside each triangle of the last coarse level.
+    /// Indices of the spheres that can determine the height inside each triangle of the last coarse level.
     candidates: Vec<Vec<u32>>,
 }
 
@@ -48,18 +49,18 @@ impl Support {
         support
     }
 
-    /// Returns the distance of the union's farthest point from the centre of mass, metres.
+    /// Returns the distance of the union's farthest point from the point of this support function, metres.
     pub fn radius(&self) -> f64 {
         let reach = |s: &Sphere| s.center.length() + s.radius;
         self.spheres.iter().map(reach).fold(0.0, f64::max)
     }
 
-    /// Returns the height h(d) of the centre of mass above the table, metres; `down` is a unit vector.
+    /// Returns the height of the centre of mass above the table if the unit vector `down` points at the table, metres.
     pub fn height(&self, down: DVec3) -> f64 {
         self.highest(self.cell_of(down), down)
     }
 
-    /// Returns every sphere that can be highest within about `reach` (radians) of `down`.
+    /// Returns every sphere that can determine the height within about `reach` (radians) of the direction `down`.
     pub fn candidates_near(&self, down: DVec3, reach: f64) -> Vec<Sphere> {
         let (u, v) = down.any_orthonormal_pair();
         let ring = |reach: f64| {
@@ -82,7 +83,7 @@ impl Support {
         indices.iter().map(sphere).collect()
     }
 
-    /// Returns the mesh direction next to `direction`: the nearest corner of the finest triangle around it.
+    /// Returns the index of a mesh direction next to `direction`: the nearest corner of the finest triangle around it.
     pub fn nearest_direction(&self, direction: DVec3) -> usize {
         let cell = self.cell_of(direction);
         let corners = self.triangles[4 * cell..4 * cell + 4].iter().flatten();
@@ -91,7 +92,7 @@ impl Support {
         nearest.unwrap_or(0)
     }
 
-    /// Returns the triangle of the last coarse level that contains a direction.
+    /// Returns the index of the triangle of the last coarse level that contains a direction.
     fn cell_of(&self, direction: DVec3) -> usize {
         let depths = |triangle: &[usize; 3]| {
             let [a, b, c] = triangle.map(|v| self.directions[v]);
@@ -115,7 +116,7 @@ impl Support {
         cell
     }
 
-    /// Returns the height of the highest candidate sphere of a cell in a direction, metres.
+    /// Returns the largest height that a candidate sphere of a coarse triangle requires in a direction, metres.
     fn highest(&self, cell: usize, direction: DVec3) -> f64 {
         let height = |&index: &u32| {
             let sphere = &self.spheres[index as usize];
@@ -156,7 +157,8 @@ impl Support {
     }
 }
 
-/// Returns the candidates that no other sphere dominates over a whole triangle of directions. The dominating sphere c* is one that is highest at a corner.
+/// Returns the candidate spheres that no other sphere dominates over a whole triangle of directions, given by its corners. The dominating sphere c* is one
+/// that is highest at a corner.
 ///
 /// Inside the triangle, d = v / |v| with v = Σ αᵢ vᵢ over the corners, αᵢ ≥ 0, Σ αᵢ = 1, and |v| from ϱ (the plane's distance) to 1. So (c − c*)·d + r − r* ≤ 0
 /// everywhere if (c − c*)·vᵢ + max((r − r*) ϱ, r − r*) ≤ 0 at all three corners.
@@ -189,7 +191,7 @@ fn not_dominated(spheres: &[Sphere], candidates: &[u32], corners: [DVec3; 3]) ->
         .collect()
 }
 
-/// Returns the unit directions of a subdivided icosahedron, and the triangles of each level, from 20 to the finest.
+/// Returns the unit directions of a subdivided icosahedron, and the triangles of each level, from the 20 faces to the finest level.
 fn subdivided_icosahedron() -> (Vec<DVec3>, Vec<Vec<[usize; 3]>>) {
     let golden = 0.5 * (1.0 + 5f64.sqrt());
     let mut directions = Vec::new();

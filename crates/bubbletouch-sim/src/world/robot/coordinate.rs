@@ -20,7 +20,7 @@ impl Dimension {
         }
     }
 
-    /// Returns the suffixes of column names with this dimension, and the size of each unit in SI units; the first suffix is empty.
+    /// Returns the suffixes of column names for this dimension, and the size of each unit in SI units; the first suffix is empty.
     pub fn units(self) -> &'static [(&'static str, f64)] {
         match self {
             Self::Angle => &[("", 1.0), ("_rad", 1.0), ("_deg", PI / 180.0)],
@@ -29,7 +29,7 @@ impl Dimension {
     }
 }
 
-/// One coordinate of a robot's joint positions.
+/// One coordinate of a robot's joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coordinate {
     /// Name of the coordinate, which is the name of its joint. For joints with several coordinates, `.x`, `.y`, `.z`, `.theta`, `.roll`, `.pitch` or `.yaw` is

@@ -21,7 +21,7 @@ pub struct Joint {
     pub axis: DVec3,
     /// Limits of position and velocity; `None` for joints without a `<limit>`, without coordinates, or with several coordinates.
     pub limits: Option<Limits>,
-    /// Relation to the joint that this one mimics, if any.
+    /// Relation to the joint that this joint mimics, if any.
     pub mimic: Option<Mimic>,
 }
 
@@ -51,11 +51,11 @@ pub struct Limits {
     pub upper: f64,
     /// Highest speed, rad/s or m/s, zero or positive; +∞ without a limit.
     pub velocity: f64,
-    /// Highest torque or force, N·m or N, zero or positive; +∞ without a limit. This library does not use the limit.
+    /// Highest torque or force of the joint, N·m or N, zero or positive; +∞ without a limit. This library does not use the limit.
     pub effort: f64,
 }
 
-/// Relation of a joint to another one: `position = multiplier · position of the other + offset`.
+/// Relation of a joint to another joint: `position = multiplier · position of the other + offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mimic {
     /// Index of the other joint, which may itself mimic a joint.
@@ -103,7 +103,7 @@ impl JointKind {
 }
 
 impl Joint {
-    /// Returns `parent_from_child` at the given coordinates, as many as the joint's kind has.
+    /// Returns the pose `parent_from_child` for the given coordinates; their number depends on the kind of joint.
     pub(super) fn pose(&self, coordinates: &[f64]) -> Pose {
         let motion = match (self.kind, coordinates) {
             (JointKind::Revolute | JointKind::Continuous, &[angle]) => {

@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 pub struct Link {
     /// Name of the link, unique in its robot.
     pub name: String,
-    /// Visual and collision shapes of the link, in the order of the file; unreadable shapes are omitted.
+    /// Visual and collision shapes of the link, in the order of the file; shapes that cannot be read are omitted.
     pub shapes: Vec<LinkShape>,
 }
 
-/// Shape that a link has, for drawing or collisions.
+/// Shape of a link, for drawing or for collisions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkShape {
     /// Purpose of the shape.

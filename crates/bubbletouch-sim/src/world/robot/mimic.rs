@@ -4,18 +4,18 @@ use super::xml::Element;
 use super::{Joint, Mimic};
 use crate::error::{Error, Result};
 
-/// Source of a joint's coordinates: its own positions, or `multiplier · position + offset` of the joint at the end of its mimic chain.
+/// Source of a joint's coordinates: its own positions, or `multiplier · position + offset` of the joint at the end of a chain of mimicking joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drive {
-    /// Index of the first position of the joint at the end of the mimic chain; unused if the multiplier is 0.
+    /// Index of the first position of the joint at the end of the chain; unused if the multiplier is 0.
     pub position: usize,
-    /// Multiplier of the whole mimic chain; 1 for a joint that mimics none, 0 if the end is a fixed joint.
+    /// Multiplier of the whole chain; 1 for a joint that mimics no other joint, 0 if the chain ends at a fixed joint.
     pub multiplier: f64,
-    /// Offset of the whole mimic chain; 0 for a joint that mimics none.
+    /// Offset of the whole chain; 0 for a joint that mimics no other joint.
     pub offset: f64,
 }
 
-/// Returns the drive (source of its coordinates) of each joint. A joint that mimics a fixed one stays at its offset.
+/// Returns the source of the coordinates of each joint. A joint that mimics a fixed joint stays at its offset.
 ///
 /// # Errors
 /// If a mimic chain is a cycle or its numbers are too large. The error contains the line of a joint of the chain.

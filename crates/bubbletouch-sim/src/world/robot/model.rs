@@ -9,7 +9,7 @@ use crate::geometry::Pose;
 use crate::text::spelling::known;
 use std::collections::HashSet;
 
-/// Rigid multi-link body. Invariant: the joints connect all links to one tree.
+/// Robot: a rigid multi-link body. Invariant: the joints connect all links to one tree.
 ///
 /// ```
 /// use bubbletouch_sim::geometry::Pose;
@@ -37,7 +37,7 @@ pub struct Robot {
     links: Vec<Link>,
     joints: Vec<Joint>,
     tree: Tree,
-    /// Sources of the joints' coordinates, one per joint.
+    /// Sources of the joints' coordinates (own positions or mimicked joints), one per joint.
     drives: Vec<Drive>,
     coordinates: Vec<Coordinate>,
     tactile_sensors: Vec<TactileSensor>,
@@ -66,7 +66,7 @@ impl Robot {
         }
     }
 
-    /// Creates a robot from checked parts. Returns an error if two coordinates have one name.
+    /// Creates a robot from parts that have been checked. Returns an error if two coordinates have one name.
     pub(super) fn assembled(
         (name, place): (String, &str),
         links: Vec<Link>,
@@ -141,7 +141,7 @@ impl Robot {
         self.tree.root
     }
 
-    /// Returns the coordinate of each joint position, in order.
+    /// Returns the coordinate of each joint position, in the order of the positions.
     pub fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
     }
@@ -160,7 +160,7 @@ impl Robot {
         self.coordinates.iter().map(rest).collect()
     }
 
-    /// Returns the index of a link by its name.
+    /// Returns the index of the link with the given name.
     ///
     /// # Errors
     /// If there is no such link; the error suggests similar names.
@@ -169,7 +169,7 @@ impl Robot {
         known(format!("link of robot `{}`", self.name), name, names)
     }
 
-    /// Returns the index of a joint by its name.
+    /// Returns the index of the joint with the given name.
     ///
     /// # Errors
     /// If there is no such joint; the error suggests similar names.
@@ -178,7 +178,7 @@ impl Robot {
         known(format!("joint of robot `{}`", self.name), name, names)
     }
 
-    /// Returns `world_from_link` of every link, in order; `world_from_base` is the pose of the base.
+    /// Returns the pose `world_from_link` of every link, in order; `world_from_base` is the pose of the base.
     ///
     /// # Errors
     /// If the number of positions differs from the robot's, or a position is not finite.
@@ -188,7 +188,7 @@ impl Robot {
         Ok(world_from_link)
     }
 
-    /// Writes `world_from_link` of every link into a slice of one pose per link, without allocation.
+    /// Writes the pose `world_from_link` of every link into a slice of one pose per link, without allocation.
     ///
     /// Limits are not checked here, but in a `JointTrajectory`.
     ///
@@ -220,8 +220,8 @@ impl Robot {
         Ok(())
     }
 
-    /// Returns the position that moves a joint of one coordinate, as `(position, multiplier, offset)`. Returns `None` for other joints and for joints that
-    /// mimic a fixed joint, which no position moves. A joint that mimics none has multiplier 1 and offset 0.
+    /// Returns the position that moves a joint of one coordinate, as `(index of the position, multiplier, offset)`. Returns `None` for other joints and for
+    /// joints that mimic a fixed joint, which no position moves. A joint that mimics no other joint has multiplier 1 and offset 0.
     pub fn drive_of(&self, joint: usize) -> Option<(usize, f64, f64)> {
         let drive = self.drives[joint];
         let is_one = self.joints[joint].kind.has_one_coordinate() && drive.multiplier != 0.0;

@@ -19,10 +19,10 @@ pub struct TactileSensor {
     pub taxels: Vec<Pose>,
 }
 
-/// Largest number of taxels of an array. A larger number is a mistake in the file.
+/// Largest allowed number of taxels of an array. A larger number indicates a mistake in the file.
 const MAX_TAXELS: usize = 1_000_000;
 
-/// Returns the tactile sensors of a robot. An incomplete sensor becomes a note that names the sensor and its link.
+/// Returns the tactile sensors that a robot's file declares. An incomplete sensor becomes a note that names the sensor and its link.
 pub(super) fn read_tactile_sensors(robot: Element) -> Vec<TactileSensor> {
     let all = robot.node.descendants();
     let elements = all.filter(|node| node.tag_name().name() == "tactile");
@@ -40,7 +40,7 @@ pub(super) fn read_tactile_sensors(robot: Element) -> Vec<TactileSensor> {
     sensors.collect()
 }
 
-/// Place of a sensor in the file: its XML element, its name, and the name of its link.
+/// Origin of a tactile sensor in the file: its XML element, its name, and the name of its link.
 struct Place<'a> {
     sensor: Option<Node<'a, 'a>>,
     name: Option<&'a str>,

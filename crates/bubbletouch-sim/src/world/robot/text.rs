@@ -9,7 +9,7 @@ use roxmltree::{Document, Error, ParsingOptions};
 /// Largest number of undeclared namespace prefixes in one file; robot files have far fewer.
 const MAX_PREFIXES: usize = 100;
 
-/// Decodes the bytes of a file: UTF-8, UTF-16 with a byte order mark, otherwise Latin-1 with a note.
+/// Decodes the bytes of a file as UTF-8, as UTF-16 if there is a byte order mark, otherwise as Latin-1 with a note.
 pub(super) fn decoded(place: &str, bytes: &[u8]) -> (String, Option<String>) {
     let units = |from: fn([u8; 2]) -> u16| {
         let pairs = bytes[2..].chunks_exact(2);
@@ -74,7 +74,8 @@ pub(super) fn parsed(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, options)
 }
 
-/// Returns a predicate: whether a `<?xml` after the beginning of the text is a declaration, and not another instruction such as `<?xml-model`.
+/// Returns a predicate for the match of `<?xml` at a byte position after the beginning of the text. The predicate is true for a declaration, and false for
+/// another instruction such as `<?xml-model`.
 fn is_late_declaration(text: &str) -> impl Fn((usize, &str)) -> bool + '_ {
     move |(start, found)| {
         let after = text[start + found.len()..].chars().next();
@@ -82,7 +83,7 @@ fn is_late_declaration(text: &str) -> impl Fn((usize, &str)) -> bool + '_ {
     }
 }
 
-/// Returns the text with spaces in place of everything from `open` to the next `close`.
+/// Returns the text with spaces in place of each section from `open` to the next `close`.
 fn without(text: &str, open: &str, close: &str) -> String {
     let mut kept = String::with_capacity(text.len());
     let mut rest = text;

@@ -14,7 +14,7 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Checks that the joints connect the links to one tree. `robot` and `elements` (one per joint) locate errors.
+    /// Checks that the joints connect the links to one tree. `robot` and `elements` (one per joint) give the location in error messages.
     pub fn new(
         links: &[Link],
         joints: &[Joint],
@@ -50,7 +50,7 @@ impl Tree {
     }
 }
 
-/// Returns the joint that moves each link, if any; an error if there is a second one.
+/// Returns the index of the joint that moves each link, if any. Returns an error if two joints move one link.
 fn moved_by(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Vec<Option<usize>>> {
     let mut moved_by: Vec<Option<usize>> = vec![None; links.len()];
     for (index, joint) in joints.iter().enumerate() {
@@ -68,7 +68,7 @@ fn moved_by(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Ve
     Ok(moved_by)
 }
 
-/// Returns the joints reached from the root, parents first; children of one link keep the order of the file.
+/// Returns the indices of the joints reached from the root, parents first; joints of one link keep the order of the file.
 fn outward(root: usize, n_links: usize, joints: &[Joint]) -> Vec<usize> {
     let mut carried: Vec<Vec<usize>> = vec![Vec::new(); n_links];
     for (index, joint) in joints.iter().enumerate() {

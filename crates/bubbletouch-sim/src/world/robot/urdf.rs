@@ -16,10 +16,10 @@ use glam::DVec3;
 use roxmltree::Node;
 use std::collections::HashMap;
 
-/// Part of the namespace address of xacro elements, in all versions.
+/// Part of the XML namespace address that all versions of xacro use.
 const XACRO: &str = "xacro";
 
-/// Consequence of an unreadable limit, in the words of a note.
+/// Consequence of a limit that cannot be read, in the words of a note.
 const UNLIMITED: &str = "it does not limit the joint";
 const FIXED: &str = "the joint is fixed";
 const ALONE: &str = "the joint mimics none";
@@ -178,7 +178,7 @@ struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    /// Returns the index of the link named by a joint's `<parent>` or `<child>`.
+    /// Returns the index of the link that a joint's `<parent>` or `<child>` element names.
     fn read(&self, joint: Element, name: &str, tag: &'static str) -> Result<usize> {
         let end = joint.needed_child(tag)?;
         let wanted = end.text("link")?;
@@ -203,7 +203,7 @@ fn read_kind(element: &Element, joint: &str) -> Result<JointKind> {
     })
 }
 
-/// Returns the unit axis of a joint; x if the file does not contain an axis.
+/// Returns the unit axis of a joint; the x axis if the file does not contain an axis.
 fn read_axis(element: Element, joint: &str) -> Result<DVec3> {
     let Some(axis) = element.child("axis")? else {
         return Ok(DVec3::X);
@@ -308,7 +308,7 @@ fn read_mimic(
     }))
 }
 
-/// Returns the names ordered by their index, because the order of a hash map varies between runs.
+/// Returns the names sorted by their index, because the order of a hash map varies between runs.
 fn in_order<'n>(index_of: &HashMap<&'n str, usize>) -> Vec<&'n str> {
     let mut names: Vec<(usize, &str)> = index_of
         .iter()
@@ -318,7 +318,7 @@ fn in_order<'n>(index_of: &HashMap<&'n str, usize>) -> Vec<&'n str> {
     names.into_iter().map(|(_, name)| name).collect()
 }
 
-/// Maps the names of elements to indices; the error shows the second of two equal names.
+/// Returns a map from names of elements to their indices. If two names are equal, the error shows the second element.
 fn index_of_each<'n>(
     what: &str,
     names: impl Iterator<Item = &'n str>,
@@ -337,7 +337,8 @@ fn index_of_each<'n>(
     Ok(index_of)
 }
 
-/// Returns the first element of xacro, or the first with an xacro expression in an attribute; the elements that it would generate are missing.
+/// Returns the first xacro element, or the first element with a xacro expression in an attribute; `None` if there is none. The elements that xacro would
+/// generate are missing from the file.
 fn not_expanded(root: Element) -> Option<Element> {
     let is_xacro = |node: &Node| {
         let space = node.tag_name().namespace();
@@ -361,7 +362,7 @@ fn xacro_error(element: Element) -> Error {
     )
 }
 
-/// Returns the XML reader's message as an error, with its line.
+/// Returns the message of the XML reader as an error, with the line number.
 fn unreadable(place: &str, text: &str, error: &roxmltree::Error) -> Error {
     if text.trim().is_empty() {
         return Error::input(place, "an empty file", "URDF: a <robot>");

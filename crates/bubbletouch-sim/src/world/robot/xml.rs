@@ -26,7 +26,7 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// Adds a note (a sentence), preceded by the file's name.
+    /// Adds a note, which is a sentence about the file, preceded by the file's name.
     pub fn note(&self, note: String) {
         self.notes.borrow_mut().push(note);
     }
@@ -76,7 +76,7 @@ impl<'a> Element<'a> {
         children.map(move |node| Self { node, ..self })
     }
 
-    /// Returns the only child element with this tag, if there is one.
+    /// Returns the only child element with this tag, or `None`; returns an error if there are several.
     pub fn child(self, tag: &'a str) -> Result<Option<Self>> {
         let mut all = self.children(tag);
         let first = all.next();
@@ -109,7 +109,7 @@ impl<'a> Element<'a> {
         Ok(name)
     }
 
-    /// Returns the N finite numbers of an attribute, if the attribute exists.
+    /// Returns the N finite numbers in the value of an attribute, or `None` if the attribute is missing.
     pub fn numbers<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>> {
         let Some(text) = self.node.attribute(attribute) else {
             return Ok(None);
@@ -129,19 +129,19 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Returns the N finite numbers of a required attribute.
+    /// Returns the N finite numbers in the value of a required attribute.
     pub fn needed_numbers<const N: usize>(&self, attribute: &str) -> Result<[f64; N]> {
         self.text(attribute)?;
         Ok(self.numbers(attribute)?.expect("the attribute is there"))
     }
 
-    /// Returns one finite number of an attribute, if the attribute exists.
+    /// Returns the finite number in the value of an attribute, or `None` if the attribute is missing.
     pub fn number(&self, attribute: &str) -> Result<Option<f64>> {
         Ok(self.numbers::<1>(attribute)?.map(|[number]| number))
     }
 
-    /// Returns the pose of the child `<origin>`; the identity if there is none. The attribute `rpy` rotates about the fixed axes x, y, z in this order;
-    /// `quat_xyzw` (URDF 1.1) replaces it.
+    /// Returns the pose in the child element `<origin>`; the identity if there is none. The attribute `rpy` rotates about the fixed axes x, y, z in this
+    /// order; `quat_xyzw` (URDF 1.1) replaces this attribute.
     pub fn origin(self) -> Result<Pose> {
         let Some(origin) = self.child("origin")? else {
             return Ok(Pose::IDENTITY);
@@ -164,7 +164,7 @@ impl<'a> Element<'a> {
         Ok(Pose::new(rotation, DVec3::from(xyz)))
     }
 
-    /// Returns an error for child elements whose tag is a misspelling of a known one. Unknown elements are ignored, because every simulator adds its own.
+    /// Returns an error if the tag of a child element is a misspelling of a known tag. Unknown elements are ignored, because every simulator adds its own.
     pub fn check_tags(&self, known: &[&str]) -> Result<()> {
         for node in self.node.children().filter(is_own) {
             let tag = node.tag_name().name();
@@ -178,7 +178,7 @@ impl<'a> Element<'a> {
         Ok(())
     }
 
-    /// Returns an error for attributes whose name is a misspelling of a known one.
+    /// Returns an error if the name of an attribute is a misspelling of a known name.
     pub fn check_attributes(&self, known: &[&str]) -> Result<()> {
         for attribute in self.node.attributes() {
             let name = attribute.name();
@@ -192,7 +192,7 @@ impl<'a> Element<'a> {
         Ok(())
     }
 
-    /// Returns the tag of the element, and its name if it has one, for messages.
+    /// Returns the tag of the element, and its name if it has one, for error messages.
     pub fn called(&self) -> String {
         let tag = self.node.tag_name().name();
         match self.node.attribute("name") {
@@ -202,7 +202,7 @@ impl<'a> Element<'a> {
     }
 }
 
-/// Returns whether a node is an element of URDF. Elements in another namespace than the root's belong to other tools.
+/// Returns whether a node is an element of URDF. Elements in another namespace than the root's namespace belong to other tools.
 fn is_own(node: &Node) -> bool {
     let root = node.document().root_element();
     node.is_element() && node.tag_name().namespace() == root.tag_name().namespace()

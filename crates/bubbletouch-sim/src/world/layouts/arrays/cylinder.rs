@@ -19,7 +19,7 @@ pub const ABOUT: LayoutAbout = LayoutAbout {
 };
 
 /// Returns the pose that moves a cylinder around z so that its middle at +x reaches the origin. Afterwards the axis of the middle taxel is along z, and the
-/// rings are along y.
+/// rings of taxels are along y.
 fn up(radius: f64) -> Pose {
     let rotation = DMat3::from_cols(DVec3::Z, DVec3::X, DVec3::Y);
     Pose {

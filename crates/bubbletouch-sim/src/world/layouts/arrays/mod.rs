@@ -52,8 +52,8 @@ impl ArrayLayout {
         (self.about().place_on_plane)(center, radius)
     }
 
-    /// Creates the taxels of the layout for the area of a square grid (nx = ny). `radius` is the radius of curvature to the rest centres, metres; flat layouts
-    /// ignore it.
+    /// Creates the taxels of the layout for the area of a square grid (nx = ny). `radius` is the radius of curvature at the centres of the taxels, metres;
+    /// flat layouts ignore this value.
     ///
     /// # Errors
     /// If the grid is not square, or the layout does not fit around the radius. A cylinder covers at most half a turn, and a cap at most half a sphere.
