@@ -27,35 +27,35 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Rule that combines the values of several axes.
+/// Rule that determines which combinations of the axes' values become configurations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CombineSpec {
-    /// All combinations of the axes' values.
+    /// All combinations of the values of all axes.
     #[default]
     All,
-    /// A base configuration, and variants of it in which one axis alone takes its other values. The base has the first values of all axes; for `[axes]`, it has
+    /// A base configuration, and variants of it in which a single axis takes its other values. The base has the first value of each axis; for `[axes]`, it has
     /// the values of the study's own tables.
     OneAtATime,
 }
 
-/// Axes of the table `[axes]`; the last axis changes fastest.
+/// Axes of a study that its table `[axes]` declares; the last axis changes fastest.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudyAxes {
-    /// Axes in the order in which they are written in the file.
+    /// Axes in the order in which they are written in the study file.
     pub axes: Vec<StudyAxis>,
-    /// Rule that combines the values of several axes.
+    /// Rule that determines which combinations of the axes' values become configurations.
     pub combine: CombineSpec,
 }
 
-/// Axis of a study: a key and its values.
+/// Axis of a study: a key of the study file that is varied, and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyAxis {
     /// Path of the key, such as `touches.depth_mm`, or `touches.offset_{x,y}_mm` for two keys.
     pub key: String,
-    /// Description of the key; of the first one for several keys. Keys of test touches have the description without `test.`.
+    /// Description of the varied key (of the first key, if several are varied together). For keys of test touches, the description of the key without `test.`.
     pub about: Option<&'static KeyAbout>,
-    /// Whether the tables already have a column with these values.
+    /// Whether the result tables have a column for these values even without the axis.
     pub has_column: bool,
     /// Distinct values of the axis, at least one.
     pub values: Vec<toml::Value>,
@@ -63,17 +63,17 @@ pub struct StudyAxis {
     pub line: Option<usize>,
 }
 
-/// Values of one configuration on all axes of its study.
+/// Values that one configuration of a study has on the axes of the study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AxisValues {
     /// Number of the combination of values, from 0.
     pub number: usize,
-    /// Value of each axis.
+    /// Value of each axis that has no column of its own in result tables.
     pub values: Arc<[AxisValue]>,
 }
 
 impl AxisValues {
-    /// Returns the axis values of a combination, for tables with these columns.
+    /// Creates the axis values of combination `number`. `columns` are the table columns of those axes that have no column of their own in result tables.
     pub fn new(
         number: usize,
         (axes, columns): (&StudyAxes, &[Column]),
@@ -97,17 +97,17 @@ impl AxisValues {
     }
 }
 
-/// Value of one axis, as written in result tables.
+/// Value that one configuration has on an axis, as written in result tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisValue {
     /// Table column of the axis.
     pub column: Column,
-    /// Number, truth value, or text; lists and tables are converted to text. `None` if another axis is varied and the key has no such value.
+    /// Number, truth value, or text; lists and tables are converted to text. `None` if the axis keeps the value of the study, and the study has no such value.
     pub value: Option<toml::Value>,
 }
 
-/// Returns the table that contains the last key of a path, and that key. Missing tables along the path are created. Returns `None` if a part of the path is not
-/// a table.
+/// Returns the table that contains the last key of a dotted path, and this key. Missing tables along the path are created. Returns `None` if a part of the path
+/// is not a table.
 fn table_at<'t, 'k>(
     table: &'t mut toml::Table,
     path: &'k str,
@@ -120,7 +120,7 @@ fn table_at<'t, 'k>(
     table_at(inner.as_table_mut()?, rest)
 }
 
-/// Returns a copy of `table` with `value` at the path `key`. Missing tables along the path are created, and an existing value is replaced.
+/// Returns a copy of `table` in which the dotted path `key` has the given value. Missing tables along the path are created, and an existing value is replaced.
 ///
 /// # Errors
 /// If the path is empty, or if a part of it is not a table.
@@ -210,7 +210,7 @@ pub fn read<S: DeserializeOwned>(
     Ok((study, axes))
 }
 
-/// Returns all lists below a table, with their key paths and their start positions in the text.
+/// Returns all lists in a TOML table and its subtables, each with its dotted key path and its start position in the text.
 fn leaves<'i>(
     prefix: String,
     table: DeTable<'i>,
@@ -226,7 +226,7 @@ fn leaves<'i>(
     }
 }
 
-/// Removes `combine` from the keys of `[axes]` and returns its value.
+/// Removes the key `combine` from the keys of `[axes]` and returns its value.
 fn take_combine(
     place: &str,
     text: &str,
@@ -252,7 +252,7 @@ fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::V
     values.collect()
 }
 
-/// Returns the TOML value at a key path; `None` if it does not exist.
+/// Returns the TOML value at a dotted key path; `None` if the path does not exist.
 fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t DeValue<'i>> {
     match key.split_once('.') {
         None => table.get(key).map(Spanned::get_ref),
@@ -260,7 +260,8 @@ fn find<'t, 'i>(table: &'t DeTable<'i>, key: &str) -> Option<&'t DeValue<'i>> {
     }
 }
 
-/// Inserts a TOML value at a key path, with `start` as its position in the text. Returns `None` if the path has a value or a part of it is not a table.
+/// Inserts a TOML value at a dotted key path, with `start` as its position in the text. Returns `None` if the path already has a value or a part of it is not a
+/// table.
 fn insert<'i>(
     table: &mut DeTable<'i>,
     key: &str,
@@ -278,7 +279,7 @@ fn insert<'i>(
 }
 
 impl StudyAxis {
-    /// Creates an axis that does not come from a file.
+    /// Creates an axis from a key path and values that do not come from a study file.
     fn new(key: String, values: Vec<toml::Value>, known: &'static [KeyAbout]) -> Self {
         let mut axis = Self {
             key,
@@ -297,7 +298,7 @@ impl StudyAxis {
         axis
     }
 
-    /// Returns an error about the axis; its place consists of file, line and key.
+    /// Returns an error about the axis, whose place consists of file, line and key.
     fn error(&self, place: &str, given: impl ToString, allowed: impl ToString) -> Error {
         let line = self.line.map_or(String::new(), |line| format!(":{line}"));
         let place = format!("{place}{line}, axes.{:?}", self.key);
@@ -336,7 +337,7 @@ impl StudyAxis {
         Err(self.error(place, given, allowed))
     }
 
-    /// Returns the paths of the keys that take each value: more than one if the axis key lists several in braces.
+    /// Returns the paths of all keys that take the values of this axis: more than one if the axis key lists several names in braces.
     pub fn keys(&self) -> Vec<String> {
         let parts = self.key.split_once('{').and_then(|(start, rest)| {
             let (names, end) = rest.split_once('}')?;
@@ -351,13 +352,13 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the key path without braces, and without a suffix that only describes a distribution.
+    /// Returns the key path of the axis without braces, and without a suffix that only describes a distribution.
     fn path(&self) -> String {
         let path = self.key.replace(['{', '}', ',', ' '], "");
         path.strip_suffix(".within").unwrap_or(&path).to_owned()
     }
 
-    /// Returns the preferred name of the axis's column: the last part of the key, with the prefix `test_` for keys of test touches.
+    /// Returns the preferred name of the axis's table column: the last part of the key path, with the prefix `test_` for keys of test touches.
     fn name(&self) -> String {
         let path = self.path();
         let last = path.rsplit('.').next().unwrap_or(&path);
@@ -367,7 +368,7 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the column of the axis in result tables; `is_taken` returns whether another column uses a name.
+    /// Returns the column of the axis in result tables. `is_taken` returns whether another column already has a name.
     pub fn column(&self, is_taken: impl Fn(&str) -> bool) -> Column {
         let last = self.name();
         let last = &last[..];
@@ -396,20 +397,20 @@ impl StudyAxis {
         column.named(about.names.unwrap_or_default()).optional()
     }
 
-    /// Returns the value of the axis key in a study; `None` if the study has no value, or a value of another type than the axis.
+    /// Returns the value that a study has at the key of this axis. Returns `None` if the study has no value there, or a value of another type.
     fn own(&self, study: &toml::Table) -> Option<toml::Value> {
         let own = value_at(study, self.keys().first()?)?;
         let is_number = self.values.iter().all(|value| number(value).is_some());
         (!is_number || number(own).is_some()).then(|| own.clone())
     }
 
-    /// Returns whether a study has the given value at all keys of the axis.
+    /// Returns whether a study has the given value at every key of the axis.
     fn is_at(&self, study: &toml::Table, value: &toml::Value) -> bool {
         let has = |key: &String| value_at(study, key).is_some_and(|own| is_same(own, value));
         self.keys().iter().all(has)
     }
 
-    /// Returns whether the key belongs to test touches only.
+    /// Returns whether the key of the axis belongs to test touches only.
     fn is_of_tests(&self) -> bool {
         self.key.starts_with(OF_TESTS)
     }
@@ -418,16 +419,16 @@ impl StudyAxis {
 /// Prefix of keys that apply only to test touches.
 const OF_TESTS: &str = "test.";
 
-/// Returns the path of the study's key to which a key of test touches corresponds.
+/// Returns the path of a key without the prefix of test touches, that is, the key of all touches with this meaning.
 fn without_test(key: &str) -> &str {
     key.strip_prefix(OF_TESTS).unwrap_or(key)
 }
 
-/// Minimum ratio of the largest to the smallest value for a logarithmic axis. With a larger value, the small values of a sweep by powers of two overlap on a
-/// linear axis; with a smaller value, evenly spaced values are drawn unevenly. Zero is drawn separately.
+/// Minimum ratio of the largest to the smallest value of a swept key for which charts use a logarithmic axis. With a larger value, the small values of a sweep
+/// by powers of two overlap on a linear axis; with a smaller value, evenly spaced values are drawn unevenly. Zero is drawn separately.
 const LOG_FROM: f64 = 16.0;
 
-/// Returns whether two TOML values are equal; 1 and 1.0 are equal.
+/// Returns whether two TOML values are equal; the integer 1 and the float 1.0 count as equal.
 fn is_same(one: &toml::Value, other: &toml::Value) -> bool {
     match (number(one), number(other)) {
         (Some(one), Some(other)) => one == other,
@@ -450,18 +451,18 @@ fn scale(numbers: Option<Vec<f64>>) -> Scale {
 }
 
 impl StudyAxes {
-    /// Returns whether there are no axes.
+    /// Returns whether the study has no axes.
     pub fn is_empty(&self) -> bool {
         self.axes.is_empty()
     }
 
-    /// Returns whether a key belongs to one of the axes.
+    /// Returns whether an axis varies the given key.
     pub fn has(&self, key: &str) -> bool {
         let mut axes = self.axes.iter();
         axes.any(|axis| axis.keys().iter().any(|own| own == key))
     }
 
-    /// Returns the columns of all axes that have no column of their own yet; `is_taken` returns whether another column uses a name.
+    /// Returns the columns of those axes that result tables do not have yet. `is_taken` returns whether another column already has a name.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {
             let alike = self.axes.iter().filter(|other| other.name() == axis.name());
@@ -472,7 +473,7 @@ impl StudyAxes {
         shown.map(column).collect()
     }
 
-    /// Returns the number of combinations of axis values.
+    /// Returns the number of combinations of axis values that become configurations.
     pub fn n_combinations(&self) -> f64 {
         let lengths = self.axes.iter().map(|axis| axis.values.len() as f64);
         match self.combine {
@@ -481,7 +482,8 @@ impl StudyAxes {
         }
     }
 
-    /// Returns all combinations of axis values; the last axis changes fastest. `None` means that the axis keeps its value in `study`.
+    /// Returns all combinations of axis values that become configurations; the last axis changes fastest. `None` means that the axis keeps its value in
+    /// `study`.
     fn combinations(&self, study: &toml::Table) -> Vec<Vec<Option<toml::Value>>> {
         if self.combine == CombineSpec::OneAtATime {
             let mut all = vec![vec![None; self.axes.len()]];
@@ -506,8 +508,8 @@ impl StudyAxes {
         all
     }
 
-    /// Returns each combination of axis values with the resulting study: `study` with the values at the axes' keys. If an axis keeps its value, the listed
-    /// value is the value in `study`.
+    /// Returns each combination of axis values together with the study in which the axes' keys have these values. If an axis keeps its value, the listed value
+    /// is the value in `study`.
     ///
     /// # Errors
     /// If a value is invalid for the study; the error names the axis.
@@ -539,7 +541,8 @@ impl StudyAxes {
         all.collect()
     }
 
-    /// Returns the error for a combination that a check rejects. The error names the axes whose keys the message mentions, or all axes.
+    /// Returns the error for a combination of axis values that the check of a study rejects. The error names the axes whose keys the message `said` mentions,
+    /// or all axes.
     pub fn refused(&self, place: &str, values: &[Option<toml::Value>], said: &str) -> Error {
         let all = || {
             let axes = self.axes.iter().zip(values);

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// Axis of a sweep: one value or a list of values.
+/// Values of a key that a study can sweep: one value or a list of values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Axis<T> {
@@ -19,7 +19,7 @@ pub enum Axis<T> {
 }
 
 impl<T: Clone> Axis<T> {
-    /// Returns the values of the axis, in their order.
+    /// Returns all values of the key in their order; a single value gives a list of length 1.
     pub fn values(&self) -> Vec<T> {
         match self {
             Self::One(value) => vec![value.clone()],
@@ -27,7 +27,7 @@ impl<T: Clone> Axis<T> {
         }
     }
 
-    /// Returns the values of an optional axis key; a missing key counts as the single value `None`.
+    /// Returns the values of a key that may be missing; a missing key has the single value `None`.
     pub fn optional_values(axis: &Option<Self>) -> Vec<Option<T>> {
         let values = axis.as_ref().map(Self::values);
         values.map_or(vec![None], |values| values.into_iter().map(Some).collect())
@@ -82,7 +82,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
     }
 }
 
-/// Returns an axis with the single value 1.
+/// Returns a swept key with the single value 1.
 pub(crate) fn one_value() -> Axis<usize> {
     Axis::One(1)
 }

@@ -4,7 +4,7 @@ use crate::error::Result;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Runs `work` and returns its result. An error or a panic is converted to a message, so that one failed work item does not end a long run. If `fail_fast` is
-/// set, the first failure is returned as an error.
+/// true, a failure is returned as an error.
 pub fn run_isolated<T>(
     fail_fast: bool,
     work: impl FnOnce() -> Result<T>,
@@ -19,7 +19,7 @@ pub fn run_isolated<T>(
     })
 }
 
-/// Returns the message of a panic payload.
+/// Returns the message of a panic as text.
 fn words(panic: &(dyn std::any::Any + Send)) -> &str {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));

@@ -1,12 +1,12 @@
 //! Progress of a running study: the current stage and the number of completed steps.
 
-/// Receiver of progress reports. `stage` and `finish` are called by one thread at a time, `advance` by any thread.
+/// Receiver of progress reports during a run. `stage` and `finish` are called by one thread at a time, `advance` by any thread.
 pub trait Progress: Sync {
-    /// Starts a stage of `total` steps and ends the previous stage.
+    /// Starts a stage that consists of `total` steps, and ends the previous stage.
     fn stage(&self, name: &str, total: u64);
     /// Advances the current stage by `n` steps.
     fn advance(&self, n: u64);
-    /// Sets the number of work items of the run; called once, before the first stage.
+    /// Sets the number of work items in the run; called once, before the first stage.
     fn expect(&self, _n_items: usize) {}
     /// Counts one work item as finished; may be called by any thread.
     fn item_finished(&self) {}

@@ -11,13 +11,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Commit of the last change of the source code: `…-changed` if the sources were modified after it, `unknown` outside a repository.
+/// Git commit of the source code from which the program was built: `…-changed` if the sources were modified after the commit, `unknown` outside a repository.
 const COMMIT: &str = env!("BUBBLETOUCH_COMMIT");
 
 /// Compiler that built the program.
 const RUSTC: &str = env!("BUBBLETOUCH_RUSTC");
 
-/// Target platform of the program.
+/// Target platform for which the program was built.
 const TARGET: &str = env!("BUBBLETOUCH_TARGET");
 
 pub use crate::files::MANIFEST_FILE;
@@ -25,40 +25,40 @@ pub use crate::files::MANIFEST_FILE;
 /// Version of the names and meanings of all table columns. The version increases when a column is renamed or changes its meaning.
 pub const SCHEMA: u32 = 1;
 
-/// Subcommand in the manifest of a folder that `bubbletouch report` wrote without a run.
+/// Name of the subcommand in the manifest of a folder that `bubbletouch report` wrote without a run.
 pub const REPORT: &str = "report";
 
-/// Contents of `manifest.json`: provenance of the files of a result folder.
+/// Content of `manifest.json`: provenance of the files in a result folder.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Name of the study; empty in manifests of earlier versions.
     #[serde(default)]
     pub study: String,
-    /// Command that reproduces the folder; empty in manifests of earlier versions.
+    /// Command that reproduces the result folder; empty in manifests of earlier versions.
     #[serde(default)]
     pub command: String,
-    /// Folder of the study file; paths in the study are relative to it. Empty in manifests of earlier versions.
+    /// Folder of the study file, to which paths in the study are relative. Empty in manifests of earlier versions.
     #[serde(default)]
     pub paths_from: PathBuf,
-    /// Version of the table columns ([`SCHEMA`]); 0 in folders of versions with other column names.
+    /// Version of the table columns ([`SCHEMA`]); 0 in result folders that versions with other column names wrote.
     #[serde(default)]
     pub schema: u32,
     /// Name and version of the program that computed the results.
     pub program: String,
-    /// Hash of the program's source code.
+    /// Hash of the source code of the program that computed the results.
     pub source: String,
-    /// Commit of the program's source code.
+    /// Git commit of the source code of the program that computed the results.
     pub commit: String,
-    /// Compiler that built the program.
+    /// Compiler that built the program that computed the results.
     pub rustc: String,
-    /// Target platform of the program.
+    /// Target platform of the program that computed the results.
     pub target: String,
     /// Name of the processor, or `unknown`.
     pub cpu: String,
     /// Widest vector instructions of the processor, which affect the rounding of matrix products. `None` in manifests of earlier versions.
     #[serde(default)]
     pub instructions: Option<Instructions>,
-    /// Number of hardware threads of the machine.
+    /// Number of hardware threads of the machine on which the results were computed.
     pub cores: usize,
     /// Number of threads that the last run used.
     pub threads: usize,
@@ -71,27 +71,27 @@ pub struct Manifest {
     pub peak_memory_bytes: Option<u64>,
     /// Number of configurations that were finished before the last run, counted once per trial.
     pub n_finished_before: usize,
-    /// Seed of all random numbers.
+    /// Seed from which all random numbers of the study are derived.
     pub seed: u64,
-    /// Number of configurations, or of work items, of the study.
+    /// Number of configurations in the study; for studies without configurations, the number of work items.
     pub n_configurations: usize,
     /// Number of trials per configuration; 1 if trials are part of a work item.
     pub n_trials: usize,
-    /// Number of failed configurations, counted once per trial.
+    /// Number of configurations that failed, counted once per trial.
     pub n_failed: usize,
-    /// SHA-256 hash of `study.toml`, which contains the study with all defaults written out.
+    /// SHA-256 hash of the file `study.toml`, which contains the study with all default values written out.
     pub study_sha256: String,
     /// SHA-256 hash of each object's content, by the object's name.
     pub objects_sha256: BTreeMap<String, String>,
-    /// SHA-256 hash of each table without times, by file name.
+    /// SHA-256 hash of each result table without times, by file name.
     pub tables_sha256: BTreeMap<String, String>,
-    /// SHA-256 hash of each table with times, by file name; they differ between runs. Empty in manifests of earlier versions.
+    /// SHA-256 hash of each result table with times, by file name; the hashes differ between runs. Empty in manifests of earlier versions.
     #[serde(default)]
     pub times_sha256: BTreeMap<String, String>,
-    /// SHA-256 hash of each other file of the folder except the manifest, by name: charts, pictures and the page. `None` in manifests of earlier versions.
+    /// SHA-256 hash of each chart, picture, page and other file in the folder except the manifest, by file name. `None` in manifests of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub files_sha256: Option<BTreeMap<String, String>>,
-    /// Methods that compute the intervals and p-values of the tables, by table and columns.
+    /// Statistical methods that compute the intervals and p-values, by table and columns.
     #[serde(default)]
     pub methods: BTreeMap<String, String>,
 }

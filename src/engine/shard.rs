@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use std::fmt::{self, Display};
 use std::str::FromStr;
 
-/// Shard number `index` of `count` shards, written `3/8`.
+/// Shard of a study: part number `index` of `count` parts that are computed separately, written `3/8`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     /// Number of this shard, from 1 to `count`.
@@ -14,7 +14,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Iterates over all `count` shards, from first to last.
+    /// Returns an iterator over all `count` shards of a study, from first to last.
     pub fn all(count: usize) -> impl Iterator<Item = Self> {
         (1..=count).map(move |index| Self { index, count })
     }
@@ -26,7 +26,7 @@ impl Shard {
 
     /// Returns whether this shard computes a work item, given the number of its group and its number among all items.
     ///
-    /// Items of a group share preparatory work. If there are at least as many groups as shards, whole groups are therefore assigned to shards.
+    /// Items of a group share preparatory work. If there are at least as many groups as shards, each group is therefore assigned to a single shard.
     pub fn takes(&self, (group, n_groups): (usize, usize), piece: usize) -> bool {
         let number = match n_groups >= self.count {
             true => group,
@@ -35,7 +35,7 @@ impl Shard {
         number % self.count == self.index - 1
     }
 
-    /// Returns the file name for this shard: `journal.jsonl` becomes `journal.3-of-8.jsonl`.
+    /// Returns the name of this shard's file, given the file name without shards: `journal.jsonl` becomes `journal.3-of-8.jsonl`.
     pub fn file_name(&self, whole: &str) -> String {
         let (stem, ending) = whole.rsplit_once('.').unwrap_or((whole, ""));
         format!("{stem}.{}-of-{}.{ending}", self.index, self.count)

@@ -8,13 +8,13 @@ use crate::inputs::toml_value::{number, value_at};
 use crate::inputs::units::{MM, millimetres};
 use serde::Serialize;
 
-/// Maximum number of values of one axis. A longer list indicates a mistake, and the search for duplicates compares all pairs of values.
+/// Maximum number of values that one key may sweep. A longer list indicates a mistake, and the search for duplicates compares all pairs of values.
 pub const MAX_VALUES: usize = 10_000;
 
-/// Maximum number of configurations of a study; all are created before the first one runs.
+/// Maximum number of configurations in a study, all of which are created before the first one runs.
 const MAX_CONFIGURATIONS: f64 = 1e6;
 
-/// Checks of the keys of one file.
+/// Checks of the keys and values in one study file.
 pub struct Check<'a> {
     /// Name of the study file in error messages.
     pub place: &'a str,
@@ -25,8 +25,8 @@ impl Check<'_> {
         Error::input(format!("{}, key {key}", self.place), given, allowed)
     }
 
-    /// Checks the keys of the table `name` in the list `keys`; returns the keys that the table contains. Each number must be in its range; each list must
-    /// contain values and no duplicates. An entry of an array of tables has its number in the name: `stability.parts[1]`.
+    /// Checks the keys of the table `name` against the list `keys`; returns the keys that the table contains. Each number must be in the range of its key; each
+    /// list must contain values and no duplicates. An entry of an array of tables has its number in the name: `stability.parts[1]`.
     pub fn keys(
         &self,
         name: &str,
@@ -48,7 +48,7 @@ impl Check<'_> {
         Ok(table)
     }
 
-    /// Checks a value, or a list of values, of a key.
+    /// Checks the value, or the list of values, of a key against the allowed range.
     fn key_value(&self, path: &str, value: &toml::Value, range: Range) -> Result<()> {
         let one = std::slice::from_ref(value);
         let values = value.as_array().map_or(one, |values| &values[..]);
@@ -87,7 +87,7 @@ impl Check<'_> {
         Err(self.error(key, value, allowed))
     }
 
-    /// Checks that a count is between 1 and `most`.
+    /// Checks that the count given under `key` is between 1 and `most`.
     pub fn count(&self, key: &str, count: usize, most: usize) -> Result<usize> {
         match count {
             0 => Err(self.error(key, 0, "at least 1")),
@@ -96,7 +96,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks that the number of configurations (the product of all axis lengths) is within the limit.
+    /// Checks that a study of `n` configurations (the product of all axis lengths) is within the limit.
     pub fn configurations(&self, n: f64) -> Result<()> {
         if n <= MAX_CONFIGURATIONS {
             return Ok(());
@@ -113,13 +113,13 @@ impl Check<'_> {
         Err(Error::input(self.place, given, allowed))
     }
 
-    /// Checks that a number of bytes fits into the machine's memory; `what` describes the data in the error.
+    /// Checks that `bytes` bytes fit into the memory of the machine; `what` describes the data in the error.
     pub fn memory(&self, key: &str, given: impl ToString, bytes: f64, what: &str) -> Result<()> {
         check_memory(bytes, machine_memory(), what)
             .map_err(|allowed| self.error(key, given, allowed))
     }
 
-    /// Checks that an axis has values and no duplicates; a duplicate would repeat configurations.
+    /// Checks that a list of swept values contains values and no duplicates; a duplicate would repeat configurations.
     pub fn list<T: Clone + PartialEq + std::fmt::Debug>(
         &self,
         key: &str,

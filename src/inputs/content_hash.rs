@@ -6,7 +6,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
-/// Value that is too large to be part of a key. Its `Debug` form is the SHA-256 hash of its bytes, computed at first use.
+/// Value that is too large to be part of a cache key. Its `Debug` form is the SHA-256 hash of its bytes, computed at first use.
 #[derive(Clone)]
 pub struct Hashed<T> {
     value: T,
@@ -15,7 +15,7 @@ pub struct Hashed<T> {
 }
 
 impl<T> Hashed<T> {
-    /// Wraps a value. `bytes` converts it to bytes; different values must give different bytes.
+    /// Creates a value with its hash. `bytes` converts the value to bytes; different values must give different bytes.
     pub fn new(value: T, bytes: fn(&T) -> Vec<u8>) -> Self {
         let hash = OnceLock::new();
         Self { value, bytes, hash }
@@ -49,14 +49,14 @@ pub fn sha256(bytes: impl AsRef<[u8]>) -> String {
     digits.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Returns the first `n_digits` hexadecimal digits of the SHA-256 hash of a description. If `n_digits` is small, two descriptions may have equal hashes.
+/// Returns the first `n_digits` hexadecimal digits of the SHA-256 hash of a text. If `n_digits` is small, two texts may have equal hashes.
 pub fn short_hash(said: impl AsRef<[u8]>, n_digits: usize) -> String {
     let mut digits = sha256(said);
     digits.truncate(n_digits);
     digits
 }
 
-/// Converts whole numbers to bytes, preceded by their count.
+/// Converts whole numbers to bytes, preceded by how many numbers there are.
 pub fn bytes_of_counts<'a>(numbers: impl ExactSizeIterator<Item = &'a usize>) -> Vec<u8> {
     let n = numbers.len();
     let numbers = std::iter::once(n).chain(numbers.copied());
@@ -65,12 +65,12 @@ pub fn bytes_of_counts<'a>(numbers: impl ExactSizeIterator<Item = &'a usize>) ->
         .collect()
 }
 
-/// Converts floating-point numbers to bytes.
+/// Converts floating-point numbers to their bytes in little-endian order.
 pub fn bytes_of_numbers(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
     numbers.into_iter().flat_map(f64::to_le_bytes).collect()
 }
 
-/// Converts a mesh's vertices (metres) and triangles to bytes.
+/// Converts the vertices (metres) and triangles of a mesh to bytes.
 pub fn bytes_of_mesh(mesh: &TriangleMesh) -> Vec<u8> {
     let vertices = mesh.vertices();
     let mut bytes = (vertices.len() as u64).to_le_bytes().to_vec();

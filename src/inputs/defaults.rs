@@ -1,11 +1,11 @@
 //! Default values of keys. A key declares its default by `#[serde(default = "number::<4>")]`.
 
-/// Returns the integer N as the default of a fractional key.
+/// Returns the default `N` of a key with a floating-point value.
 pub(crate) fn number<const N: u32>() -> f64 {
     f64::from(N)
 }
 
-/// Returns N as the default of a count.
+/// Returns the default `N` of a key with a whole number.
 pub(crate) fn count<const N: usize>() -> usize {
     N
 }

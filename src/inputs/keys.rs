@@ -6,46 +6,46 @@ use crate::inputs::range::Range;
 use crate::inputs::toml_value::is_at;
 use crate::table::{Column, Role, Scale};
 
-/// Description of one key of a study file.
+/// Description of one key of a study file, which also defines its table column and axis.
 #[derive(Clone, Copy, Debug)]
 pub struct KeyAbout {
     /// Path of the key: `skin.pitch_mm`. Entries of an array of tables share a path: `stability.parts.taxels`.
     pub path: &'static str,
-    /// Where the key may have a list of values that are swept.
+    /// Place at which the key may have a list of values to sweep.
     pub axis: AxisPlace,
-    /// Role of the key's column in tables.
+    /// Role that the key's column has in result tables.
     pub role: Role,
-    /// Allowed numbers.
+    /// Numbers that the key allows.
     pub range: Range,
-    /// Title of the column, if it differs from the name of the key.
+    /// Title of the key's column; `None` if it equals the name of the key.
     pub title: Option<&'static str>,
-    /// Unit, if the key has no suffix of a unit.
+    /// Unit of the key's numbers; `None` if the name of the key ends with the unit.
     pub unit: Option<&'static str>,
-    /// Scale of the column; if there is none, the scale depends on the swept values.
+    /// Scale of the key's column; if `None`, the scale depends on the swept values.
     pub scale: Option<Scale>,
-    /// Display names of values; see [`Column::names`].
+    /// Display names of the key's values; see [`Column::names`].
     pub names: Option<&'static [(&'static str, &'static str)]>,
 }
 
 /// Place at which a key may have a list of values that are swept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisPlace {
-    /// The key's own table, or `[axes]`.
+    /// The table of the key, or `[axes]`.
     Table,
-    /// `[axes]` only.
+    /// The table `[axes]` only.
     Axes,
-    /// None: the key is equal in all configurations of a study.
+    /// Nowhere: the key has one value in all configurations of a study.
     Never,
 }
 
-/// A key is identified by its path.
+/// Two keys are equal if their paths are equal.
 impl PartialEq for KeyAbout {
     fn eq(&self, other: &Self) -> bool {
         self.path == other.path
     }
 }
 
-/// Units by suffix of the key, longer suffixes first.
+/// Suffixes of key names that state a unit, each with the unit; longer suffixes first.
 const UNITS: [(&str, &str); 17] = [
     ("_m_per_s2", "m/s²"),
     ("_deg_per_s", "°/s"),
@@ -66,7 +66,8 @@ const UNITS: [(&str, &str); 17] = [
     ("_g", "g"),
 ];
 
-/// Declares a list of keys, a line for each: path, place as an axis, role, range, and further fields of [`KeyAbout`] if they differ from the default.
+/// Declares a list of keys of a study file. Each line contains a path, the place of a list, the role, the range, and other fields of [`KeyAbout`] that differ
+/// from the default.
 macro_rules! keys {
     ($($path:literal: $axis:ident, $role:ident, $range:expr $(, $field:ident: $value:expr)*;)*) => {
         &[$($crate::inputs::keys::KeyAbout {
@@ -84,7 +85,7 @@ macro_rules! keys {
 pub(crate) use keys;
 
 impl KeyAbout {
-    /// Creates a description without fields that override the name of the key.
+    /// Creates the description of a key whose title and unit follow from its name.
     pub const fn new(path: &'static str, axis: AxisPlace, role: Role, range: Range) -> Self {
         Self {
             path,
@@ -98,12 +99,12 @@ impl KeyAbout {
         }
     }
 
-    /// Returns the last part of the path.
+    /// Returns the name of the key: the last part of its path.
     pub fn name(&self) -> &'static str {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// Returns the last part of the path without the suffix of a unit, and the unit of the suffix.
+    /// Returns the name of the key without the suffix that states a unit, and this unit.
     fn name_and_unit(&self) -> (&'static str, &'static str) {
         let name = self.name();
         let found = UNITS.iter().find_map(|(suffix, unit)| {
@@ -113,7 +114,7 @@ impl KeyAbout {
         found.unwrap_or((name, ""))
     }
 
-    /// Returns the title of the key's column, without unit: `depth`.
+    /// Returns the title of the key's column without unit, such as `depth`.
     pub fn title(&self) -> String {
         if let Some(title) = self.title {
             return title.to_owned();
@@ -125,12 +126,12 @@ impl KeyAbout {
         }
     }
 
-    /// Returns the unit of the key's numbers; empty if there is none. Unit `%`: fractions of one. Unit `:1`: ratios.
+    /// Returns the unit of the key's numbers; empty if there is none. The unit `%` marks fractions of one, the unit `:1` marks ratios.
     pub fn unit(&self) -> &'static str {
         self.unit.unwrap_or(self.name_and_unit().1)
     }
 
-    /// Returns the column of the key in tables.
+    /// Returns the column of the key in result tables, under the given name.
     ///
     /// # Panics
     /// If the key has no scale.
@@ -147,7 +148,8 @@ pub(crate) fn unit_of(name: &str) -> &'static str {
     found.map_or("", |(_, unit)| unit)
 }
 
-/// Returns the description of a key, or of the key above it: `touches.depth_mm` for `touches.depth_mm.within`. Returns `None` if the list has no such key.
+/// Returns the description of a key, or of the key that contains it: `touches.depth_mm` for `touches.depth_mm.within`. Returns `None` if the list has no such
+/// key.
 pub fn find<'k>(keys: &'k [KeyAbout], path: &str) -> Option<&'k KeyAbout> {
     let exact = keys.iter().find(|key| key.path == path);
     exact.or_else(|| keys.iter().find(|key| is_at(path, key.path)))

@@ -19,7 +19,7 @@ pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM")
 }
 
-/// Checks a memory requirement against a limit (`None` for no limit); the error states the limit.
+/// Checks that a required memory (bytes) is at most the limit (`None` for no limit); the error states the limit.
 pub(crate) fn check_memory(
     bytes: f64,
     ceiling: Option<u64>,
@@ -35,7 +35,7 @@ pub(crate) fn check_memory(
     }
 }
 
-/// Reads a line `Key:  123 kB` of a file, and returns the value in bytes.
+/// Reads a line of the form `Key:  123 kB` from a file, and returns the value in bytes.
 fn kilobytes(path: &str, key: &str) -> Option<u64> {
     let text = fs::read_to_string(path).ok()?;
     let line = text.lines().find_map(|line| line.strip_prefix(key))?;
@@ -43,7 +43,7 @@ fn kilobytes(path: &str, key: &str) -> Option<u64> {
     Some(number.trim().parse::<u64>().ok()? * 1024)
 }
 
-/// Number of bytes that is displayed with a unit, such as 12 MiB or 1.5 GiB.
+/// Number of bytes that is displayed with a suitable unit, such as 12 MiB or 1.5 GiB.
 pub struct Bytes(pub f64);
 
 impl fmt::Display for Bytes {

@@ -12,7 +12,7 @@ use std::path::Path;
 /// First bytes of a `.npy` file of version 1, which NumPy writes for all arrays of numbers and texts. The length of the header follows.
 const MAGIC: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
-/// Returns the text of a `.npy` header, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
+/// Returns the text that describes an array in a `.npy` header, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
 fn dictionary(descr: &str, shape: &[usize]) -> String {
     let lengths: Vec<String> = shape.iter().map(usize::to_string).collect();
     let comma = if shape.len() == 1 { "," } else { "" };
@@ -20,7 +20,7 @@ fn dictionary(descr: &str, shape: &[usize]) -> String {
     format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': ({lengths}), }}")
 }
 
-/// Returns the `.npy` header of an array with elements such as `<f4`; its length is a multiple of 64 bytes.
+/// Returns the header of a `.npy` file, given the element type in NumPy's notation (such as `<f4`) and the shape. Its length is a multiple of 64 bytes.
 pub(crate) fn npy_header(descr: &str, shape: &[usize]) -> Vec<u8> {
     let mut text = dictionary(descr, shape);
     let n_before = MAGIC.len() + 2;
@@ -44,7 +44,7 @@ pub(crate) fn read_npy_header(reader: &mut impl Read) -> io::Result<(String, usi
     Ok((String::from_utf8_lossy(&text).trim().to_owned(), n_bytes))
 }
 
-/// Returns an error if the element type or shape in a header differs from the expectation; commas and spaces are ignored.
+/// Returns an error if a header contains another element type or another shape than given; commas and spaces are ignored.
 pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::Result<()> {
     let plain = |text: &str| {
         let letters = text.chars().filter(|letter| !letter.is_whitespace());
@@ -58,11 +58,11 @@ pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::
     }
 }
 
-/// Array file that is written element by element; it appears at its path when it is complete.
+/// Array file in `.npy` format that is written element by element; the file appears at its path when it is complete.
 pub(crate) struct NpyFile(WholeFile);
 
 impl NpyFile {
-    /// Creates an array file with elements such as `<f4`.
+    /// Creates an array file for elements of the type `descr` in NumPy's notation, such as `<f4`.
     ///
     /// # Errors
     /// If the file cannot be written.

@@ -22,8 +22,8 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Number of points of a mesh at which the error of vertex spheres is measured. With a larger value, the measurement is slower; with a smaller value, the
-/// largest error may be missed.
+/// Number of points on a mesh at which the distance to its vertex spheres (one sphere per vertex) is measured. With a larger value, the measurement is slower;
+/// with a smaller value, the largest distance may be missed.
 const N_ERROR_POINTS: usize = 2000;
 
 /// Mesh of a study, with its name and path.
@@ -37,8 +37,8 @@ pub struct NamedMesh {
     pub mesh: TriangleMesh,
 }
 
-/// Builds the objects of a study: sets first, in their order, then meshes by file name. If the folder `packings` is given, packed meshes are read from it or
-/// written to it.
+/// Builds the objects of a study: first the objects of the sets, in their order, then the meshes, sorted by file name. If the folder `packings` is given,
+/// packed meshes are read from it or written to it.
 ///
 /// # Errors
 /// If a set, name or file does not exist, an object is given twice, a mesh cannot be packed, or the selection is empty.
@@ -57,7 +57,7 @@ pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<O
     Ok(objects)
 }
 
-/// Reads the objects of a TOML file as a set with the name of the file.
+/// Reads the objects of a TOML file as a set of objects that has the name of the file.
 ///
 /// # Errors
 /// If the file cannot be read or does not describe objects.
@@ -70,7 +70,7 @@ pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
     Catalogue::parse(&place, &place, &text)
 }
 
-/// Returns the SHA-256 hash of each object's source (the mesh file or the parts of the solid), by object name.
+/// For each object, returns the SHA-256 hash of its source (the mesh file or the parts of the solid), by object name.
 ///
 /// # Errors
 /// Returns the errors of [`load_objects`].
@@ -178,10 +178,10 @@ pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
     Ok(built.object)
 }
 
-/// Object that was built from a mesh.
+/// Object that was built from a mesh file.
 struct BuiltMesh {
     object: Object,
-    /// Maximum distance between vertex spheres and the mesh, metres; `None` for other models, and for files without faces.
+    /// Maximum distance between the mesh and the spheres around its vertices, metres; `None` for other models, and for files without faces.
     vertex_error: Option<f64>,
 }
 
@@ -211,8 +211,8 @@ fn build_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Resul
     })
 }
 
-/// Returns the maximum measured distance between the surface of a mesh and spheres around its vertices, metres. Returns `None` if the file has no faces, or
-/// faces that are not convex.
+/// Returns the largest distance between points on a mesh and the spheres around its vertices, metres. Returns `None` if the file has no faces, or faces that
+/// are not convex.
 fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
     let (mesh, _) = file.into_mesh("").ok()?.turned_outwards();
     let is_closed = Welded::new(&mesh).n_unbalanced() == 0;
@@ -221,7 +221,7 @@ fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
     Some(error.protrusion.max.max(error.gap.max))
 }
 
-/// Prints a note on standard error if the distance between vertex spheres and their meshes exceeds half a pitch.
+/// Prints a note on standard error if the spheres around vertices are farther than half a pitch from their meshes.
 fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
     let Some(pitch) = spec.pitch else { return };
     let errors = built
@@ -258,7 +258,7 @@ pub fn read_mesh(
     outward_mesh(read_mesh_file(path, unit, sizes)?, &place, close_holes)
 }
 
-/// Converts a mesh file to outward-oriented triangles, as [`read_mesh`] does.
+/// Converts a mesh file to triangles whose normals point outwards, as [`read_mesh`] does.
 fn outward_mesh(
     file: MeshFile,
     place: &str,
@@ -282,7 +282,7 @@ fn outward_mesh(
     Ok((mesh, orientation))
 }
 
-/// Reads all meshes of a study as triangles, ordered by file name.
+/// Reads all meshes of a study as triangle meshes, ordered by file name.
 ///
 /// # Errors
 /// If a mesh cannot be read.
@@ -302,7 +302,7 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     Ok(meshes)
 }
 
-/// Returns the selected objects of a set as solids; the set is built-in or a TOML file.
+/// Returns the objects with the given names of a built-in set or of a TOML file; without names, returns all objects of the set.
 pub(crate) fn set_entries(set: &SetName, names: Option<&[String]>) -> Result<Vec<Entry>> {
     let mut entries: Vec<Entry> = match set {
         SetName::File(path) => load_catalogue(path)?.entries().to_vec(),
@@ -335,7 +335,7 @@ fn stem(path: &Path) -> String {
     stem.to_string_lossy().into_owned()
 }
 
-/// Returns the paths of the selected mesh files in a folder, ordered by name.
+/// Returns the paths of the mesh files in a folder that the specification selects, ordered by name.
 fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
     let listing = std::fs::read_dir(folder).map_err(|e| {
         let given = format!("cannot be read ({e})");

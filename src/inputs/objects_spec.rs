@@ -7,10 +7,10 @@ use crate::mesh::{LengthUnit, SizeLimits};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Default maximum distance between a solid's surface and its spheres, mm.
+/// Default maximum distance between the surface of a solid and the spheres that represent it, mm.
 const SURFACE_ERROR_MM: f64 = 0.25;
 
-/// Keys of `[objects]`: the objects of a study or scene.
+/// Keys of the table `[objects]`: the objects of a study or scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = with_mesh_unit)]
@@ -19,7 +19,7 @@ pub struct ObjectsSpec {
     #[serde(default)]
     #[schemars(with = "Vec<String>")]
     pub sets: Vec<SetName>,
-    /// Names of the objects to select from the sets and meshes. Default: all.
+    /// Names of the objects that are selected from the sets and meshes. Default: all objects.
     pub names: Option<Vec<String>>,
     /// Folder of PLY, OBJ or STL meshes with one object per file, relative to the study file.
     #[schemars(with = "Option<String>")]
@@ -30,11 +30,11 @@ pub struct ObjectsSpec {
     #[serde(alias = "mesh_unit")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
-    /// Allowed sizes of meshes without a unit. Not a key of the file: the plan derives the limits from the arrays.
+    /// Allowed sizes of meshes for which no unit is given. This is not a key of the file: the plan derives the limits from the arrays.
     #[serde(skip)]
     pub sizes: Option<SizeLimits>,
-    /// Pitch of the finest array, metres; not a key of the file. If vertex spheres are farther than half a pitch from their mesh, a note is printed on standard
-    /// error.
+    /// Pitch of the finest array, metres. This is not a key of the file. If vertex spheres are farther than half a pitch from their mesh, a note is printed on
+    /// standard error.
     #[serde(skip)]
     pub pitch: Option<f64>,
     /// Maximum distance between the surface of a solid or packed mesh and its spheres, mm, at least 1e-6. Spheres extend at most half of this distance beyond
@@ -45,21 +45,21 @@ pub struct ObjectsSpec {
     pub close_holes_mm: Option<f64>,
 }
 
-/// Model that is built from a mesh.
+/// Contact model that is built from a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelSpec {
-    /// One sphere per vertex, as in the published protocol \[BT\].
+    /// One sphere around each vertex, as in the published protocol \[BT\].
     VertexSpheres,
-    /// Triangle mesh with exact contact.
+    /// Triangle mesh, for which contacts are computed exactly.
     #[default]
     Mesh,
-    /// Few spheres within `surface_error_mm` of the mesh; the mesh must be closed.
+    /// Few spheres whose distance from the mesh is at most `surface_error_mm`; the mesh must be closed.
     Packed,
 }
 
 impl ModelSpec {
-    /// Returns the default distance between spheres and the surface, mm: 0.25, or a tenth of the pitch (mm) for a packed mesh.
+    /// Returns the default maximum distance between the spheres and the surface, mm: 0.25, or a tenth of the pitch (mm) for a packed mesh.
     pub fn default_surface_error_mm(self, pitch_mm: f64) -> f64 {
         match self {
             Self::Packed => 0.1 * pitch_mm,
@@ -69,17 +69,17 @@ impl ModelSpec {
 }
 
 impl ObjectsSpec {
-    /// Returns the allowed sizes of objects whose files have no unit.
+    /// Returns the allowed sizes of objects whose files state no unit.
     pub(crate) fn sizes(&self) -> SizeLimits {
         self.sizes.unwrap_or(SizeLimits::ANY)
     }
 
-    /// Returns the maximum width of holes that are closed, metres.
+    /// Returns the maximum width of holes that are closed before a mesh is used, metres.
     pub(crate) fn close_holes(&self) -> Option<f64> {
         self.close_holes_mm.map(|width| width * MM)
     }
 
-    /// Returns the maximum distance between spheres and a surface, metres.
+    /// Returns the maximum distance between spheres and the surface that they represent, metres.
     pub(crate) fn surface_error(&self) -> f64 {
         self.surface_error_mm.unwrap_or(SURFACE_ERROR_MM) * MM
     }

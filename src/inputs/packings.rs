@@ -14,23 +14,23 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Version of the packing method; it changes whenever [`pack_mesh`] returns other spheres for a mesh.
+/// Version of the method that packs meshes; the version changes whenever [`pack_mesh`] returns other spheres for a mesh.
 const METHOD: &str = "packing 4";
 
-/// Length of the seal including its line break, bytes.
+/// Length of the last line of a packing file, which contains its checksum, including the line break, bytes.
 const SEAL: usize = 80;
 
-/// Spheres of a packed mesh, and whether they come from the cache.
+/// Spheres that approximate a mesh, and whether they come from the cache.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
-    /// Spheres that approximate the mesh.
+    /// Spheres that together approximate the mesh.
     pub spheres: SphereUnion,
     /// Whether the spheres were read from the cache folder.
     pub cached: bool,
 }
 
-/// Packs a closed mesh within `tolerance` (metres), or reads the cached packing from `folder`. The folder is created if it is missing; without a folder,
-/// nothing is cached.
+/// Approximates a closed mesh by spheres within `tolerance` (metres), or reads cached spheres from `folder`. The folder is created if it is missing; without a
+/// folder, nothing is cached.
 ///
 /// # Errors
 /// If the mesh cannot be packed, or the folder cannot be written; the error begins with `place`.
@@ -65,7 +65,7 @@ pub fn pack_within(
     })
 }
 
-/// Returns the path of the cached packing of a mesh within a tolerance (metres).
+/// Returns the path of the cache file for the spheres of a mesh within a tolerance (metres).
 pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathBuf {
     let made_from = [
         format!("{METHOD}{:?}", Body::Solid).into_bytes(),
@@ -75,7 +75,7 @@ pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathB
     folder.join(format!("{}.csv", sha256(made_from.concat())))
 }
 
-/// Reads the spheres of a complete packing file; `None` if there is none.
+/// Reads the spheres of a cache file; returns `None` if there is no complete file.
 fn read_packing(path: &Path) -> Result<Option<SphereUnion>> {
     match fs::metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),

@@ -5,7 +5,8 @@ use crate::world::MAX_TOUCHES;
 use bubbletouch_svm::classifiers::parameters::Parameter;
 use std::borrow::Cow;
 
-/// Smallest positive value of a key. Squares and reciprocals of smaller values approach the limits of f64; no quantity is measured in such small values.
+/// Smallest positive value that a key allows. Squares and reciprocals of smaller values approach the limits of f64; no quantity is measured in such small
+/// values.
 pub const MIN_POSITIVE: f64 = 1e-12;
 
 /// Returns whether a number is at least [`MIN_POSITIVE`].
@@ -18,7 +19,7 @@ pub fn not_negative(value: f64) -> bool {
     value == 0.0 || positive(value)
 }
 
-/// Allowed numbers of a key.
+/// Set of numbers that a key of a study file allows.
 #[derive(Clone, Copy, Debug)]
 pub enum Range {
     /// Numbers above zero.
@@ -41,16 +42,16 @@ pub enum Range {
     ZeroOrBetween(f64, f64, &'static str),
     /// Numbers that a classifier declares for its parameter.
     Declared(&'static Parameter),
-    /// Numbers that a predicate allows, with a description in words.
+    /// Numbers for which a function returns true, with a description in words.
     Of(fn(f64) -> bool, &'static str),
     /// Texts and truth values. A list of them contains each value once.
     Any,
-    /// Values that the reader of the key checks: texts, files, vectors and tables.
+    /// Values that are checked elsewhere: texts, files, vectors and tables.
     Unchecked,
 }
 
 impl Range {
-    /// Returns whether a number is allowed.
+    /// Returns whether the range contains a number.
     pub fn contains(self, value: f64) -> bool {
         match self {
             Self::Positive => positive(value),
@@ -68,7 +69,7 @@ impl Range {
         }
     }
 
-    /// Describes the allowed numbers.
+    /// Returns the allowed numbers as text, for error messages.
     pub fn words(self) -> Cow<'static, str> {
         let words = match self {
             Self::Positive => "a positive number, at least 1e-12",
@@ -105,19 +106,19 @@ impl Range {
     }
 }
 
-/// Maximum value of keys that count something. Larger counts exceed memory or take too long.
+/// Maximum value of keys that count something, such as touches. Larger counts exceed memory or take too long.
 pub const MAX_COUNTED: usize = 100_000_000;
 
-/// Numbers from 1 to the largest count.
+/// Numbers that a count allows: 1 to the largest count.
 pub const COUNT: Range = Range::Count(1, MAX_COUNTED);
 
-/// Numbers of taxels along a side of an array.
+/// Allowed numbers of taxels along a side of an array.
 pub const SIDE: Range = Range::Count(1, MAX_SIDE);
 
-/// Numbers of touches per object.
+/// Allowed numbers of touches per object.
 pub const TOUCHES: Range = Range::Count(1, MAX_TOUCHES);
 
-/// Distances of spheres from a surface, mm. Below a nanometre, rounding errors of coordinates are equally large.
+/// Allowed distances between spheres and a surface, mm. Below a nanometre, rounding errors of coordinates are as large as the distance.
 pub const SURFACE_ERROR: Range = Range::Between(1e-6, f64::MAX, "at least 1e-6 mm");
 
 #[cfg(test)]

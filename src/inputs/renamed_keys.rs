@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::toml_lines::line_of;
 use toml::de::{DeTable, DeValue};
 
-/// Former names of keys and columns, with the current names.
+/// Former names of keys and columns, each with its current name.
 const RENAMED: [(&str, &str); 15] = [
     ("choose_c", "c_grid"),
     ("choose_folds", "cv_folds"),
@@ -23,7 +23,7 @@ const RENAMED: [(&str, &str); 15] = [
     ("training_readings", "readings_per_touch"),
 ];
 
-/// Checks that no key of a study, at any depth, has a former name. A key may be a path, as in `[axes]`.
+/// Checks that no key of a study, at any depth of its tables, has a former name. A key may be a dotted path, as in `[axes]`.
 ///
 /// # Errors
 /// If a key has a former name; the error contains its line and the current name.

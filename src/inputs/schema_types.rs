@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// Schema of an enum that is deserialised from one of its names.
+/// JSON schema of an enum that is deserialised from the name of a variant.
 pub struct Names<T>(PhantomData<T>);
 
 impl<T: DeserializeOwned> JsonSchema for Names<T> {
@@ -27,13 +27,13 @@ impl<T: DeserializeOwned> JsonSchema for Names<T> {
     }
 }
 
-/// Returns the names of an enum, which its deserialiser lists in the error for an unknown name.
+/// Returns the names of all variants of an enum. The enum's deserialiser lists them in the error for an unknown name.
 pub fn names<T: DeserializeOwned>() -> &'static [&'static str] {
     let found = T::deserialize(StrDeserializer::<Expected>::new("?"));
     found.err().map_or(&[], |Expected(names)| names)
 }
 
-/// Deserialisation error that stores the expected names.
+/// Deserialisation error that stores the names that would have been accepted.
 #[derive(Debug)]
 struct Expected(&'static [&'static str]);
 
@@ -68,7 +68,7 @@ pub fn accepted_keys<T: DeserializeOwned>(probe: toml::Value) -> Vec<String> {
     names.map(str::to_owned).collect()
 }
 
-/// Schema of [`Features`]: a name, or several names of image features joined by `+`.
+/// JSON schema of [`Features`]: one name, or several names of image features joined by `+`.
 pub struct FeatureNames;
 
 impl JsonSchema for FeatureNames {
@@ -102,17 +102,17 @@ impl JsonSchema for FeatureNames {
     }
 }
 
-/// Adds the key `rpy_deg`, the former name of `rotation_deg`, to a schema.
+/// Adds the key `rpy_deg`, the former name of `rotation_deg`, to a JSON schema.
 pub fn with_rpy_deg(schema: &mut Schema) {
     also_named("rotation_deg", "rpy_deg", schema.ensure_object());
 }
 
-/// Adds the key `mesh_unit`, the former name of `unit`, to a schema.
+/// Adds the key `mesh_unit`, the former name of `unit`, to a JSON schema.
 pub fn with_mesh_unit(schema: &mut Schema) {
     also_named("unit", "mesh_unit", schema.ensure_object());
 }
 
-/// Adds another name of a key to all tables of a schema that have the key.
+/// Adds the key `other` with an equal meaning to all tables of a JSON schema that have the key `name`.
 fn also_named(name: &str, other: &str, schema: &mut Map<String, Value>) {
     if let Some(keys) = schema.get_mut("properties").and_then(Value::as_object_mut)
         && let Some(mut own) = keys.get(name).cloned()

@@ -9,18 +9,18 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
-/// Skin on which the test touches are made.
+/// Skin with which the test touches are recorded, compared with the skin of the training touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TestSensor {
-    /// Skin of the training touches; a classifier may learn its individual errors.
+    /// The skin of the training touches, whose individual errors a classifier may learn.
     #[default]
     SameSkin,
     /// Another skin of the same type in each trial: gains, drift and faults are drawn again.
     AnotherSkin,
 }
 
-/// Total number of strengths of all sensor errors.
+/// Number of strengths (parameters) that all sensor errors have together.
 const N_STRENGTHS: usize = {
     let (mut n, mut place) = (0, 0);
     while place < SENSOR_ERRORS.len() {
@@ -30,7 +30,7 @@ const N_STRENGTHS: usize = {
     n
 };
 
-/// Iterates over all strengths of all sensor errors, in the order of table columns: errors of the material first, of the electronics last.
+/// Iterates over the strengths (parameters) of all sensor errors, in the order of table columns: errors of the material first, of the electronics last.
 pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
     let errors = SENSOR_ERRORS.iter();
     errors.flat_map(|error| {
@@ -39,7 +39,7 @@ pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)>
     })
 }
 
-/// Returns the descriptions of the keys of all strengths, in the order of [`all_strengths`].
+/// Returns descriptions of the study keys that set the strengths of sensor errors, in the order of [`all_strengths`].
 pub fn strength_keys() -> &'static [KeyAbout] {
     static KEYS: LazyLock<Vec<KeyAbout>> = LazyLock::new(|| {
         let about = |(_, strength): (SensorError, &'static Strength)| {
@@ -62,7 +62,7 @@ pub fn strength_keys() -> &'static [KeyAbout] {
     &KEYS
 }
 
-/// Returns the table columns of all strengths, in the order of [`all_strengths`].
+/// Returns the table columns with the strengths of all sensor errors, in the order of [`all_strengths`].
 pub fn strength_columns() -> &'static [Column] {
     static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
         let column = |(key, (error, strength)): (&KeyAbout, (SensorError, &Strength))| {
@@ -79,18 +79,18 @@ pub fn strength_columns() -> &'static [Column] {
     &COLUMNS
 }
 
-/// Values of all sensor-error strengths, in the units of their keys; `None` for strengths that a study does not set.
+/// Strengths of all sensor errors in the units of their keys; `None` for strengths that a study does not set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Strengths([Option<f64>; N_STRENGTHS]);
 
 impl Strengths {
-    /// Returns the strength with this key; `None` if the study does not set it.
+    /// Returns the strength that the study sets with this key; `None` if the study does not set it.
     pub fn get(&self, key: &str) -> Option<f64> {
         let mut all = all_strengths().zip(self.0);
         all.find_map(|((_, strength), value)| value.filter(|_| strength.key == key))
     }
 
-    /// Returns a copy with another value for the strength with this key.
+    /// Returns a copy in which the strength with this key has another value.
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
         let place = all_strengths().position(|(_, strength)| strength.key == key);
         if let Some(place) = place {
@@ -110,7 +110,7 @@ impl Strengths {
         self.given().filter(|(_, _, value)| *value != 0.0)
     }
 
-    /// Returns the signal step of a sensor error with these strengths.
+    /// Returns the step of the signal chain that applies a sensor error with these strengths.
     pub(crate) fn step(&self, error: SensorError, skin: &Seed) -> SignalStep {
         let mut strengths = [0.0; MAX_STRENGTHS];
         for (to, strength) in strengths.iter_mut().zip(error.about().strengths) {
@@ -120,14 +120,14 @@ impl Strengths {
     }
 }
 
-/// Keys for the noise standard deviation, and their units.
+/// Keys that set the standard deviation of the noise, each with the unit of its value.
 pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
     ("noise_std_full_scale", NoiseUnit::FullScale),
     ("noise_std_mm", NoiseUnit::Mm),
     ("noise_std_n", NoiseUnit::N),
 ];
 
-/// Returns the description of a noise key.
+/// Returns the description of the key that sets the noise in this unit.
 pub(crate) fn noise_words(unit: NoiseUnit) -> String {
     let unit = match unit {
         NoiseUnit::FullScale => "as a fraction of the full scale",
@@ -137,7 +137,7 @@ pub(crate) fn noise_words(unit: NoiseUnit) -> String {
     format!("Standard deviation of the noise, {unit}.")
 }
 
-/// Returns the description of a sensor-error key.
+/// Returns the description of the key that sets a strength of a sensor error.
 pub(crate) fn strength_words(error: SensorError, strength: &Strength) -> String {
     let (step, allowed) = (error.about().step, strength.allowed);
     format!("Sensor error `{step}`: {}, {allowed}.", strength.words)

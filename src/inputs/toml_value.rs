@@ -1,6 +1,6 @@
 //! Access to the values of a TOML table by key path.
 
-/// Returns the TOML value at a path of keys; `None` if it does not exist.
+/// Returns the TOML value at a dotted path of keys; `None` if the path does not exist.
 pub(crate) fn value_at<'t>(table: &'t toml::Table, path: &str) -> Option<&'t toml::Value> {
     let mut names = path.split('.');
     let first = table.get(names.next()?)?;
@@ -13,7 +13,7 @@ pub(crate) fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(integer)
 }
 
-/// Returns whether a key path equals a name or lies below it.
+/// Returns whether a dotted key path equals `name` or lies below it.
 pub(crate) fn is_at(key: &str, name: &str) -> bool {
     let rest = key.strip_prefix(name);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

@@ -2,39 +2,40 @@
 
 use super::{Column, Table, Value, for_each_mark};
 
-/// Specification of a chart. One renderer draws it as SVG and PNG, and the result page contains the SVG.
+/// Specification of a chart, which is drawn as SVG and PNG; the result page contains the SVG.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChartSpec {
     /// File name of the chart, without extension.
     pub name: String,
     /// Title of the chart.
     pub title: String,
-    /// Explanation for the reader, one or two sentences; may be empty.
+    /// Explanation of the chart for the reader, one or two sentences; may be empty.
     pub note: String,
     /// File name of the table that the chart shows.
     pub table: &'static str,
-    /// Filters of the rows: only rows with these values are drawn.
+    /// Filters that select the drawn rows: only rows that pass all filters are drawn.
     pub shown: Vec<Shown>,
-    /// Name of the column along x; the column defines the scale of the axis.
+    /// Name of the column along the x axis; the column defines the scale of the axis.
     pub x: String,
-    /// Description of the x axis that replaces the column's own, if the x column contains several quantities.
+    /// Description of the x axis that replaces the description of the x column, if the column contains several quantities.
     pub x_is: Option<Column>,
-    /// Name of the column along y. If the column has an interval, the chart shows a band or error bars.
+    /// Name of the column along the y axis. If the column has an interval, the chart shows a band or error bars.
     pub y: String,
-    /// Columns whose combinations of values have one line or point colour each. In a chart of tiles, each combination has one row of panels.
+    /// Columns that divide the rows into lines or point colours, one for each combination of values. In a chart of tiles, each combination has its own row of
+    /// panels.
     pub lines: Vec<String>,
-    /// Column whose values have one panel each; `None` for a single panel.
+    /// Column that divides the rows into panels, one for each value; `None` for a single panel.
     pub panels: Option<String>,
     /// Form of the marks: lines, points or tiles.
     pub mark: Mark,
-    /// Reference lines across the chart, such as the chance level, a limit, or a published value.
+    /// Reference lines across the chart, such as the chance level, a limit or a published value.
     pub rules: Vec<Rule>,
-    /// Whether the Pareto front of the points is drawn. The cost is x, and the role of y defines the better direction.
+    /// Whether the Pareto front of the points is drawn. The x axis is the cost, and the role of the y column defines the better direction.
     pub front: bool,
 }
 
 impl Table {
-    /// Creates a line chart of y against x, with the note of the table.
+    /// Creates the specification of a line chart of y against x, with the note of the table.
     pub fn chart(
         &self,
         name: impl Into<String>,
@@ -54,7 +55,7 @@ impl Table {
 }
 
 impl Rule {
-    /// Creates a reference line at a value of an axis.
+    /// Creates a reference line at a constant value of an axis.
     pub fn at(along: Along, value: f64, words: impl Into<String>) -> Self {
         Self {
             along,
@@ -64,7 +65,7 @@ impl Rule {
     }
 }
 
-/// Filter that selects the rows with a given value in a column.
+/// Filter that selects the table rows with a given value in a column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     /// Name of the column that is filtered.
@@ -98,21 +99,21 @@ impl Mark {
 /// Reference line across the chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Axis on which the line has its value.
+    /// Axis on which the reference line has its value.
     pub along: Along,
-    /// Position of the line on its axis.
+    /// Position of the reference line on its axis.
     pub at: At,
     /// Label of the line in the legend.
     pub words: String,
 }
 
-/// Position of a reference line.
+/// Position of a reference line on its axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum At {
     /// Constant position on the axis.
     Value(f64),
-    /// Position given by a column, for each panel and each value of the other axis. Examples: a chance level that depends on the number of objects, or a limit
-    /// that depends on the mass.
+    /// Column that contains the position for each panel and each value of the other axis. Examples: a chance level that depends on the number of objects, or a
+    /// limit that depends on the mass.
     Column(String),
 }
 

@@ -4,21 +4,21 @@ use super::value::Value;
 use bubbletouch_sim::text::numbers::{short_number, time_words};
 use std::borrow::Cow;
 
-/// Static text, or text created at run time for the axes that a study defines.
+/// Text that is constant, or created at run time for the axes that a study defines.
 pub type Words = Cow<'static, str>;
 
-/// Role of a table column. Reports, pages, advice and comparisons depend only on the roles of columns.
+/// Role of a table column, on which reports, pages, advice and comparisons depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Choice of the designer, such as pitch, ensemble or C. Advice and the best configuration are selected among choices, within a condition.
+    /// Choice of the designer, such as pitch, ensemble or C. For each condition, advice selects the best choices.
     Choice,
-    /// Condition of the world, such as noise, sensor errors or friction. Advice is given for a condition.
+    /// Condition of the world that the designer cannot choose, such as noise, sensor errors or friction. Advice is given for each condition.
     Condition,
     /// Subject of a measurement, such as an object, a trial or a touch.
     Subject,
-    /// Measured result, with the direction that is better.
+    /// Measured result. The content states whether larger or smaller values are better.
     Value(Better),
-    /// Cost, such as time, memory or number of spheres. Smaller values are better.
+    /// Cost of a choice, such as time, memory or number of spheres. Smaller values are better.
     Cost,
     /// Outcome of a row in words, such as right, diverged or refused.
     Outcome,
@@ -53,20 +53,20 @@ pub enum Scale {
 /// Description of a table column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Name in the CSV header, such as `pitch_mm`.
+    /// Name of the column in the CSV header, such as `pitch_mm`.
     pub name: Words,
     /// Display name in text and charts, without unit, such as `taxel pitch`.
     pub words: Words,
     /// Unit of the numbers, such as `mm`; empty if there is none. Fractions of one with the unit `%` are shown times 100. The unit `:1` marks ratios. Times
     /// (`s`, `ms`, `us`) on a logarithmic scale are shown in the unit that suits each value.
     pub unit: Words,
-    /// Scale of the values along an axis.
+    /// Scale on which charts draw the values along an axis.
     pub scale: Scale,
     /// Role of the column in reports and advice.
     pub role: Role,
-    /// Names of the columns with the lower and upper bound; `None` for a value without an interval.
+    /// Names of the columns that contain the lower and upper end of the value's interval; `None` for a value without an interval.
     pub interval: Option<[Words; 2]>,
-    /// Display names of codes, such as `RBF SVM` for `rbf_svm`. For other words, underscores are shown as spaces. Numbers with a special meaning can also have
+    /// Display names of codes, such as `RBF SVM` for `rbf_svm`. In other words, underscores are shown as spaces. Numbers with a special meaning can also have
     /// names, such as `none` for `0` bits.
     pub names: &'static [(&'static str, &'static str)],
     /// Meaning of the values, for the reference of tables.
@@ -97,7 +97,7 @@ impl Column {
         }
     }
 
-    /// Sets the names of the columns with the lower and upper bound of the value.
+    /// Sets the names of the columns that contain the lower and upper end of the value's interval.
     pub fn between(mut self, low: impl Into<Words>, high: impl Into<Words>) -> Self {
         self.interval = Some([low.into(), high.into()]);
         self
@@ -121,7 +121,7 @@ impl Column {
         self
     }
 
-    /// Returns the axis title with the unit, such as `taxel pitch (mm)`.
+    /// Returns the title of the column with its unit, such as `taxel pitch (mm)`.
     pub fn title(&self) -> String {
         match (self.unit.as_ref(), self.is_time()) {
             ("" | ":1", _) | (_, true) => self.words.to_string(),
@@ -129,7 +129,7 @@ impl Column {
         }
     }
 
-    /// Returns whether some numbers of the column have names. A chart does not join the points of named numbers by lines.
+    /// Returns whether some numbers of the column have display names. A chart does not join the points of named numbers by lines.
     pub fn has_named_numbers(&self) -> bool {
         self.scale != Scale::Words && self.names.iter().any(|(code, _)| !code.is_empty())
     }
@@ -140,12 +140,12 @@ impl Column {
         names.find_map(|(known, name)| (*known == code).then_some(*name))
     }
 
-    /// Returns whether the numbers are times on a logarithmic scale.
+    /// Returns whether the numbers of the column are times on a logarithmic scale.
     fn is_time(&self) -> bool {
         self.scale == Scale::Log && matches!(self.unit.as_ref(), "s" | "ms" | "us" | "µs")
     }
 
-    /// Formats a number for an axis tick, such as `10`, `64:1` or `20 µs`.
+    /// Formats a number of the column for an axis tick, such as `10`, `64:1` or `20 µs`.
     pub fn tick(&self, number: f64) -> String {
         if let Some(name) = self.name_of(&short_number(number)) {
             return name.to_owned();
@@ -161,7 +161,7 @@ impl Column {
         }
     }
 
-    /// Formats a number with its unit, such as `10 %` or `64:1`.
+    /// Formats a number of the column with its unit, such as `10 %` or `64:1`.
     pub fn number_words(&self, number: f64) -> String {
         let tick = self.tick(number);
         match self.unit.as_ref() {
@@ -172,13 +172,13 @@ impl Column {
         }
     }
 
-    /// Returns the display name of a word of the column.
+    /// Returns the display name of a word that the column contains.
     pub fn word(&self, code: &str) -> String {
         let name = self.name_of(code);
         name.map_or_else(|| code.replace('_', " "), str::to_owned)
     }
 
-    /// Formats a value for a sentence, such as `10 %` or `RBF SVM`.
+    /// Formats a value of the column for a sentence, such as `10 %` or `RBF SVM`.
     pub fn value_words(&self, value: &Value) -> String {
         match value {
             Value::Number(number) => self.number_words(*number),
@@ -186,7 +186,7 @@ impl Column {
         }
     }
 
-    /// Formats the display name and a value, such as `noise 10 %` or `m = 64`.
+    /// Returns the display name of the column and a value as text, such as `noise 10 %` or `m = 64`.
     pub fn phrase(&self, value: &Value) -> String {
         let is_symbol = self.words.chars().count() == 1;
         let between = if is_symbol { " = " } else { " " };
@@ -194,9 +194,9 @@ impl Column {
     }
 }
 
-/// Type of table rows whose fields are columns, in their order.
+/// Type of table rows whose fields are the columns of the table, in their order.
 pub trait Columns {
-    /// Returns all columns of the row type, including the optional ones.
+    /// Returns the columns of the table in their order, including the optional ones.
     fn columns() -> Vec<Column>;
 }
 
@@ -212,7 +212,7 @@ impl<A: Columns, B: Columns, C: Columns> Columns for (A, B, C) {
     }
 }
 
-/// Returns the column name for a key; `noise` is short for `noise_std`.
+/// Returns the name of the column for a study key; `noise` is short for `noise_std`.
 pub fn column_name(key: &str) -> &str {
     match key {
         "noise" => "noise_std",

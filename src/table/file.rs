@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::marker::PhantomData;
 use std::path::Path;
 
-/// Specification of a table file: name, title, note and row type.
+/// Specification of a table's CSV file: name, title, note and type of the rows.
 pub struct File<R> {
     name: &'static str,
     title: &'static str,
@@ -43,7 +43,7 @@ impl<R: Columns> File<R> {
         }
     }
 
-    /// Returns the name of the CSV file.
+    /// Returns the name of the CSV file that contains the table.
     pub const fn name(&self) -> &'static str {
         self.name
     }
@@ -71,7 +71,7 @@ impl<R: Columns> File<R> {
         self
     }
 
-    /// Creates the table of the given rows. Numbers are written in the shortest form that reads back as the same bits.
+    /// Creates a table from the given rows. Numbers are written in the shortest form that reads back as the same bits.
     ///
     /// # Errors
     /// If a row cannot be serialised as CSV; the error names the file.
@@ -82,7 +82,7 @@ impl<R: Columns> File<R> {
         self.of_columns(R::columns(), rows)
     }
 
-    /// Creates the table of rows with the given columns, for studies that define their own axes.
+    /// Creates a table from rows with the given columns, for studies that define their own axes.
     ///
     /// # Errors
     /// If a row cannot be serialised as CSV, or has other columns.
@@ -92,7 +92,7 @@ impl<R: Columns> File<R> {
         self.parse(columns, Path::new(self.name), csv)
     }
 
-    /// Reads the table from a folder.
+    /// Reads the table from its CSV file in a folder.
     ///
     /// # Errors
     /// If the file cannot be read, or has other columns or invalid values; the error names file, line and column.
@@ -100,7 +100,7 @@ impl<R: Columns> File<R> {
         self.read_columns(R::columns(), folder)
     }
 
-    /// Reads the table from a folder, with the given columns instead of the columns of the row type.
+    /// Reads the table from its CSV file in a folder, with the given columns instead of the columns of the row type.
     ///
     /// # Errors
     /// If the file cannot be read, or has other columns or invalid values.
@@ -111,7 +111,7 @@ impl<R: Columns> File<R> {
         self.parse(columns, &path, csv)
     }
 
-    /// Reads a table that only some studies have. Returns `None` if the file does not exist.
+    /// Reads a table that only some studies have from its CSV file in a folder. Returns `None` if the file does not exist.
     ///
     /// # Errors
     /// If the file cannot be read, or has other columns or invalid values.
@@ -131,7 +131,7 @@ impl<R: Columns> File<R> {
     }
 }
 
-/// Returns the rows as CSV bytes. Without rows, the header contains the columns that are not optional.
+/// Returns the rows as the bytes of a CSV file. Without rows, the file has only a header, with the columns that are not optional.
 fn csv_of<R: Serialize>(
     rows: &[R],
     columns: &[Column],

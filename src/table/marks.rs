@@ -1,10 +1,10 @@
 //! List of the marks of charts. Each mark is a variant of [`Mark`](super::Mark) and a file in `report/chart/marks` that draws it.
 
-/// Calls a macro with all marks: documentation, variant with its columns, and file.
+/// Calls a macro with the list of all mark types of charts: documentation, variant with its columns, and file.
 macro_rules! for_each_mark {
     ($declare:ident) => {
         $declare! {
-            /// Points joined by lines along x; only points if the x column contains words.
+            /// Points joined by lines along x. If the x column contains words, the points are not joined.
             #[default]
             Line line;
             /// Points that are not joined by lines.

@@ -4,7 +4,7 @@ use super::{Column, Data, Role, Scale, Shown, Table, Value};
 use std::collections::HashMap;
 
 impl Table {
-    /// Groups rows with equal values in the given columns, in the order in which they first occur. Missing columns are ignored.
+    /// Groups the given rows by their values in some columns, in the order in which the values first occur. Missing columns are ignored.
     pub fn groups(
         &self,
         columns: &[&str],
@@ -25,26 +25,26 @@ impl Table {
         groups
     }
 
-    /// Returns the filter for the value of a row in a column, or `None` if the value is absent.
+    /// Returns a filter that selects rows with the value that `row` has in a column; `None` if the value is absent.
     pub fn shown(&self, column: &str, row: usize) -> Option<Shown> {
         let value = self.column(column)?.1.value(row)?;
         let column = column.to_owned();
         Some(Shown { column, value })
     }
 
-    /// Returns the names of all columns with a given role.
+    /// Returns the names of all columns of the table that have the given role.
     pub fn of_role(&self, role: Role) -> Vec<&str> {
         let columns = self.columns.iter().filter(|column| column.role == role);
         columns.map(|column| column.name.as_ref()).collect()
     }
 
-    /// Returns whether a row has the wanted value in a column, within the tolerance for settings.
+    /// Returns whether a row has the wanted value in a column; numbers are compared with a small tolerance.
     pub fn has_setting(&self, column: &str, row: usize, wanted: &Value) -> bool {
         let known = self.column(column).and_then(|(_, data)| data.value(row));
         known.is_some_and(|known| known.agrees(wanted))
     }
 
-    /// Lists the distinct values of a column for an error message, such as `one of 16, 64`. Returns an empty text if the column has no values.
+    /// Returns a list of the distinct values of a column for an error message, such as `one of 16, 64`. Returns an empty text if the column has no values.
     pub fn one_of(&self, column: &str, rows: impl IntoIterator<Item = usize>) -> String {
         let firsts = self.groups(&[column], rows);
         let data = self.column(column).map(|(_, data)| data);
@@ -56,15 +56,15 @@ impl Table {
         }
     }
 
-    /// Returns the interval of a row's value, or `None` if an end is absent.
+    /// Returns the lower and upper end of the interval of a row's value; `None` if an end is absent.
     pub fn interval(&self, column: &Column, row: usize) -> Option<[f64; 2]> {
         let ends = column.interval.as_ref()?.each_ref();
         let ends = ends.map(|end| self.number(end, row));
         ends.iter().all(|end| end.is_finite()).then_some(ends)
     }
 
-    /// Formats a value with its interval, such as `0.93 [0.90, 0.95]`. Fractions have two decimal places; from 0.995 to below 1 they have four, so that they
-    /// are not rounded to 1. Returns an empty text if the value is absent.
+    /// Formats the value of a row with its interval, such as `0.93 [0.90, 0.95]`. Fractions have two decimal places; from 0.995 to below 1 they have four, so
+    /// that they are not rounded to 1. Returns an empty text if the value is absent.
     pub fn bounded(&self, column: &Column, row: usize) -> String {
         let value = self.number(&column.name, row);
         let is_share = column.scale == Scale::Share && column.unit.is_empty();
@@ -81,13 +81,13 @@ impl Table {
         }
     }
 
-    /// Returns the number in a row and column; NaN if it is absent.
+    /// Returns the number in a row and a column of the table; NaN if the value is absent.
     pub fn number(&self, column: &str, row: usize) -> f64 {
         self.numbers(column)
             .map_or(f64::NAN, |numbers| numbers[row])
     }
 
-    /// Returns the word in a row and column as in the file; empty if it is absent.
+    /// Returns the word in a row and a column of the table, as written in the file; empty if the value is absent.
     pub fn word(&self, column: &str, row: usize) -> &str {
         match self.column(column) {
             Some((_, Data::Words { levels, codes })) => &levels[codes[row] as usize],
@@ -95,7 +95,7 @@ impl Table {
         }
     }
 
-    /// Formats the value in a row and column with its unit; empty if it is absent.
+    /// Formats the value in a row and a column of the table with its unit; empty if the value is absent.
     pub fn words(&self, column: &str, row: usize) -> String {
         let found = self.column(column);
         let found = found.and_then(|(column, data)| Some(column.value_words(&data.value(row)?)));

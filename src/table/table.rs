@@ -12,17 +12,17 @@ use std::path::Path;
 pub struct Table {
     /// Name of the CSV file, such as `accuracy.csv`.
     pub file: &'static str,
-    /// Title for a heading, such as `Accuracy of every trial`.
+    /// Title of the table for a heading, such as `Accuracy of every trial`.
     pub title: &'static str,
-    /// Explanation for the reader, one or two sentences; may be empty.
+    /// Explanation of the table for the reader, one or two sentences; may be empty.
     pub note: String,
-    /// Whether equal studies give equal bytes; false for tables of times.
+    /// Whether repeated runs of a study give equal bytes; false for tables of times.
     pub repeats: bool,
-    /// Whether the rows are summaries over all work items; a part of the items would give other rows.
+    /// Whether each row summarises all work items of a study; a part of the items would then give other rows.
     pub is_summary: bool,
-    /// Columns of the file, in their order.
+    /// Columns of the table, in the order of the file.
     pub columns: Vec<Column>,
-    /// Values of each column, in the order of `columns`.
+    /// Values of the columns, in the order of `columns`.
     pub data: Vec<Data>,
     /// Number of rows of the table.
     pub n_rows: usize,
@@ -30,16 +30,16 @@ pub struct Table {
     pub csv: Vec<u8>,
 }
 
-/// Values of a column, one per row.
+/// Values of one column, with one value per row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
-    /// Numbers; NaN for an absent value.
+    /// Column of numbers; NaN for an absent value.
     Numbers(Vec<f64>),
-    /// Words, stored as codes; the empty word for an absent value.
+    /// Column of words, stored as codes; the empty word for an absent value.
     Words {
-        /// Distinct words, in the order in which they first occur.
+        /// Distinct words of the column, in the order in which they first occur.
         levels: Vec<String>,
-        /// Index into `levels` for each row.
+        /// For each row, the index of its word in `levels`.
         codes: Vec<u32>,
     },
 }
@@ -56,7 +56,7 @@ impl From<&str> for Value {
     }
 }
 
-/// Formats the value as in CSV files.
+/// Formats the value as it is written in CSV files.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
@@ -66,12 +66,12 @@ impl fmt::Display for Value {
     }
 }
 
-/// Relative tolerance for equal settings, with respect to the larger number. A ratio of 100 on 4,096 taxels, for example, gives 41 measurements, which is a
-/// ratio of 99.90. With a larger value, neighbouring settings are merged; with a smaller value, this ratio is rejected.
+/// Relative tolerance within which two settings are equal, with respect to the larger number. A ratio of 100 on 4,096 taxels, for example, gives 41
+/// measurements, which is a ratio of 99.90. With a larger value, neighbouring settings are merged; with a smaller value, this ratio is rejected.
 const SAME_SETTING: f64 = 1e-3;
 
 impl Value {
-    /// Returns whether two values are the same setting, within the tolerance for numbers.
+    /// Returns whether two values mean an equal setting; numbers are compared with a small tolerance.
     pub fn agrees(&self, wanted: &Self) -> bool {
         match (self, wanted) {
             (Self::Number(a), Self::Number(b)) => {
@@ -90,7 +90,7 @@ impl Data {
             .is_some_and(|first| keys.any(|key| key != first))
     }
 
-    /// Returns a key of the value in a row: two rows have equal keys if and only if their values are equal.
+    /// Returns a number that identifies the value in a row: two rows have equal numbers if and only if their values are equal.
     pub fn key(&self, row: usize) -> u64 {
         match self {
             Self::Numbers(numbers) => numbers[row].to_bits(),
@@ -112,14 +112,14 @@ impl Data {
 }
 
 impl Table {
-    /// Returns the table with another note, the explanation for the reader.
+    /// Returns the table with another note (the explanation for the reader).
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 
-    /// Returns whether the rows are choices with a value and a cost. The answer considers only columns that vary; in a table of one row, all columns except
-    /// subjects.
+    /// Returns whether the rows are choices with a value and a cost, and do not describe single subjects. Only columns that vary are considered; in a table of
+    /// one row, all columns except subjects.
     pub fn offers_choices(&self) -> bool {
         let columns = self.columns.iter().zip(&self.data);
         let counted = columns.filter(|(column, data)| match self.n_rows {
@@ -132,12 +132,12 @@ impl Table {
         has(Role::Choice) && has(Role::Cost) && has_value && !has(Role::Subject)
     }
 
-    /// Returns the index of the column with this name.
+    /// Returns the index of the column with this name; `None` if there is none.
     pub fn place(&self, column: &str) -> Option<usize> {
         self.columns.iter().position(|known| known.name == column)
     }
 
-    /// Returns the column with this name, and its values.
+    /// Returns the column with this name, and its values; `None` if there is none.
     pub fn column(&self, column: &str) -> Option<(&Column, &Data)> {
         let place = self.place(column)?;
         Some((&self.columns[place], &self.data[place]))
@@ -151,7 +151,7 @@ impl Table {
         }
     }
 
-    /// Returns a copy of the table with additional columns. The copy has no file: its content is empty.
+    /// Returns a copy of the table with additional columns. The copy has no CSV file: its content is empty.
     pub fn with(
         &self,
         (file, title): (&'static str, &'static str),
@@ -171,8 +171,8 @@ impl Table {
         table
     }
 
-    /// Returns a column of another table, matched to the rows of this table by the numeric column `key` of both tables. Values are absent for rows that the
-    /// other table lacks.
+    /// Returns a column of another table, arranged for the rows of this table. Rows correspond if both tables have an equal number in the column `key`. Values
+    /// are absent for rows that the other table lacks.
     pub fn look_up(&self, other: &Self, key: &str, column: &str) -> Option<(Column, Data)> {
         let ((_, known), (_, wanted)) = (other.column(key)?, self.column(key)?);
         let (column, data) = other.column(column)?;
@@ -189,7 +189,7 @@ impl Table {
         Some((column.clone(), maker.data))
     }
 
-    /// Parses the content of a CSV file; `path` is only used in errors.
+    /// Parses the content of a CSV file as a table; `path` is only used in errors.
     pub(super) fn from_csv(
         (file, title): (&'static str, &'static str),
         known: Vec<Column>,
@@ -251,7 +251,7 @@ impl Table {
     }
 }
 
-/// Returns the path and line number of a place in a file, for an error message.
+/// Returns the path of a file and a line number as text, for an error message.
 pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
     match line {
         Some(line) => format!("{}: line {line}", path.display()),
@@ -259,10 +259,10 @@ pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
     }
 }
 
-/// Builder of a column's values from the fields of a CSV file.
+/// Collector of a column's values from the fields of a CSV file.
 struct Maker {
     data: Data,
-    /// Code of each known word, its index into `levels`.
+    /// For each word found so far, its index into `levels`.
     known: HashMap<String, u32>,
 }
 
@@ -279,7 +279,7 @@ impl Maker {
         Self { data, known }
     }
 
-    /// Appends the value of a CSV field. Returns false if the column is numeric and the text is not a number.
+    /// Appends the value of a CSV field to the column. Returns false if the column is numeric and the text is not a number.
     fn push(&mut self, text: &str) -> bool {
         match &mut self.data {
             Data::Numbers(numbers) => match (text.is_empty(), text.parse()) {

@@ -9,18 +9,18 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::sync::Arc;
 
-/// Identity of a study: everything that determines the bytes of its tables.
+/// Identity of a study: all inputs that determine the content of its result tables.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
-    /// Name and version of the program.
+    /// Name and version of the program that runs the study.
     pub program: String,
     /// Hash of the program's source code.
     pub source: String,
-    /// Study as TOML, with all defaults written out.
+    /// Study file as TOML, with all default values written out.
     pub study: String,
     /// SHA-256 hash of each object's content, by the object's name.
     pub objects: BTreeMap<String, String>,
-    /// Rule that decides which other studies may share a journal; not stored in the journal.
+    /// Rule that decides which other studies may resume the run; not stored in the journal.
     #[serde(skip)]
     same: SameStudy,
 }
@@ -30,8 +30,8 @@ pub struct Identity {
 pub enum SameStudy {
     /// Studies that differ only in these keys and the keys below them may share a journal.
     ButFor(&'static [&'static str]),
-    /// Studies whose journal contains a result of one of these work items may share it. The names of the items are derived from all inputs, so results cannot
-    /// be confused. A study that shares no result is rejected, because its tables would replace all existing tables.
+    /// Studies may share a journal that contains a result of one of these work items. The names of the items are derived from all inputs, so results cannot be
+    /// confused. A study that shares no result is rejected, because its tables would replace all existing tables.
     SharesWork(Arc<[WorkItem]>),
 }
 
@@ -42,7 +42,7 @@ impl Default for SameStudy {
 }
 
 impl SameStudy {
-    /// Returns a function that tests whether a study with a journal may differ from this one in a key.
+    /// Returns a function that tests, for a key of the study file, whether this study and the study of a journal may differ in it.
     fn may_differ(&self, records: &Records) -> Box<dyn Fn(&str) -> bool> {
         match self {
             Self::ButFor(keys) => Box::new(|key| keys.iter().any(|name| is_at(key, name))),
@@ -72,7 +72,7 @@ impl Identity {
         }
     }
 
-    /// Returns the differences between the study that started a journal and this study, one per line.
+    /// Returns the differences between the study that started a journal and this study, one line for each difference.
     pub fn differences(&self, (begun, records): (&Self, &Records)) -> Vec<String> {
         let may_differ = self.same.may_differ(records);
         let [theirs, ours] = [begun, self].map(|identity| identity.facts(&may_differ));
@@ -103,7 +103,7 @@ impl Identity {
         ))
     }
 
-    /// Returns the parts of the identity by name: the program, the objects, and all keys of the study except those that may differ.
+    /// Returns the parts of the identity as pairs (name, value): the program, the objects, and all keys of the study except keys that may differ.
     fn facts(&self, may_differ: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
         let mut facts = BTreeMap::new();
         if let Some(table) = toml_text::table(&self.study) {
@@ -118,7 +118,7 @@ impl Identity {
     }
 }
 
-/// Adds every value of a TOML table to `values`, by its dotted key.
+/// Adds every value of a TOML table and its subtables to `values`; the name of a value is its dotted key with the prefix `prefix`.
 fn add_keys(prefix: &str, table: &toml::Table, values: &mut BTreeMap<String, String>) {
     for (key, value) in table {
         match value {

@@ -12,21 +12,21 @@ use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-/// Name of the journal in a result folder.
+/// File name of the journal, which stores finished work items, in a result folder.
 pub const JOURNAL_FILE: &str = "journal.jsonl";
 
-/// Key of the journal's first line.
+/// Key of the first line of a journal, which identifies the study.
 const HEADER: &str = "study";
 
 /// Time between flushes of journal lines to the disk. When `keep` returns, the operating system has the line, so it survives the end of the process.
 /// With a larger value, a power failure loses more results; a flush after each line would take longer than a work item of a millisecond.
 const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Journal of a run: finished results in a file. A journal may also store nothing.
+/// Journal of a run: a file to which the result of each finished work item is appended. A journal may also store nothing.
 #[derive(Debug, Default)]
 pub struct Journal {
     path: PathBuf,
-    /// Records that the journal contained when it was opened, without the header.
+    /// Records that the journal contained when it was opened, without the first line.
     before: Decoded,
     writer: Mutex<Option<Writer>>,
 }
@@ -35,7 +35,7 @@ pub struct Journal {
 struct Writer {
     file: File,
     synced: Instant,
-    /// Whether a write to the journal failed. The last line may then be incomplete, so no further line is written.
+    /// Whether a write to the journal has failed. The last line may then be incomplete, so no further line is written.
     is_broken: bool,
 }
 
@@ -87,7 +87,7 @@ impl Journal {
         Ok(identity.map(|identity| (identity, journal)))
     }
 
-    /// Returns the identity and the records in the bytes of a journal; the identity is `None` if no line is complete.
+    /// Decodes the identity of the study and the records from the bytes of a journal; the identity is `None` if no line is complete.
     fn of_bytes(path: &Path, bytes: &[u8]) -> Result<(Option<Identity>, Self)> {
         let damaged = |(line, given): (usize, &str)| {
             let allowed = "a journal as it was written; --fresh starts over and keeps the old results beside the new";
@@ -110,17 +110,18 @@ impl Journal {
         Ok((begun, journal))
     }
 
-    /// Returns the record with this key, as it was when the journal was opened. Returns `None` if there is no such record, or if it has another type.
+    /// Returns the record with this key that the journal contained when it was opened. Returns `None` if there is no such record, or if the record has another
+    /// type.
     pub fn get<R: DeserializeOwned>(&self, key: &str) -> Option<R> {
         serde_json::from_str(self.before.records.get(key)?.get()).ok()
     }
 
-    /// Returns all records that the journal contained when it was opened, by key.
+    /// Returns all records that the journal contained when it was opened, sorted by key.
     pub fn records(&self) -> &Records {
         &self.before.records
     }
 
-    /// Writes a record to the journal. After this function returns, the record survives the end of the process.
+    /// Appends a record to the journal. After this function returns, the record survives the end of the process.
     ///
     /// # Errors
     /// If the journal cannot be written.
@@ -128,7 +129,7 @@ impl Journal {
         self.append(key, record).map(|_| ())
     }
 
-    /// Appends a line to the journal and returns its checksum; returns 0 if the journal stores nothing.
+    /// Appends a line with a key and a record to the journal, and returns the checksum of the line; returns 0 if the journal stores nothing.
     fn append(&self, key: &str, record: &impl Serialize) -> Result<u32> {
         let Some(writer) = &mut *self.lock() else {
             return Ok(0);
@@ -203,7 +204,7 @@ impl Writer {
     }
 }
 
-/// Returns whether the bytes begin as a first line does, with a checksum of 8 hexadecimal digits, a space and the key.
+/// Returns whether the bytes can be the start of a journal: a checksum of 8 hexadecimal digits, a space and the key of the first line.
 fn begins_header(bytes: &[u8]) -> bool {
     let expected = format!(" {{\"key\":\"{HEADER}\"");
     let is_digit = |byte: &u8| byte.is_ascii_hexdigit();

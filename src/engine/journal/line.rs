@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 
-/// Journal records as JSON, by key; of several records with one key, the last is valid.
+/// Journal records as JSON, by key; if several lines have one key, the record of the last line is valid.
 pub type Records = BTreeMap<String, Box<RawValue>>;
 
-/// Error message for a first line that does not identify a study.
+/// Error message for a journal whose first line does not identify a study.
 pub const NO_STUDY: &str =
     "is no record of a study: nothing says which study the finished work is of";
 const CHANGED: &str = "does not match its checksum: it was changed, or is of another study than line 1 or of an earlier version";
@@ -48,18 +48,18 @@ fn checksum(first: u32, json: &str) -> u32 {
 /// Decoded content of the complete lines of a journal.
 #[derive(Debug, Default)]
 pub struct Decoded {
-    /// Record of the first line; `None` if that line is incomplete.
+    /// Record of the first line of the journal; `None` if this line is incomplete.
     pub header: Option<Box<RawValue>>,
-    /// Checksum of the first line, from which the checksums of all other lines continue.
+    /// Checksum of the first line, which enters the checksums of all other lines.
     pub first: u32,
-    /// Records of all lines after the first.
+    /// Records of all lines after the first line, by key.
     pub records: Records,
     /// Number of bytes up to the end of the last complete line.
     pub n_whole: usize,
 }
 
-/// Decodes a journal whose first line has the key `header`, up to an incomplete line at its end. The error contains the number (from 1) of a line that no
-/// interrupted write can explain, and its defect.
+/// Decodes the complete lines of a journal whose first line has the key `header`; an incomplete last line is ignored. If a line is damaged in a way that no
+/// interrupted write explains, the error contains its number (from 1) and the defect.
 pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static str)> {
     let mut decoded = Decoded::default();
     for (number, line) in bytes.split_inclusive(|&byte| byte == b'\n').enumerate() {
@@ -90,7 +90,7 @@ fn decode_line(first: u32, line: &[u8]) -> Option<(u32, Line)> {
     (written == format!("{checksum:08x}")).then_some((checksum, line))
 }
 
-/// Splits a complete line into its checksum, its JSON and the decoded content.
+/// Splits a complete line of a journal into its checksum, its JSON text and the decoded content.
 fn split(line: &[u8]) -> Option<(&str, &str, Line)> {
     let line = std::str::from_utf8(line.strip_suffix(b"\n")?).ok()?;
     let (written, json) = line.split_once(' ')?;

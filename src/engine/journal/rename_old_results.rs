@@ -6,8 +6,8 @@ use crate::files::{MANIFEST_FILE, OwnedFiles, RUN, input_within};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// Renames a result folder to the first free name of `NAME.1`, `NAME.2`, … Returns the new name, or `None` if there is no folder. If `folder` is a symbolic
-/// link, its target is renamed, and the link remains.
+/// Renames a result folder to the first free name of `NAME.1`, `NAME.2`, … Returns the new path, or `None` if there is no folder to rename. If `folder` is a
+/// symbolic link, its target is renamed, and the link remains.
 ///
 /// # Errors
 /// If the folder contains files but no results, or a file that this command reads. If a run is still writing to it, or it cannot be renamed.
@@ -67,7 +67,7 @@ pub fn check_set_aside(folder: &Path) -> Result<()> {
     })
 }
 
-/// Returns whether a folder contains files, but neither a manifest nor a journal.
+/// Returns whether a folder contains files, but neither a manifest nor a journal of this program.
 fn is_foreign(folder: &Path) -> Result<bool> {
     let mut entries = fs::read_dir(folder).map_err(|e| Error::io(folder, "read", e))?;
     if entries.next().is_none() {

@@ -9,15 +9,15 @@ use crate::error::Result;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// Pending work items of a run, identified by their numbers among all items.
+/// Work items that a run still has to compute, identified by their numbers among all items of the study.
 pub struct PendingItems<'a, R> {
     options: RunOptions<'a>,
     /// Receiver of progress reports; each finished item advances it by one step.
     pub progress: &'a dyn Progress,
     items: &'a [WorkItem],
-    /// Whether each work item is pending.
+    /// For each work item of the study, whether it is pending.
     is_pending: Vec<bool>,
-    /// Results of the finished items, by item number.
+    /// Results of the items that this run has finished, by item number.
     results: Mutex<BTreeMap<usize, ItemResult<R>>>,
 }
 
@@ -51,7 +51,8 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.is_pending[number]
     }
 
-    /// Returns the elements of `all` whose work item is pending, with their item numbers. The items are numbered consecutively from `first`.
+    /// Returns the elements of `all` whose work items are pending, with the item numbers. The work items of the elements are numbered consecutively from
+    /// `first`.
     pub fn among<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
         let numbered = (first..).zip(all);
         numbered.filter(|(number, _)| self.has(*number)).collect()
@@ -69,7 +70,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.keep(number, result)
     }
 
-    /// Computes data that several work items need. If `make` fails, all pending items in `numbers` are recorded as failed, and the result is `None`.
+    /// Computes data that several work items need. If `make` fails, all pending items in `numbers` are recorded as failed, and `None` is returned.
     ///
     /// # Errors
     /// If the journal cannot be written, or if `make` fails and the first failure ends the run.
@@ -107,7 +108,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         Ok(())
     }
 
-    /// Returns whether each item was pending, and the results of the finished items by number.
+    /// Returns for each item whether it was pending, and the results of the finished items by item number.
     pub(crate) fn into_results(self) -> (Vec<bool>, BTreeMap<usize, ItemResult<R>>) {
         let results = self.results.into_inner();
         let results = results.unwrap_or_else(|poisoned| poisoned.into_inner());

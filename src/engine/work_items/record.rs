@@ -3,8 +3,8 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Result rows of a work item, and other data from which tables are made. The journal stores them as JSON; fields that may be infinite or NaN need
-/// `#[serde(with = "any_number")]`.
+/// Type of the results of a work item: rows of result tables, and data from which tables are made. The journal stores them as JSON; fields that may be infinite
+/// or NaN need `#[serde(with = "any_number")]`.
 pub trait ItemRows: Default + Serialize + DeserializeOwned + Send {
     /// Appends the rows of the next work item.
     fn append(&mut self, next: Self);

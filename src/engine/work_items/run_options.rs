@@ -5,7 +5,7 @@ use crate::engine::progress::Progress;
 use crate::engine::shard::Shard;
 use std::collections::BTreeSet;
 
-/// Selection of the work items that a run computes.
+/// Selection of the work items that a run of a study computes.
 #[derive(Clone, Copy, Debug)]
 pub enum Part<'a> {
     /// All work items of the study.
@@ -16,7 +16,7 @@ pub enum Part<'a> {
     Only(&'a BTreeSet<usize>),
 }
 
-/// Options of a run of a study.
+/// Options of a run: journal, treatment of failures, selection of work items, and progress.
 #[derive(Clone, Copy)]
 pub struct RunOptions<'a> {
     /// Journal from which finished work items are read and in which new ones are stored.
@@ -32,7 +32,7 @@ pub struct RunOptions<'a> {
 }
 
 impl<'a> RunOptions<'a> {
-    /// Returns options for computing all work items without a journal; the first failure ends the run.
+    /// Returns options for computing all work items of a study without a journal; the first failure ends the run.
     pub fn whole(progress: &'a dyn Progress) -> Self {
         Self {
             journal: Journal::none(),

@@ -3,7 +3,7 @@
 use crate::inputs::memory::Bytes;
 use crate::spelling::counted;
 
-/// Approximate memory of the program, its objects and the pictures that it draws at the end, bytes.
+/// Approximate memory of the program without the data of the study, bytes: the program itself, its objects, and the pictures that it draws at the end.
 const PROGRAM_BYTES: f64 = 2e8;
 
 /// Size of a study: numbers of objects, touches and configurations, and memory.
@@ -22,20 +22,20 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Returns the memory for computing one work item at a time, bytes.
+    /// Returns the approximate memory of a run that computes one work item at a time, bytes.
     pub fn least_bytes(&self) -> f64 {
         self.bytes_at_once(1)
     }
 
-    /// Returns the maximum number of concurrent work items that fits into `ceiling` bytes, at most the number of threads. Returns `None` if a single item does
-    /// not fit.
+    /// Returns the maximum number of concurrent work items whose memory is at most `ceiling` bytes, limited to the number of threads. Returns `None` if a
+    /// single item does not fit.
     pub fn n_at_once(&self, ceiling: f64) -> Option<usize> {
         let n_threads = (1..=rayon::current_num_threads()).rev();
         let mut within = n_threads.filter(|&n| self.bytes_at_once(n) <= ceiling);
         within.next()
     }
 
-    /// Returns the text of `bubbletouch plan` about the size of a study of `n_items` work items on `n_threads` threads.
+    /// Returns the text that `bubbletouch plan` prints about the size of a study with `n_items` work items on `n_threads` threads.
     pub fn describe(&self, n_items: usize, n_threads: usize) -> String {
         let (objects, touches) = (&self.objects, &self.touches);
         let configurations = counted(self.n_configurations, "configuration");

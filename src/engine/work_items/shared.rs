@@ -3,7 +3,7 @@
 use crate::error::Result;
 use std::sync::OnceLock;
 
-/// Data that are computed by the first work item that needs them. Two items that need them at the same time may both compute them.
+/// Data that several work items need, computed by the first item that needs them. Two items that need the data at the same time may both compute them.
 #[derive(Debug)]
 pub struct Shared<T>(OnceLock<T>);
 

@@ -8,9 +8,9 @@ use crate::error::Result;
 use crate::row;
 
 row! {
-/// Failed work item: a row of `failures.csv`.
+/// Failed work item, as a row of the table `failures.csv`.
 pub struct ItemFailure {
-    /// Description of the work item in words.
+    /// Name of the work item in words.
     work_item: String => Subject "work item";
     /// Message of the error that ended the work item.
     error: String => Note;
@@ -19,13 +19,13 @@ pub struct ItemFailure {
 /// Run of a study's work items; created after the journal was read.
 pub struct StudyRun<'a, R> {
     items: &'a [WorkItem],
-    /// Result of each work item in the journal; `None` if the journal has none.
+    /// For each work item, its result in the journal; `None` if the journal has no result of the item.
     before: Vec<Option<ItemResult<R>>>,
     pending: PendingItems<'a, R>,
 }
 
 impl<'a, R: ItemRows> StudyRun<'a, R> {
-    /// Reads the results of all work items from the journal given in the options.
+    /// Creates the run and reads the results of all work items that the journal in the options contains.
     pub fn new(items: &'a [WorkItem], options: &RunOptions<'a>) -> Self {
         let results = items.iter().map(|item| options.journal.get(&item.key()));
         let before: Vec<Option<ItemResult<R>>> = results.collect();
@@ -49,8 +49,8 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
     /// Computes the pending work items with `measure`. Returns the rows of all items that did not fail in this or an earlier run, in the order of items, and
     /// the failed items. Except for times, the rows equal the rows of a run that computes all items together.
     ///
-    /// `place(number, rows)` sets the values that depend on an item's number, such as numbers of configurations. `words(number)` describes an item for
-    /// failures.
+    /// `place(number, rows)` sets the values in the rows that depend on the item's number, such as numbers of configurations. `words(number)` returns the name
+    /// of an item in words, for failures.
     ///
     /// # Errors
     /// If the journal cannot be written, if an item fails and the first failure ends the run, or if `measure` fails as a whole.

@@ -2,21 +2,22 @@
 
 use crate::inputs::content_hash::short_hash;
 
-/// Number of hexadecimal digits of the hash of an item's content. With a smaller value, two items with one name may collide.
+/// Number of hexadecimal digits of the hash in a work item's key. With a smaller value, two items with one name may get equal keys.
 const CONTENT_DIGITS: usize = 16;
 
-/// Work item of a study: a named part of its work that is computed on its own.
+/// Work item of a study: a named part that is computed, stored and repeated on its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkItem {
-    /// Name of the work item. Items with equal names have equal rows.
+    /// Name of the work item. Items with equal names have equal result rows.
     pub name: String,
-    /// Inputs of the rows that neither the name nor the fixed keys of the study describe; may be empty. The item's number is not an input, because a later
+    /// Inputs of the work item that neither its name nor the fixed keys of the study describe; may be empty. The item's number is not an input, because a later
     /// study may have more items.
     pub content: String,
-    /// Number of the item's group, from 0 without gaps. Items of a group share preparatory work, so one shard computes all of them if there are enough groups
-    /// for every shard.
+    /// Number of the group to which the item belongs, from 0 without gaps. Items of a group share preparatory work, so one shard computes all of them if there
+    /// are enough groups for every shard.
     pub group: usize,
-    /// Whether the rows are results of the study. If false, the item prepares data for results; studies that share only preparing items are different studies.
+    /// Whether the rows are results of the study. If false, the item only prepares data for results; studies that share only preparing items are different
+    /// studies.
     pub is_result: bool,
 }
 
@@ -31,7 +32,7 @@ impl WorkItem {
         }
     }
 
-    /// Returns the key of the work item in the journal.
+    /// Returns the key under which the journal stores the result of the work item.
     pub(crate) fn key(&self) -> String {
         match self.content.is_empty() {
             true => format!("piece {}", self.name),

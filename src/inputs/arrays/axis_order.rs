@@ -8,48 +8,48 @@ use crate::error::{Error, Result};
 use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};
 use ndarray::{Array2, ArrayD};
 
-/// Maximum aspect ratio of a grid for which the last two axes are assumed to be rows and columns. With a larger value, time may be mistaken for taxels; with a
-/// smaller value, the order must be given for more arrays.
+/// Maximum ratio of the sides of a grid for which the last two axes of an array are assumed to be rows and columns. With a larger value, time may be mistaken
+/// for taxels; with a smaller value, the order must be given for more arrays.
 const MAX_ASPECT: usize = 6;
-/// Maximum length of a last axis that is assumed to contain the values of a taxel (three force components).
+/// Maximum length of the last axis of an array for which this axis is assumed to contain the values of one taxel (three force components).
 const MAX_VALUES: usize = 3;
 
-/// Axis order of frames as given in a study.
+/// Order of the axes in an array of recorded frames, as given in a study.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FrameAxes<'a> {
-    /// Letters of the axes; `None` for the default order.
+    /// Letters of the axes in their order in the file, such as `ntyx`; `None` for the default order.
     pub order: Option<&'a str>,
-    /// Numbers of rows and columns into which the axis `c` is divided.
+    /// Numbers of rows and columns into which the axis `c` (all taxels in one axis) is divided.
     pub grid: Option<[usize; 2]>,
-    /// Number of values per taxel.
+    /// Number of recorded values per taxel: 1, or the number of force components.
     pub n_values: usize,
-    /// Key or option that sets the order, for error messages.
+    /// Name of the key or option that sets the order, for error messages.
     pub key: &'a str,
 }
 
-/// Axis lengths of recorded frames, and the axis order in the file.
+/// Axis lengths of an array of recorded frames, and the order of the axes in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameShape {
-    /// Number of touches n.
+    /// Number of touches in the array.
     pub n_touches: usize,
-    /// Number of frames per touch, F.
+    /// Number of frames in each touch.
     pub n_frames: usize,
-    /// Number of rows of the grid; 1 without a grid.
+    /// Number of rows of the taxel grid; 1 if the taxels form no grid.
     pub rows: usize,
-    /// Number of columns of the grid; without a grid, the number of taxels.
+    /// Number of columns of the taxel grid; if the taxels form no grid, the number of taxels.
     pub columns: usize,
     /// Whether the taxels have rows and columns.
     pub has_grid: bool,
-    /// Number of values per taxel.
+    /// Number of recorded values per taxel.
     n_values: usize,
-    /// Axis numbers of the file in the order n, t, c, y, x.
+    /// Numbers of the file's axes in the order touch, frame, taxel, y, x.
     axes: Vec<usize>,
-    /// Letters of the file's axes.
+    /// Letters of the axes in their order in the file.
     order: String,
 }
 
 impl FrameShape {
-    /// Returns the number of values per frame.
+    /// Returns the number of values in each frame: taxels times values per taxel.
     pub fn n_frame_values(&self) -> usize {
         self.n_values * self.rows * self.columns
     }
@@ -110,7 +110,7 @@ impl FrameShape {
         }
     }
 
-    /// Arranges the numbers of a file as one row per frame, shape (n · F, values · rows · columns).
+    /// Arranges all recorded values as one row per frame: shape (touches · frames, values · rows · columns).
     ///
     /// # Panics
     /// If the axes of the numbers differ from the shape.
@@ -126,7 +126,7 @@ impl FrameShape {
     }
 }
 
-/// Determines the axes of an array of frames.
+/// Determines the meaning of each axis of an array of frames.
 ///
 /// # Errors
 /// If the order does not fit the array, or no order is given and two orders are possible.
@@ -240,7 +240,7 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
     }
 }
 
-/// Returns the letters of an axis order without separators, after checking them.
+/// Returns the letters of an axis order without separators, after checking that they are a valid order.
 fn checked_order(order: &str, key: &str) -> Result<String> {
     let parts = [' ', ',', '×', '-', '*'];
     let letters: String = order
@@ -266,7 +266,7 @@ fn checked_order(order: &str, key: &str) -> Result<String> {
     }
 }
 
-/// Returns another axis order that is as plausible as the default; `None` if there is none.
+/// Returns another axis order that is as plausible for the array as the default order; `None` if there is none.
 fn other_order(shape: &[usize]) -> Option<&'static str> {
     let is_strip = |a: usize, b: usize| a.max(b) > MAX_ASPECT * a.min(b);
     match *shape {
@@ -278,7 +278,7 @@ fn other_order(shape: &[usize]) -> Option<&'static str> {
     }
 }
 
-/// Describes the axes of an array in words, given their order.
+/// Returns the axes of an array and their lengths as text, given the order of the axes.
 fn words(shape: &[usize], order: &str) -> String {
     let length = |letter: char| order.find(letter).map(|axis| shape[axis]);
     let of = |letter: char| length(letter).unwrap_or(1);

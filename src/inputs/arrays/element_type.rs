@@ -12,13 +12,13 @@ pub struct ElementType {
     pub kind: ElementKind,
     /// Size of an element, bytes.
     pub size: usize,
-    /// NumPy's letter for the type.
+    /// Letter that NumPy uses for the type, such as `f` for floating-point numbers.
     letter: char,
     is_big_endian: bool,
 }
 
 impl ElementType {
-    /// Parses the value of `descr` in a header, such as `'<f8', 'fortran_order': …`.
+    /// Parses the element type at the start of a `.npy` header, such as `'<f8', 'fortran_order': …`.
     ///
     /// # Errors
     /// If the elements are neither numbers nor texts; the error contains their type.
@@ -62,7 +62,7 @@ impl ElementType {
         })
     }
 
-    /// Returns an empty list with capacity for `n` elements.
+    /// Returns an empty list for elements of this type, with capacity for `n` elements.
     pub fn empty(&self, n: usize) -> Elements {
         match self.kind {
             ElementKind::Text => Elements::Texts(Vec::with_capacity(n)),
@@ -70,9 +70,9 @@ impl ElementType {
         }
     }
 
-    /// Decodes complete elements from bytes and appends them to `elements`.
+    /// Decodes all elements that the bytes contain and appends them to `elements`.
     pub fn decode(&self, bytes: &[u8], elements: &mut Elements) {
-        /// Appends elements of `N` bytes that are given in little-endian order.
+        /// Decodes numbers of `N` bytes in little-endian order and appends them.
         fn numbers<const N: usize>(
             (bytes, is_big_endian): (&[u8], bool),
             numbers: &mut Vec<f64>,
@@ -126,7 +126,7 @@ impl ElementType {
     }
 }
 
-/// Converts an IEEE 754 binary16 number to f64.
+/// Converts an IEEE 754 binary16 number, given by its bits, to f64.
 fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let (exponent, fraction) = (i32::from(bits >> 10 & 31), f64::from(bits & 1023));

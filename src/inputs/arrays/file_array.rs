@@ -3,22 +3,22 @@
 /// Kind of the elements of an array file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ElementKind {
-    /// Floating-point numbers with the given relative spacing.
+    /// Floating-point numbers; the value is the relative spacing of neighbouring numbers.
     Float(f64),
     /// Signed or unsigned integers.
     Integer,
-    /// Boolean values.
+    /// Truth values (booleans).
     Truth,
-    /// Unicode texts or ASCII texts.
+    /// Texts in Unicode or ASCII.
     Text,
 }
 
-/// Elements of an array file in row-major order.
+/// Elements of an array in row-major order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Elements {
     /// Numbers; false is stored as 0, and true as 1.
     Numbers(Vec<f64>),
-    /// Texts without their padding.
+    /// Texts without the zeros that fill them to a common length.
     Texts(Vec<String>),
 }
 
@@ -29,8 +29,8 @@ pub struct FileArray {
     pub place: String,
     /// Lengths of the array's axes.
     pub shape: Vec<usize>,
-    /// Kind of the elements.
+    /// Kind of the elements: floating-point numbers, integers, truth values or texts.
     pub kind: ElementKind,
-    /// Elements in row-major order.
+    /// Elements of the array in row-major order.
     pub elements: Elements,
 }

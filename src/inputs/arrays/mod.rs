@@ -23,7 +23,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-/// Format of an array file.
+/// File format from which an array is read.
 #[derive(Clone, Copy, PartialEq)]
 enum Format {
     Npy,
@@ -34,7 +34,7 @@ enum Format {
 const ALLOWED: &str = "an array of numbers in a .npy, .npz or .csv file";
 
 impl FileArray {
-    /// Reads the array `name` from a file; the name selects a member of an archive.
+    /// Reads the array `name` from a file. In an archive, the name selects a member; in other files it is ignored.
     ///
     /// # Errors
     /// If the file does not exist, contains no such array, or its elements are neither numbers nor texts.
@@ -114,7 +114,7 @@ pub fn member_names(path: &Path) -> Result<Vec<String>> {
     Ok(names.collect())
 }
 
-/// Returns whether a `.npz` archive contains the array `name` and other arrays; `false` for other files.
+/// Returns whether a `.npz` archive contains the array `name` besides other arrays; `false` for other files.
 pub fn is_member(path: &Path, name: &str) -> bool {
     let is_archive = || matches!(format_of(path), Ok(Format::Npz));
     is_archive()
@@ -163,7 +163,7 @@ fn format_of(path: &Path) -> Result<Format> {
     }
 }
 
-/// Reads a member of an archive with the function `read`, which receives the place, the bytes and their number.
+/// Opens a member of an archive and calls `read` with its place (for error messages), its bytes and their number.
 fn with_member<T>(
     path: &Path,
     name: &str,

@@ -6,20 +6,20 @@ use crate::inputs::arrays::file_array::{Elements, FileArray};
 use ndarray::{ArrayD, IxDyn, ShapeBuilder};
 use std::io::Read;
 
-/// Maximum size of a header, bytes. A longer header indicates a damaged file; NumPy rejects headers above 10,000 bytes by default.
+/// Maximum size of the header of a `.npy` file, bytes. A longer header indicates a damaged file; NumPy rejects headers above 10,000 bytes by default.
 const MAX_HEADER: usize = 1 << 20;
-/// Number of elements that are decoded together; they fit into the processor's cache.
+/// Number of array elements that are decoded together, so that they fit into the processor's cache.
 const BLOCK: usize = 1 << 13;
 
 /// Header of a `.npy` file.
 pub struct Header {
-    /// Type of the elements.
+    /// Type of the elements of the array.
     pub elements: ElementType,
     /// Whether the first index changes fastest (Fortran order).
     is_fortran: bool,
     /// Lengths of the array's axes.
     pub shape: Vec<usize>,
-    /// Number of bytes before the first element.
+    /// Number of bytes in the file before the first element.
     n_bytes: u64,
 }
 
@@ -70,7 +70,7 @@ pub fn read_header(place: &str, reader: &mut (impl Read + ?Sized)) -> Result<Hea
     })
 }
 
-/// Reads a `.npy` array that occupies `length` bytes.
+/// Reads an array in `.npy` format that occupies `length` bytes.
 ///
 /// # Errors
 /// If the header is damaged, the elements are neither numbers nor texts, or their number differs from the header.
@@ -120,7 +120,7 @@ pub fn read(place: &str, reader: &mut dyn Read, length: u64) -> Result<FileArray
     })
 }
 
-/// Converts elements from Fortran order (first index fastest) to C order (last index fastest).
+/// Reorders the elements of an array from Fortran order (first index fastest) to C order (last index fastest).
 fn row_major<T: Clone>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
     let array = ArrayD::from_shape_vec(IxDyn(shape).f(), elements);
     let array = array.expect("one element for each place");

@@ -5,10 +5,10 @@ use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-/// Largest integer up to which f64 represents every integer exactly, 2⁵³.
+/// Limit up to which f64 represents every integer exactly: 2⁵³.
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
-/// Value in a file that identifies a class or a group.
+/// Value in a file that identifies the class or the group of a touch.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum KeyValue {
     /// Integer that identifies a class or group.
@@ -17,17 +17,17 @@ pub enum KeyValue {
     Text(String),
 }
 
-/// Class of every touch or row of a data set.
+/// Classes of all touches or rows of a data set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassLabels {
     /// Class number of every touch or row, from 0.
     pub labels: Vec<usize>,
-    /// Value of each class as written in the file: integers ascending, texts in the order of first occurrence.
+    /// For each class number, the value in the file: integers ascending, texts in the order of first occurrence.
     pub classes: Vec<KeyValue>,
 }
 
 impl ClassLabels {
-    /// Assigns class numbers to the given values.
+    /// Assigns a class number to each of the given values; equal values get equal numbers.
     pub fn new(values: &[KeyValue]) -> Self {
         let classes = distinct(values);
         let number: HashMap<&KeyValue, usize> = classes.iter().zip(0..).collect();
@@ -115,7 +115,7 @@ pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
     keys.collect()
 }
 
-/// Reads row numbers from a file: integers, or a mask with one bool per row.
+/// Reads row numbers from a file that contains integers, or a mask with one truth value per row.
 ///
 /// # Errors
 /// If the file does not exist or contains other data, a row does not exist (the error names its position), or the length of the mask differs from the number
@@ -171,7 +171,7 @@ fn not_below_zero(path: &Path, values: &[KeyValue]) -> Result<()> {
     }
 }
 
-/// Returns the array without its header line, if it is a table of texts with one line more than `n` rows.
+/// Returns the array without its header line, if it is a table of texts that has one line more than the expected `n` rows.
 fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
     let is_table = path.extension().is_some_and(|ending| {
         ["csv", "tsv", "txt"]
@@ -188,7 +188,7 @@ fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
     array
 }
 
-/// Converts an array with one 0/1 column per class to the number of the column that is 1 in each row.
+/// Converts an array with one column of 0 and 1 for each class: for each row, returns the number of the column that contains 1.
 fn one_hot(mut array: FileArray) -> Result<FileArray> {
     let ([n, n_classes], Elements::Numbers(numbers)) = (&array.shape[..], &array.elements) else {
         return Ok(array);
@@ -215,7 +215,7 @@ fn one_hot(mut array: FileArray) -> Result<FileArray> {
     Ok(array)
 }
 
-/// Returns the values of an array with one dimension, one column, or one row.
+/// Returns the values of an array that has one dimension, a single column, or a single row.
 fn values(array: FileArray, allowed: &str) -> Result<Vec<KeyValue>> {
     if array.shape.iter().filter(|&&length| length != 1).count() > 1 || array.shape.is_empty() {
         let given = format!("an array of shape {:?}", array.shape);

@@ -13,7 +13,7 @@ const REQUIRED: [&str; 6] = ["x_mm", "y_mm", "z_mm", "nx", "ny", "nz"];
 const OPTIONAL: [&str; 3] = ["radius_mm", "row", "column"];
 const MM: f64 = 1e-3;
 
-/// Reads a layout from the text of a CSV file.
+/// Reads a layout of taxels from the text of a CSV file.
 pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
     let allowed = format!("a table with the columns {}", REQUIRED.join(", "));
     let mut rows = rows_of(text.trim_start_matches('\u{feff}').as_bytes()).into_records();
@@ -118,7 +118,7 @@ impl LayoutFile {
     }
 }
 
-/// Converts metres to millimetres so that the conversion back gives the same number; if possible, the result has few digits.
+/// Converts metres to millimetres. The conversion back gives the same number, and the result has as few digits as possible.
 fn in_mm(metres: f64) -> f64 {
     let mm = metres / MM;
     let candidates = [(mm * 1e9).round() / 1e9, mm, mm.next_up(), mm.next_down()];

@@ -5,7 +5,7 @@ use super::LayoutFile;
 use crate::error::{Error, Result};
 use glam::DVec3;
 
-/// Reads a layout from the text of a position file. Normals of any length are normalised.
+/// Reads a layout of taxels from the text of an iCub position file. Normals of any length are scaled to length 1.
 pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
     let (mut taxels, mut rows, mut n_unused) = (Vec::new(), Vec::new(), 0);
     let mut is_row = false;

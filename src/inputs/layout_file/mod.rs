@@ -21,10 +21,10 @@ use crate::world::{Layout, TactileSensor};
 use glam::DVec3;
 use std::path::Path;
 
-/// List of the readable formats, for error messages.
+/// List of the file formats from which layouts can be read, for error messages.
 const FORMATS: &str = "a layout in .csv, .npz, .txt or .ini (iCub), .json (PaXini) or .urdf";
 
-/// Content of a layout file: the taxels of one skin or sensor.
+/// Content of a layout file: the taxels of a patch or of a tactile sensor.
 #[derive(Clone, Debug)]
 pub struct LayoutFile {
     /// Rest centres and axes of the taxels.
@@ -33,13 +33,13 @@ pub struct LayoutFile {
     pub radii: Option<Vec<f64>>,
     /// Row and column of each taxel in the sensor's image, shape (n_taxels,). `None` if the file has no image.
     pub pixels: Option<Vec<[usize; 2]>>,
-    /// Name of the robot link to which the layout is fixed; `None` unless the layout is read from a robot's file.
+    /// Name of the robot link on which the taxels are; `None` unless the layout is read from a robot's file.
     pub link: Option<String>,
     /// Notes on parts of the file that are not taxels, such as unused rows.
     pub notes: Vec<String>,
 }
 
-/// Inputs of a layout reader besides the file.
+/// Inputs that some formats of layout files need besides the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LayoutOptions<'a> {
     /// Surface from which the taxels get their normals, if the file has only positions.
@@ -79,7 +79,7 @@ impl LayoutFile {
         Ok(file)
     }
 
-    /// Creates the file's content from the taxels: positions in metres, and vectors of any length along the axes.
+    /// Creates the content of a layout file from its taxels, each a position in metres and an axis vector of any length.
     ///
     /// # Errors
     /// If a number is not finite or an axis has length zero; the error contains the taxel's row number, which is taken from `rows`.
@@ -108,7 +108,7 @@ impl LayoutFile {
         })
     }
 
-    /// Returns the taxels of a tactile sensor, in the frame of its link.
+    /// Returns the taxels of a tactile sensor in a robot's file, in the frame of the sensor's link.
     ///
     /// # Errors
     /// If the sensor's poses are not a valid layout; the error begins with `place`.
@@ -145,10 +145,10 @@ impl LayoutFile {
     }
 }
 
-/// Maximum number of taxels whose neighbours are searched for the default radius. A larger number takes longer and hardly changes the median.
+/// Maximum number of taxels whose nearest neighbours are searched to find the default radius. A larger number takes longer and hardly changes the median.
 const MAX_LOOKED_AT: usize = 200;
 
-/// Minimum length of a normal or axis vector in a layout file. Files have normals of four decimals; shorter vectors are zero up to their rounding.
+/// Minimum length of a normal or axis vector in a layout file. Files contain normals with four decimals; shorter vectors count as zero.
 const MIN_AXIS: f64 = 1e-3;
 
 /// Returns the vector scaled to length 1. A vector that already has length 1, up to rounding, is returned unchanged.

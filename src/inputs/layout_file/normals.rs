@@ -4,10 +4,11 @@ use crate::error::{Error, Result};
 use crate::mesh::{Surface, TriangleMesh};
 use glam::DVec3;
 
-/// Maximum distance of a taxel from the surface, metres. A larger distance indicates that the taxels have another frame or unit than the mesh.
+/// Maximum distance between a taxel and the surface that provides its normal, metres. A larger distance indicates that taxels and mesh have different frames or
+/// units.
 const MAX_DISTANCE: f64 = 5e-3;
 
-/// Returns the outward unit normal of the surface at the nearest surface point of each taxel.
+/// For each taxel, returns the outward unit normal at the nearest point of the mesh surface.
 pub(super) fn surface_normals(
     place: &str,
     points: &[DVec3],

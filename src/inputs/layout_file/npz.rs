@@ -9,10 +9,10 @@ use glam::{DMat3, DVec3};
 use ndarray::ArrayD;
 use std::path::Path;
 
-/// Maximum deviation of an entry of Rᵀ R from the identity, for a rotation matrix R of a file in single precision.
+/// Maximum deviation of an entry of Rᵀ R from the identity matrix, for a rotation matrix R that a file contains in single precision.
 const MAX_ROTATION_ERROR: f64 = 1e-3;
 
-/// Reads a layout from a `.npz` archive.
+/// Reads a layout of taxels from a `.npz` archive.
 pub(super) fn read(path: &Path) -> Result<LayoutFile> {
     let place = path.display().to_string();
     let names = crate::inputs::arrays::member_names(path)?;
@@ -93,7 +93,7 @@ fn vectors(array: &ArrayD<f64>) -> Vec<DVec3> {
     numbers.chunks(3).map(DVec3::from_slice).collect()
 }
 
-/// Returns the position and the normal of each taxel from its pose.
+/// For each taxel, returns the position and the normal, given its pose.
 fn from_poses(place: &str, poses: &ArrayD<f64>) -> Result<Vec<(DVec3, DVec3)>> {
     let numbers: Vec<f64> = poses.iter().copied().collect();
     let pose = |(row, m): (usize, &[f64])| {

@@ -10,7 +10,7 @@ use serde_json::Value;
 const ALLOWED: &str = "points [x, y, z] in mm: a list, or the member taxels_mm, taxels or points";
 const MM: f64 = 1e-3;
 
-/// Reads a layout from the text of a JSON file. The normals are computed from the mesh.
+/// Reads a layout of taxels from the text of a PaXini JSON file. The normals are computed from the mesh.
 pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
     let json: Value = serde_json::from_str(text).map_err(|e| Error::input(place, e, ALLOWED))?;
     if let Some(units) = json.get("units").or_else(|| json.get("unit"))

@@ -8,8 +8,8 @@ use crate::world::{JointKind, Robot};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Reads a layout from the text of a URDF file. `sensor` is the name of a tactile sensor, or of the link that carries the prismatic joints; it may be omitted
-/// if there is only one.
+/// Reads a layout of taxels from the text of a URDF file. `sensor` is the name of a tactile sensor, or of the link that carries the taxels' prismatic joints.
+/// The name may be omitted if there is only one.
 pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<LayoutFile> {
     let robot = Robot::from_urdf(place, text)?;
     let mut all = BTreeMap::new();
@@ -56,8 +56,8 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
 /// Position (metres) and normal of a taxel in the frame of its link.
 type Taxel = (DVec3, DVec3);
 
-/// Returns the taxels that three prismatic joints along x, y and z connect to a link, by the name of this link, in the order of the file. The normal is the
-/// axis of the third joint.
+/// For each link, returns the taxels that three prismatic joints along x, y and z connect to it, in the order of the file. The normal of a taxel is the axis of
+/// the third joint.
 fn prismatic_taxels(robot: &Robot) -> BTreeMap<String, Vec<Taxel>> {
     let joints = robot.joints();
     let is_slide = |kind: JointKind| kind == JointKind::Prismatic;
