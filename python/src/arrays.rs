@@ -43,10 +43,10 @@ pub fn numbers<'py>(
     Ok(array.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// Returns a view of real numbers whose shape satisfies `is_shape`.
+/// Converts an array of real numbers to float64 and calls `look` with a view of it.
 ///
 /// # Errors
-/// Returns the errors of [`numbers`], or an error if the shape is not allowed.
+/// If the input is not an array of real numbers, or if its shape does not satisfy `is_shape`.
 pub fn view<T>(
     place: &str,
     given: &Bound<PyAny>,
@@ -64,7 +64,7 @@ pub fn view<T>(
     look(array.as_array())
 }
 
-/// Returns a shape in Python's notation, such as `shape (3, 7)`.
+/// Returns a shape as text in Python's notation, such as `shape (3, 7)`.
 pub fn shape_of(shape: &[usize]) -> String {
     let sides: Vec<String> = shape.iter().map(ToString::to_string).collect();
     match &sides[..] {
@@ -85,7 +85,7 @@ pub fn points(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<DVec3>> {
     })
 }
 
-/// Reads n numbers: an array of n numbers, or one number for all.
+/// Returns n numbers: those of an array of n numbers, or a single number repeated n times.
 ///
 /// # Errors
 /// If the shape is wrong.
@@ -100,7 +100,7 @@ pub fn each(place: &str, given: &Bound<PyAny>, n: usize) -> PyResult<Vec<f64>> {
     })
 }
 
-/// Converts an integer to the library's type; the error contains `place`.
+/// Converts an integer from Python to the integer type `T`; the error message contains `place`.
 ///
 /// # Errors
 /// If the number is out of the range of the type.
@@ -109,8 +109,8 @@ pub fn whole_number<T: TryFrom<i128>>(place: &str, given: i128) -> PyResult<T> {
     T::try_from(given).map_err(|_| bad_input(place, given, allowed))
 }
 
-/// Returns whether an array has the shape of one frame, or of several frames along the first axis. A frame has one axis of all taxels or, for a grid, two axes
-/// `sides` (rows, columns).
+/// Returns whether an array with the given shape contains one frame, or several frames along the first axis. A frame has one axis of all taxels or, for a grid,
+/// the two axes `sides` (rows, columns).
 pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>) -> bool {
     let is_frame = |frame: &[usize]| {
         let is_whole = frame.iter().product::<usize>() == n_taxels && !frame.is_empty();
@@ -123,8 +123,8 @@ pub fn is_of_frames(shape: &[usize], n_taxels: usize, sides: Option<[usize; 2]>)
     is_frame(shape) || shape.len() > 1 && is_frame(&shape[1..])
 }
 
-/// Reads frames of n taxels as an array n_frames × n. The input has the shape (n_frames, …), where the product of the other sides is n, or the shape of one
-/// frame.
+/// Reads frames of n taxels as an array n_frames × n. The shape of the input is (n_frames, …), where the lengths after the first have the product n, or the
+/// shape of one frame.
 ///
 /// # Errors
 /// If the number of taxels is wrong, the frames of a grid have other sides than `sides` (rows, columns), or a number is not finite.
@@ -162,7 +162,7 @@ pub fn to_rows<'py>(
     rows.into_pyarray(py)
 }
 
-/// Converts n numbers to an array for Python.
+/// Converts n values to a NumPy array of shape (n,).
 pub fn to_column<T: numpy::Element>(
     py: Python<'_>,
     values: impl IntoIterator<Item = T>,
@@ -170,7 +170,7 @@ pub fn to_column<T: numpy::Element>(
     values.into_iter().collect::<Vec<T>>().into_pyarray(py)
 }
 
-/// Returns the corners of a box, `[[min], [max]]`, metres.
+/// Returns the corners of a box as a NumPy array `[[min], [max]]`, metres.
 pub fn corners<'py>(py: Python<'py>, bounds: &Aabb) -> Bound<'py, PyArray2<f64>> {
     let corners: [DVec3; 2] = [bounds.min, bounds.max];
     to_rows(py, corners.into_iter())

@@ -6,13 +6,13 @@ use pyo3::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Maximum number of items that a thread takes at one time. With a larger value, threads finish at different times; with a smaller value, threads wait for each
-/// other more often.
+/// Maximum number of items of a batch that a thread takes at one time. With a larger value, threads finish at different times; with a smaller value, threads
+/// wait for each other more often.
 const MAX_AT_ONCE: usize = 16;
-/// Minimum number of items per thread; for fewer items, waking a thread (5 to 50 µs) takes too long.
+/// Minimum number of items of a batch per thread. For fewer items, waking a thread (5 to 50 µs) takes too long.
 const LEAST_PER_THREAD: usize = 4;
 
-/// Returns the requested number of threads; `None` for all threads of the pool.
+/// Returns the number of threads that a Python call requests; `None` stands for all threads of the pool.
 ///
 /// # Errors
 /// If the number is zero or less.
@@ -30,7 +30,7 @@ pub fn n_threads(asked: Option<i64>) -> PyResult<Option<usize>> {
     }
 }
 
-/// Scratch memory reused by successive calls.
+/// Store of scratch memory that successive calls of a method reuse.
 pub struct Spare<S>(Mutex<Vec<S>>);
 
 impl<S> Spare<S> {
@@ -50,8 +50,8 @@ impl<S> Spare<S> {
     }
 }
 
-/// Calls `work` with each item's number, the item and the thread's scratch memory, without the interpreter's lock. The calling thread also processes items,
-/// and checks for Ctrl-C.
+/// Processes the items of a batch on several threads, without the interpreter's lock. For each item, `work` receives its number, the item and the thread's
+/// scratch memory. The calling thread also processes items, and checks for Ctrl-C.
 ///
 /// # Errors
 /// Returns the first error of `work`, ordered by item number among the started items, or the exception of Ctrl-C.

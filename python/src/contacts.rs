@@ -35,15 +35,15 @@ pub struct Contacts {
     n_saturated: Py<PyArray1<i64>>,
 }
 
-/// Contacts of a press at one pose.
+/// Contacts of a press at a single pose.
 pub struct OfPose {
-    /// Result of the press; `None` if the patch touched nothing.
+    /// Result of the press; `None` if the patch did not touch the object.
     pressed: Option<Contact>,
     contacts: Vec<(TaxelContact, DVec3)>,
 }
 
 impl OfPose {
-    /// Collects the contacts of a press from the workspace.
+    /// Copies the contacts of a press from the workspace that it used.
     pub fn new(
         patch: &Patch,
         (pressed, met): (Option<Contact>, Option<Contact>),

@@ -23,7 +23,7 @@ create_exception!(
     "A bug of bubbletouch itself, wherever it was called from: its text asks for a report."
 );
 
-/// Message and location of the last panic.
+/// Message and source location of the last panic; `None` if there was none.
 static LAST_PANIC: Mutex<Option<String>> = Mutex::new(None);
 
 /// Installs a panic hook that stores the message for the exception and prints nothing.
@@ -60,7 +60,7 @@ pub fn guarded<T>(call: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
     })
 }
 
-/// Converts an error of the library to a Python exception.
+/// Converts an error of the Rust library to a Python exception.
 pub fn exception(error: Error) -> PyErr {
     let said = error.to_string();
     match error {
@@ -70,7 +70,7 @@ pub fn exception(error: Error) -> PyErr {
     }
 }
 
-/// Creates an `OSError`; Python chooses the subclass, such as `FileNotFoundError`, from the error number.
+/// Creates an `OSError` with the message `said`. From the system's error number, Python chooses the subclass, such as `FileNotFoundError`.
 pub fn os_error(path: &Path, source: &std::io::Error, said: String) -> PyErr {
     match source.raw_os_error() {
         Some(number) => PyOSError::new_err((number, said, path.display().to_string())),

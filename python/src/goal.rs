@@ -11,7 +11,7 @@ use glam::DVec3;
 use pyo3::prelude::*;
 use std::slice::from_ref;
 
-/// Goal of presses: a kind, and one amount for all poses or one amount per pose.
+/// Goal of presses: its kind (pose, depth, force or travel), and one amount for all poses or one amount per pose.
 pub struct Goal {
     kind: fn(f64) -> contact::Goal,
     amounts: Vec<f64>,
@@ -95,12 +95,12 @@ impl Goal {
         ))
     }
 
-    /// Returns the kind of the goal, with the amount 0.
+    /// Returns the kind of the goal with an amount of 0; used where only the kind matters.
     pub fn kind(&self) -> contact::Goal {
         (self.kind)(0.0)
     }
 
-    /// Returns the result of a press, or `None` if the press missed, including a press to a pose or travel that touches no taxel.
+    /// Returns the result of a press, or `None` if no taxel was touched. A press to a pose or a travel may end without contact.
     pub fn unless_missed(&self, pressed: Option<Contact>) -> Option<Contact> {
         let may_touch_none = matches!(self.kind(), contact::Goal::Pose | contact::Goal::Travel(_));
         pressed.filter(|contact| !may_touch_none || contact.n_touched > 0)
@@ -113,7 +113,7 @@ impl Goal {
         }
     }
 
-    /// Returns the press of the pose with the given number.
+    /// Returns the press at the pose with the given number.
     pub fn of_pose<'a>(
         &self,
         number: usize,
@@ -138,7 +138,7 @@ pub struct Press<'a> {
 }
 
 impl Press<'_> {
-    /// Computes the deflections of the taxels; returns `None` if the patch touches nothing.
+    /// Computes the deflections of the taxels into the workspace; returns `None` if the patch touches nothing.
     ///
     /// # Errors
     /// If a force cannot be reached.
@@ -146,7 +146,7 @@ impl Press<'_> {
         contact::press(self.patch, self.models, self.poses, self.goal, workspace)
     }
 
-    /// Computes the deflections of the taxels and writes them into a row; previous values are overwritten.
+    /// Computes the deflections of the taxels and writes them into a row of the output; previous values of the row are overwritten.
     ///
     /// # Errors
     /// If a force cannot be reached.
@@ -163,8 +163,8 @@ impl Press<'_> {
         press(patch, models, poses, self.goal, row, workspace)
     }
 
-    /// Repeats the press (equal up to rounding) and stores the contacts in the workspace. Returns `None` if nothing is touched; the content of the workspace is
-    /// then undefined.
+    /// Computes the press again (deflections are equal up to rounding) and stores its contacts in the workspace. If nothing is touched, returns `None`; the
+    /// content of the workspace is then undefined.
     ///
     /// # Errors
     /// If a force cannot be reached.

@@ -23,7 +23,7 @@ fn is_flat(patch: &Patch) -> bool {
     patch.layout().as_grid().is_some() || patch.layout().axes().iter().all(|axis| *axis == DVec3::Z)
 }
 
-/// Checks that the derivative for a kind of goal is implemented.
+/// Returns an error if the derivative for a kind of goal is not implemented.
 ///
 /// # Errors
 /// If the goal is a depth and the patch is not flat.
@@ -39,7 +39,8 @@ pub fn check(goal: Goal, patch: &Patch) -> PyResult<()> {
     ))
 }
 
-/// Writes the derivatives of all taxels (n_taxels × 6, initially 0) from the contacts of a press. `origin` is the position of the object after the press.
+/// Writes the derivatives of all deflections with respect to the object's pose (n_taxels × 6, initially 0), from the contacts of a press. `origin` is the
+/// position of the object after the press.
 pub fn fill(
     changes: &mut [f64],
     goal: Goal,

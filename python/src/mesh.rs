@@ -26,7 +26,7 @@ const ADVICE: &str = "Mesh.read(…, close_holes=WIDTH) closes holes up to that 
 /// ValueError if a number is not finite or a vertex index does not exist.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Mesh {
-    /// Source of the mesh, for error messages.
+    /// Source of the mesh, such as its file, for error messages.
     place: String,
     triangles: MeshModel,
     model: Model,
@@ -218,7 +218,7 @@ impl Mesh {
     }
 }
 
-/// Reads vertex numbers from an n × 3 array of integers.
+/// Reads the vertex indices of triangles from an n × 3 array of integers.
 fn corner_numbers(given: &Bound<PyAny>) -> PyResult<Vec<[u32; 3]>> {
     const PLACE: &str = "triangles";
     let array = numbers(PLACE, given)?;

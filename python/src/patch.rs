@@ -33,7 +33,7 @@ pub struct Patch {
     shape: Vec<usize>,
     /// Row and column of each taxel in the sensor's image, if the layout file has one.
     pixels: Option<Vec<[usize; 2]>>,
-    /// Workspaces reused by presses.
+    /// Memory that successive presses of the patch reuse.
     spare: Spare<Workspace>,
 }
 
@@ -54,12 +54,12 @@ impl Patch {
         Ok(Self::from_patch(patch.map_err(exception)?))
     }
 
-    /// Returns the wrapped patch of the Rust library.
+    /// Returns the patch of the Rust library that this object wraps.
     pub fn inner(&self) -> &world::Patch {
         &self.patch
     }
 
-    /// Returns a property of the taxels: one number if all are equal, otherwise one per taxel.
+    /// Returns a property of the taxels as a Python object: one number if all taxels are equal, otherwise an array with one number per taxel.
     fn property<'py>(
         &self,
         py: Python<'py>,
@@ -77,7 +77,7 @@ fn side(place: &str, given: i64) -> PyResult<usize> {
     usize::try_from(given).map_err(|_| bad_input(place, given, "at least 1"))
 }
 
-/// Returns the common taxel parameters of a patch; the default radius is half the pitch.
+/// Returns the parameters that all taxels of a patch have in common. If no radius is given, it is half the pitch.
 fn taxel(pitch: f64, stroke: f64, (radius, stiffness, damping): (Option<f64>, f64, f64)) -> Taxel {
     Taxel {
         radius: radius.unwrap_or(0.5 * pitch),

@@ -8,7 +8,7 @@ use ndarray::{Array1, Array2};
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Argument that contains groups of `width` numbers: one group for all touches, or one group per touch.
+/// Argument with groups of `width` numbers, such as offsets (x, y): one group for all touches, or one group per touch.
 struct Groups {
     values: Vec<f64>,
     width: usize,

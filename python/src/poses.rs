@@ -8,15 +8,16 @@ use ndarray::ArrayView1;
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Tolerance of each entry of R Rᵀ, and of a quaternion's length; it accepts numbers with few digits and float32 rounding.
+/// Tolerance for each entry of R Rᵀ − 1, where R is a rotation matrix, and for the deviation of a quaternion's length from 1. It accepts numbers with few
+/// digits and float32 rounding.
 const ROUNDING: f64 = 1e-3;
 const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
 
-/// Poses, with a flag that states whether the input was a single pose.
+/// Poses of an argument, with a flag that states whether the argument was a single pose.
 pub struct Poses {
     /// Poses `patch_from_object`.
     pub poses: Vec<Pose>,
-    /// Whether the input was a single pose, without the first axis n.
+    /// Whether the argument was a single pose, without the first axis n.
     pub is_one: bool,
 }
 

@@ -20,7 +20,7 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 use std::sync::Mutex;
 
-/// Element type of frames: float32 or float64.
+/// Type of the numbers in a frame: float32 or float64.
 trait Real: Element + Copy + Default + Send + Sync {
     fn row(frame: &mut [Self]) -> Row<'_>;
 }
@@ -37,7 +37,7 @@ impl Real for f32 {
     }
 }
 
-/// Results that a call requests in addition to the frames.
+/// Results that a call of `Patch.press` requests in addition to the frames.
 #[derive(Clone, Copy)]
 pub struct Wanted {
     /// Whether contacts are requested.
@@ -46,7 +46,7 @@ pub struct Wanted {
     pub jacobian: bool,
 }
 
-/// Patch with the shape of its frames, and workspaces for threads.
+/// Patch to be pressed, with the shape of its frames, and workspaces for threads.
 #[derive(Clone, Copy)]
 pub struct PatchToPress<'a> {
     /// Patch of the Rust library.
@@ -101,7 +101,7 @@ pub fn press<'py>(
     }
 }
 
-/// Returns whether a NumPy type is float32; returns an error unless it is float32 or float64.
+/// Returns whether a NumPy type is float32. If the type is neither float32 nor float64, returns an error.
 fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
     let allowed = "float32 or float64";
     let descr = numpy::PyArrayDescr::new(py, dtype.clone())
@@ -190,7 +190,7 @@ impl<'py> Batch<'_, 'py> {
         })
     }
 
-    /// Writes a frame and its derivatives for each pose, over zeros or previous values.
+    /// Writes a frame and its derivatives for each pose. The arrays contain zeros or values that are overwritten.
     fn run<T: Real>(
         &self,
         py: Python,
@@ -252,7 +252,7 @@ impl<'py> Batch<'_, 'py> {
     }
 }
 
-/// Checks that an array can receive the frames.
+/// Returns an error if an array cannot receive the frames because of its shape or memory layout.
 fn check_out<T: Element>(array: &Bound<PyArrayDyn<T>>, shape: &[usize]) -> PyResult<()> {
     if array.shape() != shape {
         return Err(bad_input("out", shape_of(array.shape()), shape_of(shape)));

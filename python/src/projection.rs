@@ -19,12 +19,12 @@ use pyo3::prelude::*;
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Projection {
     projection: sensing::Projection,
-    /// Constructor arguments, needed for pickling.
+    /// Constructor arguments, which pickling stores: ensemble, shape of a frame, number of measurements, and seed.
     asked: (String, (usize, usize), usize, u64),
 }
 
 impl Projection {
-    /// Returns the wrapped projection of the Rust library.
+    /// Returns the projection of the Rust library that this object wraps.
     pub fn inner(&self) -> &sensing::Projection {
         &self.projection
     }

@@ -15,7 +15,7 @@ use self_cell::self_cell;
 type Prepared<'a> = sensing::Reconstructor<'a>;
 
 self_cell!(
-    /// Projected dictionary, stored together with its projection and dictionary.
+    /// Dictionary whose atoms are multiplied by the measurement matrix, stored together with its projection and dictionary.
     struct Sensed {
         owner: (sensing::Projection, Dictionary),
         #[covariant]
@@ -24,7 +24,7 @@ self_cell!(
 );
 
 self_cell!(
-    /// Solver, stored together with the data that it borrows.
+    /// Solver for the coefficients of a frame, stored together with the data that it borrows.
     struct Solving {
         owner: Box<Sensed>,
         #[not_covariant]

@@ -22,7 +22,7 @@ pub struct Step {
     call: String,
 }
 
-/// Kind of a step, before it is prepared for a patch.
+/// Kind of a step and its parameters, before the step is prepared for a patch.
 #[derive(Clone)]
 enum Kind {
     Plain(SignalStep),
@@ -38,7 +38,7 @@ impl Step {
     }
 }
 
-/// Returns the names of all sensor errors as text.
+/// Returns the names of all sensor errors as text for messages.
 fn words() -> String {
     let words: Vec<&str> = SENSOR_ERRORS
         .iter()
@@ -315,7 +315,7 @@ impl Chain {
 }
 
 impl Chain {
-    /// Reads one deflection rate per value of the frames.
+    /// Reads deflection rates, one for each value of the frames, m/s; returns `None` if no rates are given.
     fn rates(&self, given: Option<&Bound<PyAny>>, n_frames: usize) -> PyResult<Option<Vec<f64>>> {
         let n_taxels = self.chain.n_taxels();
         let n = n_frames * n_taxels;
@@ -339,7 +339,7 @@ impl Chain {
     }
 }
 
-/// Returns the frames in the shape of the input array.
+/// Returns signals as a NumPy array in the shape of the input frames.
 fn as_given<'py>(
     frames: Bound<'py, PyAny>,
     shape: Option<Bound<'py, PyAny>>,

@@ -20,7 +20,7 @@ use std::sync::Arc;
 type Going<'p> = scene::Simulation<'p>;
 
 self_cell!(
-    /// Running simulation, with the plan of its scene.
+    /// Simulation that is running, with the plan of its scene.
     struct OnItsWay {
         owner: Arc<ScenePlan>,
         #[not_covariant]
@@ -240,7 +240,7 @@ impl Simulation {
     }
 }
 
-/// Calls the simulation and converts its errors to Python exceptions.
+/// Calls a function with the running simulation, and converts its errors to Python exceptions.
 fn on<T>(
     going: &mut OnItsWay,
     call: impl FnOnce(&mut Going) -> bubbletouch::Result<T>,
@@ -248,7 +248,7 @@ fn on<T>(
     going.with_dependent_mut(|_, simulation| call(simulation).map_err(exception))
 }
 
-/// Reads a single pose `world_from_…`.
+/// Reads a single pose in the world frame, `world_from_…`.
 fn one_pose(given: &Bound<PyAny>) -> PyResult<Pose> {
     let poses = Poses::from_argument("pose", given)?;
     match (poses.is_one, &poses.poses[..]) {

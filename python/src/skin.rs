@@ -16,7 +16,7 @@ use std::sync::Mutex;
 
 const ALLOWED: &str = "(…, k, 7) of x, y, z, qw, qx, qy, qz; (…, k, 4, 4); or a pair of positions (…, k, 3) and rotations (…, k, 4), (…, k, 9) or (…, k, 3, 3)";
 
-/// Largest deviation of a quaternion's length from one.
+/// Maximum deviation of a quaternion's length from one.
 const MAX_LENGTH_ERROR: f64 = 1e-3;
 
 /// Patches of skin and bodies that may touch them, read at given poses in one call.
@@ -32,10 +32,10 @@ pub struct Skin {
     scratch: Mutex<Scratch>,
 }
 
-/// Patch of a skin, with a ball that contains all its taxels.
+/// Patch of a skin, with a ball (centre and radius) that contains all its taxels.
 struct SkinPatch {
     patch: world::Patch,
-    /// Index of the first taxel in a frame of the skin.
+    /// Index of the patch's first taxel in a frame of the skin.
     first: usize,
     ball: Ball,
 }
@@ -61,7 +61,7 @@ impl Ball {
     }
 }
 
-/// Memory that successive reads reuse.
+/// Memory that successive calls of `read` reuse.
 #[derive(Default)]
 struct Scratch {
     workspace: Workspace,
@@ -71,7 +71,7 @@ struct Scratch {
     wrenches: Vec<f64>,
 }
 
-/// Quantity of a frame.
+/// Quantity that a frame contains: deflections or forces.
 #[derive(Clone, Copy, PartialEq)]
 enum Output {
     Deflection,
@@ -233,7 +233,7 @@ impl Skin {
 }
 
 impl Skin {
-    /// Computes the frames of `n` sets of poses into the scratch memory.
+    /// Computes the frames for `n` sets of poses; the results are in the scratch memory.
     fn compute(&self, scratch: &mut Scratch, n: usize, output: Output) {
         let (n_patches, n_bodies) = (self.patches.len(), self.bodies.len());
         scratch.frame.clear();
@@ -298,7 +298,7 @@ impl Skin {
     }
 }
 
-/// Writes numbers into an array of the given shape.
+/// Writes numbers into the array `out` of the caller, which must have the given shape.
 fn fill(place: &str, out: &Bound<PyAny>, shape: &[usize], numbers: &[f64]) -> PyResult<()> {
     let allowed = || format!("a float64 array in C order of {}", shape_of(shape));
     let Ok(array) = out.cast::<PyArrayDyn<f64>>() else {
@@ -314,7 +314,7 @@ fn fill(place: &str, out: &Bound<PyAny>, shape: &[usize], numbers: &[f64]) -> Py
     Ok(())
 }
 
-/// Reads poses of `n_each` patches or bodies into `poses`. Returns the number of sets; `None` if the argument has no axis of sets.
+/// Reads poses of `n_each` patches or bodies into `poses`. Returns the number of sets of poses; returns `None` if the argument has no axis of sets.
 fn read_poses(
     place: &str,
     given: &Bound<PyAny>,
@@ -384,7 +384,7 @@ fn invalid(place: &str, number: usize) -> PyErr {
     bad_input(place, "no pose", allowed)
 }
 
-/// Returns the number of sets of a shape; `None` if it has no axis of sets.
+/// Returns the number of sets of poses in an array with this shape; returns `None` if the shape has no axis of sets.
 fn n_sets(
     place: &str,
     shape: &[usize],
@@ -401,7 +401,7 @@ fn n_sets(
     }
 }
 
-/// Returns the pose of a position and a rotation (a quaternion w, x, y, z or a matrix by rows); `None` if these are no pose.
+/// Returns the pose with a position and a rotation (a quaternion w, x, y, z or a matrix by rows). Returns `None` if the numbers are no pose.
 fn from_parts(position: &[f64], rotation: &[f64]) -> Option<Pose> {
     let position = DVec3::from_slice(position);
     let rotation = match *rotation {

@@ -56,7 +56,7 @@ fn in_parts<T: Send>(
     predicted.or_else(|_| Ok(vec![predict(features.view())?]))
 }
 
-/// Reads an array of integers that are at least 0.
+/// Reads an array of integers that are at least 0, such as row numbers.
 fn whole(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
     let is_shape = |shape: &[usize]| shape.len() == 1;
     view(place, given, "(n,)", is_shape, |array| {
@@ -70,7 +70,7 @@ fn whole(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<usize>> {
     })
 }
 
-/// Predicts rows on the threads of the pool, without the interpreter's lock.
+/// Predicts rows on the threads of the pool, while other Python threads may run.
 fn predicted<T: Send>(
     features: &Bound<PyAny>,
     predict: impl FnOnce(&Array2<f64>) -> bubbletouch::Result<T> + Send,
@@ -80,7 +80,7 @@ fn predicted<T: Send>(
     predicted.map_err(exception)
 }
 
-/// Returns the trained model and its training data; models are pickled as their training data.
+/// Trains a model; returns it together with its training data as Python objects. Models are pickled as their training data.
 fn trained<T: Send + 'static>(
     features: &Bound<PyAny>,
     labels: &Bound<PyAny>,
@@ -97,12 +97,12 @@ fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> 
     dataset(rows_of(features)?, labels).map_err(|error| exception(error.into()))
 }
 
-/// Kernel and C of a Python call, with their Python names.
+/// Kernel and penalty C of a Python call, with the names that Python uses.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 struct SvmArguments {
     kernel: String,
-    /// Kernel parameter γ; `None` for 'scale'.
+    /// Kernel parameter γ; `None` stands for the default 'scale'.
     gamma: Option<f64>,
     coef0: f64,
     degree: u32,
@@ -152,7 +152,7 @@ impl SvmArguments {
 #[pyclass(frozen, module = "bubbletouch._core")]
 pub struct KernelSvm {
     model: SvmModel,
-    /// Training arguments: pickling stores them, unpickling trains again.
+    /// Arguments of the training: pickling stores them, and unpickling trains again with them.
     asked: Py<PyDict>,
     data: Arc<Dataset>,
 }

@@ -12,7 +12,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Time between two checks for Ctrl-C. If longer, calls end later; if shorter, checks (1 µs each) take more time.
+/// Time between two checks for Ctrl-C. With a longer time, calls end later after Ctrl-C; with a shorter time, the checks (1 µs each) take more time.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
@@ -40,13 +40,13 @@ pub fn pool() -> PyResult<Arc<ThreadPool>> {
     Ok(pool)
 }
 
-/// Periodic check for Ctrl-C.
+/// Periodic check for Ctrl-C during a long call.
 pub struct Interrupt {
     looked: Instant,
 }
 
 impl Interrupt {
-    /// Creates a check whose period starts now.
+    /// Creates a check that next checks after a whole period.
     pub fn new() -> Self {
         Self {
             looked: Instant::now(),
@@ -71,11 +71,11 @@ impl Interrupt {
 #[derive(Clone, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
-/// Payload of the panic by which a stopped call unwinds.
+/// Payload of the panic that ends a stopped call.
 struct Stopped;
 
 impl Stop {
-    /// Ends the call by unwinding to [`aside`] if the flag is set.
+    /// If the stop was requested, ends the call by a panic that [`aside`] catches.
     pub fn end_if_told(&self) {
         if self.is_told() {
             resume_unwind(Box::new(Stopped));
@@ -87,7 +87,7 @@ impl Stop {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// Requests that the work stops at its next check.
+    /// Requests that the call stops at its next check.
     pub fn tell(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
