@@ -13,25 +13,26 @@ use glam::DVec3;
 use std::path::Path;
 use std::time::Instant;
 
-/// Method and tolerance (mm, as written). Methods without a tolerance of their own have the tolerance of the packing with the same number of spheres.
+/// Method and tolerance of a model (mm, as written in the study). A method without tolerances has the tolerance of the packing with the same number of spheres;
+/// `None` if there is none.
 pub(super) type Level = (DetailMethod, Option<f64>);
 
-/// Returns a tolerance in words; an empty text without a tolerance.
+/// Returns a tolerance as text, such as ` within 0.5 mm`; returns an empty text if there is no tolerance.
 pub(super) fn within(tolerance_mm: Option<f64>) -> String {
     tolerance_mm.map_or(String::new(), |mm| format!(" within {mm} mm"))
 }
 
-/// Model of a mesh, with its computing time.
+/// Model of a mesh, with the time to compute it.
 pub(super) struct Variant {
     pub level: Level,
     pub model: Model,
     /// Time to compute the model, s.
     pub prepare_s: f64,
-    /// Whether the model was read from the cache.
+    /// Whether the model was read from the cache of an earlier run.
     pub cached: bool,
 }
 
-/// Returns all models of a mesh in the order of [`levels`]; the first is the mesh. Errors name `place`, the file of the mesh.
+/// Returns all models of a mesh in the order of [`levels`]; the first is the mesh itself. Error messages name `place`, the file of the mesh.
 pub(super) fn variants(
     plan: &ObjectDetailPlan,
     place: &str,
@@ -73,7 +74,7 @@ pub(super) fn variants(
     Ok(found)
 }
 
-/// Returns all pairs of method and tolerance: the mesh, then methods without tolerances, then all other methods by tolerance.
+/// Returns all pairs of method and tolerance of a study: the exact mesh, then methods without tolerances, then all other methods by tolerance.
 pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     let wanted = &plan.spec.object_detail;
     let is_wanted = |method: &DetailMethod| wanted.methods.contains(method);
