@@ -26,8 +26,8 @@ pub struct PatchReading {
     pub pose: Pose,
     /// Deflections of the taxels, metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// Forces along the taxel axes, newtons, shape (n_taxels,), at least 0; zero on a taxel that only relaxes without contact. If a taxel at its stroke carries
-    /// a free object, the reaction of its stop is included. The reaction of a stop to an imposed object is indeterminate and not included.
+    /// Forces along the taxel axes, newtons, shape (n_taxels,), at least 0; zero on a taxel without contact. If a taxel at its stroke carries a free object,
+    /// the reaction of its stop is included. The reaction of a stop to an imposed object is indeterminate and not included.
     pub force: Vec<f64>,
     /// Force of the objects on each taxel, newtons, patch frame, shape (n_taxels,). Each force is the sum of the axial force, the transverse force of an
     /// inclined contact, and friction. The sum over all taxels is the force of `wrench`.
@@ -38,7 +38,7 @@ pub struct PatchReading {
     pub n_touched: usize,
     /// Number of taxels at their stroke (maximum deflection) that an object would push further, or whose stop carries a free object.
     pub n_saturated: usize,
-    /// Number of taxels whose contact is grazing, that is, almost perpendicular to the taxel axis (`contact::GRAZING`).
+    /// Number of taxels whose contact is grazing: the contact normal is almost perpendicular to the taxel axis (`contact::GRAZING`).
     pub n_grazing: usize,
     /// Sum of the forces of all stops (taxels at their stroke) on free objects, newtons; included in `force` and `force3`.
     pub stop_force: f64,
@@ -68,7 +68,7 @@ pub struct ObjectReading {
     pub pose: Pose,
     /// Rule by which the pose is determined: imposed, pressed, free or escaped.
     pub held: PoseControl,
-    /// Equilibrium of a free object, including the residual of the forces; `None` for other objects and after an escape.
+    /// Equilibrium of a free object, including the residual of the forces; `None` for other objects and after the object has escaped.
     pub balance: Option<Equilibrium>,
 }
 

@@ -79,7 +79,7 @@ impl FreeObjects {
         }
     }
 
-    /// Computes the common equilibrium of all objects that have not escaped; returns whether the solver converged. `dt` is the time since the last call,
+    /// Computes the common equilibrium of all objects that have not escaped; returns whether the solver converged. The time since the last call is `dt`,
     /// infinite at the start.
     pub fn solve_equilibrium(
         &mut self,

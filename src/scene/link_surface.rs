@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Maximum distance between a facet's middle and the round shape that it replaces, relative to the taxel pitch. With a larger value, taxels lie deeper; with a
 /// smaller value, more triangles are needed.
 const SAGITTA: f64 = 0.02;
-/// Minimum and maximum number of facets around a circle of a round shape. More facets would need memory without moving taxels noticeably.
+/// Minimum and maximum number of facets by which a circle of a round shape is approximated. More facets would need memory without moving taxels noticeably.
 const N_FACETS: [f64; 2] = [16.0, 720.0];
 
 /// Selection of the shapes of a robot link that form a surface.
@@ -27,7 +27,8 @@ pub(super) struct LinkSurface<'a> {
 }
 
 impl Reader<'_> {
-    /// Returns the surface of a link's shapes. Round shapes are divided into facets that are fine enough for taxels at this pitch (metres).
+    /// Returns the surface of the shapes of a robot link as a mesh. Round shapes are divided into facets that are fine enough for taxels at this pitch
+    /// (metres).
     ///
     /// # Errors
     /// If the robot has no such link, the link has no such shapes, or the mesh of a shape cannot be read.

@@ -67,7 +67,7 @@ pub enum Movement {
 }
 
 impl Reader<'_> {
-    /// Checks an object of a scene file and returns the object with its contact model. `finest_mm` is the finest pitch of all patches; `default` is the default
+    /// Checks an object of a scene file and returns the object with its contact model. The finest pitch of all patches is `finest_mm`; `default` is the default
     /// contact model of a mesh.
     pub fn object(
         &self,

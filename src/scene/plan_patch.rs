@@ -243,7 +243,7 @@ impl Reader<'_> {
         self.under(key, LayoutFile::read(&self.path(path), options))
     }
 
-    /// Mounts a patch that is draped over a link on this link.
+    /// Mounts a patch whose taxels are draped over a robot link on this link.
     fn mount_on_draped_link(&self, key: &str, spec: &mut PatchSpec) -> Result<()> {
         let LayoutSpec::Draped { region, .. } = &spec.layout else {
             return Ok(());

@@ -31,7 +31,7 @@ impl PlannedSignal {
         self.chain.quantity()
     }
 
-    /// Computes the sensor readings of a patch and writes them to `reading`. `name` is the seed of the noise; `share` is the elapsed fraction of the scene's
+    /// Computes the sensor readings of a patch and writes them to `reading`. The seed of the noise is `name`; `share` is the elapsed fraction of the scene's
     /// duration, 0 to 1.
     pub(super) fn read(
         &self,

@@ -44,7 +44,7 @@ impl PressedObjects {
         }
     }
 
-    /// Moves each pressed object towards its target force, starting from the pose of its imposed motion. `dt` is the time since the last call, seconds;
+    /// Moves each pressed object towards its target force, starting from the pose of its imposed motion. The time since the last call is `dt`, seconds;
     /// infinite at the start.
     pub fn push(
         &mut self,
@@ -79,7 +79,7 @@ impl PressedObjects {
         }
     }
 
-    /// Iterates over the contacts of the patch with the given index with the objects that are pressed onto it.
+    /// For the patch with the given index, iterates over its contacts with the objects that are pressed onto it.
     pub fn contacts_on<'a>(
         &'a self,
         plan: &'a ScenePlan,

@@ -4,12 +4,12 @@
 
 use crate::inputs::range::{not_negative, positive};
 
-/// Predicate for allowed numbers.
+/// Function that returns whether a key allows a number.
 type Allowed = fn(f64) -> bool;
 
 const COUNT: Allowed = |number| number >= 1.0;
 
-/// Allowed numbers, by the path of the key; tables in lists and variants share a path.
+/// Allowed numbers for each key of a scene file, by the path of the key; tables in lists and variants share a path.
 pub(crate) const RANGES: &[(&str, Allowed)] = &[
     ("dt_ms", positive),
     ("output_hz", positive),
@@ -58,7 +58,7 @@ mod tests {
     use crate::scene::{ScenePlan, SceneSpec};
     use toml::Value;
 
-    /// Scenes that together have all keys with a range; the numbers are allowed.
+    /// Test scenes that together contain all keys with a range; their numbers are allowed.
     const SCENES: [&str; 3] = [
         r#"title = "a"
 dt_ms = 1.0
@@ -106,7 +106,7 @@ patches = [
 "#,
     ];
 
-    /// Returns the value at a path of keys, in any entry of a list.
+    /// Returns the value at a dotted path of keys; in a list, the first entry that contains the path is used.
     fn at<'v>(value: &'v mut Value, path: &str) -> Option<&'v mut Value> {
         if let Value::Array(values) = value {
             return values.iter_mut().find_map(|value| at(value, path));

@@ -97,7 +97,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the motion of the body that is described under `key`: from the pose `at` and the optional imposed motion.
+    /// Returns the motion of the body that is described under `key`, given its pose `at` and its optional imposed motion.
     pub fn motion(&self, key: &str, at: &PoseSpec, motion: Option<&MotionSpec>) -> Result<Motion> {
         let start = self.pose(&format!("{key}.at"), at)?;
         let Some(motion) = motion else {

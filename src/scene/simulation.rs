@@ -16,8 +16,8 @@ use crate::signal::SignalWorkspace;
 /// Selection of the time steps that are computed between frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// Computes only what later frames depend on. Steps between frames are skipped if no later frame depends on them; otherwise only patches with dampers or
-    /// friction are computed.
+    /// Computes only patches and steps on which later frames depend. Steps between frames are skipped if no later frame depends on them; otherwise only patches
+    /// with dampers or friction are computed.
     AsNeeded,
     /// Computes all patches in all steps. The frames are equal but take longer to compute; used in tests.
     Always,

@@ -101,7 +101,7 @@ impl SkinState {
         }
     }
 
-    /// Marks the given contacts: their parts of objects push their taxels in the following steps, even from behind the substrate.
+    /// Marks the given contacts as held: these parts of objects push their taxels in the following steps, even from behind the substrate.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.workspace.hold(contacts);
     }
@@ -113,8 +113,8 @@ impl SkinState {
             .flat_map(FrictionState::tangential_springs)
     }
 
-    /// Attaches tangential springs to the contacts of the object with the number `object`, as if it had just been placed. In `only`, all other objects are out
-    /// of reach.
+    /// Attaches tangential springs to the contacts of the object with the number `object`, as if the object had just been placed. In `only`, all other objects
+    /// are out of reach.
     pub fn put(
         &mut self,
         patch: &PlannedPatch,
@@ -134,7 +134,7 @@ impl SkinState {
         &self.damper.deflection
     }
 
-    /// Makes a step and writes the reading of the patch. `loads` and `tips` contain the forces and tangential springs of free objects, in taxel order.
+    /// Makes a step and writes the reading of the patch. The forces and tangential springs of free objects are in `loads` and `tips`, in taxel order.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
@@ -175,8 +175,8 @@ impl SkinState {
         }
     }
 
-    /// Makes a step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. `tips` contains the tangential springs of
-    /// free objects.
+    /// Makes a step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. The tangential springs of free objects are in
+    /// `tips`.
     pub fn feel(
         &mut self,
         patch: &PlannedPatch,

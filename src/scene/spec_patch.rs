@@ -71,7 +71,7 @@ pub enum SignalStepSpec {
     Strengths(BTreeMap<String, f64>),
 }
 
-/// Schema built from the list of sensor errors, which also defines the keys that are accepted.
+/// JSON schema built from the list of sensor errors, which also defines the accepted keys.
 impl JsonSchema for SignalStepSpec {
     fn inline_schema() -> bool {
         true

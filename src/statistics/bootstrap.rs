@@ -101,7 +101,7 @@ impl Bootstrap {
     }
 }
 
-/// Returns every possible resample of `n` trials once: all numbers with n digits in base n.
+/// Returns every possible resample of `n` trials once, one after another: all numbers with n digits in base n.
 fn all_of(n: usize) -> Vec<u32> {
     let digit = |number: usize, place: usize| (number / n.pow(place as u32) % n) as u32;
     (0..n.pow(n as u32))
@@ -239,7 +239,7 @@ mod tests {
         }
     }
 
-    /// `cargo test --release --lib print_the_table_of_the_guide -- --ignored --nocapture`
+    /// Prints the coverages that the guide lists: `cargo test --release --lib print_the_table_of_the_guide -- --ignored --nocapture`
     #[test]
     #[ignore = "prints the table of guide/statistics.md"]
     fn print_the_table_of_the_guide() {

@@ -29,7 +29,7 @@ pub struct TrialSize {
     pub n_test: usize,
 }
 
-/// Compares the scores (accuracy or macro-F1) of two configurations, trial by trial. Returns `None` for fewer than two trials.
+/// Tests the difference between the scores (accuracy or macro-F1) of two configurations in their common trials. Returns `None` for fewer than two trials.
 ///
 /// The method is the corrected resampled t-test (Nadeau & Bengio, *Inference for the generalization error*, Machine Learning 52, 2003). With J trials and
 /// differences d_j of sample variance s²,
@@ -123,7 +123,7 @@ const AGREED: f64 = 3.0;
 /// Maximum number of trials that [`trials_needed`] considers.
 const MAX_TRIALS: usize = 1000;
 
-/// Returns the smallest number of trials J (for crossed trials: splits) that can give a significant result. With J trials, [`compare`] finds a difference of
+/// Returns the smallest number of trials (for crossed trials: of splits) that can give a significant result. With J trials, [`compare`] finds a difference of
 /// three standard deviations between trials significant. Practically all trials agree on the sign of such a difference. The condition is
 ///
 /// `t(J − 1) · sqrt(1/J + n_test/n_train) ≤ 3`

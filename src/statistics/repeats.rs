@@ -88,7 +88,7 @@ pub struct Paired {
     theirs: Vec<Repeat>,
     /// Sizes of the trials of the first configuration that are paired, or of all its trials if none is paired; `None` if a size is unknown.
     sizes: Option<Vec<TrialSize>>,
-    /// Whether several trials have the same split.
+    /// Whether several trials of a configuration have the same split.
     has_repeats: bool,
 }
 
@@ -211,7 +211,7 @@ mod tests {
         );
     }
 
-    /// Duplicated trials must not increase the significance.
+    /// Repeating trials must not increase the significance of a difference.
     #[test]
     fn trials_that_repeat_splits_are_no_further_trials() {
         let trial = |trial: usize, score: f64| Repeat {

@@ -21,7 +21,8 @@ pub trait ClassModel: Debug + Send + Sync {
     /// If the number of columns differs from training, or a feature is NaN or infinite.
     fn scores(&self, features: ArrayView2<f64>) -> Result<Array2<f64>>;
 
-    /// Returns the log-prior of each class, added to a sum of scores before the maximum is taken; `None` if there is no prior.
+    /// Returns the log-prior of each class, or `None` if there is no prior. Log-priors are added to a sum of scores before the class with the largest sum is
+    /// predicted.
     fn log_prior(&self) -> Option<ArrayView1<'_, f64>> {
         None
     }
@@ -31,7 +32,7 @@ pub trait ClassModel: Debug + Send + Sync {
         0
     }
 
-    /// Returns the label with the largest sum of score and log-prior for each row of scores; the lowest label, if several sums are equal.
+    /// For each row of scores, returns the label with the largest sum of score and log-prior; the lowest label if several sums are equal.
     fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         let prior = self
             .log_prior()

@@ -27,7 +27,7 @@ pub enum Gamma {
     Value(f64),
 }
 
-/// The kernel `K(x, z)` of a support vector machine.
+/// Kernel function `K(x, z)` of a support vector machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kernel {
     /// Linear kernel `x·z`.
@@ -193,7 +193,7 @@ impl KernelFunction {
         ))
     }
 
-    /// Returns γ, or `None` for a kernel without γ.
+    /// Returns the kernel parameter γ, or `None` for a kernel without γ.
     pub fn gamma(&self) -> Option<f64> {
         match *self {
             Self::Linear => None,

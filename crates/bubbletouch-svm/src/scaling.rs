@@ -21,7 +21,7 @@ pub enum Scaling {
     Overall,
 }
 
-/// Scaling fitted to training rows: from each feature, its offset is subtracted; the result is divided by the scale of the feature.
+/// Scaling of features that is fitted to training rows: subtracts the offset of each feature, then divides by its scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedScaling {
     /// Offset subtracted from each feature (m), in feature units.

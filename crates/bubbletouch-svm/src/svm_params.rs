@@ -83,7 +83,7 @@ type Sorting<'a> = (
 );
 
 impl SvmParams {
-    /// Trains on labelled rows. The result is deterministic.
+    /// Trains an SVM on labelled rows. The result is deterministic.
     ///
     /// The binary problems are in ascending order of classes: for one-vs-one (0, 1), (0, 2), …, (1, 2), …
     ///
@@ -144,8 +144,7 @@ impl SvmParams {
     }
 
     /// Returns whether kernel values need f64: if there are few rows, the tolerance is near the rounding error of f32, or large coefficients multiply this
-    /// error.
-    /// `farthest` is the largest squared distance of a row from the centre.
+    /// error. The largest squared distance of a row from the centre is `farthest`.
     pub(crate) fn needs_double(
         &self,
         n_rows: usize,

@@ -48,7 +48,7 @@ pub(crate) struct Goal<'a> {
 }
 
 impl<T: SolverScalar> Sorted<T> {
-    /// Solves every pair of classes. Returns, for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
+    /// Solves the binary problem of every pair of classes. Returns, for each C of the path, the problems (0, 1), (0, 2), …, (1, 2), ….
     pub fn one_vs_one(&self, goal: Goal) -> Vec<Trained<T>> {
         if self.is_worth_screening(goal.memory) {
             return self.pairs_near_margin(goal);
@@ -167,7 +167,7 @@ impl<T: SolverScalar> Sorted<T> {
         );
     }
 
-    /// Solves each class against all others. Returns, for each C of the path, one problem per class.
+    /// Solves the binary problem of each class against all others. Returns, for each C of the path, one problem per class.
     pub fn one_vs_rest(&self, goal: Goal) -> Vec<Trained<T>> {
         let mut problems = vec![Vec::new(); goal.path.len()];
         // Two copies are in memory: the matrix product, and the padded matrix of the solver.

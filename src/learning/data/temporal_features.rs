@@ -40,11 +40,11 @@ pub enum TemporalFeatures {
     Moments,
     /// Course of the touch over time: ten numbers that describe contact strength, duration and change.
     Course,
-    /// The features of `Moments`, followed by the features of `Course`: 3 m + 10 numbers for m measurements per frame.
+    /// Features of `Moments`, followed by the features of `Course`: 3 m + 10 numbers for m measurements per frame.
     Summarised,
 }
 
-/// Number of features of the course of a touch.
+/// Number of features that describe the course of a touch.
 const N_COURSE: usize = 10;
 
 /// Level of contact strength above which a frame counts as in contact, as a fraction of the range from the lowest to the highest level. With a smaller value,
@@ -63,7 +63,7 @@ impl TemporalFeatures {
         }
     }
 
-    /// Writes the temporal features of one touch into `row`. `frames` has shape F × m, with F at least 1.
+    /// Writes the temporal features of one touch into `row`. The array `frames` has shape F × m, with F at least 1.
     ///
     /// # Panics
     /// If the length of `row` differs from the number of features.
@@ -102,7 +102,7 @@ fn levels(frames: ArrayView2<f64>) -> Vec<f64> {
     rows.map(|frame| frame.dot(&frame).sqrt()).collect()
 }
 
-/// Returns the index of the highest of the levels; the first index if several levels are equal.
+/// Returns the index of the highest level; the first index if several levels are equal.
 fn highest(levels: &[f64]) -> usize {
     let mut best = 0;
     for (frame, &level) in levels.iter().enumerate() {

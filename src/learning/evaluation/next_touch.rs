@@ -25,12 +25,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NextTouch {
-    /// A randomly drawn pose.
+    /// Pose that is drawn at random.
     #[default]
     Random,
-    /// The pose with the largest distance to the nearest previous touch.
+    /// Pose with the largest distance to the nearest previous touch.
     Farthest,
-    /// The pose after which the expected entropy (uncertainty) of the belief over the objects is lowest.
+    /// Pose after which the expected entropy (uncertainty) of the belief over the objects is lowest.
     MostInformative,
 }
 
@@ -201,20 +201,20 @@ impl PoseAnswers {
         }
     }
 
-    /// After a label `answer` is observed, updates the probability of each object by Bayes' rule.
+    /// After the label `answer` is observed, updates the belief (the probability of each object) by Bayes' rule.
     pub fn believe(&self, belief: &mut Array1<f64>, answer: usize) {
         *belief *= &self.given.column(answer);
         *belief /= belief.sum();
     }
 
-    /// Returns by how much a touch in this pose is expected to reduce the entropy of the belief over objects (mutual information), nats.
+    /// Returns the mutual information of object and label in this pose: the expected reduction of the entropy of the belief over objects, nats.
     pub fn information(&self, belief: &Array1<f64>) -> f64 {
         entropy(belief.dot(&self.given).view()) - belief.dot(&self.entropies)
     }
 }
 
-/// Returns the position in `left` of the most informative touch; the first if several are equal. `poses` and `answers` are indexed by touch. The belief is
-/// computed from the labels of the touches in `made`; the labels of the touches in `left` are not used.
+/// Returns the position in `left` of the most informative touch; the first if several are equal. The lists `poses` and `answers` are indexed by touch. The
+/// belief is computed from the labels of the touches in `made`; the labels of the touches in `left` are not used.
 pub fn most_informative(
     (poses, answers): (&[PoseAnswers], &[usize]),
     made: &[usize],

@@ -149,7 +149,7 @@ impl Classifier {
         }
     }
 
-    /// Chooses the best candidate on folds of the training rows ([`choose`]).
+    /// Chooses C and γ by cross-validation on the training rows, and returns the result of [`choose`].
     ///
     /// # Errors
     /// Returns the errors of [`choose`].

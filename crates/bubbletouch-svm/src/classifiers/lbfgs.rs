@@ -11,7 +11,7 @@ const MEMORY: usize = 10;
 /// Minimum decrease of the function in an accepted step, as a fraction of the decrease that the gradient predicts (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
-/// Relative changes of the function value below this limit are rounding errors.
+/// Limit below which relative changes of the function value are treated as rounding errors.
 const ROUNDING: f64 = 1e-14;
 
 /// Maximum number of step halvings in a line search; after more halvings, the decrease is below the rounding error.

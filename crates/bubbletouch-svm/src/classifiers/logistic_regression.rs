@@ -103,7 +103,7 @@ impl Logistic {
         self.n_iterations
     }
 
-    /// Returns the log-probabilities `ln p(k | x)` of all classes (n_rows × n_classes).
+    /// Returns the log-probability `ln p(k | x)` of each class k for each row x of features (n_rows × n_classes).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.
@@ -140,7 +140,8 @@ fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayVi
     (weights.expect("a slice of n_classes × m"), bias)
 }
 
-/// Returns the mean regularised loss `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k |w_k|²` and its gradient.
+/// Returns the regularised loss of all training rows divided by their number, and its gradient. With C, labels y and weights w: `(1/n) Σ_i −ln p(y_i | x_i) + ½
+/// penalty Σ_k |w_k|²`.
 fn mean_loss(
     features: ArrayView2<f64>,
     label: &[usize],

@@ -68,7 +68,7 @@ pub(crate) struct Growth {
     pub max_depth: Option<usize>,
 }
 
-/// Binary split by rank: rows whose rank is at most `rank` go to the left child.
+/// Split of a node into two children: rows whose rank of a feature is at most `rank` go to the left child.
 struct Split {
     feature: usize,
     rank: u32,
@@ -88,7 +88,7 @@ struct Grower<'a> {
 }
 
 impl Growth {
-    /// Grows a tree on the given training rows, which may contain repetitions. `label` contains the class of each row, below `n_classes`.
+    /// Grows a tree on the given training rows, which may contain repetitions. The argument `label` contains the class of each row, below `n_classes`.
     pub(crate) fn grow(
         &self,
         ranked: &Ranked,
@@ -265,7 +265,7 @@ mod tests {
         tree.nodes.iter().filter(is_leaf).count()
     }
 
-    /// 60 rows of 5 features in three classes.
+    /// Returns a test set of 60 rows with 5 features in three classes.
     fn waves() -> (Array2<f64>, Vec<usize>) {
         let value = |(i, j): (usize, usize)| {
             let wave = (1.7 * (i * 5 + j) as f64 + 0.3 * (j * j) as f64).sin();
@@ -275,8 +275,8 @@ mod tests {
         (features, (0..60).map(|i| i * i / 7 % 3).collect())
     }
 
-    /// The labels equal the labels of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally good, so
-    /// scikit-learn's tree does not depend on its `random_state`.
+    /// Labels predicted by a shallow tree equal those of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally
+    /// good, so scikit-learn's tree does not depend on its `random_state`.
     #[test]
     fn a_shallow_tree_is_scikit_learns() {
         let (features, label) = waves();

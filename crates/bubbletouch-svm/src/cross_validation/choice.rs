@@ -38,9 +38,9 @@ pub struct Tried {
 /// Result of a cross-validated choice of C and γ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
-    /// The most accurate candidate.
+    /// Combination of C and γ with the highest validation accuracy.
     pub best: Tried,
-    /// All candidates in ascending order of γ, then of C.
+    /// All tested combinations in ascending order of γ, then of C.
     pub tried: Vec<Tried>,
     /// Number of solver runs, over all folds and candidates, that stopped at the iteration cap.
     pub n_capped: usize,

@@ -22,7 +22,7 @@ pub(crate) struct FoldPath {
 
 /// Solution of a binary problem on one fold, for one C or for several consecutive values of C that share the solution.
 pub(crate) struct FoldSolution {
-    /// Range of positions in the ascending list of C whose problems have this solution.
+    /// Range of positions in the ascending list of C values for which this is the solution.
     pub numbers: Range<usize>,
     /// Coefficient β of each row of the problem: label times multiplier, 0 for held-out rows.
     pub beta: Vec<f64>,
@@ -35,8 +35,8 @@ pub(crate) struct FoldSolution {
 }
 
 impl FoldPath {
-    /// Solves the problem of a pair of classes on all folds and passes each solved fold to a callback. `folds` contains the labels of each fold, one per row of
-    /// the Gram matrix; the rows in the range `positive` have the label 1.
+    /// Solves the problem of a pair of classes on all folds and passes each solved fold to a callback. The argument `folds` contains the labels of each fold,
+    /// one per row of the Gram matrix; the rows in the range `positive` have the label 1.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
         (folds, positive): (Vec<Vec<f64>>, &Range<usize>),

@@ -32,14 +32,14 @@ pub(crate) struct ValidationScorer<T> {
     weights: Vec<Vec<ClassWeights<T>>>,
     /// Offset ρ of each decision function, shape n_C × n_problems.
     rho: Array2<f64>,
-    /// For each C, whether at least one problem has another solution than for the previous C.
+    /// For each C, whether the solution of at least one problem differs from its solution for the previous C.
     is_new: Vec<bool>,
     n_capped: usize,
 }
 
 impl<T: Scalar> ValidationScorer<T> {
-    /// Creates a scorer for `n_path` values of C. `rows` contains pairs (validation row, position of its class), `is_class` whether each class has training
-    /// rows, and `ranges` the row range of each class.
+    /// Creates a scorer for `n_path` values of C. The argument `rows` contains pairs (validation row, position of its class). For each class, `is_class`
+    /// contains whether it has training rows, and `ranges` its row range.
     pub fn new(
         (rows, is_class): (Vec<(usize, usize)>, &[bool]),
         ranges: &[Range<usize>],
@@ -133,8 +133,8 @@ impl<T: Scalar> ValidationScorer<T> {
         n_correct
     }
 
-    /// Returns the number of the given rows that are classified correctly: their own class wins all pairs or wins the vote. `values` contains the kernel values
-    /// of the rows.
+    /// Returns how many of the given rows are classified correctly: their own class wins all pairs or wins the vote. The argument `values` contains the kernel
+    /// values of the rows.
     fn n_elected(&self, number: usize, some: &[usize], values: ArrayView2<T>) -> usize {
         let is_open = |place: &usize| !self.is_pairs() || self.is_beaten[[some[*place], number]];
         let open: Vec<usize> = (0..some.len()).filter(is_open).collect();

@@ -18,7 +18,7 @@ use crate::linalg::scalar::Scalar;
 pub(crate) struct CenteredRows<T> {
     /// Centred feature values, n × m.
     values: Array2<T>,
-    /// Squared norm `|x|²` of each row.
+    /// Squared norm of each centred row.
     norms: Array1<T>,
 }
 

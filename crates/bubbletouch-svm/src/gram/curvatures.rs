@@ -21,7 +21,7 @@ fn smallest<T: Scalar>(diagonal: &[T]) -> T {
 #[derive(Clone, Debug)]
 pub(crate) struct InverseCurvatures<T> {
     values: Vec<T>,
-    /// For each row of `values`, whether it is computed. If this list is empty, `values` contains only the row that was requested last.
+    /// For each row of `values`, whether the row has been computed. If this list is empty, `values` contains only the row that was requested last.
     is_here: Vec<bool>,
     smallest: T,
 }

@@ -65,7 +65,8 @@ impl<T: Scalar> Dense<T> {
         n * padded(n) * size_of::<T>()
     }
 
-    /// Changes the size to n rows and reuses the memory. `fill` writes the n values of each row; the caller must write the values that `fill` skips.
+    /// Changes the size to n rows and reuses the memory. The function `fill` writes the n values of each row; the caller must write the values that `fill`
+    /// skips.
     pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
         self.n = n;
         self.stride = padded(n);

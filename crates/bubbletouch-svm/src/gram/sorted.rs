@@ -33,8 +33,8 @@ pub(crate) struct Sorted<T> {
     centre: Array1<f64>,
     /// Largest squared distance between a row and the centre.
     farthest: f64,
-    /// Product `(x − c)·c` of each sorted row x with the centre c, which converts the offset ρ of a linear kernel to the origin. The list is empty for other
-    /// kernels.
+    /// Product `(x − c)·c` of each sorted row x with the centre c, for a linear kernel. It converts the offset ρ of decision functions about the centre to an
+    /// offset about the origin. The list is empty for other kernels.
     centre_products: Vec<f64>,
 }
 
@@ -115,12 +115,12 @@ impl<T: Scalar> Sorted<T> {
         self.points
     }
 
-    /// Returns the original number of each sorted row.
+    /// For each sorted row, returns its original row number.
     pub fn order(&self) -> &[usize] {
         &self.order
     }
 
-    /// Returns the position in sorted order of each original row.
+    /// For each original row, returns its position in sorted order.
     pub fn place(&self) -> &[usize] {
         &self.place
     }

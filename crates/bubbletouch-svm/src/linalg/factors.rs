@@ -5,7 +5,7 @@
 
 /// Number of values processed in parallel: four vector registers, so that no addition has to wait for the previous one.
 pub(crate) const LANES: usize = 32;
-/// Number of unknowns of a triangular system that are computed one after another before their contributions are subtracted from the others.
+/// Number of unknowns of a triangular system that are solved as one block.
 const BLOCK: usize = 8;
 /// Threshold of linear independence, as a multiple of the ridge (the constant added to the diagonal of the matrix). After elimination, the diagonal entry of a
 /// linearly dependent row is about the ridge; the entry of a nearly dependent row is slightly larger.

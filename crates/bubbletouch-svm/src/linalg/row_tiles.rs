@@ -201,7 +201,7 @@ mod avx512 {
         _mm512_add_ps(low, high)
     }
 
-    /// Adds neighbouring quarters of two registers: a₀ + a₁, a₂ + a₃, b₀ + b₁, b₂ + b₃.
+    /// Adds neighbouring quarters of two registers a and b: a₀ + a₁, a₂ + a₃, b₀ + b₁, b₂ + b₃.
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn add_parts(a: __m512, b: __m512) -> __m512 {
@@ -223,7 +223,7 @@ mod avx2 {
     const LANES: usize = 8;
     /// Number of rows of a tile, each multiplied with [`M`] other rows; the sums and the loaded values fill 16 vector registers.
     const N: usize = 4;
-    /// Number of other rows per tile, chosen together with [`N`].
+    /// Number of other rows in a tile, chosen together with [`N`].
     const M: usize = 3;
 
     #[target_feature(enable = "avx2,fma")]

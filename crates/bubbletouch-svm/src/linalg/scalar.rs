@@ -10,7 +10,7 @@ pub(crate) trait Scalar: NdFloat + Default {
     fn from_f64(value: f64) -> Self;
     /// Converts the value to f64 without rounding.
     fn wide(self) -> f64;
-    /// Replaces each squared distance by `exp(−γ · distance)`.
+    /// Replaces each squared distance d by `exp(−γ d)`.
     fn exponentials(distances: &mut [Self], gamma: f64);
     /// Writes the inner products of rows with other rows of equal length into `products`, row by row, without packing. Returns `false`, and writes nothing, if
     /// there is no fast implementation.

@@ -13,9 +13,9 @@ use crate::streams::Streams;
 /// Convergence of the solver on one binary problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Convergence {
-    /// Primal objective, computed from the weights; an upper bound of the optimum.
+    /// Value of the primal objective, computed from the weights: an upper bound of the optimum.
     pub primal: f64,
-    /// Dual objective, computed from the multipliers; a lower bound of the optimum. The duality gap is `primal − dual`.
+    /// Value of the dual objective, computed from the multipliers: a lower bound of the optimum. The duality gap is `primal − dual`.
     pub dual: f64,
     /// Number of passes over all training rows.
     pub n_passes: usize,

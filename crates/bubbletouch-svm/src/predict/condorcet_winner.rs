@@ -16,7 +16,7 @@ use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 use crate::predict::class_weights::ClassWeights;
 
-/// Number of parallel partial sums, so that no addition has to wait for the previous one. `WIDE` is the number for contiguous products: one vector register.
+/// Number of parallel partial sums, so that no addition has to wait for the previous one. For contiguous products, `WIDE` is used: one vector register.
 const LANES: usize = 4;
 const WIDE: usize = 16;
 
@@ -122,7 +122,7 @@ trait Decides<T> {
 
 /// Interface to the kernel values between one row and all support vectors.
 trait KernelValues<T> {
-    /// Returns a slice of the kernel values of all support vectors; only the values of the support vectors in `terms` must be valid.
+    /// Returns the kernel values of all support vectors; only the values of the support vectors in `terms` must be valid.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T];
 }
 

@@ -76,8 +76,8 @@ impl VoteCounter {
         }
     }
 
-    /// Adds the votes of one binary problem (positive class, negative class): a value above ρ is a vote for the positive class. Problems must be added in the
-    /// order of all problems of the multi-class strategy.
+    /// Adds the votes of one binary problem: a value above the offset ρ is a vote for the positive class, any other value for the negative class. Problems must
+    /// be added in the order of all problems of the multi-class strategy.
     pub fn take<T: Scalar>(
         &mut self,
         (positive, negative): (usize, Option<usize>),
@@ -156,7 +156,7 @@ fn count(values: &[f64], votes: &mut [u32]) {
     }
 }
 
-/// Returns the index of the largest value; the first index, if several values are equal.
+/// Returns the index of the largest value; the first index if several values are equal.
 pub fn first_maximum<V: PartialOrd>(values: &[V]) -> usize {
     let mut best = 0;
     for (i, value) in values.iter().enumerate() {

@@ -82,7 +82,7 @@ pub(crate) struct MarginPair<T> {
     /// Penalty C of the last solution; 0 before the first solution.
     c: f64,
     n_iterations: u64,
-    /// Whether the solver reached its tolerance in the last round.
+    /// Whether the last solver run on this pair reached its tolerance.
     is_solved: bool,
 }
 
@@ -107,8 +107,8 @@ impl<T: SolverScalar> MarginPair<T> {
         self.classes
     }
 
-    /// Activates rows of both classes, with coefficients of 0. `products` contains the inner products of all rows with the hyperplane normal; it is empty
-    /// before the first solution. `starts` contains the positions of the first row of each class.
+    /// Activates rows of both classes, with coefficients of 0. The argument `products` contains the inner products of all rows with the hyperplane normal; it
+    /// is empty before the first solution. The positions of the first row of each class are in `starts`.
     pub fn join<'r>(
         &mut self,
         joining: &Sides,
@@ -168,8 +168,8 @@ impl<T: SolverScalar> MarginPair<T> {
         (self.beta, self.f) = (beta, f);
     }
 
-    /// Solves the pair on its active rows, starting from the last solution. `within` contains the inner products within each class; the Gram matrix reuses the
-    /// memory of `workspace`.
+    /// Solves the pair on its active rows, starting from the last solution. The argument `within` contains the inner products within each class; the Gram
+    /// matrix reuses the memory of `workspace`.
     pub fn solve(&mut self, within: &[Within<T>], workspace: &mut Workspace<T>, goal: PairGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;

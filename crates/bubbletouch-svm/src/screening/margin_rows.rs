@@ -11,7 +11,7 @@ pub(crate) const SIGNS: [f64; 2] = [1.0, -1.0];
 /// Row numbers within the first and the second class of a pair.
 pub(crate) type Sides = [Vec<usize>; 2];
 
-/// Row of a pair of classes: its class (0 or 1) and its number within the class.
+/// Row of a pair of classes, given by its class (0 or 1) and its number within the class.
 pub(crate) type RowOfPair = (usize, usize);
 
 /// Row of a pair of classes, ranked by a distance and then by its position. Distance and position are packed into one number, because ranked rows are compared

@@ -66,8 +66,8 @@ fn first(n: usize, is: impl Fn(usize) -> bool) -> usize {
     0
 }
 
-/// Returns the next variable to increase: the first index with the largest gradient f among the variables that can increase. `up` is 0 for these and −∞ for
-/// others.
+/// Returns the next variable to increase: the first index with the largest gradient f among the variables that can increase. The mark `up` is 0 for these
+/// variables and −∞ for others.
 #[inline(always)]
 pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     let up = &up[..f.len()];
@@ -79,7 +79,7 @@ pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     }
 }
 
-/// After a step of two variables i and j, subtracts `step (row_i − row_j)` from the gradient f, and returns the next variable to increase.
+/// Makes a step of the variables i and j: subtracts `step (row_i − row_j)` from the gradient f, and returns the next variable to increase.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn step_along<T: Scalar>(
     f: &mut [T],
@@ -104,8 +104,8 @@ pub(crate) struct Down<T> {
     pub violation: T,
 }
 
-/// Returns the variable to decrease when variable i, with the gradient `highest`, increases. `low` is 0 for variables that can decrease and −∞ for others.
-/// `inverses` contains the inverse curvatures of the pairs with i; `gains` is scratch memory.
+/// Returns the variable to decrease when variable i, with the gradient `highest`, increases. The mark `low` is 0 for variables that can decrease and −∞ for
+/// others. Inverse curvatures of the pairs with i are in `inverses`; `gains` is scratch memory.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),

@@ -42,7 +42,7 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Creates a problem that starts from coefficients β and their approximate gradient f. `c` is the penalty for which β was computed, or 0.
+    /// Creates a problem that starts from coefficients β and their approximate gradient f. The penalty for which β was computed is `c`, or 0 if there is none.
     pub fn from_start(
         gram: &'a mut G,
         y: &'a [f64],

@@ -5,11 +5,11 @@ use crate::linalg::scalar::Scalar;
 
 /// Number of variables processed in parallel.
 const LANES: usize = 8;
-/// Number of variables in which the largest and smallest gradients are searched in parallel. With 64, the compiler generates a vectorised loop; with 8, it
-/// unrolls the loop and inserts many shuffles.
+/// Number of variables whose gradients are compared in parallel to find the largest and the smallest. With 64, the compiler generates a vectorised loop; with
+/// 8, it unrolls the loop and inserts many shuffles.
 const EXTREMES_LANES: usize = 64;
 
-/// Returns the mark of a variable that is added to its gradient in searches: 0 if the variable can move, otherwise −∞.
+/// Returns a number that marks whether a variable can move: 0 if it can, otherwise −∞.
 #[inline(always)]
 fn mark<T: Scalar>(can_move: bool) -> T {
     if can_move {
@@ -117,8 +117,8 @@ impl<T: Scalar> Variables<T> {
         step
     }
 
-    /// Returns the variables that may still move. `highest` is the largest gradient of variables that can increase, `lowest` the smallest gradient of variables
-    /// that can decrease. The other variables are at a bound, and their gradients point out of the allowed range [Joachims 1999].
+    /// Returns the variables that may still move. The largest gradient of variables that can increase is `highest`, the smallest gradient of variables that can
+    /// decrease is `lowest`. All omitted variables are at a bound, and their gradients point out of the allowed range [Joachims 1999].
     pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
         (0..self.beta.len())
             .filter(|&i| {

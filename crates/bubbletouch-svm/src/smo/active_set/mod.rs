@@ -20,7 +20,7 @@ const MAX_FREE: usize = 384;
 const MAX_ENTERING: usize = 8;
 /// Minimum violation of the optimality conditions at which a variable becomes free, as a fraction of the largest violation.
 const SHARE_OF_FARTHEST: f64 = 0.5;
-/// Maximum number of repeated solutions if linearly dependent rows prevent that the gradient becomes equal on all free variables.
+/// Maximum number of repeated solutions if linearly dependent rows leave the gradient unequal on the free variables.
 const MAX_REPEATS: u64 = 8;
 
 /// Stopping criteria of the active-set method.
