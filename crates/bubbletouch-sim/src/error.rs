@@ -55,7 +55,7 @@ impl Error {
         }
     }
 
-    /// Prepends `outer` to the location of invalid input; `outer` ends in a separator, such as a colon or a comma with a space.
+    /// Prepends `outer` to the location of invalid input. `outer` ends in a separator, such as a colon or a comma with a space.
     pub fn under(self, outer: impl Display) -> Self {
         match self {
             Self::Input {
@@ -67,7 +67,7 @@ impl Error {
         }
     }
 
-    /// Creates an input/output error with file and action, or an input error if the path of a file to read is a folder.
+    /// Creates an input/output error with file and action, or an input error if the path is a folder instead of a file to be read.
     pub fn io(path: impl AsRef<Path>, action: &'static str, source: std::io::Error) -> Self {
         if action == "read" && source.kind() == ErrorKind::IsADirectory {
             return Self::input(path.as_ref().display(), "a folder", "a file");

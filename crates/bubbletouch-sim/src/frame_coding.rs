@@ -6,12 +6,12 @@
 /// Number of taxels per word of bits.
 const WORD: usize = 64;
 
-/// Returns the largest number of bytes of an encoded frame.
+/// Returns the largest number of bytes that an encoded frame of `n_taxels` taxels can have.
 pub fn most_bytes(n_taxels: usize) -> usize {
     n_taxels.div_ceil(WORD) * 8 + 4 * n_taxels
 }
 
-/// Rounds values to single precision; both slices have equal lengths.
+/// Writes the values, rounded to single precision, to `out`; both slices have equal lengths.
 pub fn round_to_single(values: &[f64], out: &mut [f32]) {
     assert_eq!(values.len(), out.len(), "values");
     for (to, &from) in out.iter_mut().zip(values) {
@@ -19,7 +19,7 @@ pub fn round_to_single(values: &[f64], out: &mut [f32]) {
     }
 }
 
-/// Encodes a frame as bytes.
+/// Encodes a frame as bytes, which [`decode`] converts back.
 pub fn encode(frame: &[f32]) -> Box<[u8]> {
     let mut out = Vec::with_capacity(most_bytes(frame.len()));
     for taxels in frame.chunks(WORD) {

@@ -43,7 +43,7 @@ impl Pose {
         [t.x, t.y, t.z, q.w, q.x, q.y, q.z]
     }
 
-    /// Returns the composition: `a_from_b.compose(&b_from_c)` is `a_from_c`. The inner motion acts first.
+    /// Returns the composition of two motions: `a_from_b.compose(&b_from_c)` is `a_from_c`. The argument acts first.
     pub fn compose(&self, inner: &Self) -> Self {
         Self::new(
             (self.rotation * inner.rotation).normalize(),
@@ -51,7 +51,7 @@ impl Pose {
         )
     }
 
-    /// Returns the inverse motion.
+    /// Returns the inverse motion, which undoes this motion.
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conjugate();
         Self::new(rotation, -(rotation * self.translation))
@@ -90,7 +90,7 @@ pub fn written_rotation(quaternion: DQuat) -> Option<DQuat> {
     is_near.then(|| quaternion.normalize())
 }
 
-/// Axis-aligned box, metres.
+/// Axis-aligned bounding box, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
     /// Corner of the box with the smallest coordinates.
@@ -128,7 +128,7 @@ impl Aabb {
         }
     }
 
-    /// Returns the position, as a multiple of `direction`, at which a line enters the box; at least `from`, infinite if the line misses the box.
+    /// Returns the position, as a multiple of `direction`, at which a line enters the box; at least `from`. Infinite if the line misses the box.
     pub fn entry(&self, origin: DVec3, direction: DVec3, from: f64) -> f64 {
         let (mut start, mut end) = (from, f64::INFINITY);
         for axis in 0..3 {

@@ -4,16 +4,16 @@
 
 use super::{Estimate, RecordedSkin};
 
-/// Approximate maximum number of evaluated readings. More readings take longer without a better result.
+/// Approximate maximum number of readings that the estimate uses. More readings take longer without a better result.
 const N_READINGS: usize = 200_000;
 /// Largest difference between equal readings due to single precision, as a fraction of the full scale.
 const ROUNDING: f64 = 4e-7;
-/// Minimum step of a converter, in multiples of [`ROUNDING`]. Within rounding, all readings are multiples of smaller steps.
+/// Smallest step of a converter that can be detected, in multiples of [`ROUNDING`]. Within rounding, all readings are multiples of smaller steps.
 const LEAST: f64 = 20.0;
-/// Minimum number of different readings for concluding that the converter has no step.
+/// Minimum number of different readings from which the absence of a converter step can be concluded.
 const FEWEST: usize = 16;
 
-/// Returns the step of a converter with this number of bits, as a fraction of the full scale; 0 for 0 bits.
+/// Returns the step of a converter with the given number of bits, as a fraction of the full scale; 0 for 0 bits.
 pub fn step_of(bits: f64) -> f64 {
     match bits > 0.0 {
         true => 1.0 / (bits.exp2() - 1.0),
@@ -21,8 +21,8 @@ pub fn step_of(bits: f64) -> f64 {
     }
 }
 
-/// Estimates the number of bits of the converter; 0 if readings have no step. Readings of at least `saturation` are omitted, because the clipping level need
-/// not be a step.
+/// Estimates the number of bits of the analogue-to-digital converter; 0 if readings have no step. Readings of at least `saturation` are omitted, because the
+/// clipping level need not be a multiple of the step.
 pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     let mut readings: Vec<f64> = Vec::new();
     for frames in [&skin.touched, &skin.untouched] {
@@ -56,7 +56,7 @@ pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     }
 }
 
-/// Returns the greatest common divisor of two numbers within rounding.
+/// Returns the greatest common divisor of two real numbers, up to rounding errors.
 fn common_divisor(mut large: f64, mut small: f64) -> f64 {
     while small > LEAST * ROUNDING {
         let rest = large % small;
@@ -71,7 +71,7 @@ fn common_divisor(mut large: f64, mut small: f64) -> f64 {
     }
 }
 
-/// Returns the step that fits all readings best; readings are multiples of this step above the lowest reading.
+/// Returns the converter step that fits all readings best, starting from `step`. Readings are multiples of this step above the lowest reading.
 fn refined(step: f64, readings: &[f64]) -> f64 {
     let mut step = step;
     let (mut products, mut squares) = (0.0, 0.0);

@@ -13,24 +13,24 @@ use crate::signal::Crosstalk;
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
 
-/// Maximum number of evaluated frames, evenly spaced among all frames. A larger number takes longer.
+/// Maximum number of frames that the estimate uses, evenly spaced among all frames. A larger number takes longer.
 const N_FRAMES: usize = 1000;
-/// Minimum sum of the readings of a taxel's neighbours: as a fraction of the full scale, and in standard deviations of the noise.
+/// Minimum sum of the readings of a taxel's pressed neighbours: as a fraction of the full scale, and in standard deviations of the noise.
 const PRESSED: [f64; 2] = [0.15, 60.0];
-/// Maximum reading of a quiet taxel: as a fraction of the full scale, and in standard deviations of the noise.
+/// Maximum reading of an unpressed taxel: as a fraction of the full scale, and in standard deviations of the noise.
 const QUIET: [f64; 2] = [0.01, 3.0];
 /// Largest reading that counts as not clipped, as a fraction of the full scale.
 const CLIPPED: f64 = 0.97;
-/// Minimum number of taxels beside an edge of contact for an estimate.
+/// Minimum number of taxels beside an edge of contact that an estimate needs.
 const FEWEST: usize = 200;
-/// Number of fixed-point iterations for the leaked fraction κ.
+/// Number of fixed-point iterations that estimate the leaked fraction.
 const N_ROUNDS: usize = 8;
-/// Number of iterations that apply the inverse A⁻¹; the remaining fraction of an error is at most (2κ)²⁵.
+/// Number of iterations that invert the crosstalk. The remaining fraction of an error is at most (2κ)²⁵ for the leaked fraction κ.
 const N_STEPS: usize = 25;
-/// Largest leaked fraction κ for which the iterative inverse of the crosstalk matrix A converges fast enough.
+/// Largest leaked fraction for which the iteration that inverts the crosstalk converges fast enough.
 const LARGEST: f64 = 0.45;
 
-/// Estimates the fraction κ of a taxel's value that leaks to its neighbours.
+/// Estimates the fraction of a taxel's value that leaks to its neighbours.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
@@ -73,7 +73,7 @@ pub(super) fn estimate(
     found.unwrap_or_else(|| Estimate::unknown("there are too few frames"))
 }
 
-/// Returns the ratios xᵢ / Σⱼ δⱼ of the taxels beside an edge of contact.
+/// Returns, for each taxel beside an edge of contact, the ratio of its reading to the sum of its neighbours' deflections.
 fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) -> Vec<f64> {
     let pressed = PRESSED[0].max(PRESSED[1] * noise);
     let quiet = QUIET[0].max(QUIET[1] * noise);
@@ -99,7 +99,8 @@ fn shares_of(skin: &RecordedSkin, frame: &Array1<f64>, leak: f64, noise: f64) ->
     shares
 }
 
-/// Solves A δ = x for the deflections δ by the iteration δ ← δ + x − A δ.
+/// Returns the deflections δ before crosstalk, for a frame x of readings. The function solves A δ = x for the crosstalk matrix A by the iteration δ ← δ + x −
+/// A δ.
 fn sharpened(skin: &RecordedSkin, frame: &[f64], leak: f64) -> Vec<f64> {
     let (ny, nx) = skin.shape;
     let grid = Grid { nx, ny, pitch: 1.0 };

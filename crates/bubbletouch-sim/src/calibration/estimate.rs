@@ -2,23 +2,23 @@
 
 use crate::text::numbers::short_number;
 
-/// Largest half width of a narrow 95 % interval, relative to the value. An estimate with a wider interval is too inaccurate for a setting.
+/// Largest half width of a narrow 95 % interval, relative to the estimated value. An estimate with a wider interval is too inaccurate for a setting.
 const NARROW: f64 = 0.1;
 
-/// Value below which an effect is negligible, relative to the full scale or to one.
+/// Value below which an effect (such as noise or crosstalk) is negligible, relative to the full scale or to one.
 pub(super) const NONE: f64 = 0.01;
 
 /// Estimate of a parameter of the signal chain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Estimate {
-    /// The parameter is identifiable.
+    /// Estimate of a parameter that the recorded frames determine.
     Found {
         /// Estimated value in the unit of the parameter's key.
         value: f64,
-        /// Lower and upper end of the 95 % interval.
+        /// Lower and upper end of the 95 % confidence interval.
         interval: [f64; 2],
     },
-    /// The parameter is not identifiable; contains the reason.
+    /// The recorded frames do not determine the parameter; contains the reason.
     NotIdentifiable(String),
 }
 
@@ -42,7 +42,8 @@ impl Estimate {
         Self::NotIdentifiable(why.into())
     }
 
-    /// Returns the estimate if its interval is narrow, or 0 if the interval reaches 0 and ends below [`NONE`]. Other estimates become not identifiable.
+    /// Returns 0 if the interval reaches 0 and ends at or below the negligible value [`NONE`]. Otherwise returns the estimate if its interval is narrow; a
+    /// wider estimate becomes not identifiable.
     pub(super) fn resolved(self) -> Self {
         match self {
             Self::Found {
@@ -64,7 +65,7 @@ impl Estimate {
         }
     }
 
-    /// Applies an increasing function to the value and its interval.
+    /// Applies an increasing function to the estimated value and to the ends of its interval.
     pub(super) fn map(self, of: impl Fn(f64) -> f64) -> Self {
         match self {
             Self::Found {

@@ -8,10 +8,10 @@ use super::{Estimate, RecordedSkin};
 use crate::statistics::interval::Interval;
 use ndarray::Axis;
 
-/// Minimum standard deviation of a sound taxel relative to its neighbours. If larger, taxels of low gain count as faulty; if smaller, noisy faulty taxels are
-/// missed.
+/// Minimum standard deviation of a working taxel's readings relative to its neighbours. If larger, taxels of low gain count as faulty; if smaller, noisy
+/// faulty taxels are missed.
 const MOVES: f64 = 0.1;
-/// Largest constant level of a dead taxel, as a fraction of the full scale.
+/// Largest constant reading of a dead taxel, as a fraction of the full scale.
 const DEAD: f64 = 0.01;
 
 /// Faulty taxel, whose reading stays constant.
@@ -19,16 +19,16 @@ const DEAD: f64 = 0.01;
 pub struct Fault {
     /// Index of the taxel.
     pub taxel: usize,
-    /// Whether the constant reading is the zero.
+    /// Whether the constant reading is zero (dead taxel) instead of another level (stuck taxel).
     pub is_dead: bool,
 }
 
-/// State of each taxel of a skin: sound, faulty or unknown.
+/// State of each taxel of a skin: working, faulty or unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundFaults {
     /// List of the faulty taxels.
     pub faults: Vec<Fault>,
-    /// Whether each taxel is sound; true if its state is unknown.
+    /// Whether each taxel works; also true if its state is unknown.
     pub is_sound: Vec<bool>,
     /// Number of taxels with a known state.
     n_known: usize,
@@ -71,7 +71,7 @@ pub fn find(skin: &RecordedSkin) -> FoundFaults {
 }
 
 impl FoundFaults {
-    /// Estimates the fraction of taxels with one kind of fault. The Wilson interval refers to other skins of this type.
+    /// Estimates the fraction of taxels with faults for which `is_counted` returns true. The Wilson interval refers to other skins of this type.
     pub fn share(&self, is_counted: impl Fn(&Fault) -> bool) -> Estimate {
         let n_taxels = self.is_sound.len();
         if 2 * self.n_known < n_taxels {

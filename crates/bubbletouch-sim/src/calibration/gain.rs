@@ -11,18 +11,19 @@ use crate::signal::Smoothing;
 use crate::world::Grid;
 use ndarray::{Array1, Array2};
 
-/// Range of the readings of a well-pressed taxel, relative to the full scale. Lower readings are affected by noise and edges, higher ones by clipping.
+/// Range of the readings of a well-pressed taxel, relative to the full scale. Noise and edges of contacts affect lower readings, and clipping affects higher
+/// readings.
 const PRESSED: [f64; 2] = [0.05, 0.97];
 /// Minimum reading of a well-pressed taxel, in standard deviations of the noise.
 const ABOVE_NOISE: f64 = 10.0;
-/// Minimum number of frames in each half (even and odd) in which a taxel and its neighbours are well pressed.
+/// Minimum number of even frames, and of odd frames, in which a taxel and its neighbours are well pressed.
 const MIN_FRAMES: usize = 3;
-/// Minimum number of taxels with known gains; with 50 the error of their spread is a tenth.
+/// Minimum number of taxels with known gains; with 50 taxels, the standard deviation of the gains has an error of a tenth.
 const MIN_TAXELS: usize = 50;
-/// Number of Gauss–Seidel sweeps that compute the gains. If smaller, errors that vary slowly over the array remain.
+/// Number of Gauss–Seidel iterations that compute the gains. If smaller, errors that vary slowly over the array remain.
 const N_SWEEPS: usize = 200;
 
-/// Gains of the taxels of a skin.
+/// Estimated gains of the taxels of a skin.
 #[derive(Clone, Debug)]
 pub struct Gains {
     /// Standard deviation of the gains, relative to their mean 1.
@@ -32,7 +33,8 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Estimates the gains from touched frames without their zeros. `noise` is a standard deviation, smoothed by a width in pitches.
+    /// Estimates the gains from touched frames after subtraction of the zero offsets. `noise` is a standard deviation; `width` is the width of the smoothing
+    /// in pitches.
     pub(super) fn new(
         skin: &RecordedSkin,
         touched: &Array2<f64>,
@@ -66,7 +68,7 @@ impl Gains {
     }
 }
 
-/// Returns the median log ratio d between the readings of a taxel and of its neighbours: first for the even frames, then for the odd frames.
+/// Returns the median logarithm of the ratio between the readings of a taxel and of its neighbours: first for the even frames, then for the odd frames.
 fn halves(
     skin: &RecordedSkin,
     touched: &Array2<f64>,
@@ -94,7 +96,7 @@ fn covariance(pairs: &[[f64; 2]]) -> f64 {
     mean(products)
 }
 
-/// Returns ‖L S‖², the squared norm of the neighbour difference after smoothing, in the middle of the array.
+/// Returns the squared norm of the operator that smooths a frame and then subtracts the neighbours' mean from a taxel, in the middle of the array.
 fn operator_norm((rows, columns): (usize, usize), width: f64) -> f64 {
     let grid = Grid {
         nx: columns,
@@ -113,7 +115,8 @@ fn operator_norm((rows, columns): (usize, usize), width: f64) -> f64 {
     response.iter().map(|r| r * r).sum()
 }
 
-/// Solves ln gᵢ = dᵢ + ¼ Σⱼ ln gⱼ for the gains g, scaled to mean 1.
+/// Returns the gains g of all taxels, scaled to mean 1. The function solves ln gᵢ = dᵢ + ¼ Σⱼ ln gⱼ over the four neighbours j of taxel i, with the mean log
+/// ratios d of `halves`.
 fn gains(skin: &RecordedSkin, halves: &[Option<[f64; 2]>]) -> Array1<f64> {
     let both = |halves: &[f64; 2]| 0.5 * (halves[0] + halves[1]);
     let middle = mean(halves.iter().flatten().map(both));

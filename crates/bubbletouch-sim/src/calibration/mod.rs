@@ -39,20 +39,20 @@ pub use saturation::plateau;
 
 use crate::error::Result;
 
-/// Estimated signal parameters of a recorded skin.
+/// Estimated signal parameters of a recorded skin, each with a 95 % interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
-    /// Number of bits of the converter; 0 if there is none.
+    /// Number of bits of the analogue-to-digital converter; 0 if there is none.
     pub converter: Estimate,
-    /// Fraction of taxels that read 0.
+    /// Fraction of taxels that always read 0.
     pub dead: Estimate,
-    /// Fraction of taxels that read a constant level.
+    /// Fraction of taxels that always read another constant level.
     pub stuck: Estimate,
     /// Standard deviation of the noise, as a fraction of the full scale.
     pub noise: Estimate,
-    /// Standard deviation σ of the smoothing Gaussian, in taxel pitches.
+    /// Standard deviation of the Gaussian kernel that smooths the frames, in taxel pitches.
     pub smoothing: Estimate,
-    /// Standard deviation of the zeros at the end of the session, as a fraction of the full scale.
+    /// Standard deviation of the zero offsets at the end of the session, as a fraction of the full scale.
     pub drift: Estimate,
     /// Standard deviation of the gains, relative to their mean 1.
     pub gain: Estimate,

@@ -9,12 +9,13 @@ use super::smoothing::Smoothed;
 use super::untouched::{Untouched, Zero};
 use super::{Estimate, RecordedSkin};
 
-/// Smallest identifiable noise, in steps of the converter; below it Sheppard's correction is invalid.
+/// Smallest noise that can be estimated, in steps of the converter; below this value Sheppard's correction is invalid.
 const SEEN: f64 = 0.5;
-/// Smallest identifiable noise if readings are clipped, in steps of the converter; below it rounding changes the fraction of clipped readings.
+/// Smallest noise that can be estimated if readings are clipped, in steps of the converter; below this value rounding changes the fraction of clipped
+/// readings.
 const SEEN_CLIPPED: f64 = 2.0;
 
-/// Estimates the noise σ of the readings after any smoothing, as a fraction of the full scale.
+/// Estimates the standard deviation of the noise in the readings (after any smoothing), as a fraction of the full scale.
 pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
     let Some(untouched) = untouched else {
         return Estimate::unknown("there are too few untouched frames");
@@ -42,7 +43,7 @@ pub(super) fn of_readings(untouched: Option<&Untouched>) -> Estimate {
     }
 }
 
-/// Converts the noise σ of the readings to σ before a smoothing whose width is in pitches.
+/// Converts the noise of the readings to the noise before smoothing, given the smoothing `width` in pitches.
 pub(super) fn before_smoothing(read: Estimate, skin: &RecordedSkin, width: f64) -> Estimate {
     let share = Smoothed::new(skin.shape, width).variance.sqrt();
     read.map(|std| std / share)

@@ -4,22 +4,22 @@ use super::robust::mean;
 use crate::error::{Error, Result};
 use ndarray::{Array1, Array2, ArrayView1};
 
-/// Recorded frames of a grid of taxels, as fractions of the full scale: 0 is untouched, 1 is the full scale.
+/// Recorded frames of a grid of taxels, as fractions of the full scale: 0 is an untouched taxel, 1 is the full scale.
 #[derive(Clone, Debug)]
 pub struct RecordedSkin {
     /// Numbers of rows and columns of the grid.
     pub shape: (usize, usize),
-    /// Touched frames, shape (n_frames, n_taxels), in the order of time.
+    /// Frames with contact, shape (n_frames, n_taxels), in the order of time.
     pub touched: Array2<f64>,
-    /// Time of each touched frame, from 0 at the beginning of the session to 1 at its end.
+    /// Time of each frame with contact, from 0 at the beginning of the session to 1 at its end.
     pub touched_times: Array1<f64>,
-    /// Untouched frames, shape (n_frames, n_taxels), in the order of time; may be empty.
+    /// Frames without contact, shape (n_frames, n_taxels), in the order of time; may be empty.
     pub untouched: Array2<f64>,
-    /// Time of each untouched frame, 0 to 1.
+    /// Time of each frame without contact, from 0 at the beginning of the session to 1 at its end.
     pub untouched_times: Array1<f64>,
-    /// Total normal force on the skin in each touched frame, newtons.
+    /// Total normal force on the skin in each frame with contact, newtons; `None` if not recorded.
     pub forces: Option<Array1<f64>>,
-    /// Deflection at the full scale, metres.
+    /// Deflection at the full scale, metres; `None` if unknown.
     pub stroke: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ impl RecordedSkin {
         self.shape.0 * self.shape.1
     }
 
-    /// Returns the neighbours left, right, above and below of a taxel; `None` if one of them is missing.
+    /// Returns the indices of the four taxels to the left and right of a taxel and in the rows before and after it. Returns `None` for a taxel at the border.
     pub(super) fn neighbours(&self, taxel: usize) -> Option<[usize; 4]> {
         let (rows, columns) = self.shape;
         let (y, x) = (taxel / columns, taxel % columns);
@@ -71,7 +71,7 @@ impl RecordedSkin {
 }
 
 impl RecordedSkin {
-    /// Returns a frame in which unknown values are replaced by the mean of the known values of their neighbours, or by 0.
+    /// Returns a frame in which unknown values are replaced by the mean of the known values of their neighbours, or by 0 without known neighbours.
     pub(super) fn filled(&self, frame: ArrayView1<f64>) -> Vec<f64> {
         let filled = frame.iter().enumerate().map(|(taxel, &reading)| {
             if !reading.is_nan() {

@@ -3,12 +3,12 @@
 use super::Estimate;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Number of groups of the jackknife. If smaller, the jackknife itself is less accurate; if larger, it takes longer.
+/// Number of groups of data in the jackknife method. If smaller, the interval is less accurate; if larger, the computation takes longer.
 const N_GROUPS: usize = 20;
 /// Deviation from the median at which the weight of a value becomes 0, in median absolute deviations. If smaller, precision is lost for normal data; if larger,
 /// the estimate is less robust.
 const REACH: f64 = 9.0;
-/// Value of the uncorrected biweight estimator for normal values of variance 1.
+/// Value of the biweight midvariance before normalisation for normal data of variance 1.
 const OF_NORMAL: f64 = 1.018442;
 
 /// Returns the median of some values; NaN if there are none.
@@ -25,9 +25,9 @@ pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / f64::from(n)
 }
 
-/// Returns the biweight midvariance, divided by its value for normal data of variance 1 (Mosteller and Tukey, *Data analysis and regression*, 1977). With the
-/// median M and u = (x − M) / (9 MAD), the biweight midvariance is n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1 − 5u²))² over |u| < 1. If most values are equal,
-/// returns the ordinary variance.
+/// Returns the biweight midvariance of the values, divided by its value for normal data of variance 1 (Mosteller and Tukey, *Data analysis and regression*,
+/// 1977). With the median M and u = (x − M) / (9 MAD), the biweight midvariance is n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1 − 5u²))² over |u| < 1. If most
+/// values are equal, returns the ordinary variance.
 pub fn variance(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     let middle = median(&mut sorted);

@@ -1,10 +1,10 @@
 //! Detection of saturation: a largest reading that many frames share, for example because a converter clips below the full scale.
 
-/// Minimum number of frames that share a plateau, and their minimum fraction of all frames.
+/// Minimum number of frames in which a plateau (a largest reading that many frames share) occurs; `MIN_SHARE` is the minimum fraction of all frames.
 const MIN_FRAMES: usize = 3;
 const MIN_SHARE: f64 = 0.01;
-/// Minimum ratio between the numbers of occurrences of a plateau and of the next smaller reading. If readings have few levels, many frames share the largest
-/// one by chance.
+/// Minimum ratio between the frequencies of the plateau value and of the next smaller reading. If readings have few levels, many frames share the largest
+/// level by chance.
 const MIN_EXCESS: usize = 3;
 
 /// Returns the largest reading if it is a plateau, that is, shared by many frames. A plateau occurs on at least two taxels, and in at least 3 frames and 1 % of

@@ -4,7 +4,7 @@ use super::smoothing::narrow;
 use super::{Calibration, Estimate};
 use crate::text::numbers::short_number;
 
-/// Values below this limit are written as zero: half of the last written digit.
+/// Limit below which values are written as zero: half of the last written digit.
 const NONE: f64 = 5e-5;
 
 impl Calibration {
@@ -37,7 +37,7 @@ impl Calibration {
         format!("[signal]\nsteps = [{}]\n{keys}", steps.join(", "))
     }
 
-    /// Returns the line of the `[skin]` table with the stiffness.
+    /// Returns the line with the stiffness for the `[skin]` table of a study.
     pub fn stiffness_line(&self) -> String {
         line("stiffness_n_per_m", &self.stiffness)
     }

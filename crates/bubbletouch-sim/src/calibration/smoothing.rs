@@ -11,22 +11,22 @@ use crate::signal::Smoothing;
 use crate::world::Grid;
 use std::f64::consts::FRAC_PI_2;
 
-/// Smallest width of the smoothing, in taxel pitches. Smoothing with a smaller width has no effect, because it reaches less than half a taxel.
+/// Smallest width of the smoothing kernel, in taxel pitches. Smoothing with a smaller width has no effect, because the kernel extends less than half a pitch.
 const NARROWEST: f64 = 0.125;
-/// Number of bisection steps, which determine the width to a billionth of the array's size.
+/// Number of bisection steps, which determine the width of the kernel to a billionth of the array's size.
 const N_STEPS: usize = 40;
 
-/// Statistics of independent noise of variance 1 after smoothing, averaged over the grid.
+/// Statistics, averaged over the grid, of smoothed noise. The noise before smoothing is independent, with variance 1.
 pub(super) struct Smoothed {
     /// Variance of the smoothed noise.
     pub variance: f64,
-    /// Mean product of neighbours divided by their mean square. Frames are mirrored at edges, so edge taxels have more noise and fewer
-    /// neighbours.
+    /// Correlation of neighbouring taxels: mean product of their noise divided by their mean square. Frames are mirrored at edges, so edge taxels have more
+    /// noise and fewer neighbours.
     pub correlation: f64,
 }
 
 impl Smoothed {
-    /// Computes the statistics for a width in pitches.
+    /// Computes the statistics for smoothing with a width in pitches, on a grid.
     pub fn new((rows, columns): (usize, usize), width: f64) -> Self {
         let (y, x) = (Line::new(rows, width), Line::new(columns, width));
         let [along_x, along_y] = [(columns - 1) * rows, (rows - 1) * columns].map(|n| n as f64);
@@ -40,7 +40,7 @@ impl Smoothed {
     }
 }
 
-/// Statistics of noise of variance 1, smoothed along a line of taxels.
+/// Statistics of independent noise of variance 1 after smoothing along a line of taxels.
 struct Line {
     /// Mean noise variance of the taxels of the line.
     own: f64,
@@ -85,7 +85,7 @@ impl Line {
     }
 }
 
-/// Estimates the width of the smoothing, in pitches.
+/// Estimates the width of the smoothing kernel, in pitches.
 pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Estimate {
     let (rows, columns) = skin.shape;
     let Some(untouched) = untouched else {
@@ -122,7 +122,8 @@ pub(super) fn estimate(skin: &RecordedSkin, untouched: Option<&Untouched>) -> Es
     }
 }
 
-/// Returns the width if its interval is narrow, and 0 if the upper end has a correlation of at most [`NONE`].
+/// Returns 0 if neighbours have at most a negligible correlation ([`NONE`]) at the upper end of the interval. Otherwise returns the width if its interval is
+/// narrow; a wider estimate becomes not identifiable.
 pub(super) fn narrow(width: Estimate) -> Estimate {
     // The correlation of neighbours is exp(−1 / 4σ²) for a Gaussian of width σ.
     let as_good_as_none = (-0.25 / NONE.ln()).sqrt();
@@ -135,7 +136,7 @@ pub(super) fn narrow(width: Estimate) -> Estimate {
     }
 }
 
-/// Sums of products of the readings of neighbours.
+/// Sums of products and squares of the readings of neighbouring taxels.
 #[derive(Default)]
 struct Products {
     of_neighbours: f64,
@@ -190,7 +191,7 @@ impl Products {
     }
 }
 
-/// Returns the width at which neighbours have the given correlation; 0 if the smallest width already has a larger correlation.
+/// Returns the smoothing width for which neighbouring taxels have the given correlation; 0 if the smallest width already has a larger correlation.
 fn width_of(shape: (usize, usize), correlation: f64) -> f64 {
     if correlation <= 0.0 {
         return 0.0;

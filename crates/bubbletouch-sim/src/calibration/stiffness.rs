@@ -7,16 +7,17 @@ use super::robust::{jackknife, median};
 use super::{Estimate, RecordedSkin};
 use ndarray::Array2;
 
-/// Smallest reading at which a taxel may be at its stroke, as a fraction of the full scale. At the stroke, the force exceeds the spring force.
+/// Smallest reading, as a fraction of the full scale, at which a taxel may be at the end of its stroke. There, the force exceeds the spring force.
 const CLIPPED: f64 = 0.97;
 /// Minimum number of frames for an estimate of the stiffness.
 const FEWEST: usize = 40;
-/// Smallest reading that counts if readings are clipped at zero, in standard deviations of the noise.
+/// Smallest reading that the estimate uses if readings are clipped at zero, in standard deviations of the noise.
 const ABOVE_NOISE: f64 = 4.0;
-/// Largest noise standard deviation, relative to full scale, for which clipped readings give an estimate.
+/// Largest noise standard deviation, relative to full scale, for which the stiffness can be estimated from clipped readings.
 const LITTLE: f64 = 0.03;
 
-/// Estimates the stiffness, N/m. `clipped_noise` is the standard deviation of the noise if readings are clipped at zero, otherwise `None`.
+/// Estimates the stiffness of the taxels' springs, N/m. `clipped_noise` is the standard deviation of the noise if readings are clipped at zero, otherwise
+/// `None`.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     touched: &Array2<f64>,

@@ -6,7 +6,7 @@ use super::saturation::plateau;
 use super::untouched::Untouched;
 use ndarray::Array2;
 
-/// Returns the smallest reading at which a taxel counts as saturated: the full scale, or a largest reading below it that many frames share.
+/// Returns the smallest reading at which a taxel counts as saturated: the full scale, or a smaller largest reading that many frames share.
 pub(super) fn saturation(skin: &RecordedSkin, faults: &FoundFaults) -> f64 {
     let frames = || {
         skin.touched.outer_iter().map(|frame| {
@@ -17,8 +17,8 @@ pub(super) fn saturation(skin: &RecordedSkin, faults: &FoundFaults) -> f64 {
     plateau(frames).map_or(1.0, |level| level.min(1.0))
 }
 
-/// Returns touched frames with their zeros subtracted; zeros are interpolated between runs of untouched frames. Unknown readings and readings of faulty taxels
-/// are NaN. Readings that the converter clipped at zero stay at zero. Saturated readings become 1, and all estimates omit them.
+/// Returns the frames with contact after subtraction of the zero offsets, which are interpolated between runs of frames without contact. Unknown readings and
+/// readings of faulty taxels are NaN. Readings that the converter clipped at zero stay at zero. Saturated readings become 1, and all estimates omit them.
 pub(super) fn touched(
     skin: &RecordedSkin,
     faults: &FoundFaults,

@@ -10,46 +10,47 @@ use super::robust::mean;
 use ndarray::{Array2, ArrayView1, s};
 use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
-/// Number of frames per run. If smaller, the zero is less accurate; if larger, the zero drifts during a run.
+/// Number of consecutive frames per run. If smaller, the zero offset is less accurate; if larger, the zero offset drifts during a run.
 const N_RUN: usize = 50;
-/// Minimum number of untouched frames for an estimate.
+/// Minimum number of frames without contact for an estimate.
 const FEWEST: usize = 20;
-/// Range of the fraction of unclipped frames in which the zero of a clipped taxel can be computed. A wider range uses too few frames at its ends.
+/// Range of the fraction of unclipped frames for which the zero offset of a taxel with clipped readings can be computed. A wider range uses too few frames at
+/// its ends.
 const CLIPPED: [f64; 2] = [0.3, 0.98];
-/// Minimum fraction of runs without clipped readings. If at least this fraction is clear, the other runs are omitted.
+/// Minimum fraction of runs without clipped readings. If at least this fraction of the runs is free of clipping, the other runs are omitted.
 const SUFFICIENT_CLEAR: f64 = 0.1;
 
-/// Zero of a taxel in a run of untouched frames.
+/// Zero offset of a taxel in a run of frames without contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Zero {
-    /// No reading is the lowest possible one; contains the mean of the readings.
+    /// No reading is clipped at the lowest possible value; contains the mean of the readings.
     Clear(f64),
     /// Many readings are clipped; contains mean and standard deviation of the values before clipping.
     Clipped { mean: f64, std: f64 },
-    /// The zero is unknown: nearly all readings are clipped, or the taxel is faulty.
+    /// The zero offset is unknown: nearly all readings are clipped, or the taxel is faulty.
     Lost,
 }
 
-/// Untouched frames and the zeros of their taxels.
+/// Frames without contact, and the zero offsets of the taxels in them.
 #[derive(Debug)]
 pub struct Untouched<'a> {
     pub skin: &'a RecordedSkin,
     /// Step of the converter, as a fraction of the full scale.
     pub step: f64,
-    /// Zeros of the taxels in each run, shape (n_runs, n_taxels).
+    /// Zero offsets of the taxels in each run of frames, shape (n_runs, n_taxels).
     pub runs: Array2<Zero>,
-    /// Mean time of each run, 0 to 1.
+    /// Mean time of each run of frames, as a fraction of the session from 0 to 1.
     pub times: Vec<f64>,
-    /// Number of frames per run.
+    /// Number of consecutive frames per run.
     pub n_run: usize,
     /// Whether values below zero are clipped.
     pub is_clipped: bool,
-    /// Whether there are enough clear runs to omit the other runs.
+    /// Whether enough runs are free of clipped readings to omit the other runs.
     pub is_clear: bool,
 }
 
 impl<'a> Untouched<'a> {
-    /// Estimates the zeros of all taxels. Returns `None` if there are too few frames.
+    /// Estimates the zero offsets of all taxels in each run. Returns `None` if there are too few frames.
     pub fn new(skin: &'a RecordedSkin, faults: &FoundFaults, step: f64) -> Option<Self> {
         let n = skin.untouched.nrows();
         if n < FEWEST {
@@ -87,7 +88,8 @@ impl<'a> Untouched<'a> {
         })
     }
 
-    /// Returns the zero of a taxel at a time, interpolated linearly between the runs before and after; `None` if the zero is unknown in one of these runs.
+    /// Returns the zero offset of a taxel at a time, interpolated linearly between the runs before and after this time. Returns `None` if the zero offset is
+    /// unknown in one of these runs.
     pub fn zero(&self, taxel: usize, time: f64) -> Option<f64> {
         let after = self.times.partition_point(|&run| run <= time);
         let after = after.min(self.times.len() - 1);
@@ -105,13 +107,13 @@ impl<'a> Untouched<'a> {
         Some(first + share * (second - first))
     }
 
-    /// Returns the indices of the runs in which a taxel is clear of the lowest reading.
+    /// Returns the indices of the runs in which no reading of a taxel is clipped.
     pub fn clear(&self, taxel: usize) -> impl Iterator<Item = usize> + '_ {
         let runs = self.runs.column(taxel).into_iter().enumerate();
         runs.filter_map(|(run, zero)| matches!(zero, Zero::Clear(_)).then_some(run))
     }
 
-    /// Returns the readings of a taxel in a run.
+    /// Returns the readings of a taxel in a run of frames.
     pub fn readings(&self, taxel: usize, run: usize) -> ArrayView1<'_, f64> {
         let run = run * self.n_run..(run + 1) * self.n_run;
         self.skin.untouched.slice(s![run, taxel])

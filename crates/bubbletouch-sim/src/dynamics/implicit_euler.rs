@@ -18,25 +18,25 @@ use super::system::{Drive, System};
 #[derive(Clone, Debug)]
 pub struct ImplicitEuler {
     state: State,
-    /// Deflection that each taxel would have if it were free, metres.
+    /// Deflection that each taxel would have at the end of the time step if it were free, metres.
     free: Vec<f64>,
-    /// Effective stiffness a of each taxel within a step, N/m.
+    /// Effective stiffness of each taxel within a time step, N/m, including the effects of damper and mass.
     stiffness: Vec<f64>,
-    /// Groups of balls, from below: first the object's group, then the groups stacked on it.
+    /// Groups of stacked balls, from below: first the group that contains the object, then the groups on it.
     groups: Vec<Group>,
 }
 
-/// Group of balls that touch one another and move together.
+/// Group of stacked balls that touch one another and move together.
 #[derive(Clone, Copy, Debug)]
 struct Group {
     n_balls: usize,
     mass: f64,
-    /// Free position of the group after the step, metres of travel.
+    /// Travel that the group would have after the time step without contact with the taxels, metres.
     aim: f64,
 }
 
 impl Group {
-    /// Merges this group with the group on top of it.
+    /// Returns the union of this group and the group on top of it.
     fn with(self, upper: Self) -> Self {
         let mass = self.mass + upper.mass;
         Self {
@@ -47,11 +47,11 @@ impl Group {
     }
 }
 
-/// Maximum number of Newton steps; about five are usual. The method ends after at most one step per taxel.
+/// Maximum number of Newton steps per time step; about five are usual. The method ends after at most one step per taxel.
 const MAX_NEWTON_STEPS: usize = 100;
 
 impl ImplicitEuler {
-    /// Creates the integrator with all taxels and the object at rest.
+    /// Creates the integrator with undeflected taxels and an object without contact.
     pub fn new(system: &System) -> Self {
         Self::from_state(State::start(system))
     }
@@ -66,7 +66,7 @@ impl ImplicitEuler {
         }
     }
 
-    /// Computes the deflections that the taxels would have at the step's end if they were free.
+    /// Computes the deflections that the taxels would have at the end of the time step if they were free.
     fn let_go(&mut self, system: &System, dt: f64) {
         let m = system.taxel_mass;
         let taxels = system.patch.taxels();
@@ -81,7 +81,7 @@ impl ImplicitEuler {
         }
     }
 
-    /// Returns the position of a free object after the step, metres of travel. Afterwards the first group contains the balls that move with the object.
+    /// Returns the travel of a free object after the time step, metres. Afterwards the first group contains the balls that move with the object.
     fn balance(&mut self, system: &System, mass: f64, gravity: f64, dt: f64) -> f64 {
         let state = &self.state;
         let alone = |mass, travel: f64, speed: f64| Group {
@@ -109,7 +109,7 @@ impl ImplicitEuler {
         travel
     }
 
-    /// Returns the position, after the step, of balls that rest on the taxels, metres of travel.
+    /// Returns the travel, after the time step, of balls that lie on the taxels, metres.
     fn push_in(&self, system: &System, balls: &Group, dt: f64) -> f64 {
         let inertia = balls.mass / (dt * dt);
         let aim = balls.aim;
@@ -132,7 +132,8 @@ impl ImplicitEuler {
         travel.min(system.floor())
     }
 
-    /// Moves the balls stacked on the object. Returns the force, newtons, with which the taxels must support the balls that move with the object.
+    /// Moves the balls stacked on the object. Returns the force, newtons, with which the taxels must additionally support the balls that move with the
+    /// object.
     fn move_riders(&mut self, system: &System, lowest: f64, gravity: f64, dt: f64) -> f64 {
         let mut needed = 0.0;
         let travels = self.groups.iter().enumerate().flat_map(|(number, group)| {
@@ -150,7 +151,7 @@ impl ImplicitEuler {
         needed
     }
 
-    /// Distributes the force `rest` over the stops of the taxels that have reached their stroke.
+    /// Distributes the remaining force `rest` (newtons) over the taxels that have reached the end of their stroke.
     fn load_stops(&mut self, system: &System, rest: f64) {
         let floor = system.floor();
         let is_there = |taxel: usize| {

@@ -4,25 +4,25 @@ use super::skin_sim;
 use super::system::System;
 use rapier3d_f64::prelude::{IntegrationParameters, SpringCoefficients};
 
-/// Settings of the rigid-body engine rapier.
+/// Settings of rapier, the rigid-body engine that is used for comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RapierSettings {
     /// Number of solver iterations per step, at least 1. An iteration is a small time step of its own, because the solver is of the TGS kind.
     pub solver_iterations: usize,
     /// Number of sweeps over all constraints within each iteration, at least 1.
     pub sweeps: usize,
-    /// Number of engine steps per step of the integrator, at least 1.
+    /// Number of engine steps per time step of the integrator, at least 1.
     pub substeps: usize,
     /// Length scale, metres; the allowed penetration and the contact search distance are multiples of it. The engine's default, 1 m, allows 5 mm of
     /// penetration.
     pub length_unit: f64,
-    /// Stiffness of the engine's contacts.
+    /// Stiffness of the contacts in the engine.
     pub contacts: RapierContacts,
-    /// Model of the taxels' springs and dampers.
+    /// Representation of the taxels' springs and dampers in the engine.
     pub joints: RapierJoints,
 }
 
-/// Model of the taxels' springs and dampers in the engine.
+/// Representation of the taxels' springs and dampers in the engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RapierJoints {
     /// Motors of joints to the world, which the solver integrates as stiff springs. Locked axes keep taxels on their lines,
@@ -36,13 +36,13 @@ pub enum RapierJoints {
     },
 }
 
-/// Stiffness of the engine's contacts.
+/// Stiffness of the contacts in the engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RapierContacts {
-    /// Default of the engine: springs of 30 Hz, and a penetration that is corrected at no more than 3 units of length per second.
+    /// Default contacts of the engine: springs of 30 Hz, and a penetration that is corrected at no more than 3 units of length per second.
     AsItComes,
-    /// Critically damped springs of 300 / Δt, without a limit of the correction speed. A larger value brings no gain. If smaller, light taxels sink in under
-    /// springs that are stiff for the step.
+    /// Contacts that are critically damped springs of 300 / Δt for a time step Δt, without a limit of the correction speed. A larger value brings no gain. If
+    /// smaller, light taxels sink in under springs that are stiff for the time step.
     Hard,
     /// Contacts of SkinSim \[SK\]: rigid (CFM 0), with a fifth of the penetration corrected per step (ERP 0.2), at 100 m/s at most.
     Ode,
@@ -61,7 +61,7 @@ impl RapierSettings {
         }
     }
 
-    /// Returns settings tuned for skin: hard contacts, and ten sweeps, without which light taxels do not carry the object.
+    /// Returns settings tuned for skin: hard contacts, and ten sweeps. With fewer sweeps, light taxels do not support the object.
     pub fn tuned(system: &System) -> Self {
         Self {
             sweeps: 10,

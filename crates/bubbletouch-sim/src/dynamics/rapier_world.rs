@@ -14,20 +14,20 @@ use rapier3d_f64::prelude::{
     MotorModel, PhysicsWorld, PrismaticJointBuilder, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
 
-/// Taxels and object as bodies in the rigid-body engine.
+/// World of the rigid-body engine, with taxels and object as bodies.
 pub struct RapierWorld {
     world: PhysicsWorld,
     settings: RapierSettings,
     taxels: Vec<RigidBodyHandle>,
     colliders: Vec<ColliderHandle>,
     object: RigidBodyHandle,
-    /// Balls stacked on the object, listed from below.
+    /// Balls stacked on the object, from below.
     riders: Vec<RigidBodyHandle>,
     /// Body to which the taxels are attached.
     base: RigidBodyHandle,
     /// Position of the object at a travel of 0, metres.
     origin: DVec3,
-    /// Length of the last engine step, seconds.
+    /// Duration of the last engine step, seconds.
     dt: f64,
     state: State,
 }
@@ -36,7 +36,7 @@ const SKIN: Group = Group::GROUP_1;
 const OBJECT: Group = Group::GROUP_2;
 
 impl RapierWorld {
-    /// Builds the scene. Returns an error if the object is not a union of spheres.
+    /// Creates the bodies and joints of the engine. Returns an error if the object is not a union of spheres.
     pub fn new(system: &System, settings: RapierSettings) -> Result<Self> {
         let Some(spheres) = system.object.spheres() else {
             let allowed = "a union of spheres";
@@ -127,7 +127,7 @@ impl RapierWorld {
         self.colliders.push(collider);
     }
 
-    /// Returns the displacement of a taxel from its rest position along −z relative to the base, metres, and its velocity, m/s.
+    /// Returns the displacement of a taxel along −z from its undeflected position on the base, metres, and its velocity, m/s.
     fn inwards(&self, system: &System, taxel: usize) -> (f64, f64) {
         let (body, base) = (
             &self.world.bodies[self.taxels[taxel]],
@@ -140,7 +140,7 @@ impl RapierWorld {
         )
     }
 
-    /// Applies springs and dampers as forces on taxels and base that are constant within a step.
+    /// Applies the forces of springs and dampers to the taxels and the base; the forces are constant within a time step.
     fn push(&mut self, system: &System) {
         let mut on_base = 0.0;
         for taxel in 0..self.taxels.len() {
@@ -161,7 +161,7 @@ impl RapierWorld {
     }
 }
 
-/// Creates the base: the world itself, or a light body that a joint without range of motion holds in the world.
+/// Creates the base to which the taxels are attached: the world itself, or a light body that a joint without range of motion holds in the world.
 fn insert_base(world: &mut PhysicsWorld, joints: RapierJoints) -> RigidBodyHandle {
     let ground = world.insert_body(RigidBodyBuilder::fixed());
     let RapierJoints::SkinSim { base_mass } = joints else {
@@ -178,12 +178,12 @@ fn insert_base(world: &mut PhysicsWorld, joints: RapierJoints) -> RigidBodyHandl
     base
 }
 
-/// Locked axes of a body that moves along z only.
+/// Locked axes of a body that can move only along z.
 const GUIDE: LockedAxes = LockedAxes::ROTATION_LOCKED
     .union(LockedAxes::TRANSLATION_LOCKED_X)
     .union(LockedAxes::TRANSLATION_LOCKED_Y);
 
-/// Limit of the joint on the free side, metres, which is never reached.
+/// Limit of the joint in the direction away from the object, metres, which is never reached.
 const FAR: f64 = 1.0;
 
 impl Integrator for RapierWorld {

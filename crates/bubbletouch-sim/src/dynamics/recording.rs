@@ -7,14 +7,14 @@ use crate::error::{Error, Result};
 use crate::text::in_range::positive;
 use ndarray::{Array1, Array2};
 
-/// Step length, number of steps, and the frames to record.
+/// Duration of the time steps, number of steps, and the frames to record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Steps<'a> {
-    /// Length of each step, seconds.
+    /// Duration of each time step, seconds.
     pub dt: f64,
-    /// Total number of steps.
+    /// Total number of time steps.
     pub n: usize,
-    /// Steps after which a frame is recorded, counted from 1, ascending.
+    /// Numbers of the time steps after which a frame is recorded, counted from 1, ascending.
     pub frames: &'a [usize],
     /// Energy above which the run counts as diverged, joules; infinite for no limit.
     pub energy_limit: f64,
@@ -25,26 +25,26 @@ pub struct Steps<'a> {
 pub enum Divergence {
     /// A value of the state is not finite.
     NotFinite,
-    /// The energy exceeds its limit.
+    /// The energy exceeds the limit of the run.
     EnergyGrowth,
 }
 
 /// Recorded frames of a dynamic simulation, and the motion of the object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicRecording {
-    /// Frames of the skin. Deflections may be negative; forces act between object and taxels, including the forces of stops.
+    /// Frames of the skin. Deflections may be negative; forces act between object and taxels and include the forces at the end of the stroke.
     pub recording: Recording,
-    /// Travel x of the object in each frame, metres, shape (n_frames,).
+    /// Travel of the object in each frame, metres, shape (n_frames,).
     pub travel: Array1<f64>,
-    /// Speed ẋ of the object in each frame, m/s, shape (n_frames,).
+    /// Speed of the object in each frame, m/s, shape (n_frames,).
     pub speed: Array1<f64>,
-    /// Reason if the run ended early; later frames are then missing.
+    /// Reason why the run ended early, if it did; later frames are then missing.
     pub divergence: Option<Divergence>,
-    /// Number of completed steps.
+    /// Number of completed time steps.
     pub n_steps: usize,
 }
 
-/// Number of steps between two checks of the energy. If larger, a diverged run continues longer; if smaller, the checks take more time.
+/// Number of time steps between two checks of the energy. If larger, a diverged run continues longer; if smaller, the checks take more time.
 const LOOK_EVERY: usize = 64;
 
 /// Advances a system from the integrator's state, and records frames.

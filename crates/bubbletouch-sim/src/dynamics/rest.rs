@@ -3,19 +3,19 @@
 use super::system::{Drive, System};
 use crate::contact::{Sample, crossing};
 
-/// Final state of a free object, at rest on the taxels.
+/// Final state of a free object that lies motionless on the taxels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
-    /// Travel x of the object, metres.
+    /// Travel of the object, metres.
     pub travel: f64,
     /// Deflections of the taxels, metres, shape (n_taxels,).
     pub deflection: Vec<f64>,
-    /// Force that the stops carry in addition to the springs, newtons.
+    /// Force, newtons, that taxels at the end of their stroke carry in addition to their springs.
     pub stops: f64,
 }
 
-/// Returns the state in which the springs carry the weight of the object and of the balls on it; stops carry the remainder. The travel is accurate
-/// to the last bit, as a reference for the integrators.
+/// Returns the state in which the springs carry the weight of the object and of the balls on it. Taxels at the end of their stroke carry the remaining
+/// weight. The travel is accurate to the last bit, as a reference for the integrators.
 ///
 /// Returns `None` for an imposed motion, or if the object meets no taxel.
 pub fn rest(system: &System) -> Option<Rest> {

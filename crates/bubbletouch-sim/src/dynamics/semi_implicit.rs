@@ -18,12 +18,12 @@ use super::system::{Drive, System};
 #[derive(Clone, Debug)]
 pub struct SemiImplicit {
     state: State,
-    /// Stiffness κ of contacts and stops, N/m. If larger, bodies penetrate less, but the largest stable step is smaller.
+    /// Stiffness of contacts and of the limits at the end of the stroke, N/m. If larger, bodies penetrate less, but the largest stable time step is smaller.
     contact_stiffness: f64,
 }
 
 impl SemiImplicit {
-    /// Creates the integrator with all taxels and the object at rest; `contact_stiffness` is in N/m.
+    /// Creates the integrator with undeflected taxels and an object without contact; `contact_stiffness` is in N/m.
     pub fn new(system: &System, contact_stiffness: f64) -> Self {
         Self {
             state: State::start(system),
@@ -39,9 +39,9 @@ impl SemiImplicit {
         }
     }
 
-    /// Returns the largest stable contact stiffness, N/m, for steps of `dt` seconds while `n_touched` equal taxels touch the object. The result is half the
-    /// stability limit of a taxel (`κ + k < 4 m / Δt² + 2 c / Δt`) or of the object (`n κ < 4 M / Δt²`). The result is at least the stiffness of the taxel's
-    /// own spring.
+    /// Returns the largest stable contact stiffness, N/m, for time steps of `dt` seconds while `n_touched` equal taxels touch the object. The result is half
+    /// the stability limit of a taxel (`κ + k < 4 m / Δt² + 2 c / Δt`) or of the object (`n κ < 4 M / Δt²`). The result is at least the stiffness of the
+    /// taxel's own spring.
     pub fn stiffest(system: &System, dt: f64, n_touched: usize) -> f64 {
         let taxel = system.patch.taxels().at(0);
         let of_taxel = (4.0 * system.taxel_mass / dt + 2.0 * taxel.damping) / dt;

@@ -3,15 +3,15 @@
 
 use crate::world::Taxel;
 
-/// Mass m of a SkinSim taxel, kg.
+/// Mass of a SkinSim taxel, kg.
 pub const TAXEL_MASS: f64 = 1e-3;
-/// Stiffness k of a SkinSim taxel, N/m.
+/// Spring stiffness of a SkinSim taxel, N/m.
 pub const STIFFNESS: f64 = 16.37;
 /// Mass of the body that carries the taxels of a patch, kg; the published model builder keeps it "not too small because of stability".
 pub const BASE_MASS: f64 = 0.01;
-/// Damping c of a SkinSim taxel, N·s/m.
+/// Damping of a SkinSim taxel, N·s/m.
 pub const DAMPING: f64 = 0.13;
-/// Time step Δt of SkinSim, seconds.
+/// Time step of SkinSim, seconds.
 pub const DT: f64 = 0.5e-3;
 /// Number of joints near which SkinSim was reported to be unstable.
 pub const UNSTABLE_JOINTS: usize = 280;

@@ -7,17 +7,17 @@ use super::system::{Drive, System};
 pub struct State {
     /// Time of the state, seconds.
     pub time: f64,
-    /// Deflections δ of the taxels, metres, shape (n_taxels,); negative if a free taxel swings out.
+    /// Deflections of the taxels, metres, shape (n_taxels,); negative if a free taxel swings out.
     pub deflection: Vec<f64>,
-    /// Velocities δ̇ of the taxels, m/s, shape (n_taxels,).
+    /// Velocities of the taxels, m/s, shape (n_taxels,).
     pub velocity: Vec<f64>,
-    /// Forces f of the object on each taxel, newtons, never negative, shape (n_taxels,).
+    /// Forces of the object on each taxel, newtons, never negative, shape (n_taxels,).
     pub force: Vec<f64>,
-    /// Travel x of the object, metres.
+    /// Travel of the object, metres.
     pub travel: f64,
-    /// Speed ẋ of the object, m/s.
+    /// Speed of the object, m/s.
     pub speed: f64,
-    /// Balls stacked on the object, listed from below.
+    /// Balls stacked on the object, from below.
     pub riders: Vec<Rider>,
 }
 
@@ -31,7 +31,7 @@ pub struct Rider {
 }
 
 impl State {
-    /// Creates the start state of a system: undeflected taxels, and an object without contact.
+    /// Creates the start state of a system: undeflected taxels, and an object that touches no taxel.
     pub fn start(system: &System) -> Self {
         let zeros = vec![0.0; system.n_taxels()];
         let rider = Rider {
@@ -49,8 +49,8 @@ impl State {
         }
     }
 
-    /// Returns the energy of the system, joules: Σ ½ m δ̇² + Σ ½ k δ² plus ½ M ẋ² − M g x of each free object. Energy stored in contacts and stops is not
-    /// included.
+    /// Returns the energy of the system, joules: Σ ½ m δ̇² + Σ ½ k δ² over the taxels plus ½ M ẋ² − M g x of each free object. Energy stored in contacts and
+    /// at the end of a stroke is not included.
     pub fn energy(&self, system: &System) -> f64 {
         let m = system.taxel_mass;
         let taxels = self.deflection.iter().zip(&self.velocity).enumerate();
@@ -72,7 +72,7 @@ impl State {
         }
     }
 
-    /// Returns the sum Σ f of the object's forces on the taxels, newtons.
+    /// Returns the sum of the object's forces on the taxels, newtons.
     pub fn support(&self) -> f64 {
         self.force.iter().sum()
     }
@@ -80,8 +80,8 @@ impl State {
 
 /// Time integrator of a system.
 pub trait Integrator {
-    /// Advances the system by one step of `dt` seconds.
+    /// Advances the system by one time step of `dt` seconds.
     fn step(&mut self, system: &System, dt: f64);
-    /// Returns the present state, with the forces at the end of the last step.
+    /// Returns the present state, with the forces at the end of the last time step.
     fn state(&mut self, system: &System) -> &State;
 }

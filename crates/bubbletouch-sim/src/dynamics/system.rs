@@ -8,42 +8,42 @@ use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use glam::DVec3;
 
-/// Cause of the object's motion along its guide: gravity, or an imposed motion.
+/// Cause of the object's motion along the z axis: gravity, or an imposed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
     /// Free motion under gravity.
     Free {
-        /// Mass M of the object, kg, positive.
+        /// Mass of the object, kg, positive.
         mass: f64,
-        /// Gravity g towards the skin, m/s², positive.
+        /// Acceleration of gravity towards the skin, m/s², positive.
         gravity: f64,
-        /// Initial travel of the object, metres; its initial speed is zero.
+        /// Travel of the object at the start, metres; its speed at the start is zero.
         travel: f64,
     },
     /// Imposed motion of the object's origin in the patch frame. Only the component along z is used. The travel is 0 at the start.
     Imposed(VelocityPlan),
 }
 
-/// Skin whose taxels have mass, and one object above it.
+/// Dynamic system: a skin whose taxels have mass, and one object above the skin.
 #[derive(Clone, Debug)]
 pub struct System<'a> {
     /// Patch of skin whose axes are all +z.
     pub patch: &'a Patch,
-    /// Mass m of each taxel, kg.
+    /// Mass of each taxel, kg.
     pub taxel_mass: f64,
     /// Object above the skin.
     pub object: &'a Model,
     /// Pose `patch_from_object` of the object at a travel of 0.
     pub pose: Pose,
-    /// Cause of the object's motion along its guide.
+    /// Cause of the object's motion along the z axis.
     pub drive: Drive,
     starts: Vec<f64>,
-    /// Masses of the balls stacked on the object, listed from below, kg.
+    /// Masses of the balls stacked on the object, from below, kg.
     riders: Vec<f64>,
 }
 
 impl<'a> System<'a> {
-    /// Creates a system and checks it. Taxels that the object does not meet within `reach` metres of travel are never pushed.
+    /// Creates a system and checks it. Taxels that the object does not touch within `reach` metres of travel are never pushed.
     ///
     /// # Errors
     /// If a mass, gravity or reach is not positive, or the axis of a taxel is not +z (the error names the first such taxel).
@@ -80,8 +80,8 @@ impl<'a> System<'a> {
         })
     }
 
-    /// Stacks balls on the object. Each ball equals the object and moves freely on the same guide under gravity; `masses` are listed from below, kg. All balls
-    /// start in contact.
+    /// Stacks balls on the object. Each ball equals the object and moves freely along the same line under gravity. `masses` are listed from below, kg. At the
+    /// start, adjacent balls touch.
     ///
     /// # Errors
     /// If a mass is not positive, or the object is not one free sphere.
@@ -105,7 +105,7 @@ impl<'a> System<'a> {
         Ok(self)
     }
 
-    /// Returns the masses of the balls stacked on the object, listed from below, kg.
+    /// Returns the masses of the balls stacked on the object, from below, kg.
     pub fn riders(&self) -> &[f64] {
         &self.riders
     }
@@ -115,12 +115,12 @@ impl<'a> System<'a> {
         self.starts.len()
     }
 
-    /// Returns the travel at which the object meets each taxel, metres; infinite for taxels that it does not meet.
+    /// Returns the travel at which the object first touches each taxel, metres; infinite for taxels that the object does not touch.
     pub fn starts(&self) -> &[f64] {
         &self.starts
     }
 
-    /// Returns the travel at which the first taxel reaches its stroke, metres; the rigid stop then stops the object.
+    /// Returns the travel at which the first taxel reaches the end of its stroke, metres; the object cannot move further.
     pub fn floor(&self) -> f64 {
         let taxels = self.patch.taxels();
         let ends = self.starts.iter().enumerate();
@@ -128,7 +128,7 @@ impl<'a> System<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the object's travel before the first step, metres.
+    /// Returns the travel of the object before the first time step, metres.
     pub fn first_travel(&self) -> f64 {
         match &self.drive {
             Drive::Free { travel, .. } => *travel,
@@ -142,8 +142,8 @@ impl<'a> System<'a> {
     }
 }
 
-/// Returns the travel at which the object meets each taxel. The deflection of a pushed taxel grows with the travel, so one press at the end of the reach yields
-/// all values.
+/// Returns the travel at which the object first touches each taxel, metres. The deflection of a pushed taxel grows with the travel, so one press at the
+/// travel `reach` yields all values.
 fn starts(patch: &Patch, object: &Model, pose: &Pose, reach: f64) -> Vec<f64> {
     let mut workspace = Workspace::new();
     let low = Pose::new(pose.rotation, pose.translation - reach * DVec3::Z);

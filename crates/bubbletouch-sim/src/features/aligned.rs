@@ -45,7 +45,7 @@ impl Feature for Aligned {
     }
 }
 
-/// Returns the sine and cosine of the longer principal axis. The axis points to where the third moment along it is positive.
+/// Returns the sine and cosine of the angle of the longer principal axis. The axis points to the side where the third moment along it is positive.
 fn axis(image: &Image) -> (f64, f64) {
     let (x, y) = image.centroid;
     let from_centroid = || {

@@ -6,23 +6,23 @@ use ndarray::{Array2, ArrayView2};
 /// Distance, in pitches, up to which a taxel contributes to a pixel. The largest distance of a point from a taxel is 0.62 on a hexagonal lattice with one taxel
 /// per square pitch, and 0.8 on rings on a sphere. If smaller, images have holes; if larger, they are blurred.
 const NEAR: f64 = 1.0;
-/// Maximum distance, in pitches, from a pixel of the patch to its nearest taxel. Pixels without such a taxel lie beside the patch and are 0.
+/// Maximum distance, in pitches, from a pixel of the patch to its nearest taxel. Pixels without a taxel within this distance lie beside the patch and are 0.
 const ON_PATCH: f64 = 0.8;
 
-/// Chart of a patch: the positions of its taxels on a plane, and an image of them. A pixel is the weighted mean of the taxels near it; weights decrease
-/// linearly to 0 at a distance of one pitch. The image of a square grid equals the grid.
+/// Map from a frame to an image: the positions of a patch's taxels on a plane, with the weights of the taxels for each pixel. A pixel is the weighted mean of
+/// the taxels near it; weights decrease linearly to 0 at a distance of one pitch. The image of a square grid equals the grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     shape: (usize, usize),
-    /// Indices and weights of the taxels of each pixel, pixel after pixel; the weights of a pixel have sum 1.
+    /// Indices and weights of the taxels that contribute to each pixel, pixel after pixel; the weights of a pixel have sum 1.
     terms: Vec<(u32, f64)>,
-    /// End index of the terms of each pixel.
+    /// Index after the last entry of each pixel in `terms`.
     ends: Vec<usize>,
 }
 
 impl Chart {
-    /// Creates a chart from the positions of taxels on the plane (metres) and their approximate pitch. The image has `shape` (rows, columns) square pixels,
-    /// centred on the origin; their size is in metres.
+    /// Creates the map from the positions of taxels on the plane (metres) and their approximate pitch. The image has (rows, columns) square pixels of the
+    /// size `pixel` (metres), centred on the origin.
     pub fn new(
         places: &[DVec2],
         pitch: f64,
@@ -52,7 +52,7 @@ impl Chart {
         Self { shape, terms, ends }
     }
 
-    /// Returns images of frames. The frames have the shape (n, taxels), the images (n, pixels), with pixels row by row.
+    /// Returns the images of frames, shape (n, pixels), with pixels row by row. The frames have the shape (n, taxels).
     ///
     /// # Panics
     /// If the frames have fewer taxels than the chart.

@@ -22,7 +22,8 @@ use super::moments::{N_MOMENTS, Weight, moments};
 use multiversion::multiversion;
 use std::f64::consts::PI;
 
-/// Number of depth levels of each kind, and number of rings. In a 64 × 64 image pressed to half its stroke, steps of full scale / 24 are distinguishable.
+/// Number of depth levels of each kind of area, and number of rings. In a 64 × 64 image pressed to half its stroke, steps of full scale / 24 are
+/// distinguishable.
 const N_LEVELS: usize = 24;
 const N_RINGS: usize = 24;
 const N_VALUES: usize = 3 + 3 * N_LEVELS + 3 * N_MOMENTS + N_RINGS;
@@ -70,14 +71,14 @@ impl Feature for Descriptors {
     }
 }
 
-/// Numbers of taxels, counted by the highest level that they reach; the last level includes all higher values.
+/// Numbers of taxels, counted by the highest depth level that they reach; the last level includes all larger values.
 #[derive(Default)]
 struct Counts {
     fixed: [u32; N_LEVELS],
     relative: [u32; N_LEVELS],
-    /// Numbers of taxels, counted by the lowest ℓ with δ ≥ δ_max − ℓ.
+    /// Numbers of taxels, counted by the smallest level ℓ for which the value is at least the largest value of the image minus ℓ.
     behind: [u32; N_LEVELS],
-    /// Sum of squares Σ δ².
+    /// Sum of the squared values of the image.
     squares: f64,
 }
 
@@ -95,7 +96,7 @@ fn count_levels(image: &Image, step: f64) -> Counts {
     counts
 }
 
-/// Increments the count of a level, counted from 1; the last level includes all higher values.
+/// Increments the count of a depth level, counted from 1; the last level includes all higher levels.
 #[inline(always)]
 fn count(counts: &mut [u32; N_LEVELS], level: i32) {
     if level > 0 {
@@ -103,7 +104,7 @@ fn count(counts: &mut [u32; N_LEVELS], level: i32) {
     }
 }
 
-/// Writes the square roots of the numbers of taxels at each level or above.
+/// Writes, for each depth level, the square root of the number of taxels at this level or above.
 fn areas_above(counts: &[u32; N_LEVELS], out: &mut [f64]) {
     let mut above = 0;
     for (to, count) in out.iter_mut().zip(counts).rev() {
@@ -112,7 +113,7 @@ fn areas_above(counts: &[u32; N_LEVELS], out: &mut [f64]) {
     }
 }
 
-/// Writes the mean pressures of rings; parts of a ring beyond the array count as 0.
+/// Writes the mean pressure of each ring around the centroid; parts of a ring beyond the array count as 0.
 #[multiversion(targets("x86_64+avx2"))]
 fn write_profile(image: &Image, profile: &mut [f64]) {
     let width = 0.5 * image.nx.min(image.ny) as f64 / N_RINGS as f64;

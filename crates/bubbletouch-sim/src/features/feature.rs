@@ -10,19 +10,19 @@ use std::fmt::Debug;
 pub struct FeatureAbout {
     /// Display name of the feature.
     pub words: &'static str,
-    /// Function that returns the number of values for an ny × nx image.
+    /// Function that returns the number of feature values for an ny × nx image.
     pub n_values: fn((usize, usize)) -> usize,
-    /// Function that prepares the feature for ny × nx images of a full scale.
+    /// Function that prepares the feature for ny × nx images with values up to a full scale.
     pub prepare: fn((usize, usize), f64) -> Box<dyn Feature>,
 }
 
 /// Image feature, prepared for images of one size.
 pub trait Feature: Debug + Send + Sync {
-    /// Writes the values of the feature for an image; zeros if nothing is touched.
+    /// Writes the values of the feature for an image; zeros if no taxel is touched.
     fn write(&self, image: &Image, workspace: &mut Workspace, out: &mut [f64]);
 }
 
-/// Working memory for image features: one per thread.
+/// Scratch memory for image features: one instance per thread.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     pub(super) image: Image,
@@ -30,7 +30,7 @@ pub struct Workspace {
     pub(super) rings: RingWorkspace,
 }
 
-/// Declares the image features and the module of each.
+/// Declares the image features and the module of each feature.
 macro_rules! image_features {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(mod $file;)*
@@ -45,7 +45,7 @@ macro_rules! image_features {
             /// List of all image features.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// Names of the image features in a study, and their display names.
+            /// Names of the image features in the file of a study, with their display names.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
             /// Returns the description of the image feature.

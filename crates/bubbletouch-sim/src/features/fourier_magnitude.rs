@@ -19,7 +19,7 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
     prepare: |shape, _| Box::new(FourierMagnitude(Spectrum::new(shape, shape.1 / 3), shape.0)),
 };
 
-/// Fourier transform of the image, and the number of its rows.
+/// Fourier transform of the image, and the number of rows of the image.
 #[derive(Debug)]
 struct FourierMagnitude(Spectrum, usize);
 

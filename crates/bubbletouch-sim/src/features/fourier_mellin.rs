@@ -19,12 +19,12 @@ use super::rings::{Rings, roots};
 use super::spectrum::Spectrum;
 use std::f64::consts::PI;
 
-/// Number of rings, equally spaced up to a third of a cycle per taxel.
+/// Number of rings in the frequency plane, equally spaced up to a third of a cycle per taxel.
 const N_RINGS: usize = 24;
 const LAST_RING: f64 = 1.0 / 3.0;
-/// Number of directions over half a turn; even, so that a quarter turn is a whole number of steps.
+/// Number of directions in the frequency plane over half a turn; even, so that a quarter turn is a whole number of steps.
 const N_ANGLES: usize = 36;
-/// Number of harmonics: 0, 2, … 16 of the whole turn. Low harmonics describe the edges of contacts; higher ones contain mostly noise.
+/// Number of angular harmonics: 0, 2, … 16 periods in a whole turn. Low harmonics describe the edges of contacts; higher harmonics contain mostly noise.
 const N_HARMONICS: usize = 9;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
@@ -37,11 +37,11 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
 struct FourierMellin {
     spectrum: Spectrum,
     rings: Rings,
-    /// Interpolation points in the spectrum, ring after ring.
+    /// Interpolation indices and weights for each point of the rings, ring after ring.
     reads: Vec<Read>,
 }
 
-/// Indices of four values of the spectrum, with their weights.
+/// Indices of four values of the spectrum, with their interpolation weights.
 type Read = [(u32, f64); 4];
 
 impl FourierMellin {
@@ -64,7 +64,8 @@ impl FourierMellin {
     }
 }
 
-/// Returns indices and weights of the four integer frequencies around (u, v). |F| has the period of the array, and F(−u, −v) and F(u, v) have equal magnitudes.
+/// Returns indices and weights of the four integer frequencies around the frequency (u, v). The spectrum's magnitude has the period of the array, and is
+/// equal at (−u, −v) and (u, v).
 fn read((u, v): (f64, f64), spectrum: &Spectrum, (ny, nx): (usize, usize)) -> Read {
     let (left, below) = (u.floor(), v.floor());
     let (along, up) = (u - left, v - below);
@@ -96,7 +97,7 @@ impl Feature for FourierMellin {
     }
 }
 
-/// Writes one interpolated magnitude per read: the weighted sum of four stored magnitudes.
+/// Writes one interpolated magnitude for each entry of `reads`: the weighted sum of four stored magnitudes.
 fn write_reads(reads: &[Read], magnitudes: &[f64], out: &mut [f64]) {
     for (to, read) in out.iter_mut().zip(reads) {
         let [a, b, c, d] = read.map(|(place, weight)| weight * magnitudes[place as usize]);

@@ -3,17 +3,17 @@
 use multiversion::multiversion;
 use ndarray::ArrayView2;
 
-/// Parts of a frame that its image omits. The limits `level` and `foremost` are in the unit of the frame.
+/// Parts of a frame that are omitted from its image. The limits `level` and `foremost` are in the unit of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cut {
-    /// Threshold ℓ, zero or positive. Values δ below it count as 0, as do negative values (from noise or estimates) and NaN.
+    /// Threshold, zero or positive. Smaller values count as 0, as do negative values (from noise or estimates) and NaN.
     pub level: f64,
-    /// Depth window d, positive: the image keeps the depth within d of the foremost point, max(0, δ − δ_max + d). If a rigid object moves deeper, δ increases
-    /// equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.
+    /// Depth window d, positive: the image keeps the depth within d of the largest value δ_max, that is, max(0, δ − δ_max + d). If a rigid object moves
+    /// deeper, δ increases equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.
     pub foremost: Option<f64>,
 }
 
-/// Pressure image of an ny × nx frame after the cut, with its sum, centroid and largest value.
+/// Pressure image of an ny × nx frame after parts have been omitted, with its sum, centroid and largest value.
 #[derive(Clone, Debug, Default)]
 pub struct Image {
     /// Values of the image, zero or positive, shape (ny, nx), row after row.
@@ -22,13 +22,13 @@ pub struct Image {
     pub nx: usize,
     /// Number of rows of the image.
     pub ny: usize,
-    /// Taxels with values above zero, in reading order.
+    /// Positions and values of the taxels with values above zero, row by row.
     pub touched: Touched,
-    /// Sum Σ δ of all values.
+    /// Sum of all values of the image.
     pub sum: f64,
-    /// Centroid Σ δ (x, y) / Σ δ, in columns and rows; the middle of the image if nothing is touched.
+    /// Centroid of the image, weighted by the values, in columns and rows; the middle of the image if no taxel is touched.
     pub centroid: (f64, f64),
-    /// Largest value δ of the image.
+    /// Largest value of the image.
     pub largest: f64,
 }
 
@@ -39,7 +39,7 @@ pub struct Touched {
     pub x: Vec<f64>,
     /// Rows of the taxels.
     pub y: Vec<f64>,
-    /// Values δ of the taxels.
+    /// Values of the touched taxels.
     pub value: Vec<f64>,
 }
 
@@ -60,13 +60,13 @@ impl Image {
         view.expect("ny · nx values")
     }
 
-    /// Replaces `out` by the interpolated values at positions (columns and rows) plus an offset.
+    /// Replaces `out` by the interpolated image values at the positions `places` (columns and rows) plus an offset.
     pub fn write_at(&self, places: &[(f64, f64)], offset: (f64, f64), out: &mut Vec<f64>) {
         out.resize(places.len(), 0.0);
         write_at(self, places, offset, out);
     }
 
-    /// Returns the value at a position between taxels, by bilinear interpolation; 0 outside the array.
+    /// Returns the image value at a position between taxels, by bilinear interpolation; 0 outside the array.
     #[inline(always)]
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let (left, below) = (x.floor(), y.floor());
@@ -136,7 +136,7 @@ fn read(image: &mut Image, frame: &[f64], cut: Cut) {
     };
 }
 
-/// Returns the largest value, at least 0; NaN is ignored.
+/// Returns the largest of the values, at least 0; NaN is ignored.
 #[inline(always)]
 fn largest(values: &[f64]) -> f64 {
     let (lanes, last) = values.as_chunks::<8>();

@@ -6,12 +6,12 @@ use super::image::Cut;
 use crate::error::{Error, Result};
 use std::fmt::{self, Debug};
 
-/// One or several image features, one after the other in the order of the list of all features.
+/// Combination of image features, whose values follow one another in the order of the list of all features. Each bit marks one feature.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Join(u8);
 
 impl Join {
-    /// Joins image features: at least one, each at most once.
+    /// Creates the combination of image features: at least one, each at most once.
     ///
     /// # Errors
     /// If there is no feature, or one occurs twice.
@@ -30,19 +30,19 @@ impl Join {
         }
     }
 
-    /// Returns the features in their order.
+    /// Returns the combined features in their order.
     pub fn features(self) -> impl Iterator<Item = ImageFeature> {
         let all = ImageFeature::ALL.iter().copied();
         all.filter(move |&feature| self.0 & (1 << feature as u8) != 0)
     }
 
-    /// Returns the number of values of the join for an ny × nx image.
+    /// Returns the number of values of the combined features for an ny × nx image.
     pub fn n_values(self, shape: (usize, usize)) -> usize {
         self.features().map(|f| (f.about().n_values)(shape)).sum()
     }
 }
 
-/// Writes the name of the join in a study: `fourier_mellin+descriptors`.
+/// Writes the name of the combination in the file of a study, such as `fourier_mellin+descriptors`.
 impl fmt::Display for Join {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let names: Vec<&str> = self.features().map(ImageFeature::name).collect();
@@ -57,23 +57,23 @@ impl Debug for Join {
 }
 
 impl ImageFeature {
-    /// Returns the name of the join in a study.
+    /// Returns the name of the combination in the file of a study.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize].0
     }
 }
 
-/// Join of features, prepared for images of one size and full scale.
+/// Combination of image features, prepared for images of one size and full scale.
 #[derive(Debug)]
 pub struct ImageFeatures {
     nx: usize,
     cut: Cut,
-    /// Features with their numbers of values.
+    /// Prepared features, each with its number of values.
     features: Vec<(Box<dyn Feature>, usize)>,
 }
 
 impl ImageFeatures {
-    /// Prepares the features for images of ny × nx values from 0 to `full_scale`, after a cut.
+    /// Prepares the features of `join` for images of ny × nx values from 0 to `full_scale`; `cut` describes the omitted parts of a frame.
     pub fn new(join: Join, shape: (usize, usize), full_scale: f64, cut: Cut) -> Self {
         let features = join.features().map(|feature| {
             let about = feature.about();

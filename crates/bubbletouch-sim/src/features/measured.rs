@@ -16,13 +16,13 @@
 use super::Features;
 use ndarray::{ArrayView1, ArrayViewMut1, ArrayViewMut2};
 
-/// Rounding error, in double precision, of an element of u = Φ1 that is exactly 0. (Rows of Φ have norms of about 1, and at most 2²⁴ taxels.) Smaller elements
-/// count as 0.
+/// Largest rounding error, in double precision, of an element of the vector Φ1 that is exactly 0. (Rows of the projection Φ have norms of about 1, and at
+/// most 2²⁴ taxels.) Smaller elements count as 0.
 const ROUNDING: f64 = 1e-12;
 
 impl Features {
-    /// Converts measurements, shape (n_touches, F·m), to features in place; `of_ones` is the vector u = Φ1, shape (m,). Image features leave the values
-    /// unchanged.
+    /// Converts measurements of touches, shape (n_touches, number of frames × m), to features in place. `of_ones` are the m measurements of a frame of ones.
+    /// Image features leave the values unchanged.
     ///
     /// # Panics
     /// If a row does not consist of whole frames.
@@ -53,7 +53,7 @@ impl Features {
     }
 }
 
-/// Divides a row by its norm, after scaling by the largest value, so that squares neither overflow nor underflow.
+/// Divides a row by its norm. The row is first scaled by its largest value, so that squares neither overflow nor underflow.
 fn scale_to_one(mut row: ArrayViewMut1<f64>) {
     let largest = row.iter().fold(0.0_f64, |largest, v| largest.max(v.abs()));
     if largest == 0.0 || !largest.is_finite() {
@@ -75,7 +75,7 @@ mod tests {
     const GRID: (usize, usize) = (8, 8);
     const M: usize = 16;
 
-    /// Returns twelve irregular frames of 8 × 8 taxels.
+    /// Returns twelve irregular test frames of 8 × 8 taxels.
     fn frames() -> Array2<f64> {
         let mut rng = Seed::new(3).named("frames").rng();
         Array2::from_shape_fn((12, 64), |_| 1e-3 * rng.r#gen::<f64>())

@@ -16,24 +16,24 @@ use super::image::{Image, Touched};
 use multiversion::multiversion;
 use realfft::num_complex::Complex;
 
-/// Number of moments per weight.
+/// Number of moments for each kind of weight.
 pub const N_MOMENTS: usize = 9;
 
-/// Weight of a touched taxel in the moments.
+/// Weight of a touched taxel in the moments of an image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Weight {
-    /// Pressure δ of the taxel.
+    /// Weight equal to the pressure of the taxel.
     Pressure,
     /// Weight 1 for every touched taxel.
     Touched,
-    /// Weight 1 for taxels above a level, 0 for others.
+    /// Weight 1 for taxels above a pressure level, 0 for other taxels.
     Above(f64),
 }
 
-/// Number of weights whose sums are computed at a time.
+/// Number of weights for which the sums are computed at a time.
 const LANES: usize = 4;
 
-/// Returns the nine moments for each of up to four weights, in units of columns and rows; zeros if the sum of the weights is 0.
+/// Returns the nine moments of an image for each of up to four weights, in units of columns and rows; zeros if the sum of the weights is 0.
 pub fn moments<const N: usize>(image: &Image, weights: [Weight; N]) -> [[f64; N_MOMENTS]; N] {
     const { assert!(N <= LANES) };
     let mut lanes = [Weight::Touched; LANES];
@@ -45,12 +45,12 @@ pub fn moments<const N: usize>(image: &Image, weights: [Weight; N]) -> [[f64; N_
     })
 }
 
-/// Sum Σ w and the sums from which the moments C_pq are computed.
+/// Sum of the weights, and the sums from which the complex moments are computed.
 #[derive(Default)]
 struct Sums {
     total: [f64; LANES],
     c11: [f64; LANES],
-    /// Real and imaginary parts of the sum from which the moment C₂₀ is computed.
+    /// Real and imaginary part of the sum from which the complex moment C₂₀ is computed, for each weight.
     c20: [[f64; LANES]; 2],
     c21: [[f64; LANES]; 2],
     c30: [[f64; LANES]; 2],
@@ -102,7 +102,7 @@ fn central_sums(Touched { x, y, value }: &Touched, weights: [Weight; LANES]) -> 
 }
 
 impl Sums {
-    /// Returns the nine invariant moments of one weight.
+    /// Returns the nine moments that do not change under shifts and rotations, for the weight with index `lane`.
     fn invariants(&self, lane: usize) -> [f64; N_MOMENTS] {
         let total = self.total[lane];
         let c11 = self.c11[lane] / total;

@@ -15,11 +15,11 @@ use super::image::Image;
 use super::rings::{Rings, roots};
 use std::f64::consts::TAU;
 
-/// Number of rings; on 64 × 64 taxels the rings are 1.2 pitches apart.
+/// Number of rings around the centroid; on 64 × 64 taxels the rings are 1.2 pitches apart.
 const N_RINGS: usize = 26;
-/// Number of angles per ring, a multiple of 4, so that a quarter turn is a whole number of steps.
+/// Number of sampled angles per ring, a multiple of 4, so that a quarter turn is a whole number of steps.
 const N_ANGLES: usize = 32;
-/// Number of harmonics: all except the one that 32 steps cannot distinguish from its mirror image.
+/// Number of harmonics per ring: all except the harmonic that 32 steps cannot distinguish from its mirror image.
 const N_HARMONICS: usize = 16;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {
@@ -31,7 +31,7 @@ pub(super) const ABOUT: FeatureAbout = FeatureAbout {
 #[derive(Debug)]
 struct PolarHarmonics {
     rings: Rings,
-    /// Offsets of each value's position from the centroid, ring after ring, in columns and rows.
+    /// Offsets of the sampled positions from the centroid, ring after ring, in columns and rows.
     places: Vec<(f64, f64)>,
 }
 

@@ -17,10 +17,10 @@ pub(super) struct Rings {
     around: Arc<dyn RealToComplex<f64>>,
 }
 
-/// Working memory for the harmonics.
+/// Scratch memory for the harmonics.
 #[derive(Clone, Debug, Default)]
 pub struct RingWorkspace {
-    /// Values ring after ring, `n_angles` each; the transform overwrites them.
+    /// Sampled values, ring after ring, `n_angles` values each; the transform overwrites them.
     pub(super) values: Vec<f64>,
     of_ring: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,

@@ -13,17 +13,17 @@ pub enum Features {
     /// Unchanged measurements.
     #[default]
     Raw,
-    /// Measurements of each frame without the effect of a constant pressure.
+    /// Measurements of each frame, without the component that a constant pressure causes.
     Centred,
     /// Measurements of each touch scaled to norm 1.
     UnitNorm,
-    /// Measurements of each frame without the effect of a constant pressure, then scaled to norm 1 per touch.
+    /// Measurements of each frame, without the component that a constant pressure causes, then scaled to norm 1 for each touch.
     CentredUnitNorm,
     /// Image features of each frame.
     OfImage(Join),
 }
 
-/// Measurement features: name in a study, and display name if it differs.
+/// Features made of measurements: name in the file of a study, and value.
 const OF_MEASUREMENTS: [(&str, Features); 4] = [
     ("raw", Features::Raw),
     ("centred", Features::Centred),
@@ -32,7 +32,7 @@ const OF_MEASUREMENTS: [(&str, Features); 4] = [
 ];
 
 impl Features {
-    /// Display names of features whose name in a study is not sufficient.
+    /// Display names of features whose name in the file of a study is not clear enough.
     pub const NAMES: &[(&str, &str)] = &[
         ("centred_unit_norm", "centred, unit norm"),
         ("fourier_magnitude", fourier_magnitude::ABOUT.words),
@@ -43,7 +43,7 @@ impl Features {
         ),
     ];
 
-    /// Returns the image features; `None` for measurement features.
+    /// Returns the combination of image features; `None` for features made of measurements.
     pub fn of_image(self) -> Option<Join> {
         match self {
             Self::OfImage(join) => Some(join),
@@ -51,7 +51,7 @@ impl Features {
         }
     }
 
-    /// Returns the number of values for a frame of m measurements of an ny × nx image.
+    /// Returns the number of feature values for a frame of m measurements of an ny × nx image.
     pub fn n_values(self, m: usize, shape: (usize, usize)) -> usize {
         self.of_image().map_or(m, |join| join.n_values(shape))
     }

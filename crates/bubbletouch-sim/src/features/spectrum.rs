@@ -10,7 +10,7 @@ use rustfft::{Fft, FftPlanner};
 use std::fmt;
 use std::sync::Arc;
 
-/// Fourier transform that computes |F| at u = 0 … `n_columns` − 1 and all v.
+/// Fourier transform of an image that computes the magnitudes for column frequencies 0 to `n_columns` − 1 and all row frequencies.
 pub(super) struct Spectrum {
     nx: usize,
     ny: usize,
@@ -19,19 +19,19 @@ pub(super) struct Spectrum {
     along_y: Arc<dyn Fft<f64>>,
 }
 
-/// Working memory for the transforms.
+/// Scratch memory for the Fourier transforms.
 #[derive(Clone, Debug, Default)]
 pub struct FourierWorkspace {
     line: Vec<f64>,
     of_line: Vec<Complex<f64>>,
     columns: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
-    /// Magnitudes |F| of the spectrum; the value of column u and row v is at index u · ny + v.
+    /// Magnitudes of the spectrum; the value for the column frequency u and the row frequency v is at index u · ny + v.
     pub(super) magnitudes: Vec<f64>,
 }
 
 impl Spectrum {
-    /// Prepares the transform of ny × nx images for columns 0 to `last`, limited to the existing columns.
+    /// Prepares the transform of ny × nx images for column frequencies 0 to `last`, limited to the existing columns.
     pub(super) fn new((ny, nx): (usize, usize), last: usize) -> Self {
         Self {
             nx,
@@ -42,12 +42,12 @@ impl Spectrum {
         }
     }
 
-    /// Returns the number of columns u, counted from 0.
+    /// Returns the number of column frequencies, counted from 0.
     pub(super) fn n_columns(&self) -> usize {
         self.n_columns
     }
 
-    /// Transforms the touched rows of an image, then the columns.
+    /// Transforms the rows of an image that contain touched taxels, then the columns.
     pub(super) fn transform(&self, image: &Image, workspace: &mut FourierWorkspace) {
         assert_eq!((image.nx, image.ny), (self.nx, self.ny));
         let FourierWorkspace {
@@ -94,7 +94,7 @@ pub(super) mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// Returns |F(u, v)| by its definition; u may be negative.
+    /// Returns the magnitude of the spectrum at the frequencies (u, v) by its definition; u may be negative.
     pub(crate) fn by_definition(image: &Image, u: isize, v: isize) -> f64 {
         let of = |n: usize, k: isize, i: f64| k as f64 * i / n as f64;
         let super::super::image::Touched { x, y, value } = &image.touched;

@@ -4,7 +4,7 @@ use super::*;
 use crate::random::Seed;
 use rand::Rng;
 
-/// Returns an irregular blob with holes in the middle third of an array, between 0 and 1.
+/// Returns a test frame with an irregular blob with holes in the middle third of an array; values are between 0 and 1.
 pub(super) fn frame((ny, nx): (usize, usize)) -> Vec<f64> {
     let mut rng = Seed::new(7).named("frame").rng();
     let near = |i: usize, n: usize| 3 * i >= n && 3 * i < 2 * n;

@@ -8,8 +8,8 @@
 //! Untouched taxels stay untouched, since a frame does not contain their distance to the object. If the tilt would bring
 //! them into contact, the image still ends at its old border.
 
-/// Writes the tilted frame of ny × nx values, row after row. `slope` is (a, b), the increase per column and per row in the unit of the frame.
-/// Values below `level` count as untouched.
+/// Writes the frame of ny × nx values (row after row) that would be measured on a tilted object. `slope` is (a, b), the increase of the value per column and
+/// per row in the unit of the frame. Values below `level` count as untouched.
 ///
 /// # Panics
 /// If `out` and the frame differ in length, or if the frame does not consist of whole rows.

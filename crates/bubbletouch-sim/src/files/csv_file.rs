@@ -25,7 +25,7 @@ impl CsvFile {
         })
     }
 
-    /// Appends a row, given as a struct with one field per column.
+    /// Appends a row to the table; `row` is a struct with one field per column.
     ///
     /// # Errors
     /// If the row cannot be written.
@@ -41,7 +41,7 @@ impl CsvFile {
         })
     }
 
-    /// Flushes the file to disk and moves it to its path.
+    /// Flushes the CSV file to disk and moves it to its path.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -50,7 +50,7 @@ impl CsvFile {
     }
 }
 
-/// Returns a conversion of CSV read errors to errors that name the file, the line if it is known, and what is `allowed`.
+/// Returns a function that converts CSV read errors to errors that name the file, the line if it is known, and the allowed contents.
 pub fn table_error(path: &Path, allowed: &str) -> impl Fn(csv::Error) -> Error {
     move |error| {
         let line = error.position().map(|at| format!(", line {}", at.line()));

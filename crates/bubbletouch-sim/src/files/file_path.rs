@@ -27,7 +27,7 @@ pub struct FilePath {
 
 /// Runs `parse` with paths relative to `folder`; with `None`, paths are kept as written.
 pub fn with_folder<T>(folder: impl Into<Option<PathBuf>>, parse: impl FnOnce() -> T) -> T {
-    /// Guard that restores the previous folder, even if parsing panics.
+    /// Guard that restores the previously set folder, even if parsing panics.
     struct Before(Option<PathBuf>);
     impl Drop for Before {
         fn drop(&mut self) {
@@ -39,12 +39,12 @@ pub fn with_folder<T>(folder: impl Into<Option<PathBuf>>, parse: impl FnOnce() -
 }
 
 impl FilePath {
-    /// Returns the path as written in the file.
+    /// Returns the path as written in the study file.
     pub fn as_written(&self) -> &Path {
         &self.written
     }
 
-    /// Returns the resolved path. If the file was parsed without a folder, a relative path is resolved relative to `folder`.
+    /// Returns the resolved path. If the study file was parsed without a folder, a relative path is resolved relative to `folder`.
     pub fn within(&self, folder: &Path) -> PathBuf {
         match self.resolved == self.written {
             true => folder.join(&self.written),

@@ -10,13 +10,13 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// Identity of a file, independent of its path.
+/// Identity of a file on its device, independent of its path.
 #[cfg(unix)]
 type FileId = (u64, u64);
 #[cfg(not(unix))]
 type FileId = PathBuf;
 
-/// Recorded files, each with the path under which it was read; `None` if recording is off.
+/// Input files recorded so far, each with the path under which it was read; `None` if recording is off.
 static INPUTS: Mutex<Option<BTreeMap<FileId, PathBuf>>> = Mutex::new(None);
 
 /// Starts recording the files that this process reads, and prevents overwriting them.
@@ -62,7 +62,7 @@ pub fn read_to_string(path: &Path) -> io::Result<String> {
     Ok(text)
 }
 
-/// Checks that writing a file does not destroy an input.
+/// Returns an error if writing the file at `path` would destroy an input of this process.
 ///
 /// # Errors
 /// If this process has read the file, also through a link or another path.

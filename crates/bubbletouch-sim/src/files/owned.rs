@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Name of the manifest in an output folder.
 pub const MANIFEST_FILE: &str = "manifest.json";
 
-/// Name of the subcommand that writes result folders.
+/// Name of the subcommand that writes the result folders of studies.
 pub const RUN: &str = "run";
 
 /// Keys of the file lists in a manifest; the keys of each list are file names.
@@ -83,7 +83,7 @@ impl OwnedFiles {
         Ok(owned)
     }
 
-    /// Checks that files with these names can be written: each must be absent or owned by the program.
+    /// Returns an error unless each file with one of these names is absent or owned by the program.
     ///
     /// # Errors
     /// If a file was not written by the program, is a link, or is an input of this command; the error names the file.
@@ -133,7 +133,8 @@ impl OwnedFiles {
     }
 }
 
-/// Checks that a single output file can be written. The file must not be an input of this command, nor belong to an output folder of another command.
+/// Returns an error unless a single output file can be written. The file must not be an input of this command, nor belong to an output folder of another
+/// command.
 ///
 /// # Errors
 /// If the file is an input or belongs to another output folder; the error names the file.

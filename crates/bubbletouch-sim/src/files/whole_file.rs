@@ -66,7 +66,7 @@ impl WholeFile {
         })
     }
 
-    /// Writes a part of the file.
+    /// Writes a part of the file with the function `fill`.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -129,7 +129,7 @@ impl Drop for WholeFile {
     }
 }
 
-/// Writes a file with `fill`. If writing fails, an existing file at `path` stays unchanged.
+/// Writes a file with the function `fill`. If writing fails, an existing file at `path` stays unchanged.
 ///
 /// # Errors
 /// If the file cannot be written, or if `fill` returns an error.
@@ -142,7 +142,7 @@ pub fn write_whole(
     file.commit()
 }
 
-/// Writes bytes to a file. If writing fails, an existing file stays unchanged.
+/// Writes bytes to the file at `path`. If writing fails, an existing file stays unchanged.
 ///
 /// # Errors
 /// If the file cannot be written.

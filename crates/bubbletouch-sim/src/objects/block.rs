@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 /// Axis-aligned box about the origin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
-    /// Half edge lengths, metres.
+    /// Half of the edge lengths of the box, metres.
     pub half: DVec3,
     /// Radius of edges and corners, from zero to the smallest half edge length, metres.
     pub rounding: f64,
@@ -28,10 +28,10 @@ impl Block {
         core.dot(direction.abs()) + self.rounding * direction.length()
     }
 
-    /// Packs the box with spheres: the corners, then rows along each edge, then rows on each face that become wider towards its middle.
+    /// Packs the box with spheres: first the corners, then rows along each edge, then rows on each face that become wider towards its middle.
     ///
-    /// An enlarged ball of tangent radius r covers a flat face to sqrt(h(2r + h)) around its foot: a square cell of half side
-    /// sqrt(h(r + h/2)).
+    /// A ball of radius r that touches a flat face and is enlarged covers a disc of radius sqrt(h(2r + h)) around the touching point. This disc contains a
+    /// square cell of half side sqrt(h(r + h/2)).
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let edge = EdgeRow::new(self, fit);
         self.pack_corners(&edge, fit, spheres);
@@ -124,7 +124,7 @@ impl Block {
         }
     }
 
-    /// Moves a point of the sharp box to the nearest point of the rounded box.
+    /// Returns the point of the rounded box nearest to a point of the sharp box.
     fn onto_surface(&self, point: DVec3) -> DVec3 {
         let core = self.half - DVec3::splat(self.rounding);
         let nearest = point.clamp(-core, core);
@@ -136,26 +136,27 @@ impl Block {
     }
 }
 
-/// Balls along the edges and in the corners of a box.
+/// Row of balls along an edge of a box, with the balls in its corners.
 struct EdgeRow {
-    /// Tangent radius of the balls; their centres lie at this distance inside both faces.
+    /// Radius of the balls before enlargement, metres; their centres lie at this distance inside both faces.
     radius: f64,
     /// Whether the edge is round, so that the balls fill it.
     is_round: bool,
-    /// Width of the strip that the row covers on each face, from the edge.
+    /// Width of the strip that the row covers on each adjacent face, from the edge, metres.
     width: f64,
-    /// Length of the strip that the ball in the corner covers along the edge.
+    /// Length along the edge that the ball in the corner covers, metres.
     corner: f64,
-    /// Half the distance between balls along the edge.
+    /// Half the distance between balls along the edge, metres.
     half_spacing: f64,
 }
 
-/// Fraction of its squared disc radius that a ball in a round edge uses to cover the faces; the rest covers the edge. If smaller, the faces need more spheres;
-/// if larger, the edge needs more spheres and protrudes.
+/// Fraction of its squared disc radius that a ball in a round edge uses to cover the faces; the ball covers the edge with the remaining fraction. If smaller,
+/// the faces need more spheres; if larger, the edge needs more spheres and protrudes.
 const ACROSS: f64 = 0.1;
 
 impl EdgeRow {
-    /// Places balls along an edge. At a sharp edge r = h covers the most: √2·h in either direction along the edge (2r² + y² ≤ (r + h)²), and 2h on the faces.
+    /// Computes the radius and the spacing of the balls along an edge. At a sharp edge r = h covers the most: √2·h in either direction along the edge (2r² +
+    /// y² ≤ (r + h)²), and 2h on the faces.
     fn new(block: &Block, fit: Fit) -> Self {
         let h = fit.reach();
         if block.rounding >= h {
@@ -188,7 +189,7 @@ impl EdgeRow {
 /// Pair of opposite faces of a box.
 struct Face {
     axis: usize,
-    /// Half the thickness of the box between the two faces, metres; the maximum radius of a ball.
+    /// Half the thickness of the box between the two faces, metres, which limits the radius of a ball.
     depth: f64,
     /// Half side lengths of the face, metres.
     half: [f64; 2],
@@ -203,8 +204,8 @@ impl Face {
         }
     }
 
-    /// Places rectangular rows of balls from the border inwards. A plain grid is used if balls are as large as the box is thick, or if fewer than two rows
-    /// remain. `covered` is the width of the border that the rows of the edges cover.
+    /// Places balls in rectangular rows from the border of the face inwards. A plain grid is used if balls are as large as the box is thick, or if fewer than
+    /// two rows remain. `covered` is the width of the border that the rows along the edges cover, metres.
     fn pack(&self, mut covered: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         let h = fit.reach();
         loop {
@@ -237,7 +238,8 @@ impl Face {
         }
     }
 
-    /// Packs a face by equal cells; the outermost and therefore smallest balls determine their number.
+    /// Places balls on a grid of equal cells in the middle of the face, beside a border of width `covered`. `left` are the half sides of the grid, metres.
+    /// The smallest balls, which are the outermost, determine the number of cells.
     fn pack_grid(&self, covered: f64, left: [f64; 2], fit: Fit, spheres: &mut Vec<Sphere>) {
         let largest = (0.5 * fit.disc_squared(self.depth)).sqrt();
         let mut counts = left.map(|l| (l / largest).ceil());
@@ -271,7 +273,7 @@ impl Face {
     }
 }
 
-/// Returns the middles of equal cells that cover −half … half and are no wider than 2 × `largest_half`; none if half ≤ 0.
+/// Returns the centres of equal cells that cover the interval from −half to half and are no wider than 2 × `largest_half`; none if half ≤ 0.
 fn cells(half: f64, largest_half: f64) -> Vec<f64> {
     // A remainder below a billionth of a cell is a rounding error, not a missing cell.
     let n = (half / largest_half - 1e-9).ceil().max(0.0);
@@ -281,7 +283,7 @@ fn cells(half: f64, largest_half: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns `x` and `−x`, or zero once if `x` is zero.
+/// Returns `x` and `−x`, or a single zero if `x` is zero.
 fn both_signs(x: f64) -> impl Iterator<Item = f64> {
     let second = (x != 0.0).then_some(-x);
     std::iter::once(x).chain(second)

@@ -32,7 +32,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use toml::Spanned;
 
-/// Built-in catalogue files: the name of the set, and the text of the file.
+/// Built-in catalogue files: the name of each object set, and the text of its file.
 const BUILTIN: [(&str, &str); 4] = [
     ("balls", include_str!("../../objects/balls.toml")),
     ("boxes", include_str!("../../objects/boxes.toml")),
@@ -40,7 +40,7 @@ const BUILTIN: [(&str, &str); 4] = [
     ("household", include_str!("../../objects/household.toml")),
 ];
 
-/// Named objects in named sets. Invariant: names are unique within a set, and every set has an object.
+/// Named objects in named sets. Invariant: object names are unique within a set, and every set has an object.
 #[derive(Clone, Debug)]
 pub struct Catalogue {
     entries: Vec<Entry>,
@@ -49,18 +49,18 @@ pub struct Catalogue {
 /// Object of a catalogue.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// Name of the set: `balls`, `household`.
+    /// Name of the object set, such as `balls` or `household`.
     pub set: String,
     /// Name of the object, unique within its set.
     pub name: String,
-    /// Source of the dimensions.
+    /// Source of the object's dimensions.
     pub source: String,
     /// Shape of the object, resting on z = 0 with the middle of its bounding box on the z axis.
     pub solid: Solid,
 }
 
 impl Entry {
-    /// Packs the object's shape with spheres, with a surface error of at most `surface_error` metres.
+    /// Packs the object's shape with spheres, with a distance between the surfaces of at most `surface_error` metres.
     ///
     /// # Errors
     /// If the packing fails, for example because the surface error is too small ([`pack`]).
@@ -118,7 +118,7 @@ impl Catalogue {
         &self.entries
     }
 
-    /// Returns the names of the sets, in order.
+    /// Returns the names of the object sets, in order.
     pub fn sets(&self) -> Vec<&str> {
         let mut sets: Vec<&str> = self.entries.iter().map(|e| e.set.as_str()).collect();
         sets.dedup();
@@ -141,7 +141,7 @@ impl Catalogue {
         Ok(entries)
     }
 
-    /// Returns the object with this name, in any set.
+    /// Returns the object with this name, in any object set.
     ///
     /// # Errors
     /// If the object does not exist; the error suggests similar names.
@@ -164,7 +164,7 @@ impl Catalogue {
     }
 }
 
-/// Returns right hands of an average man in five poses, palm up, so that a patch from above touches the palm.
+/// Returns right hands of an average man in five poses, palm up, so that a patch that comes from above touches the palm.
 fn hands() -> Result<Vec<Entry>> {
     let palm_up = Pose::from_rotation(DQuat::from_rotation_y(std::f64::consts::PI));
     let poses = [
@@ -244,7 +244,7 @@ impl WrittenObject {
     }
 }
 
-/// Converts an error of the TOML reader to an error with line and object.
+/// Converts an error of the TOML reader to an error that contains the line and the object.
 fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
     let place = match error.span() {
         Some(Range { start, .. }) => {
@@ -264,7 +264,7 @@ fn unreadable(place: &str, text: &str, error: &toml::de::Error) -> Error {
     )
 }
 
-/// Returns the quoted name of the `[[object]]` that contains the given byte of the text.
+/// Returns the name, in quotes, of the `[[object]]` that contains the given byte of the text.
 fn object_around(text: &str, byte: usize) -> Option<&str> {
     let mut starts = text.match_indices("[[object]]").map(|(at, _)| at);
     let start = starts.clone().take_while(|&at| at <= byte).last()?;

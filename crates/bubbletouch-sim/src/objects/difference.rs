@@ -13,15 +13,15 @@ use super::surface_patch::{PatchCell, SurfacePatch};
 use super::{Part, Solid, Sphere};
 use glam::DVec3;
 
-/// Enlargement of cuts, relative to the allowed gap. If larger, thin walls beside cuts are lost. If smaller, cells where a cut ends in the surface of a part
-/// must be divided further before they are proved to be empty.
+/// Enlargement of cuts (subtracted shapes), relative to the allowed gap. If larger, thin walls beside cuts are lost. If smaller, cells where a cut ends in
+/// the surface of a part must be divided further before they are proved to be empty.
 const GROWTH: f64 = 0.01;
-/// Maximum number of tested cells: four per allowed sphere.
+/// Maximum number of tested surface cells: four per allowed sphere.
 const MAX_CELLS: usize = 4 * MAX_SPHERES;
-/// Number of recent spheres that are tested for covering another cell.
+/// Number of recent spheres that are tested for covering the next surface cell.
 const LAST_SPHERES: usize = 24;
 
-/// Returns the spheres that approximate a solid with cuts; `None` if there are more than [`MAX_SPHERES`], or if the proof needs too many cells.
+/// Returns the spheres that approximate a solid with cuts; `None` if more than [`MAX_SPHERES`] are needed, or if the proof needs too many cells.
 pub(super) fn pack_difference(solid: &Solid, fit: Fit) -> Option<Vec<Sphere>> {
     let growth = GROWTH * fit.inside;
     let mut covering = Covering {
@@ -46,7 +46,7 @@ pub(super) fn pack_difference(solid: &Solid, fit: Fit) -> Option<Vec<Sphere>> {
     covering.spheres()
 }
 
-/// Ball inside the solid, with the distance of the farthest surface point that it covers.
+/// Ball inside the solid, with the distance from its centre to the farthest surface point that it covers.
 struct InnerBall {
     center: DVec3,
     radius: f64,
@@ -60,14 +60,14 @@ struct Covering<'a> {
     /// Maximum radius of a ball, metres.
     size: f64,
     balls: Vec<InnerBall>,
-    /// Cells for which there is no proof although they are smaller than the enlargement.
+    /// Surface cells that are smaller than the enlargement of the cuts, but are not proved to be covered or empty.
     doubtful: Vec<PatchCell>,
     n_cells: usize,
 }
 
 impl Covering<'_> {
-    /// Covers the surface within a patch by spheres; the solid is in the direction of `inwards` times the normal. Returns `None` if too many spheres or cells
-    /// are needed.
+    /// Covers a patch of the surface by spheres; the solid is in the direction of `inwards` times the normal. Returns `None` if too many spheres or cells are
+    /// needed.
     fn cover(&mut self, patch: &SurfacePatch, inwards: f64) -> Option<()> {
         let mut cells = patch.cells();
         while let Some(cell) = cells.pop() {
@@ -104,7 +104,8 @@ impl Covering<'_> {
         self.solid.depth_with_cuts_grown(point, self.growth)
     }
 
-    /// Returns whether a ball that is entirely solid or entirely empty contains the cell; the ball is centred on the normal through the cell's middle.
+    /// Returns whether the cell is proved to contain no surface of the solid: a ball that is entirely solid or entirely empty contains the cell. This ball is
+    /// centred on the normal through the cell's middle.
     fn is_no_surface(&self, cell: &PatchCell, (middle, normal): (DVec3, DVec3)) -> bool {
         let holds = |away: f64| {
             let center = middle + away * normal;
@@ -123,7 +124,7 @@ impl Covering<'_> {
         false
     }
 
-    /// Returns approximately the largest ball inside the solid that touches the surface at a point.
+    /// Returns approximately the largest ball inside the solid that touches the surface at the point `foot`.
     fn ball_at(&self, (foot, inward): (DVec3, DVec3)) -> Option<InnerBall> {
         let fits = |radius: f64| self.depth(foot + radius * inward) >= radius - 1.5 * self.growth;
         let mut low = 2.0 * self.growth;
@@ -154,7 +155,7 @@ impl Covering<'_> {
         cell.farthest(ball.center) <= ball.radius + self.fit.reach()
     }
 
-    /// Returns whether one of the most recent spheres covers a cell, and assigns the cell to this sphere.
+    /// Returns whether one of the most recent spheres covers a cell. If so, the cell is assigned to this sphere.
     fn is_covered(&mut self, cell: &PatchCell) -> bool {
         let last = self.balls.len().saturating_sub(LAST_SPHERES);
         let reach = self.fit.reach();
@@ -168,7 +169,7 @@ impl Covering<'_> {
         false
     }
 
-    /// Returns the spheres; `None` if a doubtful cell is not covered by any sphere.
+    /// Returns the spheres; `None` if no sphere covers one of the doubtful cells.
     fn spheres(mut self) -> Option<Vec<Sphere>> {
         for cell in std::mem::take(&mut self.doubtful) {
             let reach = self.fit.reach();

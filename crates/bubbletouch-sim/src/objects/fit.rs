@@ -3,25 +3,25 @@
 use super::Sphere;
 use glam::DVec3;
 
-/// Maximum number of spheres per part in `pack`. If larger, packings need more than 100 MB and a touch takes hours; if smaller, fine tolerances
-/// of large parts are rejected.
+/// Maximum number of spheres per part of a packing. If larger, packings need more than 100 MB and a touch takes hours; if smaller, fine tolerances of large
+/// parts are rejected.
 pub const MAX_SPHERES: usize = 2_000_000;
 
-/// Allowed distances of the spheres' surface outside and inside the surface of the solid, metres.
+/// Allowed distances between the surface of the spheres and the surface of the solid, outside and inside the solid, metres.
 ///
 /// A ball of radius r inside the solid that touches its surface is enlarged by the tolerance `outside`. The resulting sphere comes within the tolerance
 /// `inside` of every surface point p with |p − c| ≤ r + h, h = outside + inside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
-    /// Maximum distance by which a sphere reaches outside the solid, metres.
+    /// Largest height to which a sphere may protrude from the solid, metres.
     pub outside: f64,
-    /// Maximum distance of the solid's surface outside all spheres, metres.
+    /// Largest distance that the solid's surface may have from the nearest sphere, metres.
     pub inside: f64,
 }
 
 impl Fit {
-    /// Creates the tolerances for a packing: half of `tolerance` outside and all of it inside. On a flat cell or along an edge, the mean of the spheres'
-    /// surface is then the surface of the solid.
+    /// Creates the tolerances of a packing: half of `tolerance` outside the solid, and all of it inside. On a flat cell or along an edge, the mean of the
+    /// spheres' surface is then the surface of the solid.
     ///
     /// At t times the half side of a square cell (or of an interval) the sphere is outside − h·t² above the surface. In a square, t² is the mean over the two
     /// sides. The mean of t² over the cell is 1/3. If more is outside, objects are too large; if less is outside, more spheres are needed.
@@ -32,7 +32,8 @@ impl Fit {
         }
     }
 
-    /// Returns h = outside + inside: an enlarged ball covers the surface points within r + h of its centre.
+    /// Returns the sum of both tolerances, metres. An enlarged ball covers the surface points whose distance from its centre exceeds the ball's radius by at
+    /// most this sum.
     pub fn reach(&self) -> f64 {
         self.outside + self.inside
     }
@@ -42,12 +43,12 @@ impl Fit {
         self.disc_squared(radius).sqrt()
     }
 
-    /// Returns the squared radius (r + h)² − r² of the disc that an enlarged ball covers on a flat face, m².
+    /// Returns the squared radius of the disc that an enlarged ball covers on a flat face, m²; `radius` is the ball's radius before enlargement.
     pub fn disc_squared(&self, radius: f64) -> f64 {
         self.reach() * (2.0 * radius + self.reach())
     }
 
-    /// Returns the tolerances without enlargement, for balls whose surface is the solid's surface.
+    /// Returns the tolerances for balls that are not enlarged, because their surface is the solid's surface.
     pub fn unswollen(&self) -> Self {
         Self {
             outside: 0.0,
@@ -55,7 +56,7 @@ impl Fit {
         }
     }
 
-    /// Returns the sphere of a ball that must cover surface points up to `farthest` from its centre (at most r + h). The ball is enlarged only as far as this
+    /// Returns the sphere for a ball that must cover surface points up to the distance `farthest` from its centre. The ball is enlarged only as far as this
     /// requires.
     pub fn covering(&self, center: DVec3, radius: f64, farthest: f64) -> Sphere {
         let needed = ((farthest - radius) / self.reach()).clamp(0.0, 1.0);
@@ -65,7 +66,7 @@ impl Fit {
         }
     }
 
-    /// Returns the fully enlarged sphere of a ball that touches the surface from inside.
+    /// Returns the sphere for a ball that touches the surface from inside; the ball is enlarged by the whole tolerance outside the solid.
     pub fn swollen(&self, center: DVec3, radius: f64) -> Sphere {
         Sphere {
             center,

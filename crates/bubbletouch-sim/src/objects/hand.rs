@@ -37,7 +37,7 @@ pub struct Hand {
     pub opposition: f64,
 }
 
-/// Digit with the lengths of its bones and the diameters at its joints, mm, for a hand of [`MODEL_LENGTH`].
+/// Dimensions of a digit: the lengths of its bones and the diameters at its joints, mm, for a hand of [`MODEL_LENGTH`].
 struct Digit {
     /// Position of the start of the metacarpal, mm.
     base: [f64; 2],
@@ -49,7 +49,7 @@ struct Digit {
     diameters: [f64; 5],
 }
 
-/// Model of the index, middle, ring and little finger.
+/// Dimensions of the index, middle, ring and little finger.
 const FINGERS: [Digit; 4] = [
     Digit {
         base: [-14.0, 20.0],
@@ -77,7 +77,7 @@ const FINGERS: [Digit; 4] = [
     },
 ];
 
-/// Model of the thumb, which has no third phalanx.
+/// Dimensions of the thumb, which has no third phalanx.
 const THUMB: Digit = Digit {
     base: [-17.0, 12.0],
     angle: -0.75,
@@ -85,7 +85,7 @@ const THUMB: Digit = Digit {
     diameters: [28.0, 25.0, 20.5, 15.0, 15.0],
 };
 
-/// Distance from the origin to the end of the middle finger in this model, mm.
+/// Distance from the origin to the end of the middle finger in the dimensions of this model, mm.
 const MODEL_LENGTH: f64 = 183.1;
 
 impl Hand {
@@ -102,7 +102,7 @@ impl Hand {
         }
     }
 
-    /// Returns a hand bent around a round object; `share` is 0 for a flat hand and 1 for a fist.
+    /// Returns a hand that is bent around a round object; `share` is the fraction of the bending, 0 for a flat hand and 1 for a fist.
     pub fn curled(share: f64) -> Self {
         let finger = FingerPose {
             spread: 0.0,
@@ -225,7 +225,8 @@ impl FingerPose {
 }
 
 impl Digit {
-    /// Returns the five joints of a digit, mm. Each bone is rotated down from the previous bone; the underside of a straight digit is on z = 0.
+    /// Returns the positions of the five joints of a digit, mm. Each bone is rotated down from the previous bone; the underside of a straight digit is on z =
+    /// 0.
     fn joints(&self, pose: &FingerPose, opposition: f64) -> [DVec3; 5] {
         let [base_x, base_y] = self.base;
         let mut joints = [DVec3::new(base_x, base_y, 0.5 * self.diameters[0]); 5];

@@ -9,23 +9,23 @@ use super::surface_patch::SurfacePatch;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Solid of revolution, given by a polygon that is rotated about z.
+/// Solid of revolution, given by a polygon that is rotated about the z axis.
 #[derive(Clone, Debug)]
 pub(super) struct Lathe {
     outline: Outline,
 }
 
-/// Balls of one radius, equally spaced on a circle about the axis.
+/// Ring of balls: balls of one radius, equally spaced on a circle about the axis.
 #[derive(Clone, Copy, Debug)]
 struct Ring {
-    /// Distance from the axis and height of the ball centres, metres.
+    /// Distance from the axis, and height, of the balls' centres, metres.
     center: DVec2,
-    /// Tangent radius of the balls before enlargement, metres.
+    /// Radius of the balls before enlargement, metres.
     radius: f64,
     n: f64,
 }
 
-/// Intervals of each edge that no ring covers yet, as distances from the edge's start.
+/// Intervals of each edge of the polygon that no ring of balls covers yet, as distances from the edge's start.
 struct Uncovered {
     intervals: Vec<Vec<[f64; 2]>>,
 }
@@ -52,7 +52,7 @@ impl Lathe {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Packs the solid: adds rings of balls until every point of the profile is covered all around.
+    /// Packs the solid with spheres: adds rings of balls until every point of the profile is covered all around.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let mut uncovered = Uncovered::new(&self.outline);
         while let Some(ring) = self.next_ring(&uncovered, fit) {
@@ -74,7 +74,8 @@ impl Lathe {
         }
     }
 
-    /// Returns the best ring among those that cover an end of the first uncovered interval: the ring that covers the largest length of edges per sphere.
+    /// Returns the best ring of balls among those that cover an end of the first uncovered interval. The best ring covers the largest length of edges per
+    /// sphere.
     fn next_ring(&self, uncovered: &Uncovered, fit: Fit) -> Option<Ring> {
         let (edge, target, step) = uncovered.first_end(&self.outline)?;
         let available = if step > 0.0 {
@@ -112,7 +113,8 @@ impl Lathe {
         best.map(|(.., ring)| ring)
     }
 
-    /// Returns candidate rings with different numbers of balls; every ball is the largest one that touches an edge at a point.
+    /// Returns candidate rings with different numbers of balls. Every ball is the largest one inside the solid that touches the edge with index `edge` at the
+    /// distance `along`.
     fn rings(&self, edge: usize, along: f64, fit: Fit) -> impl Iterator<Item = Ring> {
         let foot = self.outline.edges[edge].point(along);
         let inward = self.outline.edges[edge].inward;
@@ -139,7 +141,7 @@ impl Lathe {
         })
     }
 
-    /// Returns the interval of an edge that a ring covers all around.
+    /// Returns the interval of an edge that a ring of balls covers all around; `None` if there is none.
     ///
     /// Half-way between two balls the squared distance of the profile point (ρ, z) from the two centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. The
     /// squared distance is quadratic along an edge, and the point is covered if it is at most `(r + h)²`.
@@ -199,13 +201,13 @@ impl Lathe {
 }
 
 impl Ring {
-    /// Returns the distance from a profile point, half-way between two balls, to the balls' centres, metres.
+    /// Returns the distance from a profile point to the centres of the two nearest balls, metres. The profile point is half-way between these balls.
     fn distance(&self, point: DVec2) -> f64 {
         let apart = 4.0 * point.x * self.center.x * (0.5 * PI / self.n).sin().powi(2);
         ((point - self.center).length_squared() + apart).sqrt()
     }
 
-    /// Adds the spheres of a ring that cover profile points up to `farthest` from their centres.
+    /// Adds the spheres of a ring. The spheres must cover profile points up to the distance `farthest` from their centres.
     fn push_spheres(&self, farthest: f64, fit: Fit, spheres: &mut Vec<Sphere>) {
         spheres.extend((0..self.n as usize).take(MAX_SPHERES + 1).map(|i| {
             let (sin, cos) = (TAU * i as f64 / self.n).sin_cos();
@@ -237,7 +239,7 @@ impl Uncovered {
     }
 }
 
-/// Removes an interval from a list of intervals. Remainders shorter than a billionth of the interval are rounding errors and are also removed.
+/// Removes an interval from a list of intervals. Remaining pieces shorter than a billionth of the interval are rounding errors and are also removed.
 fn subtract(intervals: &mut Vec<[f64; 2]>, [low, high]: [f64; 2]) {
     let slack = 1e-9 * (high - low);
     *intervals = intervals

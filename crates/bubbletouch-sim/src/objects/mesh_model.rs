@@ -19,7 +19,7 @@ struct Data {
     faces: Vec<ContactFace>,
 }
 
-/// Contact data of one triangle: its face, and the edges and corners that no earlier triangle owns.
+/// Contact data of one triangle: its face, and the edges and corners that belong to no earlier triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactFace {
     /// Unit normal of the triangle; zero if the triangle is too thin.
@@ -28,9 +28,9 @@ pub struct ContactFace {
     /// triangle. On a smooth surface this normal is therefore approximately minus the normal of this triangle. The normal is zero if there is not exactly one
     /// neighbour, or if the neighbour is too thin.
     pub across: [DVec3; 3],
-    /// For each side, from corner i to the next corner, whether this triangle owns it (and not the neighbouring triangle).
+    /// For each side, from corner i to the next corner, whether the side belongs to this triangle (and not to the neighbouring triangle).
     pub has_edge: [bool; 3],
-    /// For each corner, whether this triangle owns it (and not another triangle with the same corner).
+    /// For each corner, whether the corner belongs to this triangle (and not to another triangle with the same corner).
     pub has_corner: [bool; 3],
 }
 

@@ -53,11 +53,11 @@ pub use vertex_spheres::vertex_spheres;
 /// Named object that a patch can touch.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Name of the object, unique within its set: `mug`, `can_68x40`.
+    /// Name of the object, unique within its set, such as `mug` or `can_68x40`.
     pub name: String,
     /// Contact model in the object's frame: z up, resting on z = 0, centred in x and y unless its source defines another frame.
     pub model: Model,
-    /// Number of solids of the object (1 for a mesh).
+    /// Number of solid parts of the object (1 for a mesh).
     pub n_parts: usize,
 }
 

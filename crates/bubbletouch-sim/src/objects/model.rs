@@ -3,7 +3,7 @@
 use super::{MeshModel, SphereUnion};
 use crate::geometry::Aabb;
 
-/// Contact model: shape that taxels can touch, in the frame of the object.
+/// Contact model: the shape of an object that taxels can touch, in the frame of the object.
 #[derive(Clone, Debug)]
 pub enum Model {
     /// Union of spheres.
@@ -34,7 +34,7 @@ impl Model {
         }
     }
 
-    /// Computes the clusters of the spheres now instead of at the first touch; the tree of a mesh already exists.
+    /// Computes the clusters of the spheres now instead of at the first touch; for a mesh, nothing remains to be computed.
     pub fn prepare(&self) {
         if let Self::Spheres(spheres) = self {
             spheres.clusters();

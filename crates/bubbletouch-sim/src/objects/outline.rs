@@ -6,7 +6,7 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     pub start: DVec2,
-    /// Unit vector from start to end.
+    /// Unit vector from the start to the end of the edge.
     pub along: DVec2,
     /// Unit normal into the polygon.
     pub inward: DVec2,
@@ -25,7 +25,7 @@ impl Edge {
         }
     }
 
-    /// Returns the point of the edge at a distance from its start.
+    /// Returns the point of the edge at a distance from its start, metres.
     pub fn point(&self, distance: f64) -> DVec2 {
         self.start + distance * self.along
     }
@@ -43,7 +43,8 @@ impl Edge {
         (point - self.nearest(point)).length()
     }
 
-    /// Returns the radius at which a disc that grows from `foot` along `inward` first touches this edge; infinite if the disc never does.
+    /// Returns the radius at which a disc that touches the point `foot` and grows along `inward` first touches this edge. Infinite if the disc never touches
+    /// the edge.
     ///
     /// The disc through a point q has radius |q − foot|² / 2 n·(q − foot). Along a line this radius is quasi-convex, so its
     /// minimum on the edge lies where the disc is tangent to the line, or at an end.
@@ -75,7 +76,7 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// Orders the vertices counter-clockwise; edges for which `is_surface(start, end)` is true belong to the surface.
+    /// Creates the polygon with counter-clockwise vertices. Edges for which `is_surface(start, end)` is true belong to the surface of the solid.
     pub fn new(vertices: &[DVec2], is_surface: impl Fn(DVec2, DVec2) -> bool) -> Self {
         let mut vertices = vertices.to_vec();
         if area(&vertices) < 0.0 {
@@ -88,7 +89,7 @@ impl Outline {
         Self { vertices, edges }
     }
 
-    /// Returns the signed distance to the nearest surface edge, negative inside.
+    /// Returns the signed distance to the nearest edge of the surface, metres, negative inside.
     pub fn distance(&self, point: DVec2) -> f64 {
         let distances = self.edges.iter().map(|edge| edge.distance(point));
         let distance = distances.fold(f64::INFINITY, f64::min);
@@ -99,7 +100,7 @@ impl Outline {
         }
     }
 
-    /// Returns the index of the surface edge nearest to a point, and the nearest point on this edge.
+    /// Returns the index of the edge of the surface nearest to a point, and the nearest point on this edge.
     pub fn nearest(&self, point: DVec2) -> (usize, DVec2) {
         let mut best = (f64::INFINITY, 0, point);
         for (index, edge) in self.edges.iter().enumerate() {
@@ -136,7 +137,7 @@ impl Outline {
     }
 }
 
-/// Returns the reason why corners do not form a simple polygon; `None` if they do.
+/// Returns the reason why the vertices do not form a simple polygon; `None` if they do.
 pub(super) fn polygon_fault(vertices: &[DVec2]) -> Option<String> {
     if vertices.len() < 3 {
         return Some(format!("{} corners", vertices.len()));

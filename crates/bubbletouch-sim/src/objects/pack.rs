@@ -71,7 +71,7 @@ impl Solid {
     }
 }
 
-/// Packs a solid from which shapes are subtracted.
+/// Packs a solid from which shapes are subtracted with spheres.
 fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
     match pack_difference(solid, fit) {
         Some(spheres) => SphereUnion::new(spheres),
@@ -86,7 +86,7 @@ fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
     }
 }
 
-/// Returns whether the whole surface that a sphere covers lies inside another part, so that the sphere is not needed.
+/// Returns whether a sphere is not needed, because the whole surface that it covers lies inside another part.
 ///
 /// A sphere covers surface points within its radius plus the allowed gap. If two parts are equal, the later one is buried.
 fn is_buried(sphere: &Sphere, part: usize, solid: &Solid, fit: Fit) -> bool {

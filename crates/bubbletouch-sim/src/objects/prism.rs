@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 #[derive(Clone, Debug)]
 pub(super) struct Prism {
     outline: Outline,
-    /// Half the thickness, metres.
+    /// Half the thickness of the prism, metres.
     half: f64,
 }
 
@@ -36,7 +36,8 @@ impl Prism {
         across.fold(f64::NEG_INFINITY, f64::max) + self.half * direction.z.abs()
     }
 
-    /// Packs the prism with spheres: the walls by cells of each wall, then the uncovered rest of the two faces by cells of a square around the outline.
+    /// Packs the prism with spheres. The walls are divided into cells first, then the uncovered remainder of the two faces into cells of a square around the
+    /// outline.
     ///
     /// The ball of a cell touches the surface in the middle of the cell. The cell is divided until the enlarged ball covers its farthest point: |p − c| ≤ r +
     /// h. On a plane this condition is |p − foot|² ≤ (r + h)² − r².
@@ -108,8 +109,8 @@ impl Prism {
         }
     }
 
-    /// Returns the centre and radius of a disc inside the outline, with a radius of at most `largest`. The disc touches the outline at the point nearest to a
-    /// point outside. At a corner the disc is the corner itself, with radius 0.
+    /// Returns the centre and the radius of a disc inside the outline, with a radius of at most `largest`. The disc touches the outline at the point nearest
+    /// to `point`, which is outside. At a corner the disc is the corner itself, with radius 0.
     fn border_disc(&self, point: DVec2, largest: f64) -> (DVec2, f64) {
         let (edge, foot) = self.outline.nearest(point);
         let step = self
@@ -126,7 +127,8 @@ impl Prism {
         }
     }
 
-    /// Returns the patches of the prism's surface: each wall, and a rectangle around each face. Beside the outline, the rectangle lies outside the prism.
+    /// Returns the patches of the prism's surface: each wall, and a rectangle around each face. The parts of a rectangle beyond the outline are not part of
+    /// the surface.
     pub fn patches(&self) -> Vec<SurfacePatch> {
         let walls = self.outline.edges.iter().map(|edge| {
             let middle = edge.point(0.5 * edge.length).extend(0.0);
@@ -171,7 +173,7 @@ impl Prism {
     }
 }
 
-/// Rectangle in the coordinates of a wall or a face.
+/// Rectangular cell in the coordinates of a wall or a face.
 #[derive(Clone, Copy)]
 struct Cell {
     middle: DVec2,
@@ -179,7 +181,7 @@ struct Cell {
 }
 
 impl Cell {
-    /// Returns two halves of a cell, cut across the longer side.
+    /// Returns the two halves of a cell, cut across the longer side.
     fn split(&self) -> [Self; 2] {
         let mut half = self.half;
         let mut step = DVec2::ZERO;

@@ -86,12 +86,12 @@ pub enum Shape {
     },
 }
 
-/// Format of dimension names and lengths in error messages.
+/// Names and units of dimensions in error messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Wording {
-    /// Field names and metres: `height: -0.002 m`.
+    /// Field names, and lengths in metres, such as `height: -0.002 m`.
     Metres,
-    /// Keys of object files, in millimetres: `height_mm: -2`.
+    /// Keys of object files, and lengths in millimetres, such as `height_mm: -2`.
     MillimetreKeys,
 }
 
@@ -120,7 +120,7 @@ impl Wording {
         Err(Error::input(self.name(name), self.length(metres), allowed))
     }
 
-    /// Checks that a dimension is in its range, low ≤ metres ≤ high; `high` may be infinite.
+    /// Returns an error unless low ≤ metres ≤ high for the dimension `name`; `high` may be infinite.
     fn between(self, name: &str, metres: f64, low: f64, high: f64) -> Result<()> {
         if metres.is_finite() && (low..=high).contains(&metres) {
             return Ok(());
@@ -180,7 +180,7 @@ impl Wording {
 }
 
 impl Shape {
-    /// Checks that all dimensions of the shape are in range.
+    /// Returns an error if a dimension of the shape is out of range.
     ///
     /// # Errors
     /// If a dimension is out of range; the error names the first one.
@@ -188,7 +188,7 @@ impl Shape {
         self.check_worded(Wording::Metres)
     }
 
-    /// Checks the dimensions of the shape. The location of the error is the name of the dimension.
+    /// Returns an error if a dimension of the shape is out of range. The location of the error is the name of the dimension.
     pub(super) fn check_worded(&self, wording: Wording) -> Result<()> {
         let positive = |name, metres| wording.positive(name, metres);
         let at_least = |name, metres, low| wording.between(name, metres, low, f64::INFINITY);

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::{DVec2, DVec3};
 
-/// Shape at a pose in the frame of the object.
+/// Part of a solid: a shape at a pose in the frame of the object.
 #[derive(Clone, Debug)]
 pub struct Part {
     shape: Shape,
@@ -21,18 +21,18 @@ pub struct Part {
     pose: Pose,
 }
 
-/// Union of shapes minus other shapes. Invariant: there is at least one part.
+/// Union of parts (shapes) minus other shapes. Invariant: there is at least one part.
 #[derive(Clone, Debug)]
 pub struct Solid {
     parts: Vec<Part>,
     /// Shapes that are subtracted from all parts.
     cuts: Vec<Part>,
-    /// Distance by which cuts are enlarged, metres.
+    /// Distance by which the subtracted shapes are enlarged, metres.
     seam: f64,
 }
 
-/// Enlargement of cuts, relative to the diagonal of the box around the parts. The enlargement removes membranes of zero thickness where a cut ends in a part's
-/// surface. If smaller, rounding leaves such membranes; if larger, walls beside cuts become thinner.
+/// Enlargement of the subtracted shapes, relative to the diagonal of the box around the parts. The enlargement removes membranes of zero thickness where a
+/// subtracted shape ends in a part's surface. If smaller, rounding leaves such membranes; if larger, walls beside subtracted shapes become thinner.
 const SEAM: f64 = 4e-6;
 
 /// Basic form of a shape; five forms represent all shapes.
@@ -45,8 +45,9 @@ enum Kernel {
     SphereSweep(SphereSweep),
 }
 
-/// Smallest gap of a turned polygon relative to its size, because intervals on its edges have an accuracy of 1e-9 of an edge. The rim of a sharp edge reaches
-/// the limit of spheres long before. If larger, fine packings are rejected; if smaller, edges count as covered that no sphere reaches.
+/// Smallest gap that a packing of a solid of revolution may leave, relative to its size. Intervals on its edges have an accuracy of 1e-9 of an edge. The rim
+/// of a sharp edge reaches the limit of spheres long before. If larger, fine packings are rejected; if smaller, edges count as covered although no sphere
+/// covers them.
 const MIN_REACH: f64 = 1e-8;
 
 impl Part {
@@ -101,14 +102,14 @@ impl Part {
         support + self.pose.translation.dot(direction)
     }
 
-    /// Returns whether rounding errors are small compared with the gaps that a packing may leave.
+    /// Returns whether rounding errors are small compared with the gaps that a packing with the tolerances `fit` may leave.
     pub(super) fn resolves(&self, fit: Fit) -> bool {
         let along = |axis: DVec3| self.support(axis) + self.support(-axis);
         let size = DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).length();
         !matches!(self.kernel, Kernel::Lathe(_)) || fit.reach() >= MIN_REACH * size
     }
 
-    /// Returns spheres whose union approximates the part within the tolerances.
+    /// Returns spheres whose union approximates the part within the tolerances `fit`.
     pub(super) fn pack(&self, fit: Fit) -> Vec<Sphere> {
         let mut spheres = Vec::new();
         match &self.kernel {
@@ -137,7 +138,7 @@ impl Part {
         moved.collect()
     }
 
-    /// Returns points of the part's surface including corners and edges, at most about `spacing` (metres) apart.
+    /// Returns points on the part's surface, including its corners and edges, at most about `spacing` (metres) apart.
     fn surface_points(&self, spacing: f64) -> Vec<DVec3> {
         let mut points = Vec::new();
         match &self.kernel {
@@ -170,7 +171,7 @@ impl Solid {
         })
     }
 
-    /// Subtracts shapes from the solid.
+    /// Returns this solid without the volume of the shapes `cuts`.
     ///
     /// # Errors
     /// If the cuts remove the whole surface of a part, as tested at points a hundredth of the part's size apart.
@@ -238,7 +239,7 @@ impl Solid {
         }
     }
 
-    /// Returns the solid moved by a rigid motion.
+    /// Returns the solid after a rigid motion.
     pub fn moved(&self, motion: &Pose) -> Self {
         let mut solid = self.clone();
         for part in solid.parts.iter_mut().chain(&mut solid.cuts) {
@@ -269,7 +270,7 @@ impl Solid {
     }
 }
 
-/// Returns the signed distance to the nearest of several parts, metres, negative inside one of them; infinite if there are no parts.
+/// Returns the signed distance to the nearest of several parts, metres, negative inside a part; infinite if there are no parts.
 fn nearest(parts: &[Part], point: DVec3) -> f64 {
     let distances = parts.iter().map(|part| part.distance(point));
     distances.fold(f64::INFINITY, f64::min)

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
 
-/// Part `[[object.part]]` or cut `[[object.subtract]]` of an object: the name of a shape, its position, and its lengths.
+/// Part `[[object.part]]` or subtracted shape `[[object.subtract]]` of an object file: the name of a shape, its position, and its lengths.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WrittenPart {
@@ -31,7 +31,7 @@ pub(super) struct WrittenPart {
     across_flats_mm: Option<Spanned<f64>>,
     thickness_mm: Option<Spanned<f64>>,
     rounding_mm: Option<Spanned<f64>>,
-    /// Corners (diameter, height) of a turned part, as in its drawing, mm.
+    /// Corners (diameter, height) of the profile of a turned part, as in a technical drawing, mm.
     profile_mm: Option<Spanned<Vec<[f64; 2]>>>,
     outline_mm: Option<Spanned<Vec<[f64; 2]>>>,
     points_mm: Option<Spanned<Vec<[f64; 3]>>>,
@@ -79,7 +79,7 @@ impl Solid {
     }
 }
 
-/// Converts an error of a part to an error at the position of its key.
+/// Converts an error about a part to an error with the position of the part's key in the file.
 pub(super) fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
     match error {
         Error::Input {
@@ -98,7 +98,7 @@ pub(super) fn of_part(error: Error, place: impl Fn(&str) -> String) -> Error {
 }
 
 impl WrittenPart {
-    /// Converts the part to metres and checks it. The location of an error is a key.
+    /// Converts the part from millimetres to metres and checks it. The location of an error is a key.
     pub fn part(mut self) -> Result<Part> {
         let moved = |value: &mut Option<Spanned<[f64; 3]>>, key: &str| {
             let value = value.take().map_or([0.0; 3], Spanned::into_inner);
@@ -210,7 +210,7 @@ impl WrittenPart {
         })
     }
 
-    /// Returns every key that a shape may have, with the position of its value in the file.
+    /// Returns every key that the table of a shape may have, with the position of its value in the file.
     fn keys(&self) -> Vec<(&'static str, Option<Range<usize>>)> {
         fn place<T>(value: &Option<Spanned<T>>) -> Option<Range<usize>> {
             value.as_ref().map(Spanned::span)

@@ -6,7 +6,7 @@ use glam::{DVec3, DVec4};
 /// Maximum number of spheres in a cluster. If larger, more distant spheres are tested; if smaller, more clusters are tested.
 pub(crate) const MAX_IN_CLUSTER: usize = 16;
 
-/// Spheres of an object in clusters of similar position and size. Equal spheres give equal clusters.
+/// Spheres of an object, grouped in clusters of similar position and size. Equal spheres give equal clusters.
 #[derive(Clone, Debug)]
 pub struct SphereClusters {
     /// Centres of the spheres, cluster by cluster: x, y, z, metres. Zeros follow the last sphere, so that a full cluster can be
@@ -19,20 +19,20 @@ pub struct SphereClusters {
     /// Index of the first sphere of each cluster, followed by the total number of spheres.
     starts: Vec<u32>,
     bounds: ClusterBounds,
-    /// Ball around all spheres, metres.
+    /// Ball that contains all spheres, metres, in the frame of the object.
     ball: Sphere,
 }
 
-/// Bounds of all clusters, stored by coordinate for vectorised tests; metres, in the frame of the object.
+/// Bounding boxes and balls of all clusters, stored coordinate by coordinate for vectorised tests; metres, in the frame of the object.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ClusterBounds {
-    /// Middles of the boxes around the centres of each cluster's spheres: x, y, z, metres.
+    /// Centres of the boxes around the sphere centres of each cluster: x, y, z, metres.
     pub middle: [Vec<f64>; 3],
-    /// Half sides of the boxes around the centres of each cluster's spheres, metres.
+    /// Half sides of the boxes around the sphere centres of each cluster: x, y, z, metres.
     pub half: [Vec<f64>; 3],
     /// Radius of the largest sphere of each cluster, metres.
     pub largest: Vec<f64>,
-    /// Radius of the ball around each middle that contains the cluster's spheres, metres.
+    /// Radius of the ball that contains the spheres of each cluster, centred at `middle`, metres.
     pub radius: Vec<f64>,
 }
 
@@ -75,17 +75,17 @@ impl SphereClusters {
         self.starts[self.starts.len() - 1] as usize
     }
 
-    /// Returns a ball around all spheres, in the frame of the object, metres.
+    /// Returns a ball that contains all spheres, in the frame of the object, metres.
     pub fn ball(&self) -> Sphere {
         self.ball
     }
 
-    /// Returns the bounds of the clusters.
+    /// Returns the bounding boxes and balls of the clusters.
     pub(crate) fn bounds(&self) -> &ClusterBounds {
         &self.bounds
     }
 
-    /// Returns the indices in the object of the spheres of a cluster.
+    /// Returns the indices of the spheres of a cluster in the object.
     pub(crate) fn numbers(&self, cluster: usize) -> &[u32] {
         &self.numbers[self.starts[cluster] as usize..self.starts[cluster + 1] as usize]
     }
@@ -103,7 +103,7 @@ impl SphereClusters {
     }
 }
 
-/// Spheres of one cluster; unused lanes contain arbitrary spheres.
+/// Spheres of one cluster; entries beyond the number of spheres contain arbitrary spheres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster<'a> {
     pub n_spheres: usize,
@@ -114,7 +114,7 @@ pub(crate) struct Cluster<'a> {
 }
 
 impl Cluster<'_> {
-    /// Returns one sphere of the cluster.
+    /// Returns the sphere with index `k` in the cluster.
     #[inline(always)]
     pub fn at(&self, k: usize) -> Sphere {
         let [x, y, z] = self.centers;
@@ -142,7 +142,7 @@ impl ClusterBounds {
         self.radius.push(ball.radius);
     }
 
-    /// Returns the bounding ball of a cluster, metres.
+    /// Returns the bounding ball of a cluster, metres, in the frame of the object.
     pub fn ball(&self, cluster: usize) -> Sphere {
         Sphere {
             center: DVec3::from_array([0, 1, 2].map(|axis| self.middle[axis][cluster])),
@@ -156,7 +156,7 @@ impl ClusterBounds {
     }
 }
 
-/// Minimum and maximum of the centres and radii (component w) of several spheres.
+/// Minimum and maximum of the centres (x, y, z) and of the radii (component w) of several spheres.
 struct CenterBounds {
     low: DVec4,
     high: DVec4,
@@ -175,7 +175,7 @@ impl CenterBounds {
         self.high - self.low
     }
 
-    /// Returns the ball around the middle of the centres that contains the spheres.
+    /// Returns a ball that contains the spheres, centred at the middle of the range of their centres.
     fn ball(&self, spheres: &[Sphere]) -> Sphere {
         let center = (0.5 * (self.low + self.high)).truncate();
         let reaches = spheres.iter().map(|s| s.center.distance(center) + s.radius);
@@ -186,7 +186,7 @@ impl CenterBounds {
     }
 }
 
-/// Divides spheres into halves until each cluster is small enough. The cut is along the coordinate of the centres, or the radius, with the largest range.
+/// Divides spheres into halves until each cluster is small enough. Each cut is along the coordinate of the centres, or the radius, with the largest range.
 fn cut(spheres: &mut [(u32, Sphere)], sizes: &mut Vec<usize>) {
     if spheres.len() <= MAX_IN_CLUSTER {
         sizes.push(spheres.len());

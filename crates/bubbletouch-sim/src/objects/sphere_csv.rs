@@ -6,11 +6,11 @@ use crate::text::numbers_csv::{check_width, finite, line_of, rows_of, unreadable
 use glam::DVec3;
 use std::io::{self, Read, Write};
 
-/// Column names, in order.
+/// Names of the columns: centre coordinates and radius, in this order.
 const COLUMNS: [&str; 4] = ["x", "y", "z", "r"];
 
-/// Reads spheres from CSV with the columns `x,y,z,r` in metres. With a header, columns may have any order and others are ignored; without one there must be
-/// exactly four columns.
+/// Reads spheres from CSV with the columns `x,y,z,r` in metres. With a header, columns may have any order and further columns are ignored; without a header
+/// there must be exactly four columns.
 ///
 /// # Errors
 /// If the file is invalid; errors begin with `place`, the name of the file, and contain line and column.
@@ -65,14 +65,14 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Returns whether the first row contains no number.
+    /// Returns whether the first row contains no number and is therefore a header.
     fn is_header(&self) -> bool {
         self.record
             .iter()
             .all(|field| field.parse::<f64>().is_err())
     }
 
-    /// Returns the indices of the columns x, y, z, r, and the number of columns.
+    /// Returns the indices of the columns x, y, z, r, and the total number of columns.
     fn header(&self) -> Result<([usize; 4], usize)> {
         let mut columns = [0; 4];
         for (column, name) in columns.iter_mut().zip(COLUMNS) {

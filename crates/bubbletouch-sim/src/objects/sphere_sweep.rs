@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 /// Sphere swept along a polyline: the union of the convex hulls of consecutive balls.
 #[derive(Clone, Debug)]
 pub(super) struct SphereSweep {
-    /// Balls with centres and radii, at least one.
+    /// Balls at the points of the polyline, at least one.
     pub balls: Vec<Sphere>,
 }
 
@@ -18,12 +18,12 @@ struct Hull {
     first: Sphere,
     along: DVec3,
     length: f64,
-    /// Change of the radius per metre along the axis. The value is the sine of the cone's half angle, negative if the cone becomes narrower.
+    /// Change of the ball's radius per metre along the axis. The value is the sine of the cone's half angle, negative if the cone becomes narrower.
     slope: f64,
 }
 
 impl Hull {
-    /// Creates the hull; `None` if one ball contains the other, because the larger ball is then the hull.
+    /// Creates the convex hull of two balls; `None` if one ball contains the other, because the larger ball is then the hull.
     fn new(first: Sphere, last: Sphere) -> Option<Self> {
         let axis = last.center - first.center;
         let length = axis.length();
@@ -47,7 +47,8 @@ impl Hull {
         (1.0 - self.slope * self.slope).sqrt()
     }
 
-    /// Returns the signed distance to the hull, metres: the minimum over t of |p − c(t)| − r(t), which is convex in t.
+    /// Returns the signed distance from a point p to the hull, metres: the minimum of |p − c(t)| − r(t) over the balls with centre c(t) and radius r(t). This
+    /// function is convex in t.
     fn distance(&self, point: DVec3) -> f64 {
         let from_first = point - self.first.center;
         let x = from_first.dot(self.along);
@@ -91,7 +92,7 @@ impl SphereSweep {
             .filter_map(|pair| Hull::new(pair[0], pair[1]))
     }
 
-    /// Returns the signed distance to the sweep, metres; exact outside, and a lower bound of the depth inside.
+    /// Returns the signed distance from a point to the sweep, metres; exact outside, and a lower bound of the depth inside.
     pub fn distance(&self, point: DVec3) -> f64 {
         let to_balls = self
             .balls
@@ -111,7 +112,7 @@ impl SphereSweep {
         supports.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Packs the sweep with spheres: the balls themselves, and a row of enlarged balls along each hull.
+    /// Packs the sweep with spheres: the balls at the points of the polyline, and a row of enlarged balls along each hull.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let closed = self.balls.len() > 1 && self.balls.first() == self.balls.last();
         let ends = &self.balls[usize::from(closed)..];

@@ -82,13 +82,14 @@ impl SphereUnion {
             .expect("a union has at least one sphere")
     }
 
-    /// Returns the distance from a point to the farthest point of a sphere, metres: the radius of an enclosing ball around the point.
+    /// Returns the distance from a point to the farthest surface point of a sphere, metres. This distance is the radius of an enclosing ball around the
+    /// point.
     pub fn reach_from(&self, point: DVec3) -> f64 {
         let reach = |sphere: &Sphere| sphere.center.distance(point) + sphere.radius;
         self.spheres.iter().map(reach).fold(0.0, f64::max)
     }
 
-    /// Returns the union moved by a rigid motion.
+    /// Returns the union after a rigid motion.
     pub fn moved(&self, pose: &Pose) -> Self {
         let spheres = self
             .spheres

@@ -7,15 +7,15 @@ use glam::DVec3;
 /// Largest measured distances between the surfaces of a solid and of its spheres, metres; never negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceError {
-    /// Largest distance by which a sphere reaches outside the solid, metres.
+    /// Largest height to which a sphere protrudes from the solid, metres.
     pub protrusion: f64,
-    /// Largest distance of the solid's surface outside all spheres, metres.
+    /// Largest distance from the solid's surface to the nearest sphere, metres.
     pub gap: f64,
     /// Number of tested points of the solid's surface.
     pub n_surface_points: usize,
 }
 
-/// Measures the surface error at points of the solid's surface, at most about `spacing` (metres) apart, and at points all over each sphere.
+/// Measures both distances at points of the solid's surface, at most about `spacing` (metres) apart, and at points all over each sphere.
 pub fn surface_error(solid: &Solid, union: &SphereUnion, spacing: f64) -> SurfaceError {
     let points = solid.surface_points(spacing);
     SurfaceError {
@@ -43,7 +43,7 @@ fn protrusion(solid: &Solid, spheres: &[Sphere]) -> f64 {
     largest
 }
 
-/// Returns the point of a sphere in the direction in which the solid's surface is nearest to its centre.
+/// Returns the point of a sphere in the direction from its centre to the nearest point of the solid's surface.
 fn outermost_point(solid: &Solid, sphere: &Sphere) -> DVec3 {
     let step = 1e-4 * sphere.radius;
     let slope = |axis: DVec3| {

@@ -5,13 +5,13 @@ use crate::geometry::Pose;
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Patch of the surface of a basic form, parametrised by a rectangle.
+/// Patch of the surface of a part, parametrised by a rectangle of two parameters.
 #[derive(Clone, Debug)]
 pub(super) struct SurfacePatch {
     form: PatchForm,
-    /// Pose of the patch, in the frame of its form.
+    /// Pose of the patch in the frame of the part.
     pose: Pose,
-    /// Offset by which the patch lies outside the form, metres.
+    /// Distance by which the patch is moved outwards from the part's surface, metres.
     offset: f64,
     /// Lower corner of the rectangle of parameters.
     pub low: DVec2,
@@ -28,18 +28,18 @@ enum PatchForm {
     Round { ring: f64, tube: f64 },
 }
 
-/// Rectangle of parameters of a surface patch; its surface lies within `bulge` of the convex hull of its corners.
+/// Rectangular cell of a patch's parameters. The cell's surface lies within the distance `bulge` of the convex hull of its corners.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PatchCell {
     pub low: DVec2,
     pub high: DVec2,
-    /// Corners of the cell: the low corner, its neighbours along x and along y, and the high corner.
+    /// Points of the surface at the corners of the cell: the low corner, its neighbours along x and along y, and the high corner.
     pub corners: [DVec3; 4],
     bulge: f64,
 }
 
 impl SurfacePatch {
-    /// Creates a rectangle about the origin of a plane with orthogonal unit axes `x` and `y`; x × y points outside.
+    /// Creates a rectangle about the origin of a plane with orthogonal unit axes `x` and `y`; the vector product x × y points outwards.
     pub fn flat(origin: DVec3, [x, y]: [DVec3; 2], half: DVec2) -> Self {
         Self {
             form: PatchForm::Flat,
@@ -64,7 +64,7 @@ impl SurfacePatch {
         }
     }
 
-    /// Creates the surface of a torus about z.
+    /// Creates the surface of a torus about z with the radii `ring` (circle in the middle of the tube) and `tube`, metres.
     pub fn torus(ring: f64, tube: f64) -> Self {
         Self {
             form: PatchForm::Round { ring, tube },
@@ -85,7 +85,7 @@ impl SurfacePatch {
         }
     }
 
-    /// Creates the octant of a ball on the given sides (1 or −1) of its centre.
+    /// Creates one eighth of a ball's surface, on the given sides (1 or −1) of its centre along x, y, z.
     pub fn eighth_of_ball(center: DVec3, radius: f64, sides: DVec3) -> Self {
         let axes = [sides.x * DVec3::X, sides.y * DVec3::Y];
         let is_up = sides.x * sides.y * sides.z > 0.0;
@@ -98,13 +98,13 @@ impl SurfacePatch {
         }
     }
 
-    /// Returns the patch moved by a rigid motion, which may also change the direction of its z axis.
+    /// Returns the patch after a rigid motion, which may also change the direction of its z axis.
     pub fn moved(mut self, motion: &Pose) -> Self {
         self.pose = motion.compose(&self.pose);
         self
     }
 
-    /// Returns the patch moved outwards by an offset, metres.
+    /// Returns the patch after a movement outwards by `offset`, metres.
     pub fn grown(mut self, offset: f64) -> Self {
         self.offset = offset;
         self
@@ -205,7 +205,7 @@ impl SurfacePatch {
 }
 
 impl PatchCell {
-    /// Returns an upper bound of the distance from a point to the cell.
+    /// Returns an upper bound of the distance from the point `from` to all points of the cell, metres.
     pub fn farthest(&self, from: DVec3) -> f64 {
         let distances = self.corners.map(|corner| corner.distance(from));
         distances.into_iter().fold(0.0, f64::max) + self.bulge

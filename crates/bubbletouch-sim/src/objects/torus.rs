@@ -23,7 +23,7 @@ impl Torus {
         self.ring * direction.truncate().length() + self.tube * direction.length()
     }
 
-    /// Packs the torus with one ring of n balls that have the radius of the tube.
+    /// Packs the torus with one ring of equally spaced balls that have the radius of the tube.
     ///
     /// Half-way between two balls the squared distance of a point of the tube from the two centres is `tube² + 4 ρ ring sin²(π/2n)`. Here ρ is the point's
     /// distance from the axis. The distance is largest on the outer equator and must not exceed `(tube + h)²`.

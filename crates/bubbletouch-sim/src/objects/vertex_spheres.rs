@@ -41,7 +41,7 @@ struct PointGrid<'a> {
     low: DVec3,
     cell: f64,
     n: [usize; 3],
-    /// Start of each cell's points; the points of cell k are `order[starts[k]..starts[k + 1]]`.
+    /// Index of the first point of each cell; the points of cell k are `order[starts[k]..starts[k + 1]]`.
     starts: Vec<usize>,
     order: Vec<usize>,
 }
@@ -107,7 +107,7 @@ impl<'a> PointGrid<'a> {
         best
     }
 
-    /// Visits points of the cells whose largest offset from `home` is `ring`.
+    /// Visits the points of all cells whose largest offset from the cell `home`, over the three axes, is `ring`.
     fn each_in_ring(&self, home: [usize; 3], ring: usize, mut visit: impl FnMut(usize)) {
         let range = |axis: usize| {
             home[axis].saturating_sub(ring)..=(home[axis] + ring).min(self.n[axis] - 1)

@@ -14,24 +14,23 @@
 use super::Seed;
 use std::f64::consts::{FRAC_PI_2, LN_2, SQRT_2};
 
-/// Number of items that share a counter.
+/// Number of items (such as taxels) that share a counter.
 pub const GROUP: usize = 4;
 
-/// Constants of Philox4x32 \[PX\]: two multipliers, the increments of the two halves of the key per round, and the number of rounds.
+/// Constants of the generator Philox4x32 \[PX\]: two multipliers, the increments of the two halves of the key per round, and the number of rounds.
 const MULTIPLIERS: [u64; 2] = [0xD251_1F53, 0xCD9E_8D57];
 const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
 const N_ROUNDS: usize = 10;
 
 /// Mask of the lower half of a 64-bit word.
 const LOW: u64 = 0xFFFF_FFFF;
-/// Bits of 2⁵². An integer below 2⁵² in its mantissa gives the bits of the sum.
+/// Bits of the float 2⁵². If an integer n below 2⁵² is stored in the mantissa, the bits represent 2⁵² + n.
 const TWO_52: u64 = 0x4330_0000_0000_0000;
-/// Bits of 1.0, and the mask of the mantissa.
+/// Bits of the float 1.0, and the mask of the mantissa.
 const ONE: u64 = 0x3FF0_0000_0000_0000;
 const MANTISSA: u64 = 0x000F_FFFF_FFFF_FFFF;
 
-/// Divisors of the series of artanh s / s, sin a / a and cos a, in powers of s² and −a², the highest power first. The remainders
-/// are below 1e-11.
+/// Divisors in the power series of artanh s / s, sin a / a and cos a, in powers of s² and −a², the highest power first. The remainders are below 1e-11.
 const ARTANH: [f64; 7] = [13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0];
 const SIN: [f64; 6] = [39_916_800.0, 362_880.0, 5_040.0, 120.0, 6.0, 1.0];
 const COS: [f64; 7] = [479_001_600.0, 3_628_800.0, 40_320.0, 720.0, 24.0, 2.0, 1.0];
@@ -41,7 +40,7 @@ const COS: [f64; 7] = [479_001_600.0, 3_628_800.0, 40_320.0, 720.0, 24.0, 2.0, 1
 pub struct CounterKey([u32; 2]);
 
 impl Seed {
-    /// Returns the key of the counter-based random numbers with this name.
+    /// Returns the key of the counter-based random numbers that belong to this seed.
     pub fn counter_key(&self) -> CounterKey {
         let half = |at: usize| u32::from_le_bytes([at, at + 1, at + 2, at + 3].map(|k| self.0[k]));
         CounterKey([half(0), half(4)])
@@ -49,7 +48,7 @@ impl Seed {
 }
 
 impl CounterKey {
-    /// Returns four uniform numbers in (0, 1) for each of N groups at an index, shape (GROUP, N).
+    /// Returns four uniform numbers in (0, 1), one per item, for each of N groups of items. `index` selects the draw; shape (GROUP, N).
     #[inline(always)]
     pub fn uniforms<const N: usize>(self, groups: &[u64; N], index: u64) -> [[f64; N]; GROUP] {
         let words = self.words(groups, index);
@@ -62,7 +61,7 @@ impl CounterKey {
         uniforms
     }
 
-    /// Returns four normal numbers of mean 0 and variance 1 for each of N groups at an index, shape (GROUP, N).
+    /// Returns four normal numbers of mean 0 and variance 1, one per item, for each of N groups of items. `index` selects the draw; shape (GROUP, N).
     #[inline(always)]
     pub fn normals<const N: usize>(self, groups: &[u64; N], index: u64) -> [[f64; N]; GROUP] {
         let [first, second, third, fourth] = self.words(groups, index);
@@ -100,7 +99,7 @@ fn whole(bits: u64) -> f64 {
     f64::from_bits(TWO_52 | bits) - f64::from_bits(TWO_52)
 }
 
-/// Returns two normal numbers for each pair of words.
+/// Returns two normal numbers for each pair of uniform random words, by the Box–Muller transform.
 #[inline(always)]
 fn box_muller<const N: usize>(first: &[u64; N], second: &[u64; N]) -> [[f64; N]; 2] {
     let [mut x, mut y] = [[0.0; N]; 2];
@@ -120,7 +119,8 @@ fn box_muller<const N: usize>(first: &[u64; N], second: &[u64; N]) -> [[f64; N];
     [x, y]
 }
 
-/// Returns ln u of a normal float above zero. With u = 2ᵉ m and m within a factor √2 of 1, the logarithm is e ln 2 + 2 artanh((m − 1) / (m + 1)).
+/// Returns the natural logarithm of a normal float u above zero. With u = 2ᵉ m and m within a factor √2 of 1, the logarithm is e ln 2 + 2 artanh((m − 1) / (m
+/// + 1)).
 #[inline(always)]
 fn logarithm(u: f64) -> f64 {
     let bits = u.to_bits();
@@ -140,7 +140,7 @@ fn sin_cos(angle: f64) -> (f64, f64) {
     (angle * series(&SIN, q), series(&COS, q))
 }
 
-/// Returns the series Σ qⁿ / dₙ; the divisor of the highest power comes first.
+/// Returns the power series Σ qⁿ / dₙ with the divisors d; the divisor of the highest power comes first.
 #[inline(always)]
 fn series<const N: usize>(divisors: &[f64; N], q: f64) -> f64 {
     let mut sum = 1.0 / divisors[0];

@@ -23,7 +23,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use sha2::{Digest, Sha256};
 
-/// Name of a random stream, which words and numbers extend.
+/// Seed of a random stream, derived from a name of words and numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Seed([u8; 32]);
 
@@ -33,17 +33,17 @@ impl Seed {
         Self(Sha256::digest(seed.to_le_bytes()).into())
     }
 
-    /// Returns the seed with a word appended to the name.
+    /// Returns the seed of the stream whose name has one more word.
     pub fn named(&self, word: &str) -> Self {
         self.child(b"word", word.as_bytes())
     }
 
-    /// Returns the seed with a number appended to the name.
+    /// Returns the seed of the stream whose name has one more number.
     pub fn numbered(&self, number: u64) -> Self {
         self.child(b"number", &number.to_le_bytes())
     }
 
-    /// Returns the generator of the random stream, at its start.
+    /// Returns the random number generator of the stream, at the start of the stream.
     pub fn rng(&self) -> ChaCha8Rng {
         ChaCha8Rng::from_seed(self.0)
     }

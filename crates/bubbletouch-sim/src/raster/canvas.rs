@@ -4,17 +4,17 @@ use crate::objects::Sphere;
 use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Number of rays per pixel in each direction. The supersampled picture is scaled down by this factor.
+/// Number of rays per pixel along each side of the pixel. The supersampled picture is scaled down by this factor.
 const SUPERSAMPLING: usize = 2;
 
-/// First hit of a ray on a surface.
+/// First intersection of a ray with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Coordinate of the hit towards the viewer, metres.
+    /// Coordinate of the intersection towards the viewer, metres.
     pub height: f64,
-    /// Unit normal at the hit, in the picture frame: right, up, towards the viewer.
+    /// Unit normal of the surface at the intersection, in the picture frame: right, up, towards the viewer.
     pub normal: DVec3,
-    /// Index of the hit sphere; 0 for another surface.
+    /// Index of the sphere that the ray hits; 0 for another surface.
     pub part: usize,
 }
 
@@ -72,7 +72,7 @@ impl Canvas {
         self.scale / SUPERSAMPLING as f64
     }
 
-    /// Returns the hit of each ray on the spheres; `None` for a ray that hits nothing.
+    /// Returns the first intersection of each ray with the spheres; `None` for a ray that hits nothing.
     pub fn hits(&self, spheres: &[Sphere]) -> Vec<Option<Hit>> {
         let mut hits: Vec<Option<Hit>> = vec![None; self.width * self.height];
         let size = DVec2::new(self.width as f64, self.height as f64);
@@ -104,7 +104,7 @@ impl Canvas {
         hits
     }
 
-    /// Returns the hits of all rays on a surface, given by its function for the first hit.
+    /// Returns the first intersections of all rays with a surface, which is given by the function `first_hit`.
     ///
     /// Each ray starts outside a ball with this centre (`middle`) and `radius`, which must contain the object.
     pub fn cast(&self, first_hit: &SurfaceHit<'_>, middle: DVec3, radius: f64) -> Vec<Option<Hit>> {
@@ -122,7 +122,7 @@ impl Canvas {
         rays.map(ray).collect()
     }
 
-    /// Returns the point of a ray whose coordinate towards the viewer is `height`, in the object frame.
+    /// Returns the point on the ray with the given index whose coordinate towards the viewer is `height`, in the object frame.
     pub fn point(&self, index: usize, height: f64) -> DVec3 {
         let ray = DVec2::new(
             (index % self.width) as f64 + 0.5 - 0.5 * self.width as f64,

@@ -3,12 +3,12 @@
 use super::Rgb;
 use glam::DVec2;
 
-/// Shape of the cells of a map, such as a pressure map.
+/// Shape of the cells (taxels) of a map, such as a pressure map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CellShape {
-    /// Square with sides parallel to the picture's sides.
+    /// Square cell with sides parallel to the picture's sides.
     Square,
-    /// Disc.
+    /// Disc-shaped cell.
     Disc,
 }
 
@@ -50,8 +50,8 @@ pub fn darken(rgb: &mut [u8], other: &[u8]) {
     }
 }
 
-/// Paints cells, one colour each, on a picture with `width` pixels in a row. `places` are the centres, pixels from the top left corner; `radius` is half the
-/// side of a square, or the radius of a disc, pixels.
+/// Paints the cells of a map, one colour each, on a picture with `width` pixels in a row. `places` are the centres, pixels from the top left corner; `radius`
+/// is half the side of a square, or the radius of a disc, pixels.
 pub fn paint_cells(
     (rgb, width): (&mut [u8], usize),
     places: &[DVec2],

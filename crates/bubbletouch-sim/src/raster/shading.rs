@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Colour, given by red, green and blue, 0 to 255.
 pub type Rgb = [u8; 3];
 
-/// Brightness of rays that hit nothing, 0 to 255.
+/// Brightness of pixels where a ray hits nothing, 0 to 255.
 pub const BACKGROUND: u8 = 250;
 
 /// Lighting of a surface in a picture.
@@ -54,7 +54,7 @@ impl Canvas {
         halved(rays.as_flattened(), self.width)
     }
 
-    /// Returns whether the ray is at an inner or outer outline of the object, that is, whether a neighbouring ray hits a point far behind.
+    /// Returns whether the ray is at an inner or outer outline of the object. At an outline, a neighbouring ray hits a point far behind.
     fn is_outline(&self, hits: &[Option<Hit>], index: usize, hit: &Hit) -> bool {
         // A slope of 80° between rays does not count as an outline.
         let step = 8.0 / self.scale;
@@ -68,7 +68,7 @@ impl Canvas {
             .any(|stride| is_behind(index.checked_sub(stride)) || is_behind(Some(index + stride)))
     }
 
-    /// Returns the normals of all hits, averaged over neighbours of similar depth.
+    /// Returns the surface normals for all rays, averaged over neighbouring rays of similar depth.
     fn smooth_normals(&self, hits: &[Option<Hit>]) -> Vec<DVec3> {
         let reach = (self.width.min(self.height) / 150).max(1);
         let mut normals = normals_of(hits);
@@ -95,7 +95,7 @@ impl Canvas {
     }
 }
 
-/// Returns the brightness of a surface with this normal under a main light and a weaker fill light.
+/// Returns the brightness of a surface with this normal, under a main light and a weaker fill light.
 fn lit(normal: DVec3) -> f64 {
     let lamp = DVec3::new(-0.45, 0.65, 0.62).normalize();
     let fill = DVec3::new(0.8, 0.1, 0.6).normalize();

@@ -5,7 +5,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use crate::{Error, Result};
 use std::collections::BTreeMap;
 
-/// Closed interval `low..=high` of an estimate.
+/// Closed confidence interval of an estimate, from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// Lower end of the interval.
@@ -14,7 +14,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Counts of one accuracy test: how many test rows were recognised correctly.
+/// Counts of one accuracy test: the number of test rows, and the number of correctly recognised ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RowTest {
     /// Index of the tested part of the rows: the fold, or 0 without folds.
@@ -92,7 +92,7 @@ impl Interval {
         Ok(Self::score(share, n_rows as f64, z))
     }
 
-    /// Returns the Wilson score interval of a proportion `share` of n independent rows, for z standard errors.
+    /// Returns the Wilson score interval of the proportion `share` of n independent rows, for z standard errors.
     pub fn score(share: f64, n: f64, z: f64) -> Self {
         let z2 = z * z;
         let centre = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);

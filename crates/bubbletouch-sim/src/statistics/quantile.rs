@@ -1,6 +1,6 @@
 //! Quantiles with linear interpolation: type 7 of Hyndman and Fan (American Statistician 50, 1996), NumPy's default.
 
-/// Returns the quantile of some values at `part` (0 to 1), and sorts the values; returns 0 if there are none.
+/// Returns the quantile of the values at `part` (0 to 1), and sorts the values; returns 0 if there are none.
 pub fn quantile(values: &mut [f64], part: f64) -> f64 {
     if values.is_empty() {
         return 0.0;

@@ -1,7 +1,7 @@
 //! Tolerances for tests of random quantities, in standard errors of the estimate.
 
-/// Allowed deviation of a random quantity, in standard errors: one normal estimate in 1.7 million deviates more. If smaller, tests of thousands of estimates
-/// fail by chance; if larger, tests detect fewer errors.
+/// Allowed deviation of a random quantity in tests, in standard errors: one normal estimate in 1.7 million deviates more. If smaller, tests of thousands of
+/// estimates fail by chance; if larger, tests detect fewer errors.
 pub const STANDARD_ERRORS: f64 = 5.0;
 
 /// Asserts that an estimate is within [`STANDARD_ERRORS`] standard errors of its expected value.
@@ -50,7 +50,7 @@ pub fn of_variance(variance: f64, n: usize) -> f64 {
     variance * (2.0 / (n as f64 - 1.0)).sqrt()
 }
 
-/// Returns the mean and the standard deviation (divisor n − 1) of a slice.
+/// Returns the mean and the standard deviation (divisor n − 1) of the numbers.
 pub fn mean_and_std(of: &[f64]) -> (f64, f64) {
     let n = of.len() as f64;
     let mean = of.iter().sum::<f64>() / n;

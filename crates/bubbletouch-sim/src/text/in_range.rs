@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-/// Checks that a number is finite and positive; the error contains `unit`.
+/// Returns the number if it is finite and positive, otherwise an error that contains `unit`.
 ///
 /// # Errors
 /// If the value is infinite, NaN or not positive.
@@ -17,7 +17,7 @@ pub fn positive(place: &str, value: f64, unit: &str) -> Result<f64> {
     ))
 }
 
-/// Checks that a number is finite and not negative; the error contains `unit`, which may be empty.
+/// Returns the number if it is finite and not negative, otherwise an error that contains `unit` (which may be empty).
 ///
 /// # Errors
 /// If the value is infinite, NaN or negative.
@@ -33,7 +33,7 @@ pub fn not_negative(place: &str, value: f64, unit: &str) -> Result<f64> {
     ))
 }
 
-/// Checks that a number is from 0 to 1.
+/// Returns the number if it is from 0 to 1, otherwise an error.
 ///
 /// # Errors
 /// If the value is outside 0 to 1, or NaN.

@@ -20,7 +20,7 @@ pub fn short_number(number: f64) -> String {
     }
 }
 
-/// Formats a time in seconds with a suitable unit and three significant digits: `20.3 µs`.
+/// Formats a time in seconds with a suitable unit and three significant digits, such as `20.3 µs`.
 pub fn time_words(seconds: f64) -> String {
     if seconds == 0.0 {
         return "0 s".to_owned();

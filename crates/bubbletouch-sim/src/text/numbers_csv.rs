@@ -28,7 +28,7 @@ pub fn line_of(record: &csv::StringRecord) -> u64 {
     record.position().map_or(0, |position| position.line())
 }
 
-/// Checks the number of fields of a row at `place`.
+/// Returns an error unless a row has `width` fields; `place` is the location of the row in messages.
 ///
 /// # Errors
 /// If the record has another number of fields.
@@ -43,7 +43,7 @@ pub fn check_width(place: &str, record: &csv::StringRecord, width: usize) -> Res
     ))
 }
 
-/// Parses a field of a row at `place` as a finite number; `allowed` describes valid values.
+/// Returns the field of a row as a finite number, or an error; `allowed` describes valid values.
 ///
 /// # Errors
 /// If the field is not a finite number.

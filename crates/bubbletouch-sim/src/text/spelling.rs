@@ -2,10 +2,10 @@
 
 use crate::error::{Error, Result};
 
-/// Maximum number of suggestions; longer lists are hard to read.
+/// Maximum number of names suggested in an error message; longer lists are hard to read.
 const OFFERED: usize = 8;
 
-/// Formats a number with a noun, singular or plural: `1 thread`, `2 threads`.
+/// Formats a number with a noun in singular or plural, such as `1 thread` or `2 threads`.
 pub fn counted(number: usize, one: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{number} {one}{plural}")
@@ -22,7 +22,7 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// Returns the index of a name among `names`.
+/// Returns the index of a name among `names`, or an error with similar names.
 ///
 /// # Errors
 /// If the name is unknown; the error contains the most similar names.
@@ -66,7 +66,7 @@ pub fn slip_of<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     known.iter().find(near).copied()
 }
 
-/// Returns the edit distance of two words: letters inserted, deleted, replaced or swapped, ignoring case.
+/// Returns the edit distance of two words: the number of letters inserted, deleted, replaced or swapped, ignoring case.
 fn distance(a: &str, b: &str) -> usize {
     strsim::damerau_levenshtein(&a.to_lowercase(), &b.to_lowercase())
 }

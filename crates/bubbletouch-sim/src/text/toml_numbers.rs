@@ -35,11 +35,11 @@ const BOUNDS: [(&str, f64, &str); 19] = [
 /// Largest magnitude of a number without a unit; its square, and sums of millions of squares, are finite in f64.
 const MAX_PLAIN: f64 = 1e100;
 
-/// Bound of the values of a key: the largest magnitude, and its unit.
+/// Bound of the values of a key: the largest allowed magnitude, and its unit.
 #[derive(Clone, Copy)]
 struct Bound(f64, &'static str);
 
-/// Checks that all numbers of a TOML text are within the bounds of their units.
+/// Returns an error unless all numbers of a TOML text are within the bounds of their units.
 ///
 /// # Errors
 /// If a number is not finite or beyond the bound of its unit. The error names `place` (the file), the line and the key.
@@ -52,7 +52,7 @@ pub fn check_bounds(place: &str, text: &str) -> Result<()> {
     checked.table("", Bound(MAX_PLAIN, ""), table.get_ref())
 }
 
-/// TOML text, with its name in errors.
+/// TOML text, with its name in error messages.
 struct Text<'a> {
     place: &'a str,
     text: &'a str,
@@ -156,8 +156,8 @@ pub fn with_line(place: &str, text: &str, error: Error) -> Error {
     Error::input(format!("{place}:{line}{rest}"), given, allowed)
 }
 
-/// Returns the line of a key, or of the innermost existing table on its path; `None` if not even the first part exists. A part of a path is a name, a name
-/// with a number from 1 (`parts[2]`), or the name of a table in an array (`objects.ball`).
+/// Returns the line number of a key, or of the innermost existing table on its path; `None` if not even the first part of the path exists. A part of a path
+/// is a name, a name with a number from 1 (`parts[2]`), or the name of a table in an array (`objects.ball`).
 fn line_of_key(text: &str, path: &str) -> Option<usize> {
     let table = DeTable::parse(text).ok()?;
     let mut inside = table.get_ref();

@@ -12,7 +12,7 @@ use toml_parser::lexer::TokenKind;
 /// of brackets would overflow a thread's stack.
 const MAX_OPEN: usize = 200;
 
-/// Parses a text; the error contains `place` (the file), line and column.
+/// Parses a TOML text; an error contains `place` (the file), line and column.
 ///
 /// # Errors
 /// If the text is not valid TOML, has an unknown, missing or mistyped key, or has a number out of bounds.
@@ -22,7 +22,7 @@ pub fn read<T: DeserializeOwned>(place: &str, text: &str) -> Result<T> {
     toml::from_str(text).map_err(|error| Error::toml(place, text, &error))
 }
 
-/// Checks that a TOML table can store all integers of a text, and that all numbers are within the bounds of their units.
+/// Returns an error unless a TOML table can store all integers of a text, and all numbers are within the bounds of their units.
 ///
 /// # Errors
 /// If the text is not valid TOML, or a number in it is out of bounds.
@@ -43,7 +43,7 @@ pub fn table(text: &str) -> Option<toml::Table> {
     text.parse().ok()
 }
 
-/// Rejects invalid TOML text whose parsing would need a deep stack.
+/// Returns an error for invalid TOML text whose parsing would need a deep stack.
 ///
 /// # Errors
 /// If more than 200 brackets are open at once.
@@ -75,7 +75,7 @@ pub fn check_brackets(place: &str, text: &str) -> Result<()> {
 mod tests {
     use super::*;
 
-    /// Returns the error of a text that is parsed on a small thread stack.
+    /// Returns the error of a TOML text that is parsed on a small thread stack.
     fn refused(text: &'static str) -> String {
         let read = move || read::<toml::Table>("study.toml", text).unwrap_err();
         let thread = std::thread::Builder::new().stack_size(2 << 20);
