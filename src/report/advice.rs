@@ -80,11 +80,11 @@ pub struct Candidate {
 /// Advice for one condition: the selected choice and alternatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advice {
-    /// Advised choice: the cheapest one with a sufficient value, or the best one within the budget.
+    /// Advised choice: the cheapest candidate with a sufficient value, or the best candidate within the budget.
     pub choice: Candidate,
-    /// Cheapest choice whose whole confidence interval meets the requirement; `None` if this is `choice` or does not exist.
+    /// Cheapest choice whose whole confidence interval meets the requirement; `None` if there is none or if `choice` already does.
     pub certain: Option<Candidate>,
-    /// Next better choice: the cheapest one whose value is better than the value of `choice`.
+    /// Next better choice: the cheapest candidate whose value is better than the value of `choice`.
     pub next_up: Option<Candidate>,
 }
 
@@ -287,8 +287,8 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// Returns the Pareto front, cheapest first: each candidate is better than all candidates of equal or lower cost. Among equal candidates, only the first is
-    /// returned.
+    /// Returns the Pareto front, cheapest first: each candidate on the front is better than all candidates of equal or lower cost. Among equal candidates, only
+    /// the first is returned.
     pub fn front(&self, offers: &[Candidate]) -> Vec<Candidate> {
         let points: Vec<(f64, f64)> = offers.iter().map(|o| (o.cost, o.value)).collect();
         let is_on = front(&points, |a, b| self.is_better(a, b));
@@ -429,7 +429,7 @@ fn refuse_none<T>(found: &[T], (option, given): (&str, &str), mut known: Vec<&st
     }
 }
 
-/// Returns those of the rows that satisfy a condition of the form `noise=0.05`.
+/// Returns those of the given rows that satisfy a condition of the form `noise=0.05`.
 fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
     let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
     let (key, value) = text.split_once('=').ok_or_else(refuse)?;
@@ -514,13 +514,13 @@ mod tests {
         time: f64 => Cost in "µs": Linear;
         /// Number of taxels.
         taxels: f64 => Cost: Linear;
-        /// Weight, absent in all rows.
+        /// Weight of the design, which is absent in all rows.
         weight: Option<f64> => Cost: Linear;
         /// Accuracy, a fraction.
         accuracy: f64 => Value(More): Share between [low, high];
-        /// Lower end of the interval.
+        /// Lower end of the accuracy's interval.
         low: f64 => Note: Share;
-        /// Upper end of the interval.
+        /// Upper end of the accuracy's interval.
         high: f64 => Note: Share;
         /// Error of a measured quantity.
         error: f64 => Value(Less): Log;

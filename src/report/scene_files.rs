@@ -82,7 +82,7 @@ impl SceneFiles {
         })
     }
 
-    /// Completes all output files.
+    /// Completes all output files of the scene.
     ///
     /// # Errors
     /// If a file cannot be written.

@@ -14,7 +14,8 @@ use rayon::prelude::*;
 /// drawing takes minutes.
 pub const MAX_CHARTS: usize = 24;
 
-/// Returns the files of a result folder with charts, pictures and the page. `beyond` computes additional content while charts are drawn. Charts without
+/// Returns the files of a result folder with charts, pictures and the page. The function `beyond` computes additional content while charts are drawn. Charts
+/// without drawable rows are omitted.
 /// drawable rows are omitted.
 ///
 /// # Errors

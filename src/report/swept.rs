@@ -36,15 +36,15 @@ pub struct Setting<'a> {
     pub data: &'a Data,
 }
 
-/// Settings of a table, divided into varying, dependent and constant ones.
+/// Settings of a table, divided into varying, dependent and constant settings.
 pub struct Swept<'a> {
     table: &'a Table,
     /// Varying settings that no other settings determine, in the order of the table.
     pub free: Vec<Setting<'a>>,
     /// Varying settings whose values are determined by other settings.
     pub following: Vec<Setting<'a>>,
-    /// Independent settings, if each row changes at most one of them from its value in the first row. The list is empty otherwise, or if there are fewer than
-    /// two such settings.
+    /// Independent settings of a study that changes one setting at a time: each row changes at most one of them from its value in the first row. The list is
+    /// empty for other studies, or if there are fewer than two such settings.
     pub one_at_a_time: Vec<Setting<'a>>,
     /// Settings that have an equal value in all rows.
     pub fixed: Vec<Setting<'a>>,
@@ -231,7 +231,7 @@ pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> 
         .collect()
 }
 
-/// Returns all numeric settings if each row changes at most one of them from its value in the first row; otherwise tries only the settings of the signal.
+/// Returns all numeric settings if each row changes at most one of them from its value in the first row. Otherwise, tries only the settings of the signal.
 fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     let is_signal = |setting: &Setting| {
         setting.column.role == Role::Condition || setting.column.name == "smoothing_mm"

@@ -124,7 +124,7 @@ fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
     shown
 }
 
-/// Returns whether a column is worth showing because its entries differ between rows or are results.
+/// Returns whether a column is worth showing: its entries differ between rows, or they are results.
 fn is_telling(table: &Table, setting: &Setting) -> bool {
     let mut rows = 0..table.n_rows;
     match setting.column.role {

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// Maximum number of points on Pareto fronts that are numbered and listed below a chart.
 const MAX_NAMED: usize = 24;
 
-/// Pareto fronts of a chart: points that no other point of their condition surpasses in both axes.
+/// Pareto fronts of a chart: the points that no other point of their condition surpasses in both axes.
 pub(super) struct Front<'a> {
     view: &'a View<'a>,
     /// Panel index of each Pareto front, and the points of the front along x.

@@ -35,7 +35,7 @@ pub(super) struct Layout {
     pub width: f64,
     /// For each panel, the lines of the title above it.
     titles: Vec<Vec<String>>,
-    /// Height above each row of panels, and additional height above the first row, pixels.
+    /// Height above each row of panels, pixels; the first row has the additional height `above_first`.
     above: f64,
     above_first: f64,
     labels: XLabels,
@@ -101,7 +101,7 @@ impl Layout {
         self.above + self.size.1 + self.labels.depth
     }
 
-    /// Returns the area of a panel, pixels.
+    /// Returns the area of the panel with this index, pixels.
     pub fn frame(&self, panel: usize) -> Area {
         let (row, column) = (panel / self.columns, panel % self.columns);
         let panels = self.panels();
@@ -177,7 +177,7 @@ fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
 }
 
 impl XLabels {
-    /// Wraps the labels of the horizontal axis. If one label is too wide or has too many lines, all labels are rotated.
+    /// Wraps the labels of the horizontal axis into lines of at most `width` pixels. If one label is too wide or has too many lines, all labels are rotated.
     fn new(scale: &Scale, width: f64) -> Self {
         let labels = scale.ticks.iter().map(|tick| &tick.label[..]);
         let mut is_turned = false;

@@ -91,7 +91,7 @@ impl LegendEntry {
         }
     }
 
-    /// Creates a legend entry with a mark, drawn in the style of the marks in the chart.
+    /// Creates a legend entry with a text and a mark, which is drawn in the style of the marks in the chart.
     pub(super) fn new(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         let mark: DrawMark = Box::new(mark);
         Self {
@@ -101,7 +101,8 @@ impl LegendEntry {
         }
     }
 
-    /// Creates the legend entry of a series. On a page, a click on the entry hides or shows the groups whose `data-series` equals its text.
+    /// Creates the legend entry of a series, which readers of a page can click. A click hides or shows the groups whose `data-series` equals the text of the
+    /// entry.
     pub(super) fn series(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         Self {
             is_series: true,

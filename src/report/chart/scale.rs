@@ -5,13 +5,13 @@ use crate::table::{Along, Column, Role, Scale as Spacing};
 
 /// Fraction of a logarithmic axis that is reserved for the value zero, which has no logarithm.
 pub(super) const SHELF: f64 = 0.09;
-/// Maximum number of distinct values of a swept setting for which each value has a tick on the axis. With more values, ticks are at round numbers.
+/// Maximum number of values of a swept setting for which the axis has a tick at each value. With more values, ticks are at round numbers.
 const MAX_SWEPT: usize = 40;
 
 /// Scale of an axis, which converts values to fractions of the axis length.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scale {
-    /// Values (or their logarithms) in ascending order, with their positions on the axis. Between two values, positions are interpolated linearly.
+    /// Values (or their logarithms) in ascending order, each with its position on the axis. Between two values, positions are interpolated linearly.
     anchors: Vec<(f64, f64)>,
     is_log: bool,
     /// End of the part of a logarithmic axis that is reserved for zero, as a fraction of the axis length; `None` if no value is zero.
@@ -185,7 +185,7 @@ fn round_ends(values: &[f64]) -> (f64, f64) {
     )
 }
 
-/// Returns the first and the last of sorted values; if they are equal, moves both outwards.
+/// Returns the first and the last of sorted values; if they are equal, the ends are moved apart.
 fn ends(values: &[f64]) -> (f64, f64) {
     let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
         return (0.0, 1.0);
@@ -197,8 +197,8 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Returns the ticks of a logarithmic axis: powers of ten. If there are fewer than three, also 2 and 5 times powers of ten. If these are still too few, returns
-/// evenly spaced numbers.
+/// Returns the ticks of a logarithmic axis: the powers of ten in its range. If there are fewer than three, also 2 and 5 times powers of ten. If these are still
+/// too few, returns evenly spaced numbers.
 fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     let multiples = |factors: &[u32]| -> Vec<f64> {
         let powers = low.floor() as i32..=high.ceil() as i32;
@@ -214,7 +214,8 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     enough.unwrap_or_else(|| even_ticks(10f64.powf(low), 10f64.powf(high)))
 }
 
-/// For each tick, returns whether its label is shown. A label needs `half` of the axis length on either side. Priority: the ends, round ticks, other ticks.
+/// For each tick of an axis, returns whether there is enough space to show its label. A label needs `half` of the axis length on either side. Priority: the
+/// ends, round ticks, other ticks.
 pub(super) fn thin(ticks: &[Tick], half: impl Fn(&Tick) -> f64) -> Vec<bool> {
     let last = ticks.len().saturating_sub(1);
     let rank = |place: usize| match (place == 0 || place == last, ticks[place].is_round) {

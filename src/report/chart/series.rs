@@ -13,7 +13,7 @@ const MANY: usize = 400;
 /// Line height in the list of Pareto-front points below a chart, pixels.
 const LINE: f64 = 17.0;
 
-/// Draws a chart of series.
+/// Draws a chart of series, which are lines or points.
 pub(super) fn draw(view: &View) -> Drawing {
     let (columns, width, height) = match view.titles.len() {
         1 => (1, 660.0, 340.0),
@@ -143,7 +143,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the confidence intervals of a line as a band or as error bars.
+    /// Draws the confidence intervals of a line (series) as a band or as error bars.
     fn draw_intervals(&self, drawing: &mut Drawing, line: usize, places: &[&Place]) {
         let colour = line_stroke(line).colour;
         if self.view.has_bands() && places.len() > 1 {

@@ -7,7 +7,7 @@ use crate::report::swept::Setting;
 use crate::table::{Along, At, ChartSpec, Data, Role, Scale as Spacing, Table, Value};
 use std::collections::{HashMap, HashSet};
 
-/// Maximum number of lines whose confidence intervals are drawn as bands. More bands would hide each other, so error bars replace them.
+/// Maximum number of lines for which confidence intervals are drawn as bands. More bands would hide each other, so error bars replace them.
 const MAX_BANDS: usize = 4;
 /// Maximum number of points with error bars; more bars would not be distinguishable.
 const MAX_WHISKERS: usize = 80;
@@ -16,7 +16,7 @@ const MAX_WHISKERS: usize = 80;
 pub(super) struct View<'a> {
     pub spec: &'a ChartSpec,
     pub table: &'a Table,
-    /// Indices of the table rows that pass the filters of the chart.
+    /// Indices of the table rows that the filters of the chart select.
     pub rows: Vec<usize>,
     /// Groups of rows that form the lines of the chart.
     pub lines: Groups,

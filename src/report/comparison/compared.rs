@@ -128,7 +128,8 @@ fn table<'a>(
     file.table(&rows)
 }
 
-/// Returns sentences about the differences. For each table, they state the number of common settings, then the differences of values, then of costs.
+/// Returns sentences about the differences between two result folders. For each table, they state the number of common settings, then the differences of
+/// values, then of costs.
 fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     let mut said = Vec::new();
     let mut last = "";
@@ -175,8 +176,8 @@ pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Ve
     said.flatten().collect()
 }
 
-/// Returns sentences about the differing rows and entries of one table. `counts_rows` is true if another sentence counts its rows. `has_moved` returns whether
-/// another sentence reports the mean of a column.
+/// Returns sentences about the differing rows and entries of one table. If another sentence counts the rows, `counts_rows` is true. For a column whose mean
+/// another sentence reports, `has_moved` returns true.
 fn table_words(
     table: &TableEntries,
     counts_rows: bool,

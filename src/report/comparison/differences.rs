@@ -77,7 +77,7 @@ pub struct ColumnDifferences {
     pub column: Column,
     /// Differences of all settings that have a number in both folders.
     pub rows: Vec<Difference>,
-    /// Number of settings that both folders contain, with or without numbers.
+    /// Number of settings that both folders contain, with or without a number in the column.
     pub n_both: usize,
     /// Number of settings that only the first folder contains.
     pub n_first_only: usize,

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 /// Columns that identify configurations by number; another run may number the configurations differently.
 const CONFIGURATION_NUMBERS: [&str; 2] = ["configuration", "best_configuration"];
 
-/// Roles of the columns whose entries together identify a row.
+/// Roles of the columns whose entries together identify a row of a table.
 const KEY_ROLES: [Role; 3] = [Role::Choice, Role::Condition, Role::Subject];
 
 /// Row indices of two corresponding rows: in the first and in the second version of a table.

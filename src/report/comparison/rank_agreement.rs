@@ -27,7 +27,7 @@ pub struct RankAgreement {
     pub tau: f64,
     /// Bootstrap confidence interval of the rank correlation over designs.
     pub interval: Interval,
-    /// Description of each choice, with two counts of pairs of designs that differ only in this choice. The first is the number of pairs that both studies
+    /// For each choice, its description and two counts of pairs of designs that differ only in this choice. The first is the number of pairs that both studies
     /// order alike; the second is the number of all pairs without a tie.
     pub choices: Vec<(String, usize, usize)>,
 }
@@ -105,7 +105,7 @@ type Design = Vec<String>;
 /// Table of a study whose compression ratios can be replaced by equivalent ratios of another table.
 struct Ranked<'a> {
     table: &'a Table,
-    /// For the bits of each ratio in this table, the equivalent ratio in the other table.
+    /// For each compression ratio of this table (by its bits), the equivalent ratio of the other table.
     ratios: HashMap<u64, f64>,
 }
 
@@ -115,7 +115,7 @@ impl<'a> Ranked<'a> {
         Self { table, ratios }
     }
 
-    /// Pairs each ratio with the nearest ratio of the other table, if both can result from rounding one nominal ratio to whole measurements.
+    /// Pairs each compression ratio with the nearest ratio of the other table, if both can result from rounding one nominal ratio to whole measurements.
     fn like(table: &'a Table, other: &Table) -> Self {
         let (ours, theirs) = (nominal_ratios(table), nominal_ratios(other));
         let nearest = |of: &NominalRatio, among: &[NominalRatio]| {

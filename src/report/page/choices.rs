@@ -9,8 +9,8 @@ use crate::table::{Role, Value};
 /// Maximum number of rows that are listed for each Pareto front.
 const MAX_ROWS: usize = 200;
 
-/// Returns one table per cost as HTML. For each condition, the table lists the choices that are better than all choices of equal or lower cost. The HTML is
-/// empty if no table has choices with costs.
+/// Returns HTML tables of the best choices, one table per cost. For each condition, a table lists the choices that are better than all choices of equal or
+/// lower cost. The HTML is empty if no table has choices with costs.
 pub(crate) fn choices_html(found: &Found) -> String {
     let Ok(offers) = Candidates::new(found.tables, &AdviceQuery::default()) else {
         return String::new();

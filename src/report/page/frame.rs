@@ -5,7 +5,7 @@ use crate::report::pictures::drawing::escape;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
-/// JavaScript files of the page. `elements.js` comes first, because the other scripts use it.
+/// JavaScript files of the page. The file `elements.js` comes first, because the other scripts use it.
 const SCRIPT: [&str; 3] = [
     include_str!("script/elements.js"),
     include_str!("script/charts.js"),
@@ -41,7 +41,7 @@ impl Section {
     }
 }
 
-/// Returns a page as HTML, with the metadata of a study and the given sections. `foot` is the HTML of the footer. Sections without a body are omitted.
+/// Returns a page as HTML, with the metadata of a study and the given sections. The HTML of the footer is `foot`. Sections without a body are omitted.
 pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> String {
     let sections = sections.iter().filter(|section| !section.body.is_empty());
     let paragraph = |class: &str, before: &str, text: &str| match text {

@@ -19,10 +19,10 @@ const MAX_CHART_BYTES: usize = 1_200_000;
 /// truncated.
 const MAX_TABLE_BYTES: usize = 1_200_000;
 
-/// Parts of a study's page besides its tables and answers.
+/// Parts of a study's HTML page besides its tables and answers.
 #[derive(Default)]
 pub(crate) struct Beside {
-    /// Charts as SVG with the data of their marks, in the order of the specifications.
+    /// Charts as SVG with the data of their marks, in the order of the chart specifications.
     pub charts: Vec<String>,
     /// Names of the charts that were not drawn because there are too many.
     pub left_out: Vec<String>,
@@ -98,7 +98,7 @@ fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     charts.collect::<String>() + &not_drawn(&beside.left_out)
 }
 
-/// Returns a sentence about the charts that have no file, and how to draw them.
+/// Returns an HTML sentence about the charts that have no file, and how to draw them.
 fn not_drawn(left_out: &[String]) -> String {
     let (Some(first), Some(last)) = (left_out.first(), left_out.last()) else {
         return String::new();

@@ -17,7 +17,7 @@ pub(crate) struct TableHtml {
 struct Shown<'a> {
     column: &'a Column,
     is_number: bool,
-    /// Indices of the result-table columns that a cell of this HTML column contains: the value, and the ends of its interval.
+    /// Indices of the result-table columns that each cell contains: the value, and the ends of its interval.
     held: Vec<usize>,
     /// Whether any of the result-table columns in `held` varies between rows.
     varies: bool,
@@ -140,7 +140,7 @@ impl Shown<'_> {
         format!("<td{}{value}>{}</td>", self.class(), escape(&said))
     }
 
-    /// Returns the fields that a cell of this HTML column contains, joined by spaces. If a cell has several fields, they are numbers without spaces.
+    /// Returns the fields of one cell of the HTML table, joined by spaces. If a cell has several fields, they are numbers without spaces.
     fn joined(&self, fields: &[String]) -> String {
         let values = self.held.iter().map(|&place| &fields[place][..]);
         values.collect::<Vec<_>>().join(" ")

@@ -8,7 +8,7 @@ pub(crate) const PAINT: Rgb = [142, 178, 214];
 
 /// Colour of text and axes.
 pub const INK: Rgb = [0x1f, 0x23, 0x28];
-/// Colour of secondary text.
+/// Colour of secondary text, such as notes.
 pub const MUTED: Rgb = [0x5c, 0x63, 0x6b];
 /// Colour of grid lines.
 pub const GRID: Rgb = [0xe4, 0xe6, 0xe9];

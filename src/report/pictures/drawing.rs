@@ -12,7 +12,7 @@ use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
 use kuva::render::render::{PathData, Primitive, Scene, TextSpan, build_path};
 
-/// Number of image pixels per drawing pixel at which kuva (the rendering library) renders; blocks of 2 × 2 image pixels are then averaged.
+/// Number of image pixels per drawing pixel at which the library kuva renders a drawing; blocks of 2 × 2 image pixels are then averaged.
 ///
 /// kuva renders rotated text and slanted lines with jagged edges. At a scale of 4 they are smooth; at a smaller scale they are not.
 const FINE: u32 = 4;
@@ -65,7 +65,7 @@ pub struct TextStyle {
     pub size: u32,
     /// Colour of the text.
     pub colour: Rgb,
-    /// Part of the text that is at the given position: its start, middle or end.
+    /// Alignment of the text: whether its start, middle or end is at the given position.
     pub align: Align,
     /// Clockwise rotation about the given position, degrees.
     pub angle: f64,
@@ -105,7 +105,7 @@ pub struct Stroke {
     pub colour: Rgb,
     /// Width of the line, pixels.
     pub width: f64,
-    /// Length of a dash and of a gap, pixels; `None` for a solid line.
+    /// Lengths of the dashes and of the gaps between them, pixels; `None` for a solid line.
     pub dash: Option<(u32, u32)>,
 }
 
@@ -253,7 +253,7 @@ impl Drawing {
         self.elements.push(Primitive::GroupEnd);
     }
 
-    /// Returns the drawing as an SVG file that scales to the width of its container. `title` is the label for screen readers.
+    /// Returns the drawing as an SVG file that scales to the width of its container. The label for screen readers is `title`.
     pub fn svg(&self, title: &str) -> String {
         let is_drawn = |element: &&Primitive| {
             !matches!(element, Primitive::GroupStart { .. } | Primitive::GroupEnd)

@@ -22,9 +22,9 @@ pub enum Original {
     Solid(Solid),
 }
 
-/// Draws three panels of `tile` × `tile` pixels. The first shows the original, the second the single spheres. The third shows the spheres coloured by their
-/// signed distance from the original, with a colour bar in millimetres. Distances are positive outside the original; for an open surface, all distances are
-/// positive.
+/// Draws an object and its spheres in three panels of `tile` × `tile` pixels. The first shows the original, the second the single spheres. The third shows the
+/// spheres coloured by their signed distance from the original, with a colour bar in millimetres. Distances are positive outside the original; for an open
+/// surface, all distances are positive.
 ///
 /// Equal input gives equal bytes.
 ///
@@ -157,7 +157,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// Creates a scale that covers all visible distances except the extreme 1 %, which would make the other colours pale.
+    /// Creates a colour scale that covers all visible distances except the extreme 1 %, which would make the other colours pale.
     fn new(seen: &[Option<Hit>], distances: &[f64]) -> Self {
         let of_hit = |(hit, &distance): (&Option<Hit>, &f64)| hit.is_some().then_some(distance);
         let mut distances: Vec<f64> = seen.iter().zip(distances).filter_map(of_hit).collect();

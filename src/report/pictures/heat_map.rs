@@ -84,7 +84,8 @@ pub fn check_frame(frame: &Array2<f64>) -> Result<()> {
     }
 }
 
-/// Returns a smaller frame that contains the largest value of each block of taxels. `block` is (rows, columns); blocks at the upper and right edge may be
+/// Returns a smaller frame that contains the largest value of each block of taxels. The size of a block (rows, columns) is `block`; blocks at the upper and
+/// right edge may be smaller.
 /// smaller.
 pub fn largest_of_blocks(frame: &Array2<f64>, block: (usize, usize)) -> Array2<f64> {
     let (ny, nx) = frame.dim();

@@ -14,7 +14,7 @@ pub(crate) enum Side {
     Right,
 }
 
-/// Draws an axis with round ticks and a title. `low` is the value at the left or lower end, `high` at the right or upper end.
+/// Draws an axis with round ticks and a title. The value at the left or lower end is `low`, the value at the right or upper end `high`.
 pub(crate) fn draw_axis(
     drawing: &mut Drawing,
     area: Area,
@@ -43,7 +43,7 @@ pub(crate) fn draw_axis(
     drawing.text(at, title, style.align(Align::Middle).angle(angle));
 }
 
-/// Draws an axis in millimetres beside a map whose centre is the origin: x below, y on the left. `length` is the length of the map, mm.
+/// Draws an axis in millimetres beside a map whose centre is the origin: x below, y on the left. The length of the map is `length`, mm.
 pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, length: f64) {
     let title = match side {
         Side::Below => "x (mm)",
@@ -90,7 +90,7 @@ pub(crate) fn draw_scale_bar(
     drawing.text((x, y - 5.0), &text, TextStyle::new(12).align(Align::Middle));
 }
 
-/// Returns the largest number in the series …, 1, 2, 5, 10, … that is at most `largest`.
+/// Returns the largest round number (1, 2 or 5 times a power of ten) that is at most `largest`.
 fn bar_length(largest: f64) -> f64 {
     let power = 10f64.powf(largest.log10().floor());
     let steps = [5.0, 2.0, 1.0].map(|step| step * power);

@@ -20,7 +20,7 @@ const MAX_COLUMNS: usize = 4;
 /// Frames of several touches, which are drawn with a common colour scale.
 #[derive(Clone, Debug)]
 pub struct Snapshots {
-    /// Name and values of each frame (ny × nx, row = y ascending), metres or newtons.
+    /// Name and values of each frame (ny × nx, rows ascending in y), metres or newtons.
     pub frames: Vec<(String, Array2<f64>)>,
     /// Distance between neighbouring taxels, millimetres.
     pub pitch_mm: f64,

@@ -151,8 +151,8 @@ fn start(
     encoder.write_header()
 }
 
-/// Appends a frame to the animation. Only the rows that changed since the previous frame are written, with unchanged pixels transparent. The file is ten times
-/// smaller than with whole frames.
+/// Appends a frame to the animation file. Only the rows that changed since the previous frame are written, with unchanged pixels transparent. The file is ten
+/// times smaller than with whole frames.
 fn add(
     film: &mut png::Writer<&mut Vec<u8>>,
     before: Option<&Picture>,

@@ -126,7 +126,7 @@ impl Cells {
     }
 }
 
-/// Returns the size of a cell so that `n_cells` cells fit into `room` pixels: a whole number of pixels, so that there are no gaps between cells.
+/// Returns the size of square cells of which `n_cells` fit into `room` pixels: a whole number of pixels, so that there are no gaps between cells.
 pub(crate) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
     (room / n_cells as f64).floor().max(1.0)
 }

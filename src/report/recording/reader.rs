@@ -23,7 +23,7 @@ pub struct RecordingFile {
 }
 
 impl RecordingFile {
-    /// Opens a recording and checks that all members exist and have the correct shapes.
+    /// Opens a recording and checks that all its arrays exist and have the correct shapes.
     ///
     /// # Errors
     /// If the file cannot be read, or a member is missing, damaged or inconsistent with `meta`. Other members are ignored.
@@ -162,7 +162,7 @@ fn open_rows<'a>(
     }
 }
 
-/// Calls `visit` for each row of an archive member. The zip checksum is compared at the end.
+/// Calls `visit` for each row of an array in the archive. The zip checksum is compared at the end.
 fn visit_rows(
     archive: &mut ZipArchive<BufReader<File>>,
     member: &Member,

@@ -53,7 +53,7 @@ impl SkinPicture {
         (self.background.width, self.background.height)
     }
 
-    /// Returns the picture of one frame, given one value per taxel (metres or newtons). `note` is the line of text above the map, such as the time.
+    /// Returns the picture of one frame, given one value per taxel (metres or newtons). The line of text above the map is `note`, for example the time.
     ///
     /// # Errors
     /// If the number of values differs from the number of taxels, or a value is not finite.

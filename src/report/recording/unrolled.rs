@@ -14,8 +14,8 @@ const FLAT: f64 = 0.985;
 /// Maximum deviation of the taxels from a fitted sphere or cylinder, relative to its radius. With a larger value, ellipsoids are accepted as spheres; with a
 /// smaller value, printed shapes are rejected.
 const FIT: f64 = 0.05;
-/// Maximum angle between a taxel and the middle of a part of a sphere that is flattened, radians. At larger angles, the rim would be drawn more than twice as
-/// long as it is.
+/// Maximum angle between taxels and the middle of a sphere that is drawn flat, radians. At larger angles, the rim would be drawn more than twice as long as it
+/// is.
 const WIDEST_CAP: f64 = 1.9;
 
 /// Positions of the taxels of a skin after projection onto a plane.
@@ -38,7 +38,7 @@ fn upright(towards_eye: DVec3, up: DVec3) -> DMat3 {
     DMat3::from_cols(right, towards_eye.cross(right), towards_eye).transpose()
 }
 
-/// Projects the taxels of a skin onto a plane. `axes` are unit vectors, one for each centre (metres).
+/// Projects the taxels of a skin onto a plane. For each centre (metres), `axes` contains a unit vector.
 pub(super) fn unroll(centers: &[DVec3], axes: &[DVec3]) -> Unrolled {
     let middle = mean(axes).normalize_or_zero();
     let round = match axes.iter().all(|axis| axis.dot(middle) > FLAT) {
@@ -52,7 +52,8 @@ fn mean(vectors: &[DVec3]) -> DVec3 {
     vectors.iter().sum::<DVec3>() / vectors.len() as f64
 }
 
-/// Returns the radius R if all places p and axes n satisfy p = c + R n for one centre c. A negative R means a concave surface.
+/// Returns the radius of the sphere or circle to which the axes are normal: R if all places p and axes n satisfy p = c + R n. A negative R means a concave
+/// surface.
 fn radius_of(places: &[DVec3], axes: &[DVec3]) -> Option<f64> {
     let (mean_place, mean_axis) = (mean(places), mean(axes));
     let pairs = || places.iter().zip(axes);

@@ -27,7 +27,7 @@ pub struct RecordingWriter {
     header: RecordingHeader,
     target: WholeFile,
     members: Vec<Member>,
-    /// For each member of the archive, the rows since the last complete block.
+    /// For each array of the recording, its rows since the last complete block.
     rows: Vec<Vec<u8>>,
     rows_per_block: usize,
     blocks: File,
@@ -145,7 +145,7 @@ impl RecordingWriter {
     }
 }
 
-/// Returns the size of one frame in bytes, summed over all members of the archive.
+/// Returns the size of one frame in bytes, summed over all arrays of the recording.
 fn frame_bytes(members: &[Member]) -> usize {
     members.iter().map(Member::row_bytes).sum()
 }
@@ -176,7 +176,7 @@ fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
     members
 }
 
-/// For each member of the archive, returns the numbers of one frame.
+/// For each array of the recording, returns the numbers of one frame.
 fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
     let mut numbers = vec![vec![frame.time]];
     for patch in &frame.patches {
