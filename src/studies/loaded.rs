@@ -31,7 +31,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// File of the table that lists the failed work items, with the cause of each failure.
-pub(super) const FAILURES: File<ItemFailure> = File::new(FAILURES_FILE, "What failed, and why", "");
+pub(super) const FAILURES: File<ItemFailure> = File::new(FAILURES_FILE, "Failed work items", "");
 
 /// Loaded and checked study, with all content on which its results depend.
 pub struct Loaded<K> {

@@ -467,7 +467,7 @@ fn tables_name_frames_and_temporal_features_and_the_written_study_runs_again() {
         text.contains(",frames,temporal_features,features,") && text.contains(",49,stacked_8,raw,")
     );
     let picture = String::from_utf8(read("confusion.svg")).unwrap();
-    assert!(picture.contains("What was taken for what"));
+    assert!(picture.contains("Confusion matrix"));
     // The resolved study can be run again.
     let again = String::from_utf8(read("study.toml")).unwrap();
     assert!(!again.contains("[objects]") && !again.contains("[touches]"));

@@ -297,9 +297,7 @@ fn value_words(one: &ColumnDifferences) -> Vec<String> {
             "{surely} (t-test paired over trials, corrected for their overlap, p < 0.05 after Holm's correction for {n_tested} settings)."
         )
     } else if let Some((trials, needed)) = needed {
-        format!(
-            "No p-values: {trials} a setting are too few to tell a difference from chance; {needed} are needed."
-        )
+        format!("No p-values: {trials} per setting; at least {needed} are needed.")
     } else if rows().any(|row| row.p_status.is_some()) {
         "No p-values: trials repeat too few splits, more rows are tested than trained on, or trials are missing.".to_owned()
     } else if has_intervals {

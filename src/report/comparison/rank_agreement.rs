@@ -77,7 +77,7 @@ impl RankAgreement {
         let choices = choices.map(|(words, same, all)| format!("{same} of {all} of {words}"));
         let choices: Vec<String> = choices.collect();
         let few = match self.n_designs < SUFFICIENT_SETTINGS {
-            true => ", which holds it less often where designs are so few",
+            true => ", too narrow for so few designs",
             false => "",
         };
         vec![
@@ -86,7 +86,7 @@ impl RankAgreement {
                 self.n_designs
             ),
             format!(
-                "Of pairs that differ in one choice alone, these are in the same order: {}.",
+                "Pairs of designs that differ in one choice alone and have the same order: {}.",
                 choices.join(", ")
             ),
         ]

@@ -53,7 +53,7 @@ const SUMMARY: File<DetailSummary> = File::new(
 const TIMING: File<(DetailConfiguration, DetailTime)> =
     File::new("timing.csv", "Time of a touch of each model", "").of_times();
 const COST: File<(DetailSummary, LevelTime)> =
-    File::new("object_detail_cost.csv", "What errors cost", "")
+    File::new("object_detail_cost.csv", "Cost of deflection errors", "")
         .of_times()
         .summary();
 pub(super) const RECOGNITION: File<DetailRecognition> = File::new(

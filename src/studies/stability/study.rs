@@ -27,7 +27,7 @@ const CONFIGURATIONS: File<(StabilityConfiguration, StabilityScore)> =
 const SUMMARY: File<StabilitySummary> = File::new(
     "stability_summary.csv",
     "Scenes and methods",
-    "Right: force balance and deflections within 1 %. Imbalance, deflection: the worst errors of what came to an end, as shares.",
+    "Right: force balance and deflections within 1 %. Imbalance, deflection: largest relative errors of finished runs.",
 )
 .summary();
 const TIMING: File<(StabilityConfiguration, StabilityTime)> =

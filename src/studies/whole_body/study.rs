@@ -28,13 +28,14 @@ use crate::table::{File, Table};
 use crate::whole_body::CoveredRobot;
 use std::collections::BTreeMap;
 
-const CASES: File<(BodyCase, BodyCount)> = File::new("whole_body.csv", "Scenes and rungs", "");
+const CASES: File<(BodyCase, BodyCount)> =
+    File::new("whole_body.csv", "Scenes and scaling points", "");
 const RECOGNITION: File<BodyRecognition> = File::new(
     "recognition.csv",
     "Recognition",
     "A linear SVM, trained and tested on simulated touches.",
 );
-const SENSED: File<BodySensed> = File::new("sensed.csv", "What scenes are taken for", "");
+const SENSED: File<BodySensed> = File::new("sensed.csv", "Recognised classes of the scenes", "");
 const TIMING: File<(BodyCase, BodyStage, StepTime)> = File::new(
     "timing.csv",
     "From touch to answer",
@@ -44,7 +45,7 @@ const TIMING: File<(BodyCase, BodyStage, StepTime)> = File::new(
 const STEPS: File<(BodyCase, BodyTouch, StepTime)> = File::new(
     "steps.csv",
     "Steps of the skin",
-    "Medians over steps of a moving object; of ladders, a cushion of spheres, half of them on its far side.",
+    "Medians over steps of a moving object; scaling points press a cushion of spheres, half of them on its far side.",
 )
 .summary()
 .of_times();

@@ -163,7 +163,7 @@ fn the_object_of_a_confused_pair_is_said_though_all_pairs_have_the_same() {
     other.predicted = "hammer".to_owned();
     typed.confused.push(other);
     let said = words(&tables_of(&typed).unwrap(), 90);
-    let (_, pairs) = said.split_once("Most often confused").unwrap();
+    let (_, pairs) = said.split_once("Most frequent confusions").unwrap();
     assert_eq!(
         pairs.matches("mug").count(),
         typed.confused.len(),

@@ -233,7 +233,7 @@ fn the_page_needs_no_network_and_says_what_it_is() {
         "41.3 s",
         "Sample touches",
         "Accuracy by compression, for each pitch and array size",
-        "What was taken for what",
+        "Confusion matrix",
     ] {
         assert!(html.contains(part), "{part}");
     }
@@ -281,12 +281,12 @@ fn a_study_without_anything_still_has_a_page() {
 #[test]
 fn published_accuracies_and_confused_pairs_stand_on_the_terminal_and_on_the_page() {
     let mut made = tables(quickstart_cells(), 3, 24);
-    assert!(!words_of(&made, 80).contains("Beside what was published"));
+    assert!(!words_of(&made, 80).contains("Published accuracies"));
     add_headlines(&mut made);
     let (_, score) = &made.summary[5];
     let html = html(&made, &about());
     for text in [
-        "Beside what was published",
+        "Published accuracies",
         "98 % of touches, noise &lt; 1 % [CL]",
         "bowl &lt;&amp;&gt;",
     ] {
@@ -297,10 +297,10 @@ fn published_accuracies_and_confused_pairs_stand_on_the_terminal_and_on_the_page
     }
     let text = words_of(&made, 120);
     for said in [
-        "Beside what was published",
+        "Published accuracies",
         "0.98",
         &format!("{:.2}", score.accuracy),
-        "Most often confused",
+        "Most frequent confusions",
         "0.32",
     ] {
         assert!(text.contains(said), "the terminal says {said}:\n{text}");

@@ -250,7 +250,7 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
     words.push(format!("accuracy {:.2}", accuracy[best]));
     Some(ChartSpec {
         note: format!(
-            "Rows were touched, columns are what they were taken for, all trials together. Of the most accurate configuration ({}).",
+            "Rows: touched object; columns: recognised object; all trials together. Most accurate configuration ({}).",
             words.join(", ")
         ),
         shown: confusion.shown("configuration", row).into_iter().collect(),
@@ -258,10 +258,6 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
             fill: "count".to_owned(),
             sign: None,
         },
-        ..confusion.chart(
-            "confusion",
-            "What was taken for what",
-            ("object", "predicted"),
-        )
+        ..confusion.chart("confusion", "Confusion matrix", ("object", "predicted"))
     })
 }

@@ -38,8 +38,7 @@ pub(crate) const OVER_TRIAL: &str =
 /// Text for a study with folds and without held-out groups: the test rows over which the intervals in `summary.csv` are computed.
 pub(crate) const OVER_FOLDS: &str =
     "Intervals are 95 % Wilson intervals at the test decisions of all folds, each touch once.";
-const CONFUSION: File<Confusion> =
-    File::new("confusion.csv", "What was taken for what", "").summary();
+const CONFUSION: File<Confusion> = File::new("confusion.csv", "Confusion matrix", "").summary();
 const COMPARISON: File<Comparison> = File::new(
     "comparison.csv",
     "Configurations against the best of their condition",
@@ -53,13 +52,13 @@ const PARETO: File<(Configuration, Pareto)> =
 const STAGES: File<StageTime> = File::new("stages.csv", "Times of the stages", "").of_times();
 const CONFUSED: File<Confused> = File::new(
     "confused.csv",
-    "Most often confused",
+    "Most frequent confusions",
     "The pairs of objects that the best configuration confuses most often, all trials together.",
 )
 .summary();
 const PUBLISHED: File<(Configuration, Published)> = File::new(
     "published.csv",
-    "Beside what was published",
+    "Published accuracies",
     "Ours: the most accurate of the configurations that have the settings of the claim, in each condition that these were measured in.",
 )
 .summary();

@@ -115,7 +115,7 @@ pub struct Confusion {
     /// Name of the touched object.
     object: String => Subject;
     /// Name of the recognised object.
-    predicted: String => Subject "taken for";
+    predicted: String => Subject "recognised as";
     /// Number of test rows of `object` that were recognised as `predicted`.
     // A logarithmic scale makes rare confusions visible.
     count: usize => Value(Neither) "test rows": Log;
@@ -132,13 +132,13 @@ pub struct Confused {
     /// Name of the touched object.
     object: String => Subject;
     /// Name of the recognised object.
-    predicted: String => Subject "taken for";
+    predicted: String => Subject "recognised as";
     /// Number of the object's test rows that were recognised as `predicted`, over all trials.
     count: usize => Note "test rows": Log;
     /// Number of the object's test rows, over all trials.
     n_test: usize => Note "test rows of the object": Linear;
     /// Fraction of the object's test rows that were recognised as `predicted`, `count / n_test`, 0 to 1.
-    fraction: f64 => Value(Less) "share of the object's test rows": Share between [fraction_low, fraction_high];
+    fraction: f64 => Value(Less) "fraction of the object's test rows": Share between [fraction_low, fraction_high];
     /// Lower end of the 95 % Wilson interval of `fraction`, 0 to 1.
     fraction_low: f64 => Note "95 % interval, lower end": Share, optional;
     /// Upper end of the 95 % Wilson interval of `fraction`, 0 to 1.
@@ -332,7 +332,7 @@ pub struct Variance {
     /// Upper end of the 95 % interval of `accuracy_std`, by the method of modified large samples; for `rest`, by the χ² distribution.
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
     /// Fraction of the variance of a trial's accuracy that is due to the source, 0 to 1, with negative estimates counted as zero. Empty if nothing varies.
-    fraction: Option<f64> => Value(Less) "share of the variance": Share;
+    fraction: Option<f64> => Value(Less) "fraction of the variance": Share;
     /// p-value of the F test of the hypothesis that the source contributes no variance; empty for `rest`.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }
