@@ -34,8 +34,8 @@ pub enum CombineSpec {
     /// All combinations of the values of all axes.
     #[default]
     All,
-    /// A base configuration, and variants of it in which a single axis takes its other values. The base has the first value of each axis; for `[axes]`, it has
-    /// the values of the study's own tables.
+    /// A base configuration, and variants of it in which a single axis takes another of its values. The base has the first value of each axis; for `[axes]`, it
+    /// has the values of the study's own tables.
     OneAtATime,
 }
 
@@ -53,9 +53,9 @@ pub struct StudyAxes {
 pub struct StudyAxis {
     /// Path of the key, such as `touches.depth_mm`, or `touches.offset_{x,y}_mm` for two keys.
     pub key: String,
-    /// Description of the varied key (of the first key, if several are varied together). For keys of test touches, the description of the key without `test.`.
+    /// Description of the varied key, or of the first key if several are varied together. For keys of test touches, the description of the key without `test.`.
     pub about: Option<&'static KeyAbout>,
-    /// Whether the result tables have a column for these values even without the axis.
+    /// Whether result tables already have a column for the values of this key.
     pub has_column: bool,
     /// Distinct values of the axis, at least one.
     pub values: Vec<toml::Value>,
@@ -68,12 +68,12 @@ pub struct StudyAxis {
 pub struct AxisValues {
     /// Number of the combination of values, from 0.
     pub number: usize,
-    /// Value of each axis that has no column of its own in result tables.
+    /// Value on each axis that has no column of its own in result tables.
     pub values: Arc<[AxisValue]>,
 }
 
 impl AxisValues {
-    /// Creates the axis values of combination `number`. `columns` are the table columns of those axes that have no column of their own in result tables.
+    /// Creates the axis values of combination `number`. The columns of those axes that result tables do not have yet are `columns`.
     pub fn new(
         number: usize,
         (axes, columns): (&StudyAxes, &[Column]),
@@ -102,7 +102,8 @@ impl AxisValues {
 pub struct AxisValue {
     /// Table column of the axis.
     pub column: Column,
-    /// Number, truth value, or text; lists and tables are converted to text. `None` if the axis keeps the value of the study, and the study has no such value.
+    /// Number, truth value, or text; lists and tables are converted to text. The field is `None` if the axis keeps the value of the study and the study has no
+    /// such value.
     pub value: Option<toml::Value>,
 }
 
@@ -138,7 +139,8 @@ pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<
     }
 }
 
-/// Reads a study with these `keys`, and its axes. In the returned study, each key of an axis has its first value; keys that accept lists have all values.
+/// Reads a study file that may contain the given keys, and the axes of the study. In the returned study, each key of an axis has its first value; keys that
+/// accept lists have all values.
 ///
 /// # Errors
 /// If the study is invalid. If an axis has no values, a repeated value, a key that is also given elsewhere, or a key that cannot be an axis. The error names
@@ -240,7 +242,7 @@ fn take_combine(
     CombineSpec::deserialize(value).map_err(|error| Error::toml(place, text, &error))
 }
 
-/// Returns the values of a TOML list; an empty list for any other value.
+/// Returns the values of a TOML list; for any other value, an empty list.
 fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::Value>> {
     let DeValue::Array(values) = value.get_ref() else {
         return Ok(Vec::new());
@@ -352,7 +354,7 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the key path of the axis without braces, and without a suffix that only describes a distribution.
+    /// Returns the key path of the axis without braces, and without a last part that only describes a distribution.
     fn path(&self) -> String {
         let path = self.key.replace(['{', '}', ',', ' '], "");
         path.strip_suffix(".within").unwrap_or(&path).to_owned()
@@ -368,7 +370,7 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the column of the axis in result tables. `is_taken` returns whether another column already has a name.
+    /// Returns the column of the axis in result tables. For a name that another column already has, `is_taken` returns true.
     pub fn column(&self, is_taken: impl Fn(&str) -> bool) -> Column {
         let last = self.name();
         let last = &last[..];
@@ -419,7 +421,7 @@ impl StudyAxis {
 /// Prefix of keys that apply only to test touches.
 const OF_TESTS: &str = "test.";
 
-/// Returns the path of a key without the prefix of test touches, that is, the key of all touches with this meaning.
+/// Returns the path of a key without the prefix `test.`, which marks keys of test touches.
 fn without_test(key: &str) -> &str {
     key.strip_prefix(OF_TESTS).unwrap_or(key)
 }
@@ -462,7 +464,7 @@ impl StudyAxes {
         axes.any(|axis| axis.keys().iter().any(|own| own == key))
     }
 
-    /// Returns the columns of those axes that result tables do not have yet. `is_taken` returns whether another column already has a name.
+    /// Returns the columns of those axes that result tables do not have yet. For a name that another column already has, `is_taken` returns true.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {
             let alike = self.axes.iter().filter(|other| other.name() == axis.name());
@@ -482,8 +484,8 @@ impl StudyAxes {
         }
     }
 
-    /// Returns all combinations of axis values that become configurations; the last axis changes fastest. `None` means that the axis keeps its value in
-    /// `study`.
+    /// Returns all combinations of axis values that become configurations; the last axis changes fastest. An entry of `None` means that the axis keeps its
+    /// value in `study`.
     fn combinations(&self, study: &toml::Table) -> Vec<Vec<Option<toml::Value>>> {
         if self.combine == CombineSpec::OneAtATime {
             let mut all = vec![vec![None; self.axes.len()]];
@@ -508,8 +510,7 @@ impl StudyAxes {
         all
     }
 
-    /// Returns each combination of axis values together with the study in which the axes' keys have these values. If an axis keeps its value, the listed value
-    /// is the value in `study`.
+    /// Returns the study of each combination of axis values, together with these values. If an axis keeps its value, the listed value is the value in `study`.
     ///
     /// # Errors
     /// If a value is invalid for the study; the error names the axis.

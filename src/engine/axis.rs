@@ -34,7 +34,8 @@ impl<T: Clone> Axis<T> {
     }
 }
 
-/// The implementation is not derived, because an untagged enum does not report which value is wrong and what is allowed.
+/// Deserialises one value or a list of values. The implementation is not derived, because an untagged enum does not report which value is wrong and what is
+/// allowed.
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Axis<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
         deserializer.deserialize_any(AxisVisitor(PhantomData))

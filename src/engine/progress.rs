@@ -1,6 +1,6 @@
 //! Progress of a running study: the current stage and the number of completed steps.
 
-/// Receiver of progress reports during a run. `stage` and `finish` are called by one thread at a time, `advance` by any thread.
+/// Receiver of progress reports during a run. The methods `stage` and `finish` are called by one thread at a time, `advance` by any thread.
 pub trait Progress: Sync {
     /// Starts a stage that consists of `total` steps, and ends the previous stage.
     fn stage(&self, name: &str, total: u64);

@@ -40,7 +40,7 @@ pub struct Manifest {
     /// Folder of the study file, to which paths in the study are relative. Empty in manifests of earlier versions.
     #[serde(default)]
     pub paths_from: PathBuf,
-    /// Version of the table columns ([`SCHEMA`]); 0 in result folders that versions with other column names wrote.
+    /// Version of the table columns ([`SCHEMA`]); 0 in folders of earlier versions, whose columns have other names.
     #[serde(default)]
     pub schema: u32,
     /// Name and version of the program that computed the results.
@@ -69,7 +69,7 @@ pub struct Manifest {
     /// Peak memory of the last run, bytes; `None` if the system does not report it.
     #[serde(default)]
     pub peak_memory_bytes: Option<u64>,
-    /// Number of configurations that were finished before the last run, counted once per trial.
+    /// Number of configurations that were already finished when the last run started, counted once per trial.
     pub n_finished_before: usize,
     /// Seed from which all random numbers of the study are derived.
     pub seed: u64,

@@ -9,7 +9,7 @@ use crate::table::{Column, Role, Scale};
 /// Description of one key of a study file, which also defines its table column and axis.
 #[derive(Clone, Copy, Debug)]
 pub struct KeyAbout {
-    /// Path of the key: `skin.pitch_mm`. Entries of an array of tables share a path: `stability.parts.taxels`.
+    /// Path of the key, such as `skin.pitch_mm`. Entries of an array of tables share a path: `stability.parts.taxels`.
     pub path: &'static str,
     /// Place at which the key may have a list of values to sweep.
     pub axis: AxisPlace,
@@ -38,7 +38,7 @@ pub enum AxisPlace {
     Never,
 }
 
-/// Two keys are equal if their paths are equal.
+/// Compares two keys by their paths: equal paths mean equal keys.
 impl PartialEq for KeyAbout {
     fn eq(&self, other: &Self) -> bool {
         self.path == other.path
@@ -131,7 +131,7 @@ impl KeyAbout {
         self.unit.unwrap_or(self.name_and_unit().1)
     }
 
-    /// Returns the column of the key in result tables, under the given name.
+    /// Returns the column of the key in result tables; `name` is the name of the column.
     ///
     /// # Panics
     /// If the key has no scale.

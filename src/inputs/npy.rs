@@ -110,7 +110,7 @@ pub fn write_integers(path: &Path, numbers: impl IntoIterator<Item = usize>) -> 
     write_npy(path, &Array1::from_iter(numbers))
 }
 
-/// Writes texts as a `.npy` file of NumPy's type U.
+/// Writes texts as a `.npy` file of NumPy's type U (Unicode texts).
 ///
 /// # Errors
 /// If the file cannot be written.

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Version of the method that packs meshes; the version changes whenever [`pack_mesh`] returns other spheres for a mesh.
 const METHOD: &str = "packing 4";
 
-/// Length of the last line of a packing file, which contains its checksum, including the line break, bytes.
+/// Length of the last line of a packing file, bytes, including the line break; the line contains the checksum of the file.
 const SEAL: usize = 80;
 
 /// Spheres that approximate a mesh, and whether they come from the cache.

@@ -46,7 +46,7 @@ pub enum Range {
     Of(fn(f64) -> bool, &'static str),
     /// Texts and truth values. A list of them contains each value once.
     Any,
-    /// Values that are checked elsewhere: texts, files, vectors and tables.
+    /// Values that the reader of the key checks: texts, files, vectors and tables.
     Unchecked,
 }
 

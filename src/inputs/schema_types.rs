@@ -55,8 +55,8 @@ impl serde::de::Error for Expected {
     }
 }
 
-/// Returns the keys that the reader of `T` accepts in the innermost table of a probe, in the order of their declaration. The innermost table of the probe
-/// contains the single key `?`. Returns no keys if that table accepts any key.
+/// Returns the keys that the reader of `T` accepts in the innermost table of `probe`, in the order of their declaration. This table contains the single key
+/// `?`. Returns no keys if the table accepts any key.
 pub fn accepted_keys<T: DeserializeOwned>(probe: toml::Value) -> Vec<String> {
     let error = T::deserialize(probe).err();
     let message = error.as_ref().map_or("", toml::de::Error::message);

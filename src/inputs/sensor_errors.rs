@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TestSensor {
-    /// The skin of the training touches, whose individual errors a classifier may learn.
+    /// Skin of the training touches, whose individual errors a classifier may learn.
     #[default]
     SameSkin,
     /// Another skin of the same type in each trial: gains, drift and faults are drawn again.

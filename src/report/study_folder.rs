@@ -16,7 +16,6 @@ pub const MAX_CHARTS: usize = 24;
 
 /// Returns the files of a result folder with charts, pictures and the page. The function `beyond` computes additional content while charts are drawn. Charts
 /// without drawable rows are omitted.
-/// drawable rows are omitted.
 ///
 /// # Errors
 /// If a chart or picture cannot be drawn.

@@ -87,7 +87,7 @@ macro_rules! declare_mark {
 for_each_mark!(declare_mark);
 
 impl Mark {
-    /// Returns the column that fills the marks, if they have one.
+    /// Returns the name of the column that determines the colour of the marks; `None` if there is no such column.
     pub fn fill(&self) -> Option<&str> {
         match self {
             Self::Tiles { fill, .. } => Some(fill),
@@ -103,7 +103,7 @@ pub struct Rule {
     pub along: Along,
     /// Position of the reference line on its axis.
     pub at: At,
-    /// Label of the line in the legend.
+    /// Label of the reference line in the legend.
     pub words: String,
 }
 

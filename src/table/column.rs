@@ -7,7 +7,7 @@ use std::borrow::Cow;
 /// Text that is constant, or created at run time for the axes that a study defines.
 pub type Words = Cow<'static, str>;
 
-/// Role of a table column, on which reports, pages, advice and comparisons depend.
+/// Role of a table column. Reports, pages, advice and comparisons depend only on roles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Choice of the designer, such as pitch, ensemble or C. For each condition, advice selects the best choices.
@@ -33,7 +33,7 @@ pub enum Better {
     More,
     /// Smaller values are better.
     Less,
-    /// No direction is better.
+    /// Neither larger nor smaller values are better.
     Neither,
 }
 
@@ -69,7 +69,7 @@ pub struct Column {
     /// Display names of codes, such as `RBF SVM` for `rbf_svm`. In other words, underscores are shown as spaces. Numbers with a special meaning can also have
     /// names, such as `none` for `0` bits.
     pub names: &'static [(&'static str, &'static str)],
-    /// Meaning of the values, for the reference of tables.
+    /// Meaning of the values in one sentence, for the reference page of all tables.
     pub meaning: Words,
     /// Whether the column may be missing in a file, because only some studies have it.
     pub is_optional: bool,
@@ -103,7 +103,7 @@ impl Column {
         self
     }
 
-    /// Sets the meaning of the values.
+    /// Sets the meaning of the values, which the reference page of all tables shows.
     pub fn meaning(mut self, meaning: impl Into<Words>) -> Self {
         self.meaning = meaning.into();
         self

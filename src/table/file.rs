@@ -16,17 +16,17 @@ pub struct File<R> {
     rows: PhantomData<fn(R)>,
 }
 
-/// Description of a table file, for the reference of tables.
+/// Description of a table file, for the reference page of all tables.
 pub struct FileAbout {
     /// Name of the CSV file.
     pub name: &'static str,
     /// Title of the table.
     pub title: &'static str,
-    /// Note on the table; may be empty.
+    /// Note that explains the table; may be empty.
     pub note: &'static str,
-    /// Whether a repeated run gives the same bytes.
+    /// Whether a repeated run writes the same bytes.
     pub repeats: bool,
-    /// All columns, including the optional ones.
+    /// Columns of the table, including the optional ones.
     pub columns: Vec<Column>,
 }
 

@@ -59,7 +59,7 @@ macro_rules! row {
     };
 }
 
-/// Returns the text of doc comments, line breaks included; other attributes are ignored.
+/// Returns the text of the given doc comments, with line breaks; other attributes are ignored.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! doc_of {

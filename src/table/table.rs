@@ -18,7 +18,7 @@ pub struct Table {
     pub note: String,
     /// Whether repeated runs of a study give equal bytes; false for tables of times.
     pub repeats: bool,
-    /// Whether each row summarises all work items of a study; a part of the items would then give other rows.
+    /// Whether each row summarises all work items of a study. A part of the items would then give other rows.
     pub is_summary: bool,
     /// Columns of the table, in the order of the file.
     pub columns: Vec<Column>,
@@ -98,7 +98,7 @@ impl Data {
         }
     }
 
-    /// Returns the value in a row, or `None` if it is absent.
+    /// Returns the value of the column in a row, or `None` if it is absent.
     pub fn value(&self, row: usize) -> Option<Value> {
         match self {
             Self::Numbers(numbers) => Some(numbers[row])

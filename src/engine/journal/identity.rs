@@ -20,7 +20,7 @@ pub struct Identity {
     pub study: String,
     /// SHA-256 hash of each object's content, by the object's name.
     pub objects: BTreeMap<String, String>,
-    /// Rule that decides which other studies may resume the run; not stored in the journal.
+    /// Rule that decides which other studies may resume the run. The rule is not stored in the journal.
     #[serde(skip)]
     same: SameStudy,
 }
@@ -28,7 +28,7 @@ pub struct Identity {
 /// Rule that decides which studies of the same program and objects may resume each other's runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SameStudy {
-    /// Studies that differ only in these keys and the keys below them may share a journal.
+    /// Studies may share a journal if they differ only in these keys and the keys below them.
     ButFor(&'static [&'static str]),
     /// Studies may share a journal that contains a result of one of these work items. The names of the items are derived from all inputs, so results cannot be
     /// confused. A study that shares no result is rejected, because its tables would replace all existing tables.
@@ -42,7 +42,7 @@ impl Default for SameStudy {
 }
 
 impl SameStudy {
-    /// Returns a function that tests, for a key of the study file, whether this study and the study of a journal may differ in it.
+    /// Returns a function that tests whether two studies that share a journal may differ in a key of the study file.
     fn may_differ(&self, records: &Records) -> Box<dyn Fn(&str) -> bool> {
         match self {
             Self::ButFor(keys) => Box::new(|key| keys.iter().any(|name| is_at(key, name))),
@@ -103,7 +103,7 @@ impl Identity {
         ))
     }
 
-    /// Returns the parts of the identity as pairs (name, value): the program, the objects, and all keys of the study except keys that may differ.
+    /// Returns the parts of the identity by name: the program, the objects, and all keys of the study for which `may_differ` returns false.
     fn facts(&self, may_differ: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
         let mut facts = BTreeMap::new();
         if let Some(table) = toml_text::table(&self.study) {

@@ -31,8 +31,8 @@ struct Line {
     record: Box<RawValue>,
 }
 
-/// Encodes a record as a journal line with its line break; also returns the checksum. `first` is the checksum of the journal's first line, or 0 for the first
-/// line itself.
+/// Encodes a record as a journal line with its line break; also returns the checksum of the line. The checksum of the journal's first line is `first`, or 0 for
+/// the first line itself.
 pub fn encode(first: u32, key: &str, record: &impl Serialize) -> serde_json::Result<(u32, String)> {
     let json = serde_json::to_string(&Written { key, record })?;
     let checksum = checksum(first, &json);

@@ -51,7 +51,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.is_pending[number]
     }
 
-    /// Returns the elements of `all` whose work items are pending, with the item numbers. The work items of the elements are numbered consecutively from
+    /// Returns the elements of `all` whose work items are pending, each with its item number. The work items of the elements are numbered consecutively from
     /// `first`.
     pub fn among<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
         let numbered = (first..).zip(all);
@@ -70,7 +70,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.keep(number, result)
     }
 
-    /// Computes data that several work items need. If `make` fails, all pending items in `numbers` are recorded as failed, and `None` is returned.
+    /// Computes data that several pending work items need. If `make` fails, all pending items in `numbers` are recorded as failed, and `None` is returned.
     ///
     /// # Errors
     /// If the journal cannot be written, or if `make` fails and the first failure ends the run.

@@ -16,7 +16,7 @@ pub struct ItemFailure {
     error: String => Note;
 } }
 
-/// Run of a study's work items; created after the journal was read.
+/// Run of a study's work items, which is created after the journal was read.
 pub struct StudyRun<'a, R> {
     items: &'a [WorkItem],
     /// For each work item, its result in the journal; `None` if the journal has no result of the item.
@@ -46,8 +46,8 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
         self.pending.n()
     }
 
-    /// Computes the pending work items with `measure`. Returns the rows of all items that did not fail in this or an earlier run, in the order of items, and
-    /// the failed items. Except for times, the rows equal the rows of a run that computes all items together.
+    /// Computes the pending work items with `measure` and returns the rows of the study. The rows belong to all items that did not fail in this or an earlier
+    /// run, in the order of items; failed items are returned, too. Except for times, the rows equal the rows of a run that computes all items together.
     ///
     /// `place(number, rows)` sets the values in the rows that depend on the item's number, such as numbers of configurations. `words(number)` returns the name
     /// of an item in words, for failures.

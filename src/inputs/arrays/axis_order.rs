@@ -38,7 +38,7 @@ pub struct FrameShape {
     pub rows: usize,
     /// Number of columns of the taxel grid; if the taxels form no grid, the number of taxels.
     pub columns: usize,
-    /// Whether the taxels have rows and columns.
+    /// Whether the taxels form a grid with rows and columns.
     pub has_grid: bool,
     /// Number of recorded values per taxel.
     n_values: usize,
@@ -54,7 +54,7 @@ impl FrameShape {
         self.n_values * self.rows * self.columns
     }
 
-    /// Returns the axis order and the expected axis lengths of an additional array with `n_values` values per taxel. `shape` is the shape of the frames; the
+    /// Returns the axis order and the expected axis lengths of an additional array with `n_values` values per taxel. The shape of the frames is `shape`; the
     /// additional axis c comes before the axes of position.
     pub fn beside(&self, shape: &[usize], n_values: usize) -> (String, Vec<usize>) {
         let (mut order, mut shape) = (self.order.clone(), shape.to_owned());
@@ -70,8 +70,8 @@ impl FrameShape {
         (order, shape)
     }
 
-    /// Arranges numbers as one per taxel, row by row, shape (rows · columns). The input has the taxel axes of a file of frames of shape `frames`, or the shape
-    /// rows × columns, or is a list.
+    /// Arranges numbers that belong to single taxels (one per taxel), row by row: shape (rows · columns). The input has the taxel axes of a file of frames of
+    /// shape `frames`, or the shape rows × columns, or is a list.
     ///
     /// # Errors
     /// If the numbers do not fill a frame; the error contains the expected shape.

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::path::Path;
 
-/// Reads a CSV table of numbers or, if an entry is not a number, of texts. An empty entry among numbers is NaN. The first line is a header if an entry is not a
+/// Reads a CSV table as numbers or, if an entry is not a number, as texts. An empty entry among numbers is NaN. The first line is a header if an entry is not a
 /// number and the other lines contain numbers. A column without a name contains row numbers and is skipped.
 ///
 /// # Errors
@@ -89,7 +89,7 @@ fn numbers_or_text(line: &str) -> Vec<String> {
     }
 }
 
-/// Returns the entries of a line without their quotes.
+/// Splits a line of a CSV file at the separator; returns the entries without their quotes.
 fn cells(line: &str, separator: char) -> Vec<String> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)

@@ -66,7 +66,7 @@ impl FileArray {
         }
     }
 
-    /// Converts the elements to an array of numbers.
+    /// Converts the elements of the array to numbers, with the shape of the array.
     ///
     /// # Errors
     /// If the elements are texts.
@@ -114,7 +114,7 @@ pub fn member_names(path: &Path) -> Result<Vec<String>> {
     Ok(names.collect())
 }
 
-/// Returns whether a `.npz` archive contains the array `name` besides other arrays; `false` for other files.
+/// Returns whether the array `name` is one of several arrays in a `.npz` archive; `false` for other files.
 pub fn is_member(path: &Path, name: &str) -> bool {
     let is_archive = || matches!(format_of(path), Ok(Format::Npz));
     is_archive()

@@ -8,7 +8,7 @@ use crate::world::{JointKind, Robot};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Reads a layout of taxels from the text of a URDF file. `sensor` is the name of a tactile sensor, or of the link that carries the taxels' prismatic joints.
+/// Reads a layout of taxels from the text of a URDF file. The name of a tactile sensor, or of the link that carries the taxels' prismatic joints, is `sensor`.
 /// The name may be omitted if there is only one.
 pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<LayoutFile> {
     let robot = Robot::from_urdf(place, text)?;

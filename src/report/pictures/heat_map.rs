@@ -86,7 +86,6 @@ pub fn check_frame(frame: &Array2<f64>) -> Result<()> {
 
 /// Returns a smaller frame that contains the largest value of each block of taxels. The size of a block (rows, columns) is `block`; blocks at the upper and
 /// right edge may be smaller.
-/// smaller.
 pub fn largest_of_blocks(frame: &Array2<f64>, block: (usize, usize)) -> Array2<f64> {
     let (ny, nx) = frame.dim();
     let (down, across) = (block.0.max(1), block.1.max(1));
