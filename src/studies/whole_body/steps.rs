@@ -89,7 +89,7 @@ impl Drive<'_> {
                 press_s: start.elapsed().as_secs_f64(),
                 contact,
                 n_visited: self.state.n_visited(),
-                deflection: self.touched().map(|(_, deflection)| deflection).sum(),
+                deflection: self.state.total_deflection(self.body),
             });
             for (compression, (row, sensed)) in compressions.iter().zip(&mut sensed) {
                 sensed.push(compression.sense(self, row)?);

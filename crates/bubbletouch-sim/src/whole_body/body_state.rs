@@ -135,6 +135,11 @@ impl BodyState {
         columns.measure_touched(self.touched(body), measurements);
     }
 
+    /// Returns the sum of the deflections of the last step, metres. The loop is compiled with this crate, also for callers without optimisation.
+    pub fn total_deflection(&self, body: &WholeBody) -> f64 {
+        self.touched(body).map(|(_, deflection)| deflection).sum()
+    }
+
     /// Returns the deflected taxels patch by patch: the index of the patch's first taxel, and the touched taxels with indices relative to this taxel.
     pub(crate) fn touched_of_patches(
         &self,
