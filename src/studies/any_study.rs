@@ -37,7 +37,7 @@ pub trait AnyStudy: Send {
     /// If the journal cannot be written, if an item fails and the first failure ends the run, or if the memory does not suffice for a single item.
     fn run(&self, options: &RunOptions) -> Result<Outcome>;
 
-    /// Writes the results of a run: tables, charts, page, study file and manifest.
+    /// Writes all files of a run into a result folder: tables, charts, page, study file and manifest.
     ///
     /// # Errors
     /// If a chart cannot be drawn or a file cannot be written.
@@ -49,7 +49,7 @@ pub trait AnyStudy: Send {
         chart_format: ChartFormat,
     ) -> Result<()>;
 
-    /// Returns the summary for the terminal, wrapped at `width` characters.
+    /// Returns the text that the terminal shows at the end of a run, wrapped at `width` characters.
     fn words(&self, outcome: &Outcome, width: usize) -> String;
 
     /// Re-runs `n` work items, drawn at random with the seed `draw`, and compares their results with the stored ones. Returns a text that lists these items.
@@ -66,10 +66,10 @@ pub trait AnyStudy: Send {
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()>;
 }
 
-/// Result of a run of a study.
+/// Result of running a study.
 pub struct Outcome {
     /// All result tables, including the table of failed work items.
     pub tables: Vec<Table>,
-    /// Number of failed work items.
+    /// Number of work items that failed.
     pub n_failed: usize,
 }

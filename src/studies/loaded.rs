@@ -39,7 +39,7 @@ pub struct Loaded<K> {
     facts: Facts,
     identity: Identity,
     pub(super) items: Arc<[WorkItem]>,
-    /// Memory limit, bytes; `None` for no limit.
+    /// Maximum memory that a run may use, bytes; `None` for no limit.
     memory: Option<u64>,
 }
 

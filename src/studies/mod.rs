@@ -41,7 +41,7 @@ use crate::toml_text;
 use schemars::{Schema, SchemaGenerator};
 use std::path::Path;
 
-/// Type-erased kind of study, as stored in the registry.
+/// Entry of the registry: a kind of study without its type, so that all kinds are in one list.
 struct Entry {
     about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
@@ -60,7 +60,7 @@ const KINDS: &[Entry] = &[
     RECOGNITION,
 ];
 
-/// Kind of a study file without a table of another kind.
+/// Kind of study for files that have no table of another kind: a recognition study.
 const RECOGNITION: Entry = entry::<recognition::study::RecognitionStudy>();
 
 const fn entry<K: Study>() -> Entry {
@@ -222,7 +222,8 @@ fn check_removed(place: &str, text: &str) -> Result<()> {
     }
 }
 
-/// Returns the kind whose table the text contains; also `None` for invalid TOML, which the reader of the study reports.
+/// Returns the kind of study whose table the text contains; returns `None` if there is none. Also returns `None` for invalid TOML, which the reader of the
+/// study reports.
 fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
     let mut kinds = KINDS.iter();

@@ -24,12 +24,12 @@ pub struct Source {
     pub packings: Option<PathBuf>,
     /// Folder to which results are written. Temporary data that exceed the memory are also stored there.
     pub results: PathBuf,
-    /// Memory limit, bytes; `None` for no limit.
+    /// Maximum memory that a run may use, bytes; `None` for no limit.
     pub memory: Option<u64>,
 }
 
 impl Source {
-    /// Creates a source from the text of a study, without overriding options.
+    /// Creates a source from the text of a study; no option overrides the study.
     pub fn of_text(place: &str, text: &str) -> Self {
         Self {
             place: place.to_owned(),
@@ -38,7 +38,7 @@ impl Source {
         }
     }
 
-    /// Reads the study of a result folder, without overriding options.
+    /// Reads the study that is stored in a result folder; no option overrides the study.
     ///
     /// # Errors
     /// If the folder has no study or the study cannot be read.
@@ -50,12 +50,12 @@ impl Source {
         Ok(Self::of_text(&path.display().to_string(), &text))
     }
 
-    /// Returns the overriding seed if there is one, otherwise the seed of the study.
+    /// Returns the seed from the command line if it is given, otherwise the seed of the study, `of_study`.
     pub fn seed(&self, of_study: u64) -> u64 {
         self.seed.unwrap_or(of_study)
     }
 
-    /// Replaces the study's objects if an option gives other objects.
+    /// Replaces the objects of a study if a command-line option gives other objects.
     pub fn replace_objects(&self, objects: &mut ObjectsSpec) {
         let Some(given) = &self.objects else {
             return;
@@ -69,7 +69,7 @@ impl Source {
         }
     }
 
-    /// Replaces the folder of recorded frames if an option gives another folder.
+    /// Replaces the folder of recorded frames in a study if a command-line option gives another folder.
     pub fn replace_recorded(&self, recorded: &mut RecordedSpec) {
         let Some(folder) = &self.objects else {
             return;
@@ -79,7 +79,7 @@ impl Source {
         }
     }
 
-    /// Checks that no option replaces the objects; `why` explains what the study has instead.
+    /// Checks that no command-line option replaces the objects; `why` explains what the study has in place of objects.
     ///
     /// # Errors
     /// If an option replaces the objects.
@@ -88,7 +88,7 @@ impl Source {
         refuse("--objects", given, why)
     }
 
-    /// Checks that no option replaces the seed; `why` explains why the study has no seed.
+    /// Checks that no command-line option replaces the seed; `why` explains why the study has no seed.
     ///
     /// # Errors
     /// If an option replaces the seed.

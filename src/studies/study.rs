@@ -19,7 +19,7 @@ use std::path::Path;
 /// Description of a kind of study; available before a study file is read.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// Name of the table in a study file that only this kind has.
+    /// Name of the table that a study file has only if it is of this kind.
     pub table: &'static str,
     /// Phrase of the form `a study that …` that describes what studies of this kind compare or measure.
     pub words: &'static str,
@@ -57,7 +57,7 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Creates the facts of a study from its specification and the hashes of its other content.
+    /// Creates the facts about a study from its specification and the hashes of its content outside the study file.
     pub fn new(spec: &impl Serialize, content: BTreeMap<String, String>) -> Self {
         Self::of_toml(toml_text::write(spec), content)
     }
@@ -80,19 +80,19 @@ impl Facts {
 
 /// Table file whose type of rows is erased, so that files of different tables can be in one list.
 pub trait AnyFile: Sync {
-    /// Returns the name of the table file.
+    /// Returns the file name of the table.
     fn name(&self) -> &'static str;
 
     /// Describes the file; see [`File::about`].
     fn about(&self) -> FileAbout;
 
-    /// Reads the table from a folder.
+    /// Reads the table from a result folder.
     ///
     /// # Errors
     /// If the file cannot be read or is not a table of this kind.
     fn read(&self, folder: &Path) -> Result<Table>;
 
-    /// Reads the table from a folder; returns `None` if the file does not exist.
+    /// Reads the table from a result folder; returns `None` if the file does not exist.
     ///
     /// # Errors
     /// If the file cannot be read or is not a table of this kind.
@@ -122,7 +122,7 @@ impl<R: Columns> AnyFile for File<R> {
 pub struct TableFiles {
     /// Table files that every study of the kind writes.
     pub always: &'static [&'static dyn AnyFile],
-    /// Table files of optional parts of a study.
+    /// Table files that a study writes only if it has certain optional parts.
     pub of_parts: &'static [&'static dyn AnyFile],
     /// Function that reads all tables of a folder, for tables whose columns depend on the study.
     pub read: Option<fn(&Path) -> Result<Vec<Table>>>,
@@ -144,7 +144,7 @@ impl TableFiles {
         files.map(|file| file.name()).collect()
     }
 
-    /// Reads all tables of a folder, in the order in which a study creates them.
+    /// Reads all tables of a result folder, in the order in which a study creates them.
     ///
     /// # Errors
     /// If a table cannot be read or has other columns.
@@ -159,7 +159,7 @@ impl TableFiles {
     }
 }
 
-/// Findings of a study, computed from its tables for the page and the terminal.
+/// Charts and answers of a study, computed from its tables for the page and the terminal.
 pub struct Findings {
     /// Charts, the most important first.
     pub charts: Vec<ChartSpec>,
@@ -172,14 +172,14 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Description of the kind of study.
     const ABOUT: About;
 
-    /// Table files to which the result tables are written.
+    /// Table files to which a study writes its results.
     const TABLES: TableFiles;
 
     /// Function that returns the text shown at the end of a run, wrapped at the given number of characters. If it is `None`, the text consists of the first
     /// table that has a value column, and the answers.
     const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
 
-    /// Specification: the keys of a study file of the kind.
+    /// Specification of a study: the keys that its file may have.
     type Spec: JsonSchema + DeserializeOwned;
 
     /// Type of the result rows of a work item.

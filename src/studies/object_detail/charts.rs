@@ -104,7 +104,7 @@ impl ObjectDetailStudy {
     }
 }
 
-/// Returns the table of classifiers; `None` if none were trained.
+/// Returns the table of classifiers; returns `None` if the study trained none.
 fn learned(tables: &[Table]) -> Option<&Table> {
     tables.iter().find(|table| table.file == RECOGNITION.name())
 }

@@ -14,9 +14,9 @@ use crate::world::Placement;
 /// Summary of |δ − δ\*| over taxels, where δ is the deflection on a model and δ\* the exact deflection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DeflectionError {
-    /// Mean of |δ − δ\*| over all taxels that the mesh or the model touches, mm.
+    /// Mean of |δ − δ\*| over all taxels that the mesh or the model touches, mm, where δ is the deflection on the model and δ\* on the mesh.
     pub mean_mm: f64,
-    /// 95th percentile of |δ − δ\*| over all taxels that the mesh or the model touches, mm.
+    /// 95th percentile of |δ − δ\*| over all taxels that the mesh or the model touches, mm, where δ is the deflection on the model and δ\* on the mesh.
     pub p95_mm: f64,
 }
 
@@ -39,7 +39,7 @@ fn mean(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |sum, error| sum + error) / errors.len().max(1) as f64
 }
 
-/// Touches of the exact object, with their deflections.
+/// Touches of the exact object, with the deflections of their taxels.
 pub(super) struct Truth {
     array: TaxelArray,
     /// Touches that reached the exact object, with the deflections of their taxels.
@@ -50,7 +50,7 @@ pub(super) struct Truth {
     pub n_touched: usize,
 }
 
-/// Touch of the exact object, with its deflections.
+/// Touch of the exact object, with the deflections of its taxels.
 pub(super) struct Reading {
     patch_from_object: Pose,
     /// Distance that the patch travels past its first contact with the exact object, metres.
@@ -67,7 +67,7 @@ const N_STEPS: usize = 30;
 const N_REPEATS: usize = 3;
 
 impl Truth {
-    /// Touches an exact model in the same poses in which other studies touch an object of this name.
+    /// Touches an exact model of an object. The poses are those in which other studies touch an object of this name.
     pub fn new(
         (name, exact): (&str, Model),
         array: &TaxelArray,

@@ -18,9 +18,9 @@ use std::path::PathBuf;
 pub struct ObjectDetailPlan {
     /// Specification as written in the study file.
     pub spec: ObjectDetailStudySpec,
-    /// Folder of the meshes.
+    /// Folder of the objects' mesh files.
     pub meshes: PathBuf,
-    /// Array of taxels.
+    /// Array of taxels that touches the objects.
     pub array: TaxelArray,
     /// Distribution of touch poses.
     pub placement: Placement,
@@ -29,7 +29,7 @@ pub struct ObjectDetailPlan {
 /// Maximum number of points of a mesh at which distances are measured; all points are in memory together.
 const MAX_POINTS: usize = 10_000_000;
 
-/// Keys of `[object_detail]`.
+/// Descriptions of the keys of the table `[object_detail]` in a study file.
 const KEYS: &[KeyAbout] = keys! {
     "object_detail.tolerances_mm": Table, Choice, SURFACE_ERROR;
     "object_detail.methods": Table, Choice, Any;
@@ -89,7 +89,7 @@ impl ObjectDetailPlan {
         })
     }
 
-    /// Returns the specification of the recognition; `None` if the study has none.
+    /// Returns the keys of `[object_detail.recognition]`; returns `None` if the study has no such table.
     pub fn recognition(&self) -> Option<&DetailRecognitionSpec> {
         self.spec.object_detail.recognition.as_ref()
     }

@@ -65,9 +65,9 @@ pub(super) struct Sensor<'a> {
     seed: Seed,
 }
 
-/// Measurements of touches of one model.
+/// Measurements of all touches of one model.
 pub(super) struct ModelMeasurements {
-    /// Measurements, shape (n_touches, m).
+    /// Measurements of the touches, shape (n_touches, m).
     measurements: Array2<f64>,
     /// Mean deflection error if the model and the mesh are pressed to equal depths past their own first contact, mm.
     own_contact_error_mm: f64,

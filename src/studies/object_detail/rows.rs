@@ -22,7 +22,7 @@ pub struct DetailConfiguration {
 } }
 
 row! {
-/// Deviation of a model from its mesh. A row of `object_detail.csv` is a [`DetailConfiguration`] followed by a `DetailScore`.
+/// Differences between a model and its mesh. A row of `object_detail.csv` is a [`DetailConfiguration`] followed by a `DetailScore`.
 pub struct DetailScore {
     /// Mean distance between the surfaces of model and mesh, mm, measured at points of the mesh: the sum of `protrusion_mean_mm` and `gap_mean_mm`.
     surface_error_mm: f64 => Value(Less) "mean distance of the surfaces" in "mm": Log;
@@ -46,7 +46,7 @@ pub struct DetailScore {
     n_taxels: usize => Note "touched taxels": Linear;
     /// Deflection error, mm: mean of |δ − δ*| over taxels that the mesh (δ*) or the model (δ) touches.
     error_mm: f64 => Value(Less) "deflection error" in "mm": Log;
-    /// 95th percentile of |δ − δ*| over the taxels that the mesh or the model touches, mm.
+    /// 95th percentile of |δ − δ*| over the taxels that the mesh (δ*) or the model (δ) touches, mm.
     error_p95_mm: f64 => Value(Less) "deflection error, 95th percentile" in "mm": Log;
     /// Distance by which the patch is retracted to minimise `error_after_offset_mm`, mm; negative if the patch is advanced.
     offset_mm: f64 => Note "best constant offset" in "mm": Linear;
@@ -61,7 +61,7 @@ pub struct DetailScore {
 row! {
 /// Computing cost of a model. A row of `timing.csv` is a [`DetailConfiguration`] followed by a `DetailTime`.
 pub struct DetailTime {
-    /// Computing time per touch on one thread, median over touches, µs.
+    /// Computing time per touch of the model on one thread, median over touches, µs.
     us_per_touch: f64 => Cost "time of a touch" in "µs": Log;
     /// Time to compute the model while other work runs on all threads, or to read it from the cache, s.
     prepare_s: f64 => Cost "time to make the model" in "s": Log;
@@ -72,9 +72,9 @@ pub struct DetailTime {
 row! {
 /// Results of one method and tolerance over all objects: a row of `object_detail_summary.csv`.
 pub struct DetailSummary {
-    /// Method that replaces the meshes by models.
+    /// Method that makes models from the meshes.
     method: DetailMethod => Choice "model" named METHODS;
-    /// Tolerance of the packing, mm; empty for methods without tolerances.
+    /// Tolerance of the packing (spheres that fill the mesh), mm; empty for methods without tolerances.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
     /// Number of objects over which the results are summarised.
     n_objects: usize => Note "objects": Linear;
@@ -126,11 +126,11 @@ pub struct DetailSummary {
 row! {
 /// Accuracy of a classifier trained on the models of one method and tolerance: a row of `object_detail_recognition.csv`.
 pub struct DetailRecognition {
-    /// Method that replaces the meshes by models in training.
+    /// Method that makes the training models from the meshes.
     method: DetailMethod => Choice "learned from" named METHODS;
-    /// Tolerance of the packing, mm; empty for methods without tolerances.
+    /// Tolerance of the packing (spheres that fill the mesh), mm; empty for methods without tolerances.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
-    /// Kind of classifier.
+    /// Kind of classifier, for example a linear SVM.
     classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
     /// Number of objects that the classifier distinguishes.
     n_objects: usize => Note "objects": Linear;
@@ -145,15 +145,15 @@ pub struct DetailRecognition {
     error_own_contact_median_mm: f64 => Value(Less) "median deflection error past own contact" in "mm": Log;
     /// Fraction of the test touches of the exact meshes that are recognised correctly, 0 to 1.
     accuracy_on_mesh: f64 => Value(More) "accuracy on the exact meshes": Share between [accuracy_on_mesh_low, accuracy_on_mesh_high];
-    /// Lower end of the 95 % Wilson interval of `accuracy_on_mesh`.
+    /// Lower end of the 95 % Wilson interval of `accuracy_on_mesh`, 0 to 1.
     accuracy_on_mesh_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % Wilson interval of `accuracy_on_mesh`.
+    /// Upper end of the 95 % Wilson interval of `accuracy_on_mesh`, 0 to 1.
     accuracy_on_mesh_high: f64 => Note "95 % interval, upper end": Share;
     /// Fraction of correctly recognised test touches, 0 to 1, if the models of the training are touched in place of the exact meshes.
     accuracy_on_itself: f64 => Value(More) "accuracy on the models learned from": Share between [accuracy_on_itself_low, accuracy_on_itself_high];
-    /// Lower end of the 95 % Wilson interval of `accuracy_on_itself`.
+    /// Lower end of the 95 % Wilson interval of `accuracy_on_itself`, 0 to 1.
     accuracy_on_itself_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % Wilson interval of `accuracy_on_itself`.
+    /// Upper end of the 95 % Wilson interval of `accuracy_on_itself`, 0 to 1.
     accuracy_on_itself_high: f64 => Note "95 % interval, upper end": Share;
     /// Number of the classifier's optimisation problems that stopped at the solver's maximum number of iterations.
     n_capped: usize => Note "fits stopped at the iteration cap": Linear;

@@ -28,7 +28,7 @@ pub struct ObjectDetailStudySpec {
 pub struct ObjectDetailSpec {
     /// Tolerances of the packing, mm, each at least 1e-6: maximum distance between the surface of the spheres and the mesh.
     pub tolerances_mm: Vec<f64>,
-    /// Methods that replace the mesh by a model.
+    /// Methods that make models from the meshes.
     pub methods: Vec<DetailMethod>,
     /// Number of points of a mesh at which the distance to the spheres is measured, at least 1. Default: 5000.
     #[serde(default = "count::<5000>")]
@@ -64,7 +64,7 @@ impl DetailRecognitionSpec {
     }
 }
 
-/// Method that replaces a mesh by a model.
+/// Method that makes a model from a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DetailMethod {
@@ -74,7 +74,8 @@ pub enum DetailMethod {
     Packing,
     /// One sphere at each vertex of the mesh \[BT\].
     VertexSpheres,
-    /// One sphere at each of n evenly spread vertices. For each packing, n is the number of its spheres, or the number of all vertices if that is smaller.
+    /// One sphere at each of n evenly spread vertices of the mesh. For each packing, n is the number of its spheres; if the mesh has fewer vertices, n is their
+    /// number.
     DecimatedVertexSpheres,
     /// The largest spheres inside the mesh that touch it at n points (medial spheres). For each packing, n is the number of
     /// its spheres.

@@ -33,7 +33,7 @@ pub struct ObjectDetailStudy {
     pub packings: Option<PathBuf>,
 }
 
-/// Results of work items: errors of models, their computing costs, and accuracies of classifiers.
+/// Results of work items: deflection errors of models, their computing costs, and accuracies of classifiers.
 pub type DetailRows = (
     Vec<(DetailConfiguration, DetailScore)>,
     Vec<(DetailConfiguration, DetailTime)>,

@@ -26,7 +26,7 @@ pub(super) fn within(tolerance_mm: Option<f64>) -> String {
 pub(super) struct Variant {
     pub level: Level,
     pub model: Model,
-    /// Time to compute the model, s.
+    /// Time to compute the model from the mesh, s.
     pub prepare_s: f64,
     /// Whether the model was read from the cache of an earlier run.
     pub cached: bool,
@@ -93,8 +93,8 @@ pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     levels
 }
 
-/// Returns `n` distinct positions from `vertices` (all if there are fewer, but at least two). The first is the first vertex; each further one is the farthest
-/// from all previous ones.
+/// Returns `n` distinct positions from `vertices`; at least two, and all if there are fewer. The first is the first vertex. Each further one is the vertex that
+/// is farthest from all previous ones.
 fn evenly_chosen(vertices: &[DVec3], n: usize) -> Vec<DVec3> {
     let places = distinct_places(vertices);
     if n >= places.len() {

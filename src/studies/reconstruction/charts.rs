@@ -107,7 +107,7 @@ fn by_measurements(configurations: &Table, rows: &[usize]) -> ChartSpec {
     }
 }
 
-/// Returns the noise of a configuration in words, such as `noise of 10 % of full scale`.
+/// Returns the noise of a configuration as text, such as `noise of 10 % of full scale`.
 pub(super) fn noise_words(configurations: &Table, row: usize) -> String {
     let level = configurations.number("noise_std", row);
     match (level, configurations.word("noise_unit", row)) {
@@ -118,7 +118,7 @@ pub(super) fn noise_words(configurations: &Table, row: usize) -> String {
     }
 }
 
-/// Returns the settings of a configuration in words, such as `LMMSE, PCA, SBHE, m = 1024`.
+/// Returns the settings of a configuration as text, such as `LMMSE, PCA, SBHE, m = 1024`.
 pub(super) fn cell_words(configurations: &Table, row: usize) -> String {
     let names = ["solver", "dictionary", "ensemble", "measurements"];
     let [solver, dictionary, ensemble, m] = names.map(|column| configurations.words(column, row));

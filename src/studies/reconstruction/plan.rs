@@ -25,17 +25,17 @@ use crate::world::{Grid, Placement};
 pub struct ReconstructionPlan {
     /// Specification as written in the study file.
     pub spec: ReconstructionStudySpec,
-    /// Array of taxels.
+    /// Array of taxels that touches the objects.
     pub array: TaxelArray,
     /// Distribution of touch poses.
     pub placement: Placement,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
-    /// Unit of the noise axis.
+    /// Unit of the noise standard deviations.
     pub noise_unit: NoiseUnit,
-    /// Values of the noise axis (standard deviations), in `noise_unit`.
+    /// Noise standard deviations that the study compares, in `noise_unit`.
     pub noise: Vec<f64>,
-    /// Dictionaries to compare.
+    /// Dictionaries (sets of atoms that represent frames) that the study compares.
     pub dictionaries: Vec<Basis>,
 }
 
@@ -128,7 +128,7 @@ impl ReconstructionPlan {
         steps.collect()
     }
 
-    /// Returns the quantity (deflection or force) of the frames to which noise is added.
+    /// Returns the quantity of the frames to which noise is added: deflection or force.
     pub fn quantity(&self) -> Quantity {
         match self.spec.signal.steps.contains(&StepSpec::Force) {
             true => Quantity::Force,
@@ -154,7 +154,7 @@ impl ReconstructionPlan {
         Projection::new(ensemble, self.shape(), m, &seed)
     }
 
-    /// Returns the numbers of rows and columns of a frame.
+    /// Returns the numbers of rows and columns of a frame of the array.
     pub(super) fn shape(&self) -> (usize, usize) {
         self.array.shape()
     }
@@ -165,7 +165,7 @@ impl ReconstructionPlan {
         each.map(|_| Shared::default()).collect()
     }
 
-    /// Returns the index of a dictionary in the plan.
+    /// Returns the index of a dictionary in the plan's list of dictionaries.
     pub(super) fn place_of(&self, basis: Basis) -> usize {
         let place = self.dictionaries.iter().position(|&known| known == basis);
         place.expect("configurations have the dictionaries of their plan")

@@ -19,21 +19,21 @@ row! {
 pub struct ReconstructionConfiguration {
     /// Number of the configuration in sweep order, from 0.
     configuration: usize => Note: Linear;
-    /// Noise standard deviation on each taxel, in `noise_unit`.
+    /// Noise standard deviation of each taxel's reading, in `noise_unit`.
     noise_std: f64 => Condition "noise": Linear;
     /// Unit of `noise_std`: fraction of full scale, mm or N.
     noise_unit: NoiseUnit => Note;
-    /// Ensemble of the measurement matrix.
+    /// Ensemble from which the measurement matrix is drawn.
     ensemble: Ensemble => Choice named ENSEMBLES;
     /// Number m of measurements per frame.
     measurements: usize => Choice "measurements": Log;
-    /// Compression ratio n / m: taxels per measurement.
+    /// Compression ratio n / m: number n of taxels divided by the number m of measurements.
     ratio: f64 => Choice "compression" in ":1": Log;
-    /// Dictionary in which the frames are sparse.
+    /// Dictionary (set of atoms) in which frames are sparse: a frame is the sum of few atoms.
     dictionary: Basis => Choice named DICTIONARIES;
-    /// Number of atoms of the dictionary.
+    /// Number of atoms that the dictionary has.
     atoms: usize => Note "atoms of the dictionary": Linear;
-    /// Solver that computes the coefficients of a frame.
+    /// Solver that computes the dictionary coefficients of a frame.
     solver: Solver => Choice named SOLVERS;
 } }
 
@@ -66,9 +66,9 @@ pub struct ReconstructionScore {
     n_frames: usize => Note "test frames": Linear;
     /// Relative error √(Σ‖x̂ − x‖² / Σ‖x‖²) of the reconstructed frames x̂ with respect to the clean test frames x, dimensionless.
     error: f64 => Value(Less): Log between [error_low, error_high];
-    /// Lower end of the 95 % interval of `error` over touches.
+    /// Lower end of the 95 % interval of `error`, which covers its variation over touches.
     error_low: f64 => Note "95 % interval over touches, lower end": Log;
-    /// Upper end of the 95 % interval of `error` over touches.
+    /// Upper end of the 95 % interval of `error`, which covers its variation over touches.
     error_high: f64 => Note "95 % interval over touches, upper end": Log;
     /// Relative error √(Σ‖y − x‖² / Σ‖x‖²) of the noisy frames y with respect to the clean frames x, dimensionless: the error if all taxels are read without
     /// compression.
@@ -88,7 +88,7 @@ row! {
 pub struct ReconstructionTime {
     /// Time to prepare the solver, s, without the time for the product ΦΨ of measurement matrix and dictionary.
     prepare_s: f64 => Cost "time to prepare" in "s": Log;
-    /// Reconstruction time per frame on one core, µs; frames are processed in blocks.
+    /// Reconstruction time per frame on one core, µs; frames are reconstructed in blocks.
     us_per_frame: f64 => Cost "time of a frame" in "us": Log;
     /// Number of frames reconstructed per second on one core.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
@@ -99,9 +99,9 @@ row! {
 pub struct ReconstructionPareto {
     /// Relative reconstruction error, dimensionless, equal to the column `error` of `reconstruction.csv`.
     error: f64 => Value(Less): Log;
-    /// Reconstruction time per frame on one core, µs, as in `timing.csv`.
+    /// Reconstruction time per frame on one core, µs, equal to the column `us_per_frame` of `timing.csv`.
     us_per_frame: f64 => Cost "time of a frame on one core" in "us": Log;
-    /// Number of frames reconstructed per second on one core, as in `timing.csv`.
+    /// Number of frames reconstructed per second on one core, equal to the column `frames_per_s_per_core` of `timing.csv`.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
     /// Whether the configuration is on the Pareto front. If it is, no configuration with equal noise is at least as fast and as accurate, and better in one of
     /// the two.
@@ -115,15 +115,15 @@ row! {
 /// For each support, σ_min and σ_max are the smallest and largest singular values of its s columns of ΦΨ. All columns of ΦΨ are scaled to a mean square norm of
 /// 1.
 pub struct EnsembleStatistics {
-    /// Ensemble of the measurement matrix.
+    /// Ensemble from which the measurement matrix is drawn.
     ensemble: Ensemble => Choice named ENSEMBLES;
     /// Number m of measurements per frame.
     measurements: usize => Choice: Log;
-    /// Compression ratio n / m: taxels per measurement.
+    /// Compression ratio n / m: number n of taxels divided by the number m of measurements.
     ratio: f64 => Choice "compression" in ":1": Log;
-    /// Dictionary in which the frames are sparse.
+    /// Dictionary (set of atoms) in which frames are sparse: a frame is the sum of few atoms.
     dictionary: Basis => Choice named DICTIONARIES;
-    /// Number k of atoms of the dictionary.
+    /// Number k of atoms that the dictionary has.
     atoms: usize => Note "atoms of the dictionary": Linear;
     /// Mutual coherence of the atoms after measurement, 0 to 1: the largest absolute cosine between two columns of ΦΨ. Atoms that Φ maps to zero are excluded.
     coherence: f64 => Value(Less) "mutual coherence": Share;
@@ -150,7 +150,7 @@ pub struct EnsembleStatistics {
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
 
-/// Configuration of a work item, with its score and computing time.
+/// Configuration of a work item, with its reconstruction error and computing time.
 pub type ReconstructionRow = (
     ReconstructionConfiguration,
     ReconstructionScore,

@@ -18,14 +18,14 @@ pub(super) fn square_errors(a: ArrayView2<f64>, b: ArrayView2<f64>) -> Vec<f64> 
 
 /// Clean test frames with which reconstructions are compared.
 pub(super) struct Truth {
-    /// Squared norm ‖x‖² of each test frame.
+    /// Squared norm ‖x‖² of each clean test frame x.
     squares: Vec<f64>,
     n_taxels: usize,
     /// Largest value that a taxel reading can have.
     full_scale: f64,
 }
 
-/// Reconstruction of a block of test frames.
+/// Result of reconstructing a block of test frames.
 pub(super) struct Found {
     /// Squared error ‖x̂ − x‖² of each reconstructed frame x̂, where x is the clean frame.
     pub errors: Vec<f64>,

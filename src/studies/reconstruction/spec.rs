@@ -23,7 +23,7 @@ pub struct ReconstructionStudySpec {
     /// Table `[signal]`: noise and processing of frames before compression. Smoothing is not allowed.
     #[serde(default)]
     pub signal: SignalSpec,
-    /// Table `[sensing]`: compression of frames.
+    /// Table `[sensing]`: compression of frames into measurements.
     pub sensing: SensingSpec,
     /// Table `[reconstruction]`: solvers and dictionaries that reconstruct frames.
     pub reconstruction: ReconstructionSpec,
@@ -33,13 +33,14 @@ pub struct ReconstructionStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReconstructionSpec {
-    /// Axis: solver of the coefficients, `omp` (orthogonal matching pursuit), `l1` (ℓ1 minimisation) or `lmmse` (linear minimum mean square error).
+    /// Axis: solver that computes the dictionary coefficients of a frame, `omp` (orthogonal matching pursuit), `l1` (ℓ1 minimisation) or `lmmse` (linear
+    /// minimum mean square error).
     #[schemars(with = "Axis<Names<Solver>>")]
     pub solver: Axis<Solver>,
-    /// Axis: dictionary of the frames, `dct`, `haar`, `daubechies4` or `pca`.
+    /// Axis: dictionary (set of atoms that represent frames), `dct`, `haar`, `daubechies4` or `pca`.
     #[schemars(with = "Axis<Names<Basis>>")]
     pub dictionary: Axis<Basis>,
-    /// Maximum number of atoms of a dictionary, at least 2; the atoms with the most energy in the training frames are used. Default: all, or 256 for PCA.
+    /// Maximum number of atoms of a dictionary, at least 2. The atoms with the most energy in the training frames are used. Default: all, or 256 for PCA.
     pub atoms: Option<usize>,
     /// Maximum number of atoms per frame that matching pursuit may select, at least 1. Default: 128.
     #[serde(default = "default_most_atoms")]

@@ -24,19 +24,19 @@ const N_SAMPLES: usize = 3;
 
 /// Frames of all touches, divided into training and test frames.
 pub(super) struct Touches {
-    /// Clean training frames.
+    /// Training frames without noise, one per row.
     pub train: Array2<f64>,
-    /// Clean test frames.
+    /// Test frames without noise, one per row.
     pub test: Array2<f64>,
     pub truth: Truth,
     pub noisy: Vec<Noisy>,
-    /// Dictionaries of the training frames in the order of the plan, computed when first needed.
+    /// Dictionaries computed from the training frames, in the order of the plan; each is computed when it is first needed.
     dictionaries: Vec<Shared<Dictionary>>,
-    /// Row numbers of the test frames that the picture shows, with the names of their objects.
+    /// Row numbers of the test frames that the picture shows, each with the name of its object.
     pub shown: Vec<(usize, String)>,
 }
 
-/// Test frames with one noise level.
+/// Test frames to which noise of one level is added.
 pub(super) struct Noisy {
     pub level: f64,
     /// Noise standard deviation σ of a taxel, in the unit of the frame.

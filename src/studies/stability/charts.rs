@@ -51,7 +51,7 @@ impl StabilityPlan {
     }
 }
 
-/// Returns the outcome map of one part of the study.
+/// Returns the outcome map of one part of the study: a chart of outcomes by time step and taxel mass.
 fn map(configurations: &Table, rows: &[usize]) -> ChartSpec {
     let scene = configurations.word("scene", rows[0]);
     let what = match scene {
@@ -98,14 +98,14 @@ fn tiles(sign: &str) -> Mark {
     }
 }
 
-/// Returns the columns that have several values in the given rows.
+/// Returns those of the columns that have several values in the given rows.
 fn varying(table: &Table, columns: &[&str], rows: &[usize]) -> Vec<String> {
     let varies = |column: &str| table.groups(&[column], rows.iter().copied()).len() > 1;
     let varying = columns.iter().filter(|column| varies(column));
     varying.map(|column| (*column).to_owned()).collect()
 }
 
-/// Returns the chart of computing time against the number of joints for each time step, followed by a chart of the outcomes.
+/// Returns a chart of the computing time against the number of joints (taxels), for each time step, followed by a chart of the outcomes.
 fn joint_charts(joints: &Table) -> Vec<ChartSpec> {
     let all: Vec<usize> = (0..joints.n_rows).collect();
     if all.is_empty() {

@@ -23,15 +23,15 @@ use std::time::Instant;
 /// Result of a simulation method at the time of evaluation.
 #[derive(Default)]
 struct Answer {
-    /// Kind of failure; `None` if the simulation succeeded. After a failure, all other fields are zero or empty.
+    /// Kind of failure; `None` if the simulation succeeded. After a failure, all other values are zero or empty.
     broken: Option<Outcome>,
     /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels.
     force_imbalance: f64,
-    /// Deflections at the time of evaluation, metres, shape (n_taxels,).
+    /// Deflections of all taxels at the time of evaluation, metres, shape (n_taxels,).
     deflection: Vec<f64>,
     /// Sum of |δ| over all taxels after the ball has been lifted again, metres, where δ is a deflection. 0 if the ball is not lifted.
     left_over: f64,
-    /// Number of steps; 0 if the method does not step through time.
+    /// Number of time steps; 0 if the method does not step through time.
     n_steps: usize,
 }
 
@@ -238,7 +238,7 @@ fn press_to_weight(scene: &ConfigurationScene) -> Result<Answer> {
     })
 }
 
-/// Simulates a ball with imposed motion on damped taxels with the quasi-static method.
+/// With the quasi-static method, simulates a ball with imposed motion on damped taxels.
 fn press_and_release(
     configuration: &StabilityConfiguration,
     scene: &ConfigurationScene,

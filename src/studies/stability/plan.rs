@@ -28,7 +28,7 @@ pub struct StabilityPlan {
 /// Maximum number of taxels along a side of the array. Larger arrays take long and give no new information about stability.
 const MAX_TAXELS: usize = 256;
 
-/// Keys of a stability study.
+/// Descriptions of the keys of a stability study.
 pub const STABILITY_KEYS: &[KeyAbout] = keys! {
     "question": Never, Note, Unchecked;
     "expected": Never, Note, Unchecked;
@@ -146,8 +146,8 @@ impl Check<'_> {
     }
 }
 
-/// Returns the masses M of the ball, or `None` for an imposed motion; a given mass per taxel is converted. An error consists of the key, the given value and
-/// the allowed values.
+/// Returns the masses M of the ball, kg, or `None` if its motion is imposed. A given mass per taxel is converted. An error consists of the key, the given value
+/// and the allowed values.
 fn object_masses(
     part: &StabilityPartSpec,
 ) -> std::result::Result<Vec<Option<f64>>, [&'static str; 3]> {

@@ -17,15 +17,15 @@ const METHODS: &[(&str, &str)] = &[
 ];
 
 row! {
-/// Configuration of a simulation; each row of `stability.csv` and `timing.csv` begins with these columns.
+/// Configuration of a simulation. Each row of `stability.csv` and `timing.csv` begins with these columns.
 pub struct StabilityConfiguration {
     /// Number of the part of the study (a table `[[stability.parts]]`), from 1.
     part: usize => Subject "part of the study": Linear;
-    /// Simulated scene.
+    /// Scene that is simulated.
     scene: StabilityScene => Condition;
     /// Method that simulates the contact.
     method: ContactMethod => Choice named METHODS;
-    /// Number of iterations of an engine's solver per step; empty for methods without such a solver.
+    /// Number of iterations of an engine's contact solver per step; empty for methods without such a solver.
     solver_iterations: Option<usize> => Choice: Linear;
     /// Number of taxels along a side of the square array.
     taxels: usize => Condition "taxels a side": Linear;
@@ -35,7 +35,7 @@ pub struct StabilityConfiguration {
     taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
     /// Mass M of a free ball, kg; empty if the ball's motion is imposed.
     object_mass_kg: Option<f64> => Condition "mass of the ball" in "kg": Log;
-    /// Time step Δt, s.
+    /// Duration Δt of a time step, s.
     dt_s: f64 => Choice "time step" in "s": Log;
 } }
 
@@ -45,7 +45,7 @@ impl StabilityConfiguration {
         self.taxels * self.taxels
     }
 
-    /// Returns the mass ratio M / m of a free ball and a taxel; `None` if the ball's motion is imposed.
+    /// Returns the mass M of a free ball divided by the mass m of a taxel; returns `None` if the ball's motion is imposed.
     pub fn mass_ratio(&self) -> Option<f64> {
         self.object_mass_kg.map(|mass| mass / self.taxel_mass_kg)
     }
@@ -54,7 +54,7 @@ impl StabilityConfiguration {
 row! {
 /// Accuracy and outcome of a simulation. A row of `stability.csv` is a [`StabilityConfiguration`] followed by a `StabilityScore`.
 pub struct StabilityScore {
-    /// Mass ratio M / m of a free ball and a taxel; empty if the ball's motion is imposed.
+    /// Mass M of a free ball divided by the mass m of a taxel; empty if the ball's motion is imposed.
     mass_ratio: Option<f64> => Note "mass ratio, ball to taxel": Log;
     /// Largest stable time step 2 √(m / k) of an explicit method for a taxel of mass m on a spring of stiffness k without a damper, s.
     explicit_limit_s: f64 => Note "limit of an explicit spring" in "s": Log;
@@ -62,7 +62,7 @@ pub struct StabilityScore {
     damping_n_s_per_m: f64 => Note "taxel damping" in "N s/m": Log;
     /// Contact stiffness κ, N/m; empty unless the method models contact by a penalty force, which is κ times the penetration.
     contact_stiffness_n_per_m: Option<f64> => Note "contact stiffness" in "N/m": Log;
-    /// Outcome: whether the result is right, or else the kind of failure.
+    /// Whether the result of the simulation is right, or else the kind of failure.
     outcome: Outcome => Outcome;
     /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels; empty if the simulation failed.
     #[serde(with = "any_number")]
@@ -81,18 +81,18 @@ row! {
 pub struct StabilityTime {
     /// Wall-clock time of the whole simulation, s, on one thread while other threads run other simulations.
     wall_s: f64 => Cost "time" in "s": Log;
-    /// Wall-clock seconds per simulated second; empty if the method does not step through time.
+    /// Wall-clock time divided by the simulated time; empty if the method does not step through time.
     per_simulated_s: Option<f64> => Cost "computing a simulated second" in "s": Log;
 } }
 
 row! {
-/// Summary of a method in a scene over all configurations: a row of `stability_summary.csv`.
+/// Results of a method in a scene over all configurations: a row of `stability_summary.csv`.
 pub struct StabilitySummary {
-    /// Simulated scene.
+    /// Scene that is simulated.
     scene: StabilityScene => Condition;
     /// Method that simulates the contact.
     method: ContactMethod => Choice named METHODS;
-    /// Number of iterations of an engine's solver per step; empty for methods without such a solver.
+    /// Number of iterations of an engine's contact solver per step; empty for methods without such a solver.
     solver_iterations: Option<usize> => Choice: Linear;
     /// Number of simulated configurations of the method in the scene.
     n_configurations: usize => Note "configurations": Linear;
@@ -100,15 +100,15 @@ pub struct StabilitySummary {
     n_correct: usize => Value(More) "right": Linear;
     /// Number of configurations that ended with an inaccurate result.
     n_inaccurate: usize => Value(Less) "inaccurate": Linear;
-    /// Number of configurations in which contact was missed.
+    /// Number of configurations in which the simulation missed the contact.
     n_missed_contact: usize => Value(Less) "missed contact": Linear;
-    /// Number of configurations whose energy grew beyond its limit.
+    /// Number of configurations in which the simulated energy grew beyond its limit.
     n_energy_growth: usize => Value(Less) "energy growth": Linear;
-    /// Number of configurations that ended with an infinite or NaN number.
+    /// Number of configurations in which a number of the simulation became infinite or NaN.
     n_not_finite: usize => Value(Less) "not finite": Linear;
-    /// Largest force imbalance of the configurations that did not fail; empty if all failed.
+    /// Largest `force_imbalance` of the configurations that did not fail; empty if all failed.
     worst_force_imbalance: Option<f64> => Value(Less): Log;
-    /// Largest deflection error of the configurations that did not fail; empty if all failed.
+    /// Largest `deflection_error` of the configurations that did not fail; empty if all failed.
     worst_deflection_error: Option<f64> => Value(Less): Log;
 } }
 
@@ -117,19 +117,19 @@ row! {
 pub struct Joints {
     /// Method that simulates the contact.
     method: ContactMethod => Choice named METHODS;
-    /// Number of iterations of an engine's solver per step; empty for methods without such a solver.
+    /// Number of iterations of an engine's contact solver per step; empty for methods without such a solver.
     solver_iterations: Option<usize> => Choice: Linear;
     /// Mass m of a taxel, kg.
     taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
-    /// Time step Δt, s.
+    /// Duration Δt of a time step, s.
     dt_s: f64 => Choice "time step" in "s": Log;
-    /// Number of taxels of the array; each taxel is a body on a joint.
+    /// Number of joints that the method simulates: one per taxel of the array, because each taxel is a body on a joint.
     joints: usize => Condition: Log;
     /// Load of a taxel, kg: the mass M of the ball divided by the number of taxels.
     load_kg: f64 => Note "load of a taxel" in "kg": Log;
-    /// Outcome: whether the result is right, or else the kind of failure.
+    /// Whether the result of the simulation is right, or else the kind of failure.
     outcome: Outcome => Outcome;
-    /// Wall-clock seconds per simulated second; total wall-clock time, s, if the method does not step through time.
+    /// Wall-clock time divided by the simulated time. If the method does not step through time, total wall-clock time, s.
     time_s: f64 => Cost "computing a simulated second" in "s": Log;
 } }
 
@@ -139,11 +139,11 @@ pub type StabilityRow = (StabilityConfiguration, StabilityScore, StabilityTime);
 /// Program, version and date of a result that another program computed: the last columns of its row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PeerSource {
-    /// Name of the other program.
+    /// Name of the other program, such as MuJoCo.
     pub program: String,
     /// Version of the other program.
     pub version: String,
-    /// Date of the computation, year-month-day.
+    /// Date on which the other program computed the result, year-month-day.
     pub date: String,
 }
 
@@ -151,9 +151,9 @@ pub struct PeerSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// Force imbalance and deflection error are at most [`TOLERANCE`].
+    /// The force imbalance and the deflection error are at most [`TOLERANCE`].
     Right,
-    /// The simulation ended, but an error exceeds [`TOLERANCE`].
+    /// The simulation ended, but the force imbalance or the deflection error exceeds [`TOLERANCE`].
     Inaccurate,
     /// Contact was missed: the sum of all deflections is below half or above twice the exact sum, or nothing supports the ball.
     MissedContact,

@@ -25,7 +25,7 @@ const LEAST_HOLD_STEPS: f64 = 5.0;
 /// Travel of the ball within which taxels may be touched, as a multiple of the stroke. The ball reaches all taxels within 1.25 strokes. If the value is much
 /// larger, the ball could be behind the substrate.
 const REACH: f64 = 1.5;
-/// Minimum simulated time of a free ball, seconds.
+/// Minimum simulated time for a ball that moves freely, seconds.
 const LEAST_TIME: f64 = 0.5;
 
 /// Array of taxels under a ball that touches all of them nearly at once.
@@ -42,13 +42,13 @@ pub(super) struct TestBed {
 pub(super) struct ConfigurationScene {
     pub cradle: TestBed,
     pub taxel: Taxel,
-    /// Motion of the ball: imposed, or free under gravity.
+    /// Motion of the ball: an imposed motion, or free motion under gravity.
     pub drive: Drive,
-    /// Exact result at the time of evaluation.
+    /// Exact deflections at the time of evaluation.
     pub truth: Rest,
     /// Exact total force Σ f at the time of evaluation, newtons.
     pub force: f64,
-    /// Time of evaluation, seconds: the end of the hold, or of the simulation.
+    /// Time at which the result is evaluated, seconds: the end of the hold, or of the simulation.
     judged: f64,
     /// Time at which the simulation ends, seconds.
     end: f64,
@@ -261,7 +261,7 @@ fn slowest(k: f64, c: f64, m: f64) -> f64 {
     }
 }
 
-/// Minimum number of time steps of a free ball.
+/// Minimum number of time steps for a ball that moves freely.
 pub const LEAST_STEPS: f64 = 50.0;
 
 #[cfg(test)]

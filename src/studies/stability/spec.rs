@@ -38,9 +38,9 @@ pub struct StabilitySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StabilityPartSpec {
-    /// Scene that is simulated.
+    /// Scene that is simulated: `rest`, `press`, `plunger`, `stack_of_two` or `stack_of_four`.
     pub scene: StabilityScene,
-    /// Methods that simulate the contact.
+    /// Methods that simulate the contact, at least one.
     pub methods: Vec<ContactMethod>,
     /// Axis: number of taxels along a side of the square array, even, at most 256.
     pub taxels: Axis<usize>,
@@ -100,10 +100,10 @@ pub enum ContactMethod {
     /// Method of this library: massless taxels, solved in closed form. Balls at rest are computed by the equilibrium solver, plungers by a press to a force,
     /// and motions over time with damper states.
     QuasiStatic,
-    /// Semi-implicit Euler steps with the better of two contact stiffnesses. One limits the penetration to
-    /// 1/400 of the deflection or stroke; the other is the largest stable stiffness for the time step.
+    /// Semi-implicit Euler steps with the better of two contact stiffnesses. One limits the penetration to 1/400 of the deflection or stroke. The other is the
+    /// largest stiffness that is stable for the time step.
     SemiImplicit,
-    /// Implicit Euler steps with exact contact.
+    /// Implicit Euler steps in which the contact conditions hold exactly.
     ImplicitEuler,
     /// The engine rapier with default settings except for the unit of length. Requires the feature `rapier`; omitted without it.
     RapierAsItComes,

@@ -18,7 +18,7 @@ const SEARCH_END: f64 = 1e-7;
 /// Distance between the target and the point at which the search for the first contact starts, metres. The size of the object is added to it.
 const SEARCH_START: f64 = 0.05;
 
-/// Robot covered with skin, with the poses of its patches and links.
+/// Robot that is covered with skin, in a certain posture: with the poses of its patches and links.
 pub(super) struct Posture<'a> {
     pub body: &'a WholeBody,
     /// Pose of each patch in the world, `world_from_patch`.
@@ -48,7 +48,7 @@ impl Path {
         self.starting_at(Pose::new(start.rotation, start.translation + by))
     }
 
-    /// Returns the path with another pose at its start, `link_from_object`.
+    /// Returns the path with another pose of the object at its start, `link_from_object`.
     pub fn starting_at(&self, start: Pose) -> Self {
         Self {
             motion: Oscillation {
@@ -89,7 +89,7 @@ impl<'a> Drive<'a> {
         self.state.press(self.body, &self.object, &pose, FORGOTTEN)
     }
 
-    /// Returns the touched taxels of the last press with their deflections, metres.
+    /// Returns the numbers of the taxels that the last press touched, with their deflections, metres.
     pub fn touched(&self) -> impl Iterator<Item = (usize, f64)> {
         self.state.touched(self.body)
     }

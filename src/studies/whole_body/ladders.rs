@@ -118,7 +118,7 @@ pub(super) fn climb(plan: &WholeBodyPlan, rung: &ScalingPoint) -> Result<Driven>
     drive.run(plan, (rung.series, &rung.name), &[])
 }
 
-/// Cylindrical sleeve of skin: numbers of patches around and along it, and their side length, metres.
+/// Cylinder covered with skin: the numbers of patches around and along it, and the side length of a patch, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Sleeve {
     n_around: usize,
@@ -126,7 +126,7 @@ struct Sleeve {
     side: f64,
 }
 
-/// Distance between neighbouring sleeves, metres.
+/// Distance between the axes of neighbouring cylinders, metres.
 const APART: f64 = 1.0;
 
 impl Sleeve {

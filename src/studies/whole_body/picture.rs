@@ -17,15 +17,15 @@ use std::f64::consts::FRAC_PI_2;
 struct SceneView {
     /// Points on the skin, metres, a few millimetres apart. The second value of each is the mean pressure on its patch (force divided by area), Pa.
     skin: Vec<(DVec3, f64)>,
-    /// Positions of touched taxels, metres.
+    /// Positions of all touched taxels, metres.
     touched: Vec<DVec3>,
-    /// Spheres of the object, metres.
+    /// Spheres of the object that touches the robot, metres.
     object: Vec<Sphere>,
 }
 
 /// Distance between neighbouring points of the skin in the picture, metres.
 const PICTURE_PITCH: f64 = 4e-3;
-/// Width and height of a panel, pixels.
+/// Width and height of each panel of the picture, pixels.
 const PANEL: [usize; 2] = [600, 900];
 /// Colour of untouched skin, as red, green and blue.
 const BARE: [u8; 3] = [226, 214, 200];

@@ -23,15 +23,15 @@ use std::path::{Path, PathBuf};
 pub struct WholeBodyPlan {
     /// File name of the study, for error messages.
     pub place: String,
-    /// Folder to which paths in the file are relative.
+    /// Folder to which paths in the study file are relative.
     pub folder: PathBuf,
-    /// Specification as written in the file.
+    /// Specification as written in the study file.
     pub spec: WholeBodyStudySpec,
     /// Robot that is covered with skin.
     pub robot: Robot,
     /// Path of the robot's URDF file.
     pub robot_file: PathBuf,
-    /// Parameters of each taxel.
+    /// Parameters that all taxels have in common.
     pub taxel: Taxel,
     /// Distance between neighbouring taxels, metres.
     pub pitch: f64,
@@ -64,7 +64,7 @@ pub struct ScenePlan {
 /// Target position, approach direction and motion of an object in the frame of a robot link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
-    /// Index of the robot link.
+    /// Index of the robot link in whose frame the object moves.
     pub link: usize,
     /// Direction from the target to the point where the approach starts, a unit vector.
     pub from: DVec3,
@@ -77,7 +77,7 @@ const MAX_STEPS: usize = 10_000_000;
 /// Maximum number of spheres of an object in a scaling series.
 const MAX_SPHERES: usize = 10_000_000;
 
-/// Keys of `[whole_body]`.
+/// Descriptions of the keys of the table `[whole_body]` in a study file.
 const KEYS: &[KeyAbout] = keys! {
     "whole_body.robot": Never, Condition, Unchecked;
     "whole_body.pitch_mm": Never, Choice, Positive;
@@ -175,7 +175,7 @@ impl WholeBodyPlan {
         })
     }
 
-    /// Returns the specification of the recognition.
+    /// Returns the keys of the table `[whole_body.recognition]`.
     pub fn recognition(&self) -> &BodyRecognitionSpec {
         &self.spec.whole_body.recognition
     }

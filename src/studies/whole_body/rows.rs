@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Series {
-    /// Scenes: an object touches the robot.
+    /// Scenes in which an object touches the robot.
     Scene,
-    /// Scaling series in which the skin grows while the touch stays constant.
+    /// Scaling series in which the number of taxels of the skin grows while the touch stays constant.
     Skin,
-    /// Scaling series in which the touch grows while the skin stays constant.
+    /// Scaling series in which the number of touched taxels grows while the skin stays constant.
     Touch,
     /// Scaling series in which the object's number of spheres grows while skin and touch stay constant.
     Spheres,
@@ -35,7 +35,7 @@ pub struct BodyCase {
 row! {
 /// Counts of a simulated case. A row of `whole_body.csv` is a [`BodyCase`] followed by a `BodyCount`.
 pub struct BodyCount {
-    /// Number of simulated steps.
+    /// Number of simulated steps of the case.
     n_steps: usize => Note "steps": Linear;
     /// Number of deflected taxels in a step, averaged over steps.
     touched_mean: f64 => Value(Neither) "touched taxels": Log;
@@ -55,14 +55,14 @@ pub struct BodyCount {
     spheres_rejected_mean: f64 => Value(Neither) "spheres rejected": Linear;
     /// Sum of all deflections over taxels and steps, mm.
     deflection_sum_mm: f64 => Note "sum of deflections" in "mm": Linear;
-    /// Memory of the skin and its state at rest, bytes per taxel.
+    /// Memory of the skin and of its state at rest, divided by the number of taxels, bytes.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Linear;
 } }
 
 row! {
 /// Measured and classified signals of a scene with one compression: a row of `sensed.csv`.
 pub struct BodySensed {
-    /// Name of the scene.
+    /// Name of the scene in which the object is recognised.
     scene: String => Subject;
     /// Name of the compression (measurement matrix).
     compression: String => Choice;
@@ -77,7 +77,7 @@ pub struct BodySensed {
 row! {
 /// Recognition accuracy with a compression: a row of `recognition.csv`.
 pub struct BodyRecognition {
-    /// Name of the compression; `sbhe_32` has Hadamard blocks of 32 taxels.
+    /// Name of the compression (measurement matrix), such as `sbhe_32` with Hadamard blocks of 32 taxels.
     compression: String => Choice;
     /// Number m of measurements per step.
     n_measurements: usize => Choice "measurements": Linear;
@@ -85,9 +85,9 @@ pub struct BodyRecognition {
     entries_per_taxel: f64 => Cost "entries of a taxel": Log;
     /// Fraction of the taxels whose readings enter at least one measurement, 0 to 1.
     read_fraction: f64 => Note "share of the taxels read": Share;
-    /// Memory of the measurement matrix Φ, stored by columns, bytes per taxel.
+    /// Memory of the measurement matrix Φ, which is stored by columns, divided by the number of taxels, bytes.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Log;
-    /// Number of objects to distinguish.
+    /// Number of objects that the classifier distinguishes.
     n_objects: usize => Condition "objects": Linear;
     /// Number of training touches, summed over all objects.
     n_training: usize => Note "training touches": Linear;
@@ -95,9 +95,9 @@ pub struct BodyRecognition {
     n_test: usize => Note "test touches": Linear;
     /// Fraction of correctly recognised test touches, 0 to 1.
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
-    /// Lower end of the 95 % interval of the accuracy.
+    /// Lower end of the 95 % interval of `accuracy`, 0 to 1.
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
-    /// Upper end of the 95 % interval of the accuracy.
+    /// Upper end of the 95 % interval of `accuracy`, 0 to 1.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
     /// Number of binary SVMs whose training stopped at the solver's maximum number of iterations.
     n_capped: usize => Note "capped SVMs": Linear;
@@ -109,9 +109,9 @@ pub struct BodyRecognition {
 pub enum Stage {
     /// Simulation of the contact with the skin.
     Press,
-    /// Compression of the readings of touched taxels into measurements.
+    /// Compression of the touched taxels' readings into measurements.
     Compress,
-    /// Classification of the measurements by the SVM.
+    /// Classification of the measurements by a support vector machine (SVM).
     Classify,
     /// All three stages of a step together: press, compress and classify.
     Whole,
@@ -131,9 +131,9 @@ pub struct BodyStage {
 row! {
 /// Number of touched taxels in steps that are timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
 pub struct BodyTouch {
-    /// Number of deflected taxels, averaged over steps and rounded to two digits.
+    /// Number of deflected taxels in a step, averaged over steps and rounded to two digits.
     touched: f64 => Condition "touched taxels, about": Log;
-    /// Number of deflected taxels, averaged over steps.
+    /// Number of deflected taxels in a step, averaged over steps.
     touched_mean: f64 => Note "touched taxels": Log;
 } }
 
@@ -146,7 +146,7 @@ pub struct StepTime {
     us_p05: f64 => Note "5th to 95th percentile, lower end" in "us": Log;
     /// 95th percentile of the computing time per step, µs.
     us_p95: f64 => Note "5th to 95th percentile, upper end" in "us": Log;
-    /// Number of steps per second, computed from the median time.
+    /// Number of steps per second: the inverse of the median computing time.
     steps_per_s: f64 => Value(More) "steps a second": Log;
 } }
 
@@ -155,14 +155,14 @@ pub struct StepTime {
 pub struct Driven {
     /// Measured case: a scene, or one size of a scaling series.
     pub case: BodyCase,
-    /// Counts of the simulated case.
+    /// Counts of taxels, patches and spheres in the simulated case.
     pub count: BodyCount,
     /// Times of the press, followed by the times of all stages for each compression. If a step uses several threads, the times of the press on one thread are
     /// added at the end.
     pub times: Vec<(BodyStage, StepTime)>,
-    /// Recognition results, one for each compression.
+    /// Recognition results of the case, one for each compression.
     pub sensed: Vec<BodySensed>,
 }
 
-/// Rows of work items: recognition results of compressions, and results of scenes and scaling series.
+/// Results of work items: recognition accuracies of compressions, and results of scenes and scaling series.
 pub type WholeBodyRows = (Vec<BodyRecognition>, Vec<Driven>);

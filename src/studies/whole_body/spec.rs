@@ -31,7 +31,7 @@ pub struct WholeBodySpec {
     /// Whether the flat ends of cylinders are also covered with skin. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub flat_ends: bool,
-    /// Radius ρ of a taxel, mm, positive. Default: half the pitch.
+    /// Radius ρ of the taxels, mm, positive. Default: half the pitch.
     pub taxel_radius_mm: Option<f64>,
     /// Stroke s of a taxel, mm, positive: its maximum deflection. Default: 2.
     #[serde(default = "number::<2>")]
@@ -45,17 +45,17 @@ pub struct WholeBodySpec {
     /// Duration of a simulated step, ms, positive. Default: 1.
     #[serde(default = "number::<1>")]
     pub step_ms: f64,
-    /// Number of measured steps for each scene and each size of a scaling series, at least 1. Default: 1000.
+    /// Number of steps that are measured for each scene and for each size of a scaling series, at least 1. Default: 1000.
     #[serde(default = "count::<1000>")]
     pub steps: usize,
     /// Maximum distance between the surface of an object and the surface of its sphere model, mm, at least 1e-6. Default: 0.25.
     #[serde(default = "default_surface_error_mm")]
     pub surface_error_mm: f64,
-    /// Tables `[[whole_body.scenes]]`: the simulated scenes.
+    /// Tables `[[whole_body.scenes]]`: the scenes that are simulated.
     pub scenes: Vec<BodySceneSpec>,
     /// Table `[whole_body.sensing]`: compression of the readings of touched taxels into measurements.
     pub sensing: BodySensingSpec,
-    /// Table `[whole_body.recognition]`: recognised objects and their touches.
+    /// Table `[whole_body.recognition]`: the objects that are recognised, and their touches.
     pub recognition: BodyRecognitionSpec,
     /// Table `[whole_body.ladders]`: scaling series for the measurement of computing time. Default: none.
     pub ladders: Option<LaddersSpec>,
@@ -65,7 +65,7 @@ pub struct WholeBodySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodySceneSpec {
-    /// Name of the scene.
+    /// Name of the scene in tables and charts.
     pub name: String,
     /// Joint positions of the robot, which stay constant, with the keys of `[robots.joints]` in a scene file and a single time. A joint that is not listed is
     /// at 0, or at its limit nearest to 0.
@@ -100,9 +100,9 @@ pub struct BodySensingSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyRecognitionSpec {
-    /// Names of the built-in objects to recognise.
+    /// Names of the built-in objects that are recognised.
     pub objects: Vec<String>,
-    /// Name of the robot link in whose frame the objects are placed.
+    /// Name of the robot link in whose frame the objects approach.
     pub link: String,
     /// Position in the link's frame that the objects approach, mm.
     pub at_mm: [f64; 3],
@@ -148,7 +148,7 @@ impl BodyRecognitionSpec {
         self.training_touches + self.test_touches
     }
 
-    /// Returns the number of touches of all objects together.
+    /// Returns the number of touches, summed over all objects.
     pub fn n_touches(&self) -> usize {
         self.objects.len() * self.of_each()
     }

@@ -15,14 +15,14 @@ use glam::DVec3;
 use ndarray::ArrayView2;
 use std::time::Instant;
 
-/// Number of warm-up steps before the measurement, which allocate memory and fill the caches.
+/// Number of steps that are simulated before the measurement, to allocate memory and fill the caches.
 const WARM_UP: usize = 20;
 
 /// Result of simulating one step of the skin.
 struct Step {
     contact: BodyContact,
     n_visited: usize,
-    /// Sum of the deflections over all taxels, metres.
+    /// Sum of the deflections of all taxels, metres.
     deflection: f64,
     press_s: f64,
 }

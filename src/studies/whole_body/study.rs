@@ -208,7 +208,7 @@ impl Study for WholeBodyPlan {
     }
 }
 
-/// Rounds a number to two digits; for example, a touch of 10,008 taxels counts as 10,000.
+/// Rounds a number to two significant digits; for example, a touch of 10,008 taxels counts as 10,000.
 fn round_to_two(value: f64) -> f64 {
     let unit = 10f64.powf(value.max(1.0).log10().floor() - 1.0);
     (value / unit).round() * unit

@@ -31,11 +31,11 @@ row! {
 pub struct Robustness {
     /// Number of the most accurate configuration of the design among all values of the condition; the number refers to a row of `summary.csv`.
     configuration: usize => Subject: Linear;
-    /// Settings that distinguish this design from the other designs.
+    /// Settings in which this design differs from the other designs.
     design: String => Subject;
     /// Column name of the condition to which the design is robust or not, for example `noise_std`.
     condition: String => Subject;
-    /// Direction in which the condition is followed from its most accurate value: to larger or to smaller values.
+    /// Direction in which the condition is followed, starting from its most accurate value: towards larger or smaller values.
     direction: Direction => Subject "towards";
     /// Value of the condition at which the accuracy is highest, in the unit of the condition.
     clean_at: f64 => Note "most accurate at": Linear;
@@ -45,7 +45,7 @@ pub struct Robustness {
     chance: f64 => Note: Share;
     /// Accuracy half-way between the highest accuracy and chance, 0 to 1: `chance + (clean_accuracy − chance) / 2`.
     half_accuracy: f64 => Note "half-way to chance": Share;
-    /// Whether the accuracy falls to `half_accuracy`, or the reason why it does not.
+    /// Whether the accuracy falls to `half_accuracy` within the swept values, or the reason why it does not.
     status: HalfStatus => Outcome "half-way is";
     /// Value of the condition at which the accuracy falls to `half_accuracy`, in the unit of the condition; empty if the accuracy stays above.
     half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
@@ -55,11 +55,11 @@ pub struct Robustness {
     half_accuracy_at_high: Option<f64> => Note "95 % interval of the place, upper end": Linear;
     /// Last value of the condition in the direction of `direction`, in the unit of the condition.
     end: f64 => Note "last value": Linear;
-    /// Mean accuracy at the last value of the condition, 0 to 1.
+    /// Mean accuracy at the last value of the condition in the direction of `direction`, 0 to 1.
     accuracy_at_end: f64 => Note "accuracy at the last value": Share;
 } }
 
-/// Direction along the values of a condition.
+/// Direction in which the values of a condition are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
@@ -75,9 +75,9 @@ pub enum Direction {
 pub enum HalfStatus {
     /// The accuracy falls half-way to chance within the swept values.
     Found,
-    /// The accuracy stays above half-way up to the last swept value.
+    /// The accuracy stays above half-way to chance up to the last swept value.
     BeyondTheLastValue,
-    /// The highest accuracy is not above chance.
+    /// The highest accuracy over all swept values is not above chance.
     AllAtChance,
 }
 

@@ -45,7 +45,7 @@ pub const FEATURE_FILES: [&str; 7] = [
     "configuration.toml",
 ];
 
-/// Labelled measurements, with the training and test rows of one trial.
+/// Labelled measurements of touches, with the training and test rows of one trial.
 #[derive(Clone, Debug)]
 pub struct FeatureSet {
     /// Measurements of every touch before scaling, shape (n_touches, m), with the number of the touched object as label.
@@ -162,7 +162,7 @@ impl StudyPart {
         measure_group(&inputs, touches, tested, (trial, n_measurements))
     }
 
-    /// Writes the measurements of one configuration in one trial. The folder must exist and be claimed for [`FEATURE_FILES`].
+    /// Writes the measurements of one configuration in one trial to a folder. The folder must exist and be claimed for [`FEATURE_FILES`].
     ///
     /// # Errors
     /// If the study does not have the configuration or the trial, or a file cannot be written.

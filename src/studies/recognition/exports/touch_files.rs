@@ -166,7 +166,7 @@ pub fn touch_units(
     }
 }
 
-/// Open frame files: one for each quantity, or a single file of frames as a configuration reads them.
+/// Open frame files: one for each quantity, or a single file if frames are written as a configuration reads them.
 struct FrameFiles {
     frames: NpyFile,
     shear: Option<NpyFile>,

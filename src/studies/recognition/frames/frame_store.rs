@@ -34,7 +34,7 @@ impl Frames {
         self.encoded.extend(encoded);
     }
 
-    /// Returns the number of stored frames.
+    /// Returns the number of frames in the store.
     pub fn n(&self) -> usize {
         self.encoded.len()
     }
@@ -59,14 +59,14 @@ impl Frames {
     }
 }
 
-/// Counts and processor time of a simulation of frames.
+/// Counts of missed and saturated touches, and processor time, of a simulation of frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameFacts {
     /// Number F of frames per touch.
     pub n_frames: usize,
-    /// Number of touches without a deflected taxel at the deepest point.
+    /// Number of touches that deflect no taxel at their deepest point.
     pub n_missed: usize,
-    /// Number of touches with at least one taxel at its stroke at the deepest point.
+    /// Number of touches in which at least one taxel reaches its stroke at the deepest point.
     pub n_saturated: usize,
     /// Processor time of the simulation, summed over threads, s.
     pub cpu_s: f64,

@@ -16,16 +16,16 @@ use rayon::prelude::*;
 pub struct HumanTouches {
     /// Kinds of touch to distinguish, and settings of the recording.
     pub spec: HumanTouchSpec,
-    /// Touches in the order of their kinds, with the same number for each kind.
+    /// Touches in the order of their kinds; every kind has the same number of touches.
     pub touches: Vec<RecordedTouch>,
 }
 
 /// Human touch, and the time at which its motion starts within the recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordedTouch {
-    /// Motion of the touching hand.
+    /// Motion of the hand that touches the skin.
     pub touch: HumanTouch,
-    /// Start of the hand's motion, seconds after the first frame.
+    /// Time from the first frame of the recording to the start of the hand's motion, seconds.
     pub onset: f64,
 }
 
@@ -64,7 +64,7 @@ impl HumanTouches {
     }
 }
 
-/// Records a touch. Returns its frames (shape (n_frames, n_taxels), metres), whether the touch missed the skin, and whether it saturated a taxel.
+/// Records a touch. Returns its frames (shape (n_frames, n_taxels), metres), whether the hand missed the skin, and whether it saturated a taxel.
 pub fn record_touch(
     skin: &Patch,
     touch: &RecordedTouch,

@@ -19,7 +19,7 @@ const BLOCK: usize = 128;
 pub struct Reading<'a> {
     /// Skins that are touched; the frames of all skins have the same shape.
     pub skins: &'a [ReadSkin<'a>],
-    /// Measurement matrix Φ.
+    /// Measurement matrix Φ, by which each frame is multiplied.
     pub projection: &'a Projection,
 }
 

@@ -35,7 +35,7 @@ use std::path::Path;
 /// with a smaller value, a few missing readings mask a taxel.
 const MASKED: f64 = 0.1;
 
-/// Recorded touches of a real skin.
+/// Touches that a real skin recorded.
 #[derive(Clone, Debug)]
 pub struct RecordedFrames {
     /// Specification of the recording, from the table `[recorded]`.
@@ -76,7 +76,7 @@ struct FramesOfFile {
     readings: Array2<f64>,
     kind: ElementKind,
     place: String,
-    /// Path of the file of tangential forces, if they have their own file.
+    /// Path of the file that contains the tangential forces; `None` if the frames contain them.
     shear_place: Option<String>,
 }
 
@@ -266,7 +266,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns the names of the classes, the names of their random streams, and the number of touches of each class.
+    /// For each class, returns its name, the name from which the seed of its random numbers is derived, and its number of touches.
     fn classes(&self, labels: &ClassLabels) -> Result<(Vec<String>, Vec<String>, Vec<usize>)> {
         let n_classes = labels.classes.len();
         let mut counts = vec![0; n_classes];
@@ -388,7 +388,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns the reading of each taxel when it is not touched; 0 for a masked taxel.
+    /// Checks and returns the reading of each taxel when it is not touched; 0 for a masked taxel.
     fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
         let mut zeros = self.zeros(shape)?;
         for (taxel, zero) in zeros.iter_mut().enumerate() {

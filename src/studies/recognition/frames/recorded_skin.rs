@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 /// Selection of those recorded frames in which nothing touches the skin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UntouchedFrames {
-    /// The recording marks no untouched frames.
+    /// The recording does not state in which frames nothing touches the skin.
     None,
-    /// Separate file of untouched frames, recorded at even intervals over the same session, in order of time.
+    /// Separate file of frames in which nothing touches the skin. They are recorded at even intervals over the session of the main file, in order of time.
     File(PathBuf),
     /// Numbers of the untouched frames in the main file, as ranges.
     Among(Vec<Range<usize>>),
@@ -24,17 +24,17 @@ pub enum UntouchedFrames {
 pub struct RecordedSkinFiles {
     /// Frames in the order of time, shape (n, rows, columns) or (n, F, rows, columns).
     pub frames: PathBuf,
-    /// Letters of the axes of the frames, one per axis, as in `[recorded]`.
+    /// Letters of the axes of the frames, one per axis, as the key `order` of `[recorded]`; `None` for the default.
     pub order: Option<String>,
-    /// Numbers of rows and columns into which the taxel axis `c` is divided.
+    /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
     pub grid: Option<[usize; 2]>,
     /// Selection of those frames in which nothing touches the skin.
     pub untouched: UntouchedFrames,
-    /// Total force on the skin in each frame, newtons, shape (n,).
+    /// File of the total force on the skin in each frame, newtons, shape (n,).
     pub forces: Option<PathBuf>,
     /// Reading of a taxel that is not touched.
     pub zero: f64,
-    /// Reading of a taxel at full scale. Default: the largest of all readings.
+    /// Reading of a taxel at full scale; `None` for the largest of all readings.
     pub full_scale: Option<f64>,
     /// Deflection of a taxel at full scale, mm; `None` if unknown.
     pub stroke_mm: Option<f64>,

@@ -23,15 +23,15 @@ const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
 /// reading on an exactly flat face, newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearRipple {
-    /// Mean shear error over the taxels, newtons.
+    /// Mean shear error over the taxels under the face, newtons.
     pub mean: f64,
-    /// Standard deviation of the shear error over the taxels, newtons.
+    /// Standard deviation of the shear error over the taxels under the face, newtons.
     pub std: f64,
 }
 
 impl ShearRipple {
-    /// Simulates a press and slide on a packed box and measures the shear error. The box is packed within `surface_error` (metres) and pressed to a depth
-    /// (metres). Returns `None` if the array does not read shear, or no taxel lies under the face.
+    /// Presses an array on a packed box, slides it, and measures the shear error. The box is packed within `surface_error` and pressed to `depth`, both in
+    /// metres. Returns `None` if the array does not read shear, or if no taxel lies under the face.
     ///
     /// # Errors
     /// If the box cannot be packed within that error.
@@ -82,7 +82,7 @@ fn shear_along_x(array: &TaxelArray, object: &Model, depth: f64) -> Option<Vec<f
     Some(forces.map(|force| force.x).collect())
 }
 
-/// Returns the exact box as a triangle mesh.
+/// Returns the box with exact flat faces as a triangle mesh.
 fn exact_box() -> Result<Model> {
     let mesh = TriangleMesh::cuboid("box", BOX)?;
     Ok(MeshModel::new(mesh).into())

@@ -38,7 +38,7 @@ pub trait TouchSet: Sync {
         Ok((0..self.labels().len()).collect())
     }
 
-    /// Returns the pose of every touch; empty if the touches have no poses.
+    /// Returns the pose of every touch; returns an empty list if the touches have no poses.
     fn poses(&self) -> Vec<&Touch> {
         Vec::new()
     }
@@ -68,7 +68,7 @@ pub trait TouchSet: Sync {
     /// read at a speed (m/s, 0 at rest), each touch after another randomly drawn touch.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 
-    /// Returns sample touches for pictures.
+    /// Returns the sample touches that the pictures of the study show.
     ///
     /// # Errors
     /// If a picture cannot be made.
@@ -83,7 +83,7 @@ pub trait TouchSet: Sync {
     fn settings(&self) -> Vec<(String, String)>;
 }
 
-/// Sample touches of a study for pictures.
+/// Sample touches that the pictures of a study show.
 #[derive(Clone, Debug)]
 pub struct Samples {
     /// Touches that the sample picture shows.

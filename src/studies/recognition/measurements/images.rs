@@ -18,7 +18,7 @@ const BLOCK: usize = 64;
 /// Estimators that compute images of frames from measurements: one for each number of measurements that a group of configurations uses.
 #[derive(Clone, Debug)]
 pub struct Images {
-    /// Numbers of rows and columns of the images.
+    /// Numbers of rows and columns of the images of frames.
     shape: (usize, usize),
     /// Mapping from taxels to pixels; `None` if each taxel is a pixel.
     chart: Option<Chart>,
@@ -68,7 +68,7 @@ impl Images {
         })
     }
 
-    /// Returns whether images can be estimated from this number of measurements.
+    /// Returns whether images can be estimated from the given number of measurements.
     pub fn has_estimate(&self, measurements: usize) -> bool {
         self.estimates.iter().any(|(m, _)| *m == measurements)
     }

@@ -43,7 +43,7 @@ pub struct Measurements {
 /// Measurement matrix of a group of configurations in a trial, with the image estimators that are fitted to training touches.
 #[derive(Clone, Debug)]
 pub struct SensedBy {
-    /// Measurement matrix Φ.
+    /// Measurement matrix Φ, by which each frame is multiplied.
     pub projection: Projection,
     /// Image estimators; `None` if no configuration uses image features.
     pub images: Option<Images>,

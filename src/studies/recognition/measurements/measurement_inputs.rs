@@ -32,7 +32,7 @@ pub struct MeasurementInputs<'a> {
     pub speed: f64,
     /// Signal chain of the training touches.
     pub signal: SignalInputs,
-    /// Skin of the test touches: the training skin or another one.
+    /// Skin that the test touches use: the training skin or another one.
     pub test_sensor: TestSensor,
     /// Inputs of the test touches that differ from the training touches; `None` unless the study has the table `[test]`.
     pub test: Option<TestInputs<'a>>,
@@ -40,7 +40,7 @@ pub struct MeasurementInputs<'a> {
     pub ensemble: Ensemble,
     /// Numbers m of measurements to compute, distinct and ascending.
     pub projected: Vec<usize>,
-    /// Number of readings of each training touch.
+    /// Number of readings of each training touch, each with its own noise.
     pub n_readings: usize,
     /// Kinds of image features that are computed from the measurements.
     pub of_images: Vec<FeaturesOfImages>,
@@ -76,7 +76,7 @@ pub struct SignalInputs {
     pub steps: Vec<StepSpec>,
     /// Unit of the noise standard deviation; full scale if there is no noise.
     pub noise_unit: NoiseUnit,
-    /// Strength of each signal step.
+    /// Strengths of the signal steps: noise, smoothing and sensor errors.
     pub condition: Condition,
 }
 
@@ -114,14 +114,14 @@ impl MeasurementInputs<'_> {
         self.test.is_some() || self.test_sensor != TestSensor::SameSkin
     }
 
-    /// Returns the numbers of measurements from which images are estimated, distinct and ascending.
+    /// Returns the numbers of measurements from which the images of frames are estimated, distinct and ascending.
     pub fn counts_of_images(&self) -> Vec<usize> {
         counts(&self.of_images)
     }
 }
 
 impl MeasuredTrial<'_> {
-    /// Returns the split of the trial.
+    /// Returns the split of the trial into training and test touches.
     ///
     /// # Panics
     /// If the measurements do not depend on the split.
@@ -189,7 +189,7 @@ impl MeasurementGroup {
         signal_inputs(plan, self.condition)
     }
 
-    /// Returns a copy of the group with only the given configurations.
+    /// Returns a copy of the group that contains only the given configurations.
     pub fn with_cells(&self, configurations: &[Configuration]) -> Self {
         Self {
             array: self.array,
@@ -236,7 +236,7 @@ impl MeasurementGroup {
                 .any(|configuration| configuration.of_images().is_some())
     }
 
-    /// Returns the numbers of measurements from which images are estimated, distinct and ascending.
+    /// Returns the numbers of measurements from which the images of frames are estimated, distinct and ascending.
     pub fn counts_of_images(&self) -> Vec<usize> {
         counts(&self.features_of_images())
     }

@@ -16,11 +16,11 @@ pub struct MeasurementGroup {
     pub frames: usize,
     /// Condition of the signal: the strengths of noise, smoothing and sensor errors.
     pub condition: Condition,
-    /// Skin of the test touches.
+    /// Skin that the test touches use: the training skin or another one.
     pub test_sensor: TestSensor,
-    /// Ensemble of the measurement matrix.
+    /// Ensemble from which the measurement matrix is drawn.
     pub ensemble: Ensemble,
-    /// Configurations, ordered by family.
+    /// Configurations of the group, ordered by family.
     pub configurations: Vec<Configuration>,
 }
 
@@ -57,7 +57,7 @@ impl MeasurementGroup {
         }
     }
 
-    /// Returns the distinct image features of the group's configurations.
+    /// Returns the kinds of image features that the group's configurations use, each kind once.
     pub fn features_of_images(&self) -> Vec<FeaturesOfImages> {
         let mut all: Vec<FeaturesOfImages> = self
             .configurations

@@ -16,7 +16,7 @@ impl HumanTouchSpec {
         self.arm_radius_mm * MM
     }
 
-    /// Returns the time between frames, seconds.
+    /// Returns the time between two frames of a recording, seconds.
     pub fn interval(&self) -> f64 {
         1.0 / self.frames_hz
     }
@@ -26,7 +26,7 @@ impl HumanTouchSpec {
         (self.duration_s * self.frames_hz).round() as usize + 1
     }
 
-    /// Returns the time from the first frame to the last, seconds.
+    /// Returns the time from the first to the last frame of a recording, seconds.
     pub fn duration(&self) -> f64 {
         (self.n_frames() - 1) as f64 * self.interval()
     }
@@ -43,7 +43,7 @@ impl HumanTouchSpec {
 }
 
 impl Check<'_> {
-    /// Checks `[human_touch]`: a study has either objects or human touches, and human touches allow no keys that need objects.
+    /// Checks `[human_touch]`. A study has either objects or human touches; human touches exclude all keys that need objects.
     pub fn human_touch(&self, spec: &StudySpec, arrays: &[TaxelArray]) -> Result<()> {
         let Some(human) = &spec.human_touch else {
             if spec.places_objects() && spec.touches == TouchesSpec::default() {

@@ -80,7 +80,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks `[recognition]`: each key in its range, no contradictions, no key without effect.
+    /// Checks `[recognition]`: each key is in its range, no keys contradict each other, and every key has an effect.
     pub fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
         let given = self.table("recognition", recognition)?;
         for [first, second] in ONE_OF {
@@ -349,7 +349,7 @@ impl RecognitionSpec {
         chosen.any(|next| next == NextTouch::MostInformative)
     }
 
-    /// Returns the maximum tilt of a tilted copy, radians.
+    /// Returns the maximum tilt of a tilted copy about each axis, radians.
     pub fn copies_tilt(&self) -> f64 {
         self.tilt_augmentation_deg
             .unwrap_or(DEFAULT_TILT_DEG)
@@ -370,7 +370,7 @@ impl RecognitionSpec {
         })
     }
 
-    /// Returns the values of C for classifiers that have a C; `None` means that C is chosen by cross-validation.
+    /// Returns the values of C for classifiers that have a penalty C. A value of `None` means that C is chosen by cross-validation.
     pub fn penalties(&self) -> Vec<Option<f64>> {
         match (&self.c, &self.c_grid) {
             (_, Some(_)) => vec![None],

@@ -18,9 +18,9 @@ use std::f64::consts::TAU;
 pub struct KeepTogether {
     /// Pose parameters whose values define a group.
     pub kind: GroupSpec,
-    /// Distance below which drawn offsets and depths are neighbours, metres, positive.
+    /// Distance below which two drawn offsets or depths are neighbours, metres, positive.
     pub metres: Option<f64>,
-    /// Angle below which drawn yaws and tilts are neighbours, radians, positive.
+    /// Angle below which two drawn yaws or tilts are neighbours, radians, positive.
     pub radians: Option<f64>,
 }
 

@@ -75,7 +75,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the keys that layouts need, and rejects keys that a layout does not support.
+    /// Checks that a layout of taxels has the keys that it needs, and no keys that it does not support.
     pub fn layout(&self, spec: &StudySpec) -> Result<()> {
         let SkinSpec {
             layout,

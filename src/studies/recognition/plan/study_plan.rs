@@ -18,7 +18,8 @@ use crate::world::Placement;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Rounds a converted number to the decimal that was written: 30, not 29.999999999999996. Numbers that are not decimals of nine places are unchanged.
+/// Rounds a converted number to the decimal that was written in the study: 30, not 29.999999999999996. A number that is no decimal of nine places stays
+/// unchanged.
 pub fn as_written(value: f64) -> f64 {
     let decimal = (value * 1e9).round() / 1e9;
     match (decimal - value).abs() <= 4.0 * f64::EPSILON * value.abs() {
@@ -32,7 +33,7 @@ pub fn as_written(value: f64) -> f64 {
 pub struct Plan {
     /// Specification as written in the study file.
     pub spec: StudySpec,
-    /// Arrays, one for each combination of pitch and size.
+    /// Arrays of taxels, one for each combination of pitch and size.
     pub arrays: Vec<TaxelArray>,
     /// Distribution of touch poses; without meaning in studies of human touches.
     pub placement: Placement,
@@ -174,7 +175,7 @@ impl Plan {
 }
 
 impl Plan {
-    /// Returns a text that describes a noise level, such as `5 % of full scale`.
+    /// Returns a text that describes a noise standard deviation, such as `5 % of full scale`.
     pub fn describe_noise(&self, level: f64) -> String {
         match self.noise_unit {
             NoiseUnit::FullScale => format!("{} % of full scale", (level * 1e8).round() / 1e6),

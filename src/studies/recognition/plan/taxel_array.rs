@@ -21,11 +21,11 @@ pub struct TaxelArray {
     grid: Grid,
     taxel: Taxel,
     layout: ArrayLayout,
-    /// Radius of curvature of the layout, metres; 0 for a flat layout.
+    /// Radius of curvature of the layout, metres; 0 if the layout is flat.
     radius: f64,
     sensed: Sensed,
     slide: DVec2,
-    /// Whether the positions of the taxels are known; otherwise the grid is a single row of taxels.
+    /// Whether the positions of the taxels are known. If they are unknown, the taxels are treated as a single row.
     is_placed: bool,
     patch: Arc<Patch>,
 }
@@ -176,12 +176,12 @@ impl TaxelArray {
         self.grid.pitch
     }
 
-    /// Returns a short description, such as `64×64 at 2 mm`.
+    /// Returns a short description of the array, such as `64×64 at 2 mm`.
     pub fn describe(&self) -> String {
         self.say("×", "")
     }
 
-    /// Returns a description with the word taxels, such as `64 × 64 taxels at 2 mm`.
+    /// Returns a description of the array that contains the word taxels, such as `64 × 64 taxels at 2 mm`.
     pub fn describe_taxels(&self) -> String {
         self.say(" × ", " taxels")
     }
@@ -227,7 +227,7 @@ impl TaxelArray {
         })
     }
 
-    /// Returns the distance between neighbouring cells of a picture, mm.
+    /// Returns the distance between the centres of neighbouring picture cells, mm.
     pub fn picture_pitch_mm(&self) -> f64 {
         match self.is_image() {
             true => millimetres(self.pitch()),

@@ -75,13 +75,13 @@ pub struct Configuration {
     noise_std: f64 => always of "signal.noise_std_full_scale";
     /// Unit of `noise_std`: fraction of full scale, mm or N.
     noise_unit: NoiseUnit => always (Note, "noise unit", "", Words);
-    /// Standard deviation of the Gaussian smoothing over the array, mm; 0 without smoothing.
+    /// Standard deviation of the Gaussian that smooths the readings over the array, mm; 0 without smoothing.
     smoothing_mm: f64 => always of "signal.smoothing_mm";
     /// Strength of each sensor error. The study has one column for each strength that it sets.
     strengths: Strengths => each_strength;
-    /// Skin of the test touches: the training skin or another one. The column is present only if the study has the key.
+    /// Skin that the test touches use: the training skin or another one. The column is present only if the study has the key.
     test_sensor: Option<TestSensor> => if_given of "signal.test_sensor";
-    /// Ensemble of the measurement matrix.
+    /// Ensemble from which the measurement matrix is drawn, such as `gaussian`.
     ensemble: Ensemble => always of "sensing.ensemble";
     /// Number m of measurements per frame.
     measurements: usize => always of "sensing.measurements";
@@ -92,18 +92,18 @@ pub struct Configuration {
     /// Way in which the frames of a touch are combined into features, such as `deepest`. The column is present only if the study has the key; without the key,
     /// frames are concatenated.
     temporal_features: Option<TemporalFeatures> => if_given of "recognition.temporal_features";
-    /// Features that are computed from the measurements.
+    /// Features that are computed from the measurements of a touch, such as `raw`.
     features: Features => always of "recognition.features";
     /// Depth window of image features, as a fraction of the full scale. Only deflections within the window below the largest deflection of a frame count. 1 for
     /// features of measurements, which have no window. The column is present only if the study has the key.
     depth_window_full_scale: Option<f64> => if_given of "recognition.depth_window_full_scale";
     /// Number of randomly tilted copies that are added for each training touch. The column is present only if the study has the key.
     tilt_augmentation: Option<usize> => if_given of "recognition.tilt_augmentation";
-    /// Kind of classifier.
+    /// Kind of classifier, such as `linear_svm`.
     classifier: ClassifierKind => always of "recognition.classifier";
     /// Penalty C of the classifier; empty if C is chosen by cross-validation or the classifier has no C.
     c: Option<f64> => always of "recognition.c";
-    /// Maximum number of training touches per object.
+    /// Maximum number of training touches per object in the configuration.
     train_touches: usize => always of "recognition.train_touches";
     /// Fraction of the training touches that are labelled as another object, 0 to 1. The column is present only if the study has the key.
     mislabelled_fraction: Option<f64> => if_given of "recognition.mislabelled_fraction";

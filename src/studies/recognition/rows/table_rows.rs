@@ -42,7 +42,7 @@ pub struct TrialScore {
     /// only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
-    /// F1 score averaged over all objects, 0 to 1.
+    /// F1 score (harmonic mean of precision and recall) averaged over all objects, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
     /// Penalty C that the classifier used: given, or chosen by cross-validation within the training rows. Empty if the classifier has no C.
     c_used: Option<f64> => Note "C used": Log;
@@ -81,7 +81,7 @@ pub struct ConfigurationScore {
     accuracy: f64 => Value(More): Share between [accuracy_low, accuracy_high];
     /// Standard deviation of the accuracy over trials, 0 to 1; 0 if there is only one trial.
     accuracy_std: f64 => Note "standard deviation over trials": Share;
-    /// Lower end of the 95 % interval of the mean accuracy.
+    /// Lower end of the 95 % interval of the mean accuracy, 0 to 1.
     ///
     /// The interval is Wilson's for the counts of all trials, at the number of test rows of one trial, or of all folds. If groups are held out, it is the
     /// interval over all groups that the trials hold out. Trials split the same touches again, so counting the test rows of all trials would make the interval
@@ -93,21 +93,21 @@ pub struct ConfigurationScore {
     /// column is present only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
-    /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials: its variation under other splits, projections and noise on the same touches.
-    /// Empty with fewer than five trials, splits or projections.
+    /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials, 0 to 1: the variation under other splits, projections and noise on the same
+    /// touches. Empty with fewer than five trials, splits or projections.
     #[serde(default)]
     bootstrap_low: Option<f64> => Note "mean over trials, lower end": Share;
     /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials. It is empty under the same conditions as `bootstrap_low`.
     #[serde(default)]
     bootstrap_high: Option<f64> => Note "mean over trials, upper end": Share;
-    /// Macro-averaged F1 score, averaged over trials, 0 to 1.
+    /// F1 score (harmonic mean of precision and recall), averaged over all objects and trials, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
     /// Number of optimisation problems, over all trials, that stopped at the solver's maximum number of iterations.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
 row! {
-/// Number of test rows of one object that were recognised as another object, over all trials of a configuration: a row of `confusion.csv`. Zero counts are
+/// Number of test rows of one object that were recognised as a certain object, over all trials of a configuration: a row of `confusion.csv`. Zero counts are
 /// omitted.
 pub struct Confusion {
     /// Number of the configuration, as in `summary.csv`.
@@ -116,7 +116,7 @@ pub struct Confusion {
     object: String => Subject;
     /// Name of the recognised object.
     predicted: String => Subject "recognised as";
-    /// Number of test rows of `object` that were recognised as `predicted`.
+    /// Number of test rows of `object` that were recognised as `predicted`, over all trials.
     // A logarithmic scale makes rare confusions visible.
     count: usize => Value(Neither) "test rows": Log;
 } }
@@ -133,9 +133,9 @@ pub struct Confused {
     object: String => Subject;
     /// Name of the recognised object.
     predicted: String => Subject "recognised as";
-    /// Number of the object's test rows that were recognised as `predicted`, over all trials.
+    /// Number of test rows of `object` that were recognised as `predicted`, over all trials.
     count: usize => Note "test rows": Log;
-    /// Number of the object's test rows, over all trials.
+    /// Number of test rows of `object`, over all trials.
     n_test: usize => Note "test rows of the object": Linear;
     /// Fraction of the object's test rows that were recognised as `predicted`, `count / n_test`, 0 to 1.
     fraction: f64 => Value(Less) "fraction of the object's test rows": Share between [fraction_low, fraction_high];
@@ -157,7 +157,7 @@ row! {
 ///
 /// The [`Configuration`] is the most accurate one to which the claim applies. For each condition of the matching configurations, a claim has one row.
 pub struct Published {
-    /// Published claim in the publication's words.
+    /// Published claim as text, such as `98 % at 64:1`.
     claim: String => Subject;
     /// Publication that makes the claim.
     source: String => Subject;
@@ -242,11 +242,11 @@ row! {
 pub struct StageTime {
     /// Name of the stage: `simulate`, or `measure` (signal chain and measurement matrix). If touches have several frames, their number is added.
     stage: String => Subject;
-    /// Pitch of the taxels, mm.
+    /// Pitch of the array's taxels, mm: side of the square area per taxel.
     pitch_mm: f64 => Subject "pitch" in "mm": Linear;
-    /// Number of taxel columns (along x).
+    /// Number of columns of taxels in the array (along x).
     nx: usize => Subject "taxels along x": Linear;
-    /// Number of taxel rows (along y).
+    /// Number of rows of taxels in the array (along y).
     ny: usize => Subject "taxels along y": Linear;
     /// Number of touches that the stage processed.
     n_touches: usize => Note "touches": Linear;
@@ -274,15 +274,15 @@ pub struct Limit {
 pub struct Tables {
     /// Rows of `accuracy.csv`: one per configuration and trial, ordered by configuration.
     pub accuracy: Vec<(Configuration, TrialScore)>,
-    /// Rows of `summary.csv`: one per configuration.
+    /// Rows of `summary.csv`: one per configuration, over all its trials.
     pub summary: Vec<(Configuration, ConfigurationScore)>,
     /// Rows of `confusion.csv`: non-zero counts, ordered by configuration.
     pub confusion: Vec<Confusion>,
-    /// Rows of `comparison.csv`: one per configuration.
+    /// Rows of `comparison.csv`: one per configuration, which is compared with the best one of its condition.
     pub comparison: Vec<Comparison>,
     /// Rows of `timing.csv`: one per configuration and trial.
     pub timing: Vec<(Configuration, TrialTime)>,
-    /// Rows of `pareto.csv`: one per configuration.
+    /// Rows of `pareto.csv`: one per configuration, with its accuracy and costs.
     pub pareto: Vec<(Configuration, Pareto)>,
     /// Rows of `stages.csv`: one per array, number of frames and stage.
     pub stages: Vec<StageTime>,
@@ -304,7 +304,7 @@ pub struct Tables {
 pub enum Source {
     /// Split of the touches into training and test touches.
     Split,
-    /// Random projection (measurement matrix).
+    /// Random projection (measurement matrix) of the trial.
     Projection,
     /// Noise and all other random draws of a trial, and the interaction of split and projection.
     Rest,
@@ -321,7 +321,7 @@ pub struct Variance {
     n_levels: usize => Note "levels": Linear;
     /// Degrees of freedom of `mean_square`.
     degrees_of_freedom: usize => Note: Linear;
-    /// Mean square of the source in the analysis of variance.
+    /// Mean square of the source in the analysis of variance of the accuracies.
     mean_square: f64 => Note: Linear;
     /// Unbiased estimate of the variance due to the source (method of moments). If the variance is small, the estimate may be negative by chance.
     estimate: f64 => Note "variance": Linear;

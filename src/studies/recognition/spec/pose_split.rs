@@ -28,15 +28,15 @@ pub enum PoseSplit {
     /// Randomly drawn touches are held out. On a grid of poses, most test touches then have neighbours among the training touches.
     #[default]
     Random,
-    /// One yaw is held out in each trial.
+    /// In each trial, one yaw is held out for testing; the next trial holds out the next yaw.
     LeaveOneYawOut,
-    /// The larger half of the yaws is held out in one trial, the smaller half in the next.
+    /// The larger half of the yaws is held out for testing in one trial, the smaller half in the next.
     HalfOfYaws,
     /// One eighth of the offsets and yaws is held out for testing; the opposite eighth is used for training.
     OppositeBlocks,
-    /// One tilt is held out in each trial.
+    /// In each trial, one tilt is held out for testing; the next trial holds out the next tilt.
     UnseenTilt,
-    /// One depth is held out in each trial.
+    /// In each trial, one depth is held out for testing; the next trial holds out the next depth.
     UnseenDepth,
 }
 
@@ -44,7 +44,7 @@ pub enum PoseSplit {
 const BLOCK: [TouchAxis; 3] = [TouchAxis::OffsetX, TouchAxis::OffsetY, TouchAxis::Yaw];
 
 impl PoseSplit {
-    /// Returns the name of the split in study files.
+    /// Returns the name of the split rule in study files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Random => "random",

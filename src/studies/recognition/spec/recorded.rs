@@ -66,7 +66,7 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub labels_test: Option<PathBuf>,
-    /// File of the groups of the separate test set; the interval of the accuracy is computed over these groups.
+    /// File of the groups of the separate test set, in the format of `groups`. The interval of the accuracy is computed over these groups.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
@@ -87,16 +87,16 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub depths: Option<PathBuf>,
-    /// Approach speed of the press at the time of reading, mm/s, at least 0; it acts on the damper. Default: 0.
+    /// Speed at which the skin approached the object when it was read, mm/s, at least 0; it acts on the damper. Default: 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed_mm_per_s: f64,
     /// Time between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_interval_s: Option<f64>,
-    /// Touch that precedes each touch, for sensor errors with memory. Default: `random`.
+    /// Touch before each touch, for sensor errors with memory. Values: `random` (default) or `none`.
     #[serde(default, skip_serializing_if = "is_usual")]
     pub previous_touch: PreviousTouch,
-    /// Number of values per taxel, set by the plan and not by the study file; 0 counts as 1.
+    /// Number of values per taxel in the frames. The plan sets it, not the study file; 0 counts as 1.
     #[serde(skip)]
     pub n_values: usize,
 }
@@ -105,7 +105,7 @@ pub struct RecordedSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ZeroSpec {
-    /// Reading that is common to all untouched taxels.
+    /// Reading that all untouched taxels have in common.
     One(f64),
     /// File with one reading for each taxel: an array with the taxel axes of `frames`, or a list in row-major order.
     Each(PathBuf),
@@ -167,7 +167,7 @@ pub enum PreviousTouch {
     /// Another touch of the study, drawn at random in each trial, as in studies of pressed objects.
     #[default]
     Random,
-    /// No preceding touch.
+    /// No touch precedes a touch.
     None,
 }
 
@@ -203,7 +203,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns mutable references to all given paths, so that they can be resolved against another folder.
+    /// Returns mutable references to all paths that are given, so that they can be made relative to another folder.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let labels = Some(&mut self.labels).filter(|path| !is_empty(path));
         let zero = match &mut self.zero {

@@ -14,30 +14,30 @@ pub struct SkinSpec {
     /// Axis: side of the square area per taxel, mm, positive. In a grid, the side is the distance between neighbours. In a hexagonal lattice (`hexagonal`,
     /// `disc`) the distance between neighbours is 1.0746 times as large.
     pub pitch_mm: Axis<f64>,
-    /// Axis: side length of the square array, mm, a multiple of the pitch.
+    /// Axis: side length of the square array, mm, positive, a multiple of the pitch.
     pub size_mm: Option<Axis<f64>>,
-    /// Axis: number of taxels along a side of the square array. Replaces `size_mm`.
+    /// Axis: number of taxels along a side of the square array, at least 1. Replaces `size_mm`.
     pub taxels: Option<Axis<usize>>,
     /// Layout of the taxels: `grid` (default), `hexagonal`, `disc`, `cylinder` or `cap`. All layouts have the same area.
     #[schemars(with = "Option<Names<ArrayLayout>>")]
     pub layout: Option<ArrayLayout>,
-    /// Radius of curvature of the layouts `cylinder` and `cap`, measured to the rest centres of the taxels, mm.
+    /// Radius of curvature of the layouts `cylinder` and `cap`, from the axis or centre to the rest centres of the taxels, mm, positive.
     pub curvature_radius_mm: Option<f64>,
     /// Quantity that each taxel reads: `deflection` (default), `force` along its axis, or `shear` (the force along its axis and two forces across it).
     pub sensed: Option<SensedSpec>,
     /// Friction coefficient μ ≥ 0 between taxels and object, with `sensed = "shear"`. Friction acts only if taxels move along the object, in a slide or on a
     /// curved layout. The taxels of a flat array that is pressed straight on do not slip.
     pub friction: Option<f64>,
-    /// Tangential stiffness k_t of a taxel, N/m, with `friction`. Default: the stiffness along the axis.
+    /// Tangential stiffness k_t of a taxel, N/m, positive; used with `friction`. Default: the stiffness along the axis.
     pub shear_stiffness_n_per_m: Option<f64>,
-    /// Radius ρ of a taxel, mm. Default: half the pitch.
+    /// Radius ρ of a taxel, mm, positive. Default: half the pitch.
     pub taxel_radius_mm: Option<f64>,
-    /// Stroke s of a taxel, mm: its maximum deflection.
+    /// Stroke s of a taxel, mm, positive: its maximum deflection.
     pub stroke_mm: f64,
-    /// Stiffness k of a taxel along its axis, N/m. Default: 100.
+    /// Stiffness k of a taxel along its axis, N/m, positive. Default: 100.
     #[serde(default = "number::<100>")]
     pub stiffness_n_per_m: f64,
-    /// Damping coefficient c of a taxel along its axis, N·s/m. Default: 0.
+    /// Damping coefficient c of a taxel along its axis, N·s/m, at least 0. Default: 0.
     #[serde(default)]
     pub damping_n_s_per_m: f64,
 }
@@ -63,14 +63,14 @@ pub struct TouchesSpec {
     pub tilt_y_deg: SpreadSpec,
     /// Travel of the patch past first contact, mm, positive. Beyond the stroke, taxels stay saturated.
     pub depth_mm: SpreadSpec,
-    /// Distance that the pressed patch slides along the object, mm. Default: no slide.
+    /// Distance that the pressed patch slides along the object, mm, at least 0. Default: no slide.
     pub slide_mm: Option<f64>,
     /// Direction of the slide, degrees from the patch's x axis towards its y axis; used with `slide_mm`. Default: 0.
     pub slide_deg: Option<f64>,
     /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, where d is the depth of the touch; each
     /// has its own noise. The measurements of all frames are the features of the touch.
     pub frames: Axis<usize>,
-    /// Approach speed of the press at the time of reading, mm/s, at least 0; it acts on the damper. Default: 0.
+    /// Speed at which the patch approaches the object when it is read, mm/s, at least 0; it acts on the damper. Default: 0.
     pub speed_mm_per_s: f64,
 }
 
@@ -115,7 +115,7 @@ impl Default for TouchesSpec {
     }
 }
 
-/// Quantity that a taxel reads.
+/// Quantity that each taxel reads.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SensedSpec {
@@ -138,15 +138,15 @@ pub enum SensedSpec {
     title = "number, list, `{ grid = [first, last, count] }`, `{ uniform = [low, high] }` or `{ within = half_width }`"
 )]
 pub enum SpreadSpec {
-    /// Single value for all touches, such as `yaw_deg = 30.0`.
+    /// Single value of the pose parameter for all touches, such as `yaw_deg = 30.0`.
     One(f64),
-    /// List of values, such as `yaw_deg = [0.0, 10.0, 20.0]`. Every configuration contains all values, so the list is not an axis.
+    /// List of values of the pose parameter, such as `yaw_deg = [0.0, 10.0, 20.0]`. Every configuration contains all values, so the list is not an axis.
     List(Vec<f64>),
-    /// Grid or interval, such as `{ grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`.
+    /// Grid or interval of values of the pose parameter, such as `{ grid = [0.0, 50.0, 6] }`, `{ uniform = [0.0, 360.0] }` or `{ within = 15.0 }`.
     Range(RangeSpec),
 }
 
-/// Grid or interval of values.
+/// Grid or interval of values of a pose parameter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RangeSpec {

@@ -23,9 +23,9 @@ pub struct SignalSpec {
     /// Numeric keys of the steps, such as the standard deviation of the noise and the strengths of sensor errors. Each key is an axis.
     #[serde(flatten)]
     pub axes: SignalAxes,
-    /// Axis: skin of the test touches, `same_skin` (default, the skin of the training touches) or `another_skin`.
+    /// Axis: skin that the test touches use, `same_skin` (default, the skin of the training touches) or `another_skin`.
     pub test_sensor: Option<Axis<TestSensor>>,
-    /// Combination of the axes of `[signal]` with each other: `all` (default) or `one_at_a_time`. All combinations with other axes are run.
+    /// Way in which the axes of `[signal]` are combined with each other: `all` (default) or `one_at_a_time`. All combinations with other axes are run.
     #[serde(skip_serializing_if = "is_default")]
     pub combine: CombineSpec,
 }
@@ -66,7 +66,7 @@ impl SignalAxes {
         self.0.values()
     }
 
-    /// Sets the values of the axis with this key, if the key exists.
+    /// Sets the values of the signal axis with this key, if `[signal]` may contain the key.
     fn set(&mut self, key: &str, axis: Axis<f64>) {
         let found = all_axes().enumerate().find(|(_, (known, _))| *known == key);
         if let Some((place, (key, step))) = found {
@@ -81,13 +81,13 @@ impl Serialize for SignalAxes {
     }
 }
 
-/// Step of the signal chain that processes the frames.
+/// Step of the signal chain, which converts simulated frames to sensor signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum StepSpec {
     /// Conversion of deflections into forces, newtons.
     Force,
-    /// Additive zero-mean Gaussian noise.
+    /// Addition of zero-mean Gaussian noise to each reading.
     Noise,
     /// Gaussian smoothing of the readings over the array.
     Smoothing,

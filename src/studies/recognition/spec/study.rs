@@ -64,14 +64,14 @@ pub struct StudySpec {
     /// Table `[touches]`: poses and depths of the touches.
     #[serde(default, skip_serializing_if = "is_default")]
     pub touches: TouchesSpec,
-    /// Table `[human_touch]`: recognition of kinds of human touch. Replaces `[objects]` and `[touches]`.
+    /// Table `[human_touch]`: recognition of kinds of human touch, such as a stroke. Replaces `[objects]` and `[touches]`.
     pub human_touch: Option<HumanTouchSpec>,
-    /// Table `[recorded]`: recorded frames. Replaces `[objects]` and `[touches]`.
+    /// Table `[recorded]`: frames that a real skin recorded. Replaces `[objects]` and `[touches]`.
     pub recorded: Option<RecordedSpec>,
     /// Table `[signal]`: noise, sensor errors and processing of frames before compression.
     #[serde(default)]
     pub signal: SignalSpec,
-    /// Table `[sensing]`: compression of frames.
+    /// Table `[sensing]`: compression of frames into measurements.
     pub sensing: SensingSpec,
     /// Table `[recognition]`: features, classifiers, and the split into training and test touches.
     pub recognition: RecognitionSpec,
@@ -79,7 +79,7 @@ pub struct StudySpec {
     #[serde(default, skip_serializing_if = "toml::Table::is_empty")]
     #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     pub test: toml::Table,
-    /// Table `[report]`: contents of the report.
+    /// Table `[report]`: contents of the page and of some tables.
     #[serde(default)]
     pub report: ReportSpec,
     /// Table `[axes]`: further axes, each consisting of a key and a list of its values.
@@ -95,9 +95,9 @@ pub struct SensingSpec {
     #[serde(default = "default_ensemble")]
     #[schemars(with = "Axis<Names<Ensemble>>")]
     pub ensemble: Axis<Ensemble>,
-    /// Axis: compression ratio n / m, taxels per measurement, at least 1.
+    /// Axis: compression ratio n / m, at least 1: number n of taxels divided by the number m of measurements.
     pub ratio: Option<Axis<f64>>,
-    /// Axis: number m of measurements per frame. Replaces `ratio`.
+    /// Axis: number m of measurements per frame, at least 1. Replaces `ratio`.
     pub measurements: Option<Axis<usize>>,
 }
 
@@ -120,17 +120,17 @@ pub struct RecognitionSpec {
     pub tilt_augmentation: Option<Axis<usize>>,
     /// Maximum tilt of a copy about the array's x and y axes, degrees; tilts are distributed uniformly. Default: 5.
     pub tilt_augmentation_deg: Option<f64>,
-    /// Axis: combination of the frames of a touch into features. Values: `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in time),
-    /// `moments` of each measurement, `course` of the touch, or `summarised` (moments and course). Default: all frames are concatenated.
+    /// Axis: way in which the frames of a touch are combined into features. Values: `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in
+    /// time), `moments` of each measurement, `course` of the touch, or `summarised` (moments and course). Default: all frames are concatenated.
     pub temporal_features: Option<Axis<TemporalFeatures>>,
-    /// Axis: kind of classifier.
+    /// Axis: kind of classifier, such as `linear_svm`.
     #[schemars(with = "Axis<Names<ClassifierKind>>")]
     pub classifier: Axis<ClassifierKind>,
     /// Strategy that combines binary SVMs into a multi-class classifier: `one_vs_one` (default) or `one_vs_rest`.
     #[serde(default)]
     #[schemars(with = "Names<Multiclass>")]
     pub multiclass: Multiclass,
-    /// Solver of SVMs: `smo` (default) or `coordinate_descent`.
+    /// Solver that trains SVMs: `smo` (default) or `coordinate_descent`.
     #[serde(default)]
     #[schemars(with = "Names<Solver>")]
     pub solver: Solver,
@@ -138,9 +138,9 @@ pub struct RecognitionSpec {
     #[serde(default)]
     #[schemars(with = "Names<Scaling>")]
     pub scaling: Scaling,
-    /// Axis: penalty C > 0 of the classifiers that have one. Default: 1.
+    /// Axis: penalty C of the classifiers that have one, positive. Default: 1.
     pub c: Option<Axis<f64>>,
-    /// Candidate values of C; replaces `c`. Each fit chooses one of them by cross-validation within its training rows.
+    /// Candidate values of the penalty C; replaces `c`. Each fit chooses one of them by cross-validation within its training rows.
     pub c_grid: Option<Vec<f64>>,
     /// Candidate values of the kernel parameter γ, as multiples of its default; replaces `gamma`. The default is 1 / (F · m · variance), where F · m is the
     /// number of features of a touch. For the Laplacian kernel, the standard deviation replaces the variance. Each fit chooses one candidate together with C.
@@ -160,15 +160,15 @@ pub struct RecognitionSpec {
     /// Maximum size of the kernel values that an SVM solver keeps in memory, GiB. Default: 2. Above the limit, values are recomputed; this takes longer and may
     /// change the last digits.
     pub solver_memory_gib: Option<f64>,
-    /// Axis: maximum number of training touches per object. Default: all touches of the training split.
+    /// Axis: maximum number of training touches per object, at least 1. Default: all touches of the training split.
     pub train_touches: Option<Axis<usize>>,
     /// Axis: fraction of each object's training touches that are labelled as another, randomly drawn object, 0 to 1. Default: 0.
     pub mislabelled_fraction: Option<Axis<f64>>,
-    /// Axis: ratio of the numbers of training touches of the most and the least frequent object, at least 1. The numbers of all objects form a geometric
-    /// sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
+    /// Axis: number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The numbers of all objects
+    /// form a geometric sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
     pub class_imbalance: Option<Axis<f64>>,
-    /// Axis: number k of test touches of an object that are combined into one decision by the sum of their scores, at least 1. Default: 1. An object's test
-    /// touches are grouped at random; a remainder of fewer than k touches is omitted.
+    /// Axis: number k of test touches of an object that are combined into one decision, at least 1. Their scores are added. An object's test touches are
+    /// grouped at random; a remainder of fewer than k touches is omitted. Default: 1.
     #[serde(default = "one_value")]
     pub touches_per_decision: Axis<usize>,
     /// Axis: policy that chooses the touches of a decision after the first one. Values: `random` (default), `farthest` (the pose farthest from the previous
@@ -180,15 +180,15 @@ pub struct RecognitionSpec {
     pub split: PoseSplit,
     /// Fraction of the touches that a random split holds out for testing, between 0 and 1. Default: 0.25.
     pub test_fraction: Option<f64>,
-    /// Number k of folds of a k-fold split, at least 2; replaces `test_fraction`. `trials` must be a multiple of k.
+    /// Number k of folds of a k-fold split into training and test touches, at least 2; replaces `test_fraction`. `trials` must be a multiple of k.
     pub folds: Option<usize>,
     /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If the
     /// values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours differ by less than
     /// `group_by_mm` and `group_by_deg` on each drawn axis.
     pub group_by: Option<GroupSpec>,
-    /// Distance below which drawn offsets and depths are neighbours, mm, positive; used with `group_by`.
+    /// Distance below which two drawn offsets or depths are neighbours, mm, positive; used with `group_by`.
     pub group_by_mm: Option<f64>,
-    /// Angle below which drawn yaws and tilts are neighbours, degrees, positive; used with `group_by`.
+    /// Angle below which two drawn yaws or tilts are neighbours, degrees, positive; used with `group_by`.
     pub group_by_deg: Option<f64>,
 }
 
@@ -223,7 +223,7 @@ pub enum ConfusionMatrices {
 /// Published accuracy, such as `{ claim = "98 % at 64:1", accuracy = 0.98, source = "[CL]", ratio = 64.0, ensemble = "sbhe" }`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PublishedSpec {
-    /// Published claim, in words.
+    /// Published claim as text, such as `98 % at 64:1`.
     pub claim: String,
     /// Published fraction of correctly recognised test touches, 0 to 1.
     pub accuracy: f64,

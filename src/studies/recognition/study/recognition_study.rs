@@ -58,9 +58,9 @@ pub(crate) struct Touches {
 
 /// Group of configurations, with its place in the study.
 pub(crate) struct PlacedGroup {
-    /// Index of the part that contains the group.
+    /// Index of the part of the study that contains the group.
     pub part: usize,
-    /// Index of the group in the sweep of its part.
+    /// Index of the group in the list of groups of its part.
     place: usize,
     /// Index of the group's training touches in the list of all sets of touches.
     pub touches: usize,
@@ -214,7 +214,7 @@ impl RecognitionStudy {
             .flat_map(|part| part.sweep.configurations())
     }
 
-    /// Returns the number of configurations.
+    /// Returns the number of configurations of the study.
     pub fn n_configurations(&self) -> usize {
         self.parts
             .iter()
@@ -375,7 +375,7 @@ impl RecognitionStudy {
         self.outcome(run_whole(self, progress)?)
     }
 
-    /// Returns all result tables as typed rows.
+    /// Computes all result tables from the rows of the work items.
     ///
     /// # Errors
     /// If the trials of a configuration have no rows, or a file cannot be read.

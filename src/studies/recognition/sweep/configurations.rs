@@ -152,7 +152,7 @@ impl Sweep {
         self.groups.iter().flat_map(|group| &group.configurations)
     }
 
-    /// Returns the number of configurations.
+    /// Returns the number of configurations in the sweep.
     pub fn n_configurations(&self) -> usize {
         self.groups
             .iter()

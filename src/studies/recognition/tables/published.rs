@@ -122,7 +122,7 @@ mod tests {
         toml::from_str(&text).unwrap()
     }
 
-    /// Returns a summary of two classifiers × two ratios × noise of 0 or 10 %; accuracies increase with the number of the configuration.
+    /// Returns a summary for all combinations of two classifiers, two ratios, and noise of 0 or 10 %. Accuracies increase with the number of the configuration.
     fn summary() -> Vec<(Configuration, ConfigurationScore)> {
         let mut rows = Vec::new();
         for noise_std in [0.0, 0.1] {

@@ -15,7 +15,7 @@ use crate::table::front;
 use bubbletouch_sim::statistics::interval::{Interval, RowTest};
 use std::collections::BTreeMap;
 
-/// Row of the table `accuracy.csv`.
+/// Row of the table `accuracy.csv`: a configuration, and its score in one trial.
 type Row = (Configuration, TrialScore);
 
 /// Returns one row per configuration. The argument has one row per configuration and trial; the trials of a configuration are adjacent. For each of these rows,

@@ -7,7 +7,7 @@ use crate::world::{Placement, RestPose, Touch, touches};
 use ndarray::Array1;
 use rayon::prelude::*;
 
-/// Object with its resting poses and its touches.
+/// Object with its resting poses and the touches that are drawn for it.
 #[derive(Clone, Debug)]
 pub struct TouchedObject {
     /// Object that is touched.

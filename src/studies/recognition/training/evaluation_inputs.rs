@@ -64,14 +64,14 @@ pub struct FamilyInputs<'a> {
     pub poses: Option<&'a Hashed<Poses>>,
 }
 
-/// Inputs that determine the training of a classifier. Parameters that the classifier does not use have their default values.
+/// Inputs that determine how a classifier is trained. Parameters that the classifier does not use have their default values.
 #[derive(Clone, Debug)]
 pub struct TrainingInputs {
-    /// Classifier and its parameters; each [`Decision`] sets its C.
+    /// Classifier and its parameters; the penalty C is set by each [`Decision`].
     pub classifier: Classifier,
-    /// Candidate values of C; `None` if C is given.
+    /// Candidate values of the penalty C; `None` if C is given.
     pub c_grid: Option<Vec<f64>>,
-    /// Candidate values of γ as multiples of 'scale'; `None` if γ is given.
+    /// Candidate values of the kernel parameter γ, as multiples of its default; `None` if γ is given.
     pub gamma_grid: Option<Vec<f64>>,
     /// Maximum number of training touches per object that are used to choose C and γ; `None` for all.
     pub cv_touches: Option<usize>,
@@ -144,7 +144,7 @@ impl TrialInputs<'_> {
         }
     }
 
-    /// Returns the number of objects.
+    /// Returns the number of objects that the trial distinguishes.
     pub fn n_objects(&self) -> usize {
         self.labels.iter().max().map_or(0, |last| last + 1)
     }
@@ -230,7 +230,8 @@ impl TrainingInputs {
     }
 }
 
-/// Returns the name of a family of configurations; different inputs give different names. The name contains the measurements that the family alone would need.
+/// Returns the name of a family of configurations, which contains a hash of its inputs; different inputs give different names. The measurements in the hash are
+/// those that the family alone would need.
 pub fn family_name(
     plan: &Plan,
     (group, touches): (&MeasurementGroup, &str),
@@ -270,7 +271,7 @@ impl Sweep {
     }
 }
 
-/// Returns the memory limit for a solver's kernel values, converted from GiB to bytes; default 2 GiB.
+/// Returns the maximum size of the kernel values that a solver keeps in memory, converted from GiB to bytes; the default is 2 GiB.
 pub fn solver_memory(gib: Option<f64>) -> usize {
     gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
 }

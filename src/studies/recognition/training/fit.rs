@@ -20,7 +20,7 @@ pub struct Training<'a> {
     pub inputs: &'a TrainingInputs,
     /// Training rows in drawing order, alternating between objects: first readings, then further readings, then tilted copies.
     pub data: Dataset,
-    /// Number of rows that are first readings; C and γ are chosen on these rows only.
+    /// Number of training rows that are first readings of touches; C and γ are chosen on these rows only.
     pub n_first: usize,
     /// Group of each training row; `None` if the split may divide groups.
     pub group_keys: Option<Array1<usize>>,
@@ -30,13 +30,13 @@ pub struct Training<'a> {
 
 /// Trained classifier and its parameters.
 pub struct Fitted {
-    /// Trained classifier, including its scaling.
+    /// Trained classifier, including the scaling of its features.
     pub classifier: TrainedClassifier,
     /// Penalty C with which the classifier was trained; `None` if the classifier has no C.
     pub c: Option<f64>,
     /// Kernel parameter γ with which the classifier was trained; `None` if the classifier has no γ.
     pub gamma: Option<f64>,
-    /// Time to choose the parameters and to train, s.
+    /// Time to choose C and γ and to train the classifier, s.
     pub fit_s: f64,
 }
 
@@ -192,7 +192,7 @@ impl Training<'_> {
     }
 }
 
-/// Returns γ as a number; `None` if the kernel computes γ itself or has no γ.
+/// Returns the kernel parameter γ as a number; returns `None` if the kernel computes γ itself or has no γ.
 fn number(gamma: Gamma) -> Option<f64> {
     match gamma {
         Gamma::Value(gamma) => Some(gamma),

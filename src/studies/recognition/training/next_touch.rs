@@ -77,7 +77,7 @@ pub(super) fn choose_touches(
     chosen.concat()
 }
 
-/// Test touches with the decisions of one classifier.
+/// Test touches with the decisions of a classifier on each of them.
 pub(super) struct AnsweredTouches<'a> {
     pub(super) fitted: &'a Fitted,
     pub(super) test: &'a Dataset,

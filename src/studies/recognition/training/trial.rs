@@ -39,7 +39,7 @@ pub struct Evaluation {
 /// Data of a trial that the evaluations of all families in a group share.
 #[derive(Clone, Copy)]
 pub struct Trial<'a> {
-    /// Labels, split and groups of the trial.
+    /// Inputs of the trial: its labels, split and groups.
     pub inputs: TrialInputs<'a>,
     /// Measurements of all touches. Each frame has at least as many measurements as any configuration needs.
     pub measurements: &'a Measurements,
