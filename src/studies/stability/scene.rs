@@ -44,7 +44,7 @@ pub(super) struct ConfigurationScene {
     pub taxel: Taxel,
     /// Motion of the ball: an imposed motion, or free motion under gravity.
     pub drive: Drive,
-    /// Exact deflections at the time of evaluation.
+    /// Exact result at the time of evaluation: the travel of the ball and the deflections.
     pub truth: Rest,
     /// Exact total force Σ f at the time of evaluation, newtons.
     pub force: f64,
