@@ -32,7 +32,7 @@ pub enum Error {
         /// Error of the operating system.
         source: std::io::Error,
     },
-    /// Failure of some work items of a study; the results of the others are written. The command exits with code 1.
+    /// Failure of some work items of a study; the results of all other work items are written. The command exits with code 1.
     #[error("{path}: {n_failed} of {n_all} work items failed; the file says why, and the same command tries them again", path = path.display())]
     WorkItems {
         /// Path of the table of failures.

@@ -10,11 +10,12 @@ use super::untouched::{Untouched, Zero};
 use super::{Estimate, RecordedSkin};
 use std::f64::consts::FRAC_PI_2;
 
-/// Minimum fraction of the session between the first and the last untouched frames. A shorter time determines the drift at the end of the session poorly.
+/// Minimum time between the first and the last frames without contact, as a fraction of the recording session. A shorter time determines the drift at the end
+/// of the session poorly.
 const SPAN: f64 = 0.25;
 
-/// Estimates the standard deviation of the zero offsets at the end of the session, as a fraction of the full scale. `noise` is a standard deviation; `width`
-/// is the width of the smoothing in pitches.
+/// Estimates the standard deviation of the zero offsets at the end of the recording session, as a fraction of the full scale. `noise` is a standard
+/// deviation; `width` is the width of the smoothing in pitches.
 pub(super) fn estimate(
     skin: &RecordedSkin,
     untouched: Option<&Untouched>,
@@ -53,7 +54,8 @@ pub(super) fn estimate(
     }
 }
 
-/// Returns the variance over the taxels of the change of the zero offset from the first run of untouched frames to the last run.
+/// Returns how much the change of the zero offset varies between taxels (variance). The change is from the first run of frames without contact to the last
+/// run.
 fn moved(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f64> {
     let last = untouched.runs.nrows() - 1;
     let ends = taxels.map(|taxel| [0, last].map(|run| untouched.runs[(run, taxel)]));
@@ -66,7 +68,7 @@ fn moved(untouched: &Untouched, taxels: impl Iterator<Item = usize>) -> Option<f
     (moves.len() > 1).then(|| variance(&moves))
 }
 
-/// Returns an estimate of the drift variance at the end of the session from the zero offsets above zero.
+/// Returns an estimate of the variance of the zero offsets at the end of the recording session, computed only from offsets above zero.
 fn above(untouched: &Untouched, taxels: impl Iterator<Item = usize>, of_mean: f64) -> Option<f64> {
     let (mut squares, mut times) = (0.0, 0.0);
     for taxel in taxels {

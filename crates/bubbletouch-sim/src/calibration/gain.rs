@@ -33,8 +33,8 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Estimates the gains from touched frames after subtraction of the zero offsets. `noise` is a standard deviation; `width` is the width of the smoothing
-    /// in pitches.
+    /// Estimates the gains from frames with contact after subtraction of the zero offsets. `noise` is a standard deviation; `width` is the width of the
+    /// smoothing in pitches.
     pub(super) fn new(
         skin: &RecordedSkin,
         touched: &Array2<f64>,

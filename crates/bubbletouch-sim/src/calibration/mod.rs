@@ -52,7 +52,7 @@ pub struct Calibration {
     pub noise: Estimate,
     /// Standard deviation of the Gaussian kernel that smooths the frames, in taxel pitches.
     pub smoothing: Estimate,
-    /// Standard deviation of the zero offsets at the end of the session, as a fraction of the full scale.
+    /// Standard deviation of the zero offsets at the end of the recording session, as a fraction of the full scale.
     pub drift: Estimate,
     /// Standard deviation of the gains, relative to their mean 1.
     pub gain: Estimate,

@@ -11,11 +11,11 @@ pub struct RecordedSkin {
     pub shape: (usize, usize),
     /// Frames with contact, shape (n_frames, n_taxels), in the order of time.
     pub touched: Array2<f64>,
-    /// Time of each frame with contact, from 0 at the beginning of the session to 1 at its end.
+    /// Time of each frame with contact, from 0 at the beginning of the recording session to 1 at its end.
     pub touched_times: Array1<f64>,
     /// Frames without contact, shape (n_frames, n_taxels), in the order of time; may be empty.
     pub untouched: Array2<f64>,
-    /// Time of each frame without contact, from 0 at the beginning of the session to 1 at its end.
+    /// Time of each frame without contact, from 0 at the beginning of the recording session to 1 at its end.
     pub untouched_times: Array1<f64>,
     /// Total normal force on the skin in each frame with contact, newtons; `None` if not recorded.
     pub forces: Option<Array1<f64>>,

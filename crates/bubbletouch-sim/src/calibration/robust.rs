@@ -47,8 +47,9 @@ pub fn variance(values: &[f64]) -> f64 {
     values.len() as f64 * squares / (weights * weights * OF_NORMAL)
 }
 
-/// Returns the half-sample mode (Bickel and Frühwirth, Computational Statistics & Data Analysis 50, 2006), refined until convergence. The refinement takes the
-/// mean of the values as close to the mode as those below it. Sorts the values; returns NaN if there are none.
+/// Returns the half-sample mode (Bickel and Frühwirth, Computational Statistics & Data Analysis 50, 2006), refined until convergence. The refinement
+/// repeatedly replaces the mode by the mean of the values within a window around the mode. The half width of the window is three times the median distance of
+/// the values below the mode. Sorts the values; returns NaN if there are none.
 pub fn mode(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let mut densest = &*values;
@@ -77,8 +78,8 @@ pub fn mode(values: &mut [f64]) -> f64 {
 }
 
 /// Returns an estimate from n ordered units with its 95 % interval, by the jackknife over [`N_GROUPS`] runs of adjacent units with Student's t. Source: Efron
-/// and Tibshirani, *An introduction to the bootstrap*, 1993, chapter 11. The closure computes the estimate from the units that it must keep, and returns `None`
-/// if that is impossible.
+/// and Tibshirani, *An introduction to the bootstrap*, 1993, chapter 11. The function `estimate` computes the estimate from the units for which its argument
+/// returns true; it returns `None` if an estimate is impossible.
 pub fn jackknife(
     n: usize,
     estimate: impl Fn(&dyn Fn(usize) -> bool) -> Option<f64>,

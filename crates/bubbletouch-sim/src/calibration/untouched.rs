@@ -39,7 +39,7 @@ pub struct Untouched<'a> {
     pub step: f64,
     /// Zero offsets of the taxels in each run of frames, shape (n_runs, n_taxels).
     pub runs: Array2<Zero>,
-    /// Mean time of each run of frames, as a fraction of the session from 0 to 1.
+    /// Mean time of each run of frames, as a fraction of the recording session from 0 to 1.
     pub times: Vec<f64>,
     /// Number of consecutive frames per run.
     pub n_run: usize,

@@ -113,9 +113,9 @@ pub(crate) fn beats<const N: usize>(
 
 /// Raises each deflection to √q − h if this value is larger and q is positive, for the squares q (m²) and the heights h (metres).
 ///
-/// Indexed loops over local copies let the compiler vectorise this function. Iterator adapters compiled elsewhere would remain calls, and memory that may alias
-/// is not vectorised. The roots of all lanes are taken, because roots of negative numbers cost no more. The maximum avoids a masked store, which takes ten
-/// times as long on some processors.
+/// Indexed loops over local copies let the compiler vectorise this function. Iterator adapters compiled elsewhere would remain function calls, and loops over
+/// memory that may alias are not vectorised. The roots of all lanes are taken, because roots of negative numbers cost no more. The maximum avoids a masked
+/// store, which takes ten times as long on some processors.
 #[inline(always)]
 pub(crate) fn indent<const N: usize>(
     squares: &[f64; N],

@@ -171,8 +171,8 @@ fn to_place(
 /// Returns the travel of the patch along its z axis at which the first taxel is touched, metres; negative if a taxel is touched already. Returns `None` if no
 /// travel touches anything.
 ///
-/// `patch_from_objects` contains one pose per object. The closed form is exact: a taxel that travels along a line meets a sphere at a root of a quadratic
-/// equation.
+/// `patch_from_objects` contains one pose per object. The travel is computed in closed form: a taxel that travels along a line meets a sphere at a root of a
+/// quadratic equation.
 ///
 /// # Panics
 /// If the number of poses differs from the number of objects.
@@ -231,8 +231,8 @@ pub fn press_to_travel(
 
 /// Presses a patch until the springs of all taxels together carry `force` newtons, to within a relative 1e-12 or the last bit of the travel.
 ///
-/// Returns `None`, with zero deflections, if the patch meets nothing. The travel may be negative. The result equals a press to the depth `travel −
-/// first_contact`, where `first_contact` is the travel at first contact.
+/// Returns `None`, with zero deflections, if the patch meets nothing. The travel of the patch may be negative. The result equals a press to the depth `travel
+/// − first_contact`, where `first_contact` is the travel at first contact.
 ///
 /// # Errors
 /// If `force` is not a positive number or exceeds the largest force that the object can exert within the taxels' strokes. The message contains

@@ -15,7 +15,7 @@ const HALVED_EACH: usize = 3;
 /// Returns the argument at which a function reaches the value `wanted`. The function must be smaller than `wanted` at `low`, and not smaller at `high`. The
 /// search ends within `tolerance` of the value or at the last bit of the argument; if the tolerance is negative, only at the last bit.
 ///
-/// If the function jumps past the value, the upper side of the jump is returned.
+/// If the function jumps past the value, the side of the jump with the larger function value is returned.
 pub(crate) fn crossing(
     [mut low, mut high]: [f64; 2],
     (wanted, tolerance): (f64, f64),

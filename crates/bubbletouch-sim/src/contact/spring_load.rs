@@ -65,8 +65,8 @@ pub fn axial_load<'a>(
 
 /// Sums the spring forces over the given contacts of a press: all contacts, or the contacts of one object.
 ///
-/// The force on an object is −∇ Σ ½ k δ² with respect to the object's position in the patch frame. Exceptions are saturated taxels, whose energy no longer
-/// changes, and grazing contacts, whose gradient is bounded. \[BT\]
+/// The force on an object is the negative gradient of the springs' energy Σ ½ k δ² with respect to the object's position in the patch frame. Exceptions are
+/// saturated taxels, whose energy no longer changes, and grazing contacts, whose gradient is bounded. \[BT\]
 ///
 /// # Panics
 /// If the taxel of a contact does not exist in the patch.

@@ -13,8 +13,8 @@ pub struct RapierSettings {
     pub sweeps: usize,
     /// Number of engine steps per time step of the integrator, at least 1.
     pub substeps: usize,
-    /// Length scale, metres; the allowed penetration and the contact search distance are multiples of it. The engine's default, 1 m, allows 5 mm of
-    /// penetration.
+    /// Length scale of the engine, metres; the allowed penetration and the contact search distance are multiples of this length. The engine's default, 1 m,
+    /// allows 5 mm of penetration.
     pub length_unit: f64,
     /// Stiffness of the contacts in the engine.
     pub contacts: RapierContacts,

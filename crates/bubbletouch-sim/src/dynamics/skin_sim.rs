@@ -7,7 +7,7 @@ use crate::world::Taxel;
 pub const TAXEL_MASS: f64 = 1e-3;
 /// Spring stiffness of a SkinSim taxel, N/m.
 pub const STIFFNESS: f64 = 16.37;
-/// Mass of the body that carries the taxels of a patch, kg; the published model builder keeps it "not too small because of stability".
+/// Mass of the body that carries the taxels of a patch, kg; the published model builder makes this mass "not too small because of stability".
 pub const BASE_MASS: f64 = 0.01;
 /// Damping of a SkinSim taxel, N·s/m.
 pub const DAMPING: f64 = 0.13;

@@ -10,7 +10,7 @@ use std::sync::Arc;
 ///
 /// hₖ = |Σⱼ f(θⱼ) exp(−2πi j k / n)| / n, k = 0 … `n_harmonics` − 1.
 ///
-/// A rotation of a ring by j₀ steps multiplies harmonic k by exp(2πi j₀ k / n), so hₖ does not change.
+/// A rotation of a ring by j₀ steps multiplies the complex harmonic k by exp(2πi j₀ k / n), so its magnitude hₖ does not change.
 pub(super) struct Rings {
     n_angles: usize,
     n_harmonics: usize,

@@ -21,13 +21,13 @@ static INPUTS: Mutex<Option<BTreeMap<FileId, PathBuf>>> = Mutex::new(None);
 
 /// Starts recording the files that this process reads, and prevents overwriting them.
 ///
-/// Call this function first in a command. A library does not call it: a program may read a file and replace it on purpose.
+/// Call this function first in a command. A library does not call this function, because a program may read a file and replace it on purpose.
 pub fn protect_inputs() {
     let mut inputs = INPUTS.lock().unwrap_or_else(|e| e.into_inner());
     inputs.get_or_insert_default();
 }
 
-/// Opens a file for reading and records it as an input.
+/// Opens a file for reading and records the file as an input.
 ///
 /// # Errors
 /// If the file cannot be opened.

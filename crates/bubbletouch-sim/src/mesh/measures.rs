@@ -30,8 +30,8 @@ impl TriangleMesh {
 
     /// Returns the volume that the mesh encloses, m³ (negative if the triangles face inwards), and the centroid of this volume, metres.
     ///
-    /// The volume is computed by tetrahedra from the centroid of the surface, which is exact for a closed mesh. A hole counts as closed by a cone to this
-    /// centroid.
+    /// The volume is computed by tetrahedra from the centroid of the surface, which is exact for a closed mesh. A hole is treated as closed by a cone whose
+    /// apex is this centroid.
     pub fn volume_and_centroid(&self) -> (f64, DVec3) {
         let apex = self.surface_centroid();
         let (mut volume, mut moment) = (0.0, DVec3::ZERO);

@@ -11,7 +11,7 @@ const UNUSED: u32 = u32::MAX;
 
 /// Reads the mesh in an OBJ file; all objects and groups of the file form one mesh.
 ///
-/// Only vertices of faces are kept, in the order of their first use.
+/// Only vertices that faces use are returned, in the order of their first use.
 ///
 /// # Errors
 /// If the file has no faces, a face has fewer than three corners, a coordinate is not a finite number, or a vertex index does not

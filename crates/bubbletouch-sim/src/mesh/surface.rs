@@ -101,7 +101,7 @@ impl Surface {
     /// Returns the signed distance to the nearest point of the mesh, metres, negative inside. The sign is determined by pseudonormals on a closed mesh,
     /// otherwise by the winding number.
     ///
-    /// On a closed mesh that intersects itself the sign refers to the nearest surface; use `contains` instead.
+    /// On a closed mesh that intersects itself, the sign refers only to the nearest face; use `contains` to test whether a point is inside.
     pub fn signed_distance(&self, point: DVec3) -> f64 {
         let Some(closest) = self.closest(point, f64::INFINITY) else {
             // Squared distances overflow beyond 1e154 m; such points are outside.

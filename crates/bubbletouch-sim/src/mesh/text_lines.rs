@@ -8,8 +8,8 @@ pub(super) const BYTE_ORDER_MARK: [u8; 3] = [0xEF, 0xBB, 0xBF];
 
 /// Calls `visit` with the line number (from 1) and the text of each non-empty line of a text file.
 ///
-/// A backslash at the end of a line continues it on the next one. Invalid UTF-8 (names and comments in other
-/// encodings) is replaced by U+FFFD. Line ends are LF, CR LF or CR.
+/// A backslash at the end of a line means that the line continues on the next line. Invalid UTF-8 (names and comments in other encodings) is replaced by
+/// U+FFFD. Line ends are LF, CR LF or CR.
 ///
 /// # Errors
 /// If `source` cannot be read, or `visit` returns an error.

@@ -9,8 +9,8 @@ pub const MAX_SPHERES: usize = 2_000_000;
 
 /// Allowed distances between the surface of the spheres and the surface of the solid, outside and inside the solid, metres.
 ///
-/// A ball of radius r inside the solid that touches its surface is enlarged by the tolerance `outside`. The resulting sphere comes within the tolerance
-/// `inside` of every surface point p with |p − c| ≤ r + h, h = outside + inside.
+/// A ball of radius r inside the solid that touches its surface is enlarged by the tolerance `outside`. The resulting sphere with centre c comes within the
+/// tolerance `inside` of every surface point p with |p − c| ≤ r + h, where h = outside + inside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
     /// Largest height to which a sphere may protrude from the solid, metres.
@@ -23,8 +23,9 @@ impl Fit {
     /// Creates the tolerances of a packing: half of `tolerance` outside the solid, and all of it inside. On a flat cell or along an edge, the mean of the
     /// spheres' surface is then the surface of the solid.
     ///
-    /// At t times the half side of a square cell (or of an interval) the sphere is outside − h·t² above the surface. In a square, t² is the mean over the two
-    /// sides. The mean of t² over the cell is 1/3. If more is outside, objects are too large; if less is outside, more spheres are needed.
+    /// On a square cell (or an interval), the sphere's height above the surface is outside − h·t², with h = outside + inside. Here t is the distance from the
+    /// middle relative to half the side; in a square, t² is the mean over the two sides. The mean of t² over the cell is 1/3. If the tolerance outside is
+    /// larger, objects are too large; if it is smaller, more spheres are needed.
     pub fn within(tolerance: f64) -> Self {
         Self {
             outside: 0.5 * tolerance,

@@ -143,8 +143,9 @@ impl Lathe {
 
     /// Returns the interval of an edge that a ring of balls covers all around; `None` if there is none.
     ///
-    /// Half-way between two balls the squared distance of the profile point (ρ, z) from the two centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. The
-    /// squared distance is quadratic along an edge, and the point is covered if it is at most `(r + h)²`.
+    /// A ring has n balls of radius r with centres at the distance ρc from the axis and the height zc. Half-way between two balls the squared distance of the
+    /// profile point (ρ, z) from their centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. The squared distance is quadratic along an edge, and the point
+    /// is covered if this value is at most `(r + h)²`, where h is the sum of both tolerances.
     fn covered(&self, ring: &Ring, edge: usize, fit: Fit) -> Option<[f64; 2]> {
         let edge = &self.outline.edges[edge];
         let from_center = edge.start - ring.center;

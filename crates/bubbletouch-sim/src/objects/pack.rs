@@ -19,8 +19,8 @@ use crate::error::{Error, Result};
 
 /// Packs a solid with spheres whose union approximates it within `tolerance` (metres, positive).
 ///
-/// No sphere reaches more than half of `tolerance` outside the solid. No point of the solid's outer surface lies more than `tolerance` outside the spheres.
-/// `surface_error` measures both distances. On average the two surfaces have equal height. A ball becomes one
+/// No sphere protrudes from the solid by more than half of `tolerance`. No point of the solid's outer surface lies more than `tolerance` outside the spheres.
+/// `surface_error` measures both distances. On average the surfaces of solid and spheres have equal height. A solid that is a ball is represented by one
 /// sphere. Equal inputs give equal spheres, in the order of the parts.
 ///
 /// # Errors
@@ -88,7 +88,7 @@ fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
 
 /// Returns whether a sphere is not needed, because the whole surface that it covers lies inside another part.
 ///
-/// A sphere covers surface points within its radius plus the allowed gap. If two parts are equal, the later one is buried.
+/// A sphere covers surface points within its radius plus the allowed gap. If two parts are equal, the spheres of the later part are not needed.
 fn is_buried(sphere: &Sphere, part: usize, solid: &Solid, fit: Fit) -> bool {
     let others = solid.parts().iter().enumerate().filter(|&(i, _)| i != part);
     let reach = sphere.radius + fit.inside;

@@ -212,8 +212,8 @@ impl Solid {
 
     /// Returns the signed distance from a point to the surface of the solid, metres, negative inside.
     ///
-    /// Outside, the distance is exact without cuts and a lower bound with cuts. Inside, the depth is exact for a single part of any shape except a sphere
-    /// sweep, otherwise a lower bound. Cuts are enlarged by 4 millionths of the diagonal of the bounding box.
+    /// Outside the solid, the distance is exact if no shapes are subtracted, otherwise a lower bound. Inside the solid, the depth is exact for a single part
+    /// of any shape except a sphere sweep, otherwise a lower bound. Subtracted shapes are enlarged by 4 millionths of the diagonal of the bounding box.
     pub fn distance(&self, point: DVec3) -> f64 {
         nearest(&self.parts, point).max(self.seam - nearest(&self.cuts, point))
     }

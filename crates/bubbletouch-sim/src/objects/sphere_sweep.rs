@@ -59,7 +59,8 @@ impl Hull {
 
     /// Packs balls between the two ends of a hull, each as far ahead as possible without leaving a gap behind it.
     ///
-    /// A ball at t touches the hull at u = t·cos along its side and covers u ± sqrt((r + h)² − r²). The balls of the ends are not enlarged and cover less.
+    /// A ball of radius r at the distance t along the axis touches the hull at u = t·cos along its side. The ball covers the interval u ± sqrt((r + h)² −
+    /// r²), where h is the sum of both tolerances. The balls at the ends are not enlarged and cover less.
     fn pack_between(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let exact = fit.unswollen();
         let end = self.length * self.cosine() - exact.disc(self.ball(self.length).radius);

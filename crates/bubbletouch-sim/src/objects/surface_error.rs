@@ -55,8 +55,8 @@ fn outermost_point(solid: &Solid, sphere: &Sphere) -> DVec3 {
 
 /// Returns the maximum, over the points, of the distance to the nearest sphere, metres.
 ///
-/// The search for a point ends as soon as a sphere is nearer than the largest gap so far. Neighbours in
-/// the list are neighbours on the surface, so the sphere that ended the previous search is tested first.
+/// The search for the sphere nearest to a point ends as soon as a sphere is nearer than the largest distance so far. Neighbours in the list are neighbours on
+/// the surface, so the sphere that ended the previous search is tested first.
 fn gap(points: &[DVec3], spheres: &[Sphere]) -> f64 {
     let mut largest = 0.0f64;
     let mut last = 0;

@@ -25,8 +25,9 @@ impl Torus {
 
     /// Packs the torus with one ring of equally spaced balls that have the radius of the tube.
     ///
-    /// Half-way between two balls the squared distance of a point of the tube from the two centres is `tube² + 4 ρ ring sin²(π/2n)`. Here ρ is the point's
-    /// distance from the axis. The distance is largest on the outer equator and must not exceed `(tube + h)²`.
+    /// Half-way between two of the n balls, the squared distance of a point of the tube from their centres is `tube² + 4 ρ ring sin²(π/2n)`. Here ρ is the
+    /// point's distance from the axis. The squared distance is largest on the outer equator and must not exceed `(tube + h)²`, where h is the sum of both
+    /// tolerances.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let (ring, tube) = (self.ring, self.tube);
         let sine = (0.25 * fit.disc_squared(tube) / (ring * (ring + tube)))

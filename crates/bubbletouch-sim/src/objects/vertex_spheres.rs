@@ -5,10 +5,10 @@ use crate::error::{Error, Result};
 use crate::geometry::distinct_places;
 use glam::DVec3;
 
-/// Returns a sphere around each vertex, all of radius R = 2 × the mean distance from a vertex to its nearest neighbour \[BT\].
+/// Returns a sphere around each vertex. The radius of all spheres is twice the mean distance from a vertex to its nearest neighbour \[BT\].
 ///
-/// Vertices with identical coordinates (in files that repeat a corner for each face) count once. Otherwise their distances would be 0, and R
-/// would depend on the format of the file. The order follows the first occurrences.
+/// Vertices with identical coordinates (in files that repeat a corner for each face) count once. Otherwise their distances would be 0, and the radius would
+/// depend on the format of the file. The spheres have the order in which their vertices first occur.
 ///
 /// # Errors
 /// If there are fewer than two distinct vertices; the error begins with `place`.

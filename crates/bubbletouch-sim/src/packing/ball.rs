@@ -20,9 +20,9 @@ const MAX_STEPS: usize = 60;
 
 /// Largest height to which spheres protrude from the mesh, as a fraction of the tolerance. Gaps inside the mesh may use the whole tolerance.
 ///
-/// With 1 the number of spheres is lowest, a quarter fewer than with ½. The mean of their rough surface then lies half the tolerance outside the mesh, which
-/// changes the deflections. On eight scans with a tolerance of 0.1 mm, the mean deflection error is 0.059 mm with 1,
-/// 0.033 mm with 0.6 and 0.027 mm with 0.45.
+/// With the fraction 1 the number of spheres is lowest, a quarter fewer than with ½. The mean of the spheres' rough surface then lies half the tolerance
+/// outside the mesh, which changes the deflections. On eight scans with a tolerance of 0.1 mm, the mean deflection error is 0.059 mm with 1, 0.033 mm with
+/// 0.6 and 0.027 mm with 0.45.
 const PROTRUSION: f64 = 0.5;
 
 /// Returns the largest allowed height difference between the spheres' surface and the mesh, metres, for the tolerance `e`.

@@ -13,7 +13,7 @@ const THINNEST: f64 = 1e-6;
 /// Returns the largest spheres inside a closed mesh that touch it at `n` points distributed uniformly over its area, as in Ma, Bae and Choi (2012). Points at
 /// which no sphere fits are omitted.
 ///
-/// The spheres lie inside the mesh and touch it; the distance of the surface between the points is not bounded. Stolpner, Kry and Siddiqi
+/// The spheres lie inside the mesh and touch it. Between the points, the distance from the mesh to the spheres is not bounded. Stolpner, Kry and Siddiqi
 /// (2011) approximate shapes by such spheres.
 ///
 /// # Errors

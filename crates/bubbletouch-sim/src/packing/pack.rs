@@ -18,7 +18,7 @@ pub struct Packing {
 
 /// Approximates the solid of a mesh by few spheres, within `tolerance` (metres, positive).
 ///
-/// The tolerance is proved, as [the module](super#the-promise) describes. No sphere reaches more than half the tolerance outside the solid. Every point of
+/// The tolerance is proved, as [the module](super#the-promise) describes. No sphere protrudes from the solid by more than half the tolerance. Every point of
 /// the solid's surface is within the tolerance of the spheres. Equal meshes give equal spheres.
 ///
 /// # Errors

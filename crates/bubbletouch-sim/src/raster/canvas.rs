@@ -106,7 +106,7 @@ impl Canvas {
 
     /// Returns the first intersections of all rays with a surface, which is given by the function `first_hit`.
     ///
-    /// Each ray starts outside a ball with this centre (`middle`) and `radius`, which must contain the object.
+    /// Each ray starts outside the ball with the centre `middle` and the radius `radius`, metres, which must contain the object.
     pub fn cast(&self, first_hit: &SurfaceHit<'_>, middle: DVec3, radius: f64) -> Vec<Option<Hit>> {
         let towards_eye = self.view.z_axis;
         let start = middle.dot(towards_eye) + radius;

@@ -29,14 +29,14 @@ pub struct Coherence {
 /// Extreme squared singular values of a random subset of the measured atoms, scaled so that the mean over all atoms is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
-    /// Smallest squared singular value σ²_min, 0 or more.
+    /// Smallest squared singular value of the subset, 0 or more.
     pub low: f64,
-    /// Largest squared singular value σ²_max.
+    /// Largest squared singular value of the subset.
     pub high: f64,
 }
 
 impl Extremes {
-    /// Returns max(1 − σ²_min, σ²_max − 1), the isometry constant of this subset, where σ²_min is `low` and σ²_max is `high`.
+    /// Returns the isometry constant of this subset, max(1 − `low`, `high` − 1).
     pub fn deviation(&self) -> f64 {
         (1.0 - self.low).max(self.high - 1.0)
     }

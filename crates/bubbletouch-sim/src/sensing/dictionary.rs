@@ -187,7 +187,8 @@ impl Dictionary {
         self.energy.as_ref()
     }
 
-    /// Returns coefficients αⱼ = ψⱼ·(x − x₀) of frames (n_frames × n), shape (n_frames, k).
+    /// Returns the coefficients of frames (n_frames × n), shape (n_frames, k). Each coefficient is the dot product of an atom with the frame minus the
+    /// origin.
     ///
     /// # Panics
     /// If a frame does not have n values.
@@ -215,7 +216,8 @@ impl Dictionary {
         coefficients
     }
 
-    /// Returns frames x₀ + Σⱼ αⱼ ψⱼ for rows of coefficients (n_frames × k), shape (n_frames, n).
+    /// Returns the frames for rows of coefficients (n_frames × k), shape (n_frames, n). Each frame is the origin plus the sum of the atoms, weighted with the
+    /// coefficients.
     ///
     /// # Panics
     /// If a row does not have k values.

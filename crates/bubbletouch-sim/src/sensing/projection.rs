@@ -32,7 +32,7 @@ pub struct Projection {
 impl Projection {
     /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`.
     ///
-    /// The identity ensemble has n measurements for any m.
+    /// The identity ensemble has one measurement per taxel, whatever the value of m.
     ///
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the ensemble is learned.
@@ -78,8 +78,8 @@ impl Projection {
 
     /// Prepares the scrambled block Hadamard ensemble with blocks of `block` taxels. Block size 32 is used in \[SBHE\] and by the constructor `new`.
     ///
-    /// A projection with m measurements uses at most m · `block` taxels. If this is far below the number of taxels n, as on a body with millions of taxels,
-    /// most taxels are never used. A block of about n / m taxels or more uses every taxel, with few entries per taxel.
+    /// A projection with m measurements uses at most m · `block` taxels. If this product is far below the number of taxels n, as on a body with millions of
+    /// taxels, most taxels are never used. A block of about n / m taxels or more uses every taxel, with few entries per taxel.
     ///
     /// # Errors
     /// If the size is invalid, as for `new`, or if `block` is not a power of two.

@@ -50,7 +50,7 @@ pub struct Recording<'a> {
     pub n_before: usize,
     /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
     pub interval: Option<f64>,
-    /// Time of the touch, as a fraction of the session from 0 to 1. If `None`, the time is random and depends on the seed of the touch.
+    /// Time of the touch, as a fraction of the recording session from 0 to 1. If `None`, the time is random and depends on the seed of the touch.
     pub time: Option<f64>,
 }
 
@@ -144,7 +144,7 @@ impl Chain {
 
     /// Converts the deflections of a touch with a single frame to readings, in place.
     ///
-    /// The function is equivalent to `apply_recording` with one frame (metres, ny × nx, row after row) and no history.
+    /// The function is equivalent to `apply_recording` with one frame (metres, one value per taxel) and no earlier frames.
     ///
     /// # Panics
     /// If the frame or the rates do not have one number per taxel.

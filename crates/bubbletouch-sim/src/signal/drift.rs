@@ -20,12 +20,12 @@ use rand::Rng;
 use rand_distr::StandardNormal;
 use std::f64::consts::{PI, SQRT_2};
 
-/// Number of terms of the Karhunen–Loève expansion. If the number is smaller, the zeros of all taxels vary in a space of few dimensions, which a classifier can
-/// learn to ignore. With 8 terms, drift of any strength hardly affects a linear classifier; a real random walk does not allow this. If the number is larger,
-/// time and memory increase.
+/// Number of terms of the Karhunen–Loève expansion. If the number is smaller, the zero offsets of all taxels vary in a space of few dimensions, which a
+/// classifier can learn to ignore. With 8 terms, drift of any strength hardly affects a linear classifier; a real random walk does not allow this. If the
+/// number is larger, time and memory increase.
 const N_MODES: usize = 64;
 
-/// Drifting zero offsets of the taxels of a skin. The offsets can be computed for any time of a session.
+/// Drifting zero offsets of the taxels of a skin. The offsets can be computed for any time of a recording session.
 #[derive(Clone, Debug)]
 struct Zeros {
     n_taxels: usize,
@@ -36,8 +36,8 @@ struct Zeros {
 }
 
 impl Zeros {
-    /// Draws the drift of a skin. `full_scale` is in the unit of the frames. `std` is the standard deviation of the zero offsets at the end of the session,
-    /// relative to the full scale. The random pattern over the taxels does not depend on `std`. Returns an error if `std` is negative or not finite.
+    /// Draws the drift of a skin. `full_scale` is in the unit of the frames. `std` is the standard deviation of the zero offsets at the end of the recording
+    /// session, relative to the full scale. The random pattern over the taxels does not depend on `std`. Returns an error if `std` is negative or not finite.
     fn new(std: f64, skin: &Seed, n_taxels: usize, full_scale: f64) -> Result<Self> {
         not_negative("drift std", std, "")?;
         let usual: Vec<f64> = (0..N_MODES).map(|mode| SQRT_2 / frequency(mode)).collect();
@@ -55,7 +55,7 @@ impl Zeros {
         })
     }
 
-    /// Writes the zero offset of each taxel at a time of the session (0 is the beginning, 1 the end).
+    /// Writes the zero offset of each taxel at a time of the recording session (0 is the beginning, 1 the end).
     fn at(&self, time: f64, zeros: &mut [f64]) {
         zeros.fill(0.0);
         let modes = self.coefficients.chunks_exact(self.n_taxels);
@@ -68,7 +68,7 @@ impl Zeros {
     }
 }
 
-/// Returns the random time of a touch in the session, uniform in [0, 1).
+/// Returns the random time of a touch, as a fraction of the recording session, uniform in [0, 1).
 fn time_of(touch: &Seed) -> f64 {
     touch.named("time").rng().r#gen()
 }
@@ -120,7 +120,8 @@ impl Effect for Zeros {
     }
 }
 
-/// Number of times that Lévy's construction halves the session: 2⁶ intervals, with as many random numbers per taxel as [`N_MODES`].
+/// Number of times that Lévy's construction of the random walk halves the recording session: 2⁶ intervals, with as many random numbers per taxel as
+/// [`N_MODES`].
 const N_HALVINGS: u32 = 6;
 
 /// Drifting zero offsets σ W(t), where W is a random walk made of counter-based random numbers and σ has the unit of the frame.

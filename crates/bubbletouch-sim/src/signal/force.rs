@@ -4,9 +4,9 @@ use crate::world::Taxel;
 
 /// Replaces deflections (metres) by normal forces (newtons): f = max(0, k δ + c δ̇) where δ > 0, otherwise 0 \[BT\].
 ///
-/// The argument `rate` is δ̇ in m/s, one value per taxel; `None` if the patch is at rest. A free taxel relaxes with
-/// k δ + c δ̇ = 0. After a step of length Δt, its backward difference gives k δ + c δ̇ ≤ 0, because (1 + a) e⁻ᵃ ≤ 1 with a = k Δt / c.
-/// The maximum therefore sets its force to 0, and no list of contacts is needed.
+/// The argument `rate` is δ̇ in m/s, one value per taxel; `None` if the patch does not move. A free taxel relaxes with k δ + c δ̇ = 0, where k is the
+/// stiffness and c the damping. After a step of length Δt, its backward difference gives k δ + c δ̇ ≤ 0, because (1 + a) e⁻ᵃ ≤ 1 with a = k Δt / c. The
+/// maximum therefore sets its force to 0, and no list of contacts is needed.
 ///
 /// # Panics
 /// If `rate` and `frame` differ in length.

@@ -25,14 +25,14 @@ pub enum NoiseUnit {
 /// Independent zero-mean Gaussian noise on every taxel, touched or not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// Standard deviation σ of the noise, in `unit`; zero or positive.
+    /// Standard deviation of the noise, in `unit`; zero or positive.
     pub std: f64,
     /// Unit of the standard deviation.
     pub unit: NoiseUnit,
 }
 
 impl Noise {
-    /// Returns the standard deviation σ in the unit of the frame: metres for deflections, newtons for forces.
+    /// Returns the standard deviation of the noise in the unit of the frame: metres for deflections, newtons for forces.
     ///
     /// # Errors
     /// If `std` is negative or not finite, or its unit does not fit: millimetres for forces, or newtons for deflections.

@@ -92,7 +92,7 @@ pub struct TouchRead<'a> {
     pub n_before: usize,
     /// Time between frames, seconds; `None` if the press stops at each frame until all taxels are read.
     pub interval: Option<f64>,
-    /// Time of the touch, as a fraction of the session from 0 to 1; if `None`, the time is random and depends on `seed`.
+    /// Time of the touch, as a fraction of the recording session from 0 to 1; if `None`, the time is random and depends on `seed`.
     pub time: Option<f64>,
     /// Seed of the touch.
     pub seed: &'a Seed,

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::world::Grid;
 use multiversion::multiversion;
 
-/// Radius at which the Gaussian kernel is cut off, in multiples of its width σ.
+/// Radius at which the Gaussian kernel is cut off, in multiples of its standard deviation.
 const TRUNCATE: f64 = 4.0;
 /// Largest width of the Gaussian kernel, in taxel pitches. The limit is far above the size of any array and bounds the time to sum the kernel (about 50 ms).
 const MAX_WIDTH_PITCHES: f64 = 1e6;
@@ -27,7 +27,7 @@ pub struct Smoothing {
 }
 
 impl Smoothing {
-    /// Prepares Gaussian smoothing with a width (σ, metres, zero or positive) for a grid. Width 0 has no effect.
+    /// Prepares Gaussian smoothing for a grid. `width` is the standard deviation of the kernel, metres, zero or positive. Width 0 has no effect.
     ///
     /// # Errors
     /// If the width is negative, not finite or above a million pitches.

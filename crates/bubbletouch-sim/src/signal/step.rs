@@ -12,7 +12,7 @@ pub enum SignalStep {
     Noise(Noise),
     /// Smooths the frame with a Gaussian kernel.
     Smoothing {
-        /// Standard deviation σ of the Gaussian, metres, zero or positive.
+        /// Standard deviation of the Gaussian kernel, metres, zero or positive.
         width: f64,
     },
     /// Applies a sensor error.

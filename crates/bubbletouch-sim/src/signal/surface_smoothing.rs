@@ -7,7 +7,7 @@ use super::sensor_error::{Effect, TouchRead};
 use crate::error::{Error, Result};
 use crate::world::{Neighbours, Patch};
 
-/// Radius at which the Gaussian kernel is cut off, in multiples of its width σ.
+/// Radius at which the Gaussian kernel is cut off, in multiples of its standard deviation.
 const TRUNCATE: f64 = 4.0;
 /// Maximum number of smoothing weights of a skin; this many weights need one gigabyte.
 const MAX_WEIGHTS: usize = 1 << 26;
@@ -23,7 +23,7 @@ pub(super) struct SurfaceSmoothing {
 }
 
 impl SurfaceSmoothing {
-    /// Prepares Gaussian smoothing with a width (σ, metres, zero or positive) for a skin.
+    /// Prepares Gaussian smoothing for a skin. `width` is the standard deviation of the kernel, metres, zero or positive.
     ///
     /// # Errors
     /// If the width is negative or not finite, or if there are more than [`MAX_WEIGHTS`] pairs of taxels within four widths.

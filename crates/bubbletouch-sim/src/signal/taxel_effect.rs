@@ -17,7 +17,7 @@ const LANES: usize = 8;
 pub struct Moment {
     /// Index of the frame, which selects the noise.
     pub frame: u64,
-    /// Elapsed fraction of the session, 0 to 1, which determines the drift.
+    /// Elapsed fraction of the recording session, 0 to 1, which determines the drift.
     pub time: f64,
 }
 

@@ -39,9 +39,8 @@ impl Interval {
     /// Returns the Wilson score interval of a proportion, such as an accuracy. The interval stays within 0..=1 and is valid near these ends, unlike the
     /// normal approximation (Wilson 1927; without continuity correction).
     ///
-    /// `confidence` is the coverage, such as 0.95. The rows are assumed to be independent. Touches of one object in
-    /// neighbouring poses are slightly dependent, so the interval is rather too narrow than too wide. If rows are held out in
-    /// groups, use an interval over groups instead.
+    /// `confidence` is the coverage, such as 0.95. The rows are assumed to be independent. Touches of one object in neighbouring poses are slightly
+    /// dependent, so the interval is slightly too narrow. If the split of the data keeps groups of rows together, use an interval over groups instead.
     ///
     /// # Errors
     /// If there are no rows, if more rows are correct than exist, or if the confidence is outside 0..1.
@@ -61,9 +60,9 @@ impl Interval {
 
     /// Returns the Wilson score interval of the mean accuracy of several tests, such as the trials of a study.
     ///
-    /// The proportion is Σ n_correct / Σ n_rows if all tests have equally many rows, otherwise the mean of the tests' accuracies. Tests of one part (fold) test
-    /// identical rows, or other rows of identical touches. The interval therefore counts the rows of one test per part. Repeated trials of one part add no
-    /// rows, and k folds add up the rows of all k parts.
+    /// The proportion is Σ n_correct / Σ n_rows if all tests have equally many rows, otherwise the mean of the tests' accuracies. Tests of one part (fold)
+    /// use identical rows, or other rows of identical touches. The interval therefore counts the rows of one test per part. Repeated trials of one part add
+    /// no rows; for k folds, the rows of all k parts are added.
     ///
     /// # Errors
     /// If there are no tests, or if the count of a test is invalid.

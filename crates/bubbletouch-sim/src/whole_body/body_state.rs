@@ -153,8 +153,8 @@ impl BodyState {
 
     /// Returns the forces on the deflected taxels, ascending, as pairs of index and force (newtons). The force is 0 for a taxel that relaxes freely.
     ///
-    /// The forces equal the forces of `DamperState`, and kδ without a damper. With a damper, the force is the constant force
-    /// that moves the taxel to its deflection within the last step; it tends to kδ + cδ̇.
+    /// The forces equal the forces of `DamperState`. Without a damper, the force is the stiffness times the deflection. With a damper, it is the constant
+    /// force that moves the taxel to its deflection within the last time step.
     pub fn forces(&self, body: &WholeBody) -> impl Iterator<Item = (usize, f64)> {
         self.busy.iter().flat_map(|&number| {
             let (patch, first) = (number as usize, body.firsts()[number as usize]);

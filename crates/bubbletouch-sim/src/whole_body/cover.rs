@@ -62,7 +62,7 @@ impl CoveredRobot {
     ///   from +x, both from 1: `trunk 2.3`. Names for the link's second shape begin with `trunk'`.
     /// - The end of a capsule, and a sphere at the end of a cylinder of its radius, are covered on their outer half. Other spheres are covered
     ///   wholly. Each half is divided from pole to rim: `head cap 2.3` is the third part of the second hemisphere in the file.
-    /// - A sphere within a larger one of another link, such as the inner one of an elbow, cannot be touched and is omitted.
+    /// - A sphere within a larger sphere of another link, such as the inner sphere of an elbow, cannot be touched and is omitted.
     /// - Each face of a box is a grid of flat patches: `palm face 5 1.2`. The faces are numbered in the order +x, −x, +y, −y, +z, −z.
     ///
     /// Flat ends of cylinders are not covered.

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 /// Rigid substrate with taxels in any layout. The properties of the taxels are equal or individual.
 ///
-/// Invariant: there is one set of taxel properties for all taxels, or one per taxel. The search trees belong to the layout and the taxels.
+/// Invariant: there is one set of taxel properties for all taxels, or one per taxel. The search trees are built from the layout and the taxel properties.
 #[derive(Clone, Debug)]
 pub struct Patch {
     name: String,

@@ -91,8 +91,8 @@ impl TouchAxis {
         }
     }
 
-    /// Returns the spread that consists of the given values without duplicates: of several values that mean the same pose, only the first is kept. For example,
-    /// the yaws 0 and 2π mean the same pose.
+    /// Returns the list of the given values without duplicates. Of several values that describe one pose, only the first is kept. For example, the yaws 0 and
+    /// 2π describe one pose.
     pub fn listed(self, values: Vec<f64>) -> Spread {
         let mut first: Vec<usize> = (0..values.len()).collect();
         let pairs = self.same_poses(&values);
@@ -135,7 +135,7 @@ impl TouchAxis {
 /// - No uniform spread, `per_object` given: this number of different combinations, drawn without replacement, all equally likely.
 /// - A uniform spread: `per_object` touches, each drawn by its own number; resting poses are drawn by their probability.
 ///
-/// Drawn touches are nested: the touches for a smaller `per_object` are the first ones for a larger.
+/// Drawn touches are nested: the touches for a smaller `per_object` are the first touches for a larger value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
     /// Choice of the object's resting poses.

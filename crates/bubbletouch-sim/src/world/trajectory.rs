@@ -17,8 +17,8 @@ pub struct Phase {
 
 /// Pose of a body over time: a start pose, then phases of constant velocity, then standstill.
 ///
-/// Rotations are integrated exactly, `R(t) = exp(ω t) R(0)`.
-/// Differences from \[BT\]: the original adds ω × R at each step, so its matrices grow, and it switches phases one step early.
+/// Rotations are integrated exactly, `R(t) = exp(ω t) R(0)`. Differences from \[BT\]: the original program adds ω × R to the rotation matrix R at each step,
+/// so that the matrix grows, and switches phases one step early.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VelocityPlan {
     start: Pose,

@@ -67,9 +67,9 @@ impl Energy {
 
     /// Returns the complementarity residual of each island (group of bodies in contact), dimensionless; 0 for an island without contacts.
     ///
-    /// At a solution, spheres that share a taxel push it equally far, a stop that carries load is reached exactly, and no stop is exceeded. The residual is the
-    /// taxel's stiffness times the largest violation, divided by the largest force of a spring. For rigid contacts the stiffness is replaced by the constant
-    /// [`RIGID_MISS`].
+    /// At a solution, spheres that share a taxel push it equally far, and no taxel is deflected beyond its stroke. A taxel whose hard limit carries load is
+    /// deflected exactly by its stroke. The residual is the taxel's stiffness times the largest violation of these conditions, divided by the largest force
+    /// of a spring. For rigid contacts the stiffness is replaced by the constant [`RIGID_MISS`].
     pub fn complementarity_residual(&self, islands: &[usize]) -> Vec<f64> {
         let (mut loose, mut largest) = (vec![0.0_f64; islands.len()], vec![0.0_f64; islands.len()]);
         let mut rigid = loose.clone();

@@ -217,8 +217,8 @@ mod tests {
     use glam::{DQuat, DVec2};
     use rand::Rng;
 
-    /// Compares the derivatives of the energy with finite differences. Two objects of seven spheres penetrate each other, an obstacle and a plane, and press a
-    /// tilted bed of taxels, some up to their stops. The step includes dampers, and some tangential springs act on the objects.
+    /// Compares the derivatives of the energy with finite differences. Two objects of seven spheres penetrate each other, an obstacle and a plane, and press
+    /// a tilted array of taxels, some to the end of their stroke. The step includes dampers, and some tangential springs act on the objects.
     #[test]
     fn gradient_and_hessian_are_the_differences_of_the_energy() {
         let taxel = Taxel {

@@ -158,9 +158,8 @@ impl Factor {
 /// Returns the step d with |d| ≤ `reach` that minimises the quadratic model `g·d + ½ dᵀHd`, and the decrease of the model. The Hessian H may have negative
 /// eigenvalues. \[MS\]
 ///
-/// The step solves `(H + σ) d = −g` with the least σ ≥ 0 for which H + σ is positive definite and |d| ≤ `reach`. Newton's method solves
-/// `1/|d| = 1/reach` for σ. If g has no component along the lowest eigenvector of an indefinite H (the hard case), this vector is added up to
-/// the boundary of the ball.
+/// The step solves `(H + σ) d = −g` with the least σ ≥ 0 for which H + σ is positive definite and |d| ≤ `reach`. Newton's method solves `1/|d| = 1/reach` for
+/// σ. If g has no component along the lowest eigenvector of an indefinite H (the hard case), a multiple of this eigenvector is added so that |d| = `reach`.
 pub(super) fn best_step(gradient: &[f64], h: &Symmetric, reach: f64) -> (Vec<f64>, f64) {
     /// Relative distance from the boundary of the trust region below which a step counts as on the boundary.
     const NEAR: f64 = 1e-9;

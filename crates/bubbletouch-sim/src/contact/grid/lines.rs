@@ -67,8 +67,8 @@ impl Lines {
 
     /// Returns the indices of the lines within `half_width` of a coordinate, metres. The range includes lines that are farther away only by rounding.
     ///
-    /// Casts truncate and saturate beside the grid. Casts replace floor and ceil, which are function calls on the oldest supported processors.
-    /// The cast to 32 bits needs fewer instructions than one to 64 bits.
+    /// Casts to integers truncate, and saturate for coordinates beside the grid. Casts replace floor and ceil, which are function calls on the oldest
+    /// supported processors. A cast to 32 bits needs fewer instructions than a cast to 64 bits.
     #[inline(always)]
     pub fn within(&self, coordinate: f64, half_width: f64) -> Range<usize> {
         let index = (coordinate - self.positions[0]) * self.density;

@@ -2,8 +2,8 @@
 
 /// Destination of the deflections of a press: one value per taxel, metres, in single or double precision.
 ///
-/// An array of many frames is rarely in the processor's caches, and filling a row with zeros takes a third of a fast press. The row is therefore
-/// filled in small parts while the spheres press, when the memory is idle.
+/// An array of many frames is rarely in the processor's caches, and filling a row with zeros takes a third of a fast press. The row is therefore filled in
+/// small parts while the spheres are evaluated, when the memory is idle.
 #[derive(Debug)]
 pub enum Row<'a> {
     /// Deflections rounded to single precision.

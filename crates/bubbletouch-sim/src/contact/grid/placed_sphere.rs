@@ -261,8 +261,9 @@ impl PlacedSphere {
     /// Raises the deflection of each taxel that the sphere pushes further, and writes `mark` for these taxels. A sphere wholly behind the substrate, whose
     /// height is `behind`, pushes no taxel.
     ///
-    /// The footprint is the region where contact with the sphere requires a deflection above zero: `b² < S² − max(h, 0)²`. Ranges are rounded outwards, small
-    /// footprints to a square. The comparison with S in the innermost loop decides exactly.
+    /// The footprint is the region where contact with the sphere requires a deflection above zero: `b² < S² − max(h, 0)²`. S is the sum of the radii, b the
+    /// distance from the taxel's axis, and h the height of the sphere's centre. Ranges of columns are rounded outwards, small footprints to a square. The
+    /// comparison with S in the innermost loop decides exactly.
     pub fn indent_and_mark<M: Copy>(
         &self,
         lines: &GridLines,

@@ -15,8 +15,8 @@ use std::sync::OnceLock;
 
 /// Approach of a patch along a direction, for presses to a depth or force past first contact.
 ///
-/// First contact depends on the taxels' spheres and the direction, not on the taxels' axes. The search therefore uses a copy of the taxels whose axes are the
-/// direction and whose strokes are unlimited. The taxel with the largest deflection touches first.
+/// First contact depends on the taxels' spheres and the direction, not on the taxels' axes. The search for first contact therefore uses a copy of the taxels
+/// whose axes are the direction and whose strokes are unlimited. The taxel whose copy has the largest deflection touches first.
 #[derive(Clone, Debug)]
 pub struct Approach<'a> {
     patch: &'a Patch,
@@ -147,7 +147,7 @@ impl<'a> Approach<'a> {
     /// Presses the patch to a depth (metres, positive) past first contact and records the contacts in the workspace. Returns `None`, with zero deflections,
     /// if the path misses all objects.
     ///
-    /// A part of an object that pushes a taxel continues to push it behind the substrate, so no object passes through the skin.
+    /// A part of an object that pushes a taxel continues to push this taxel even from behind the substrate, so no object passes through the skin.
     ///
     /// # Panics
     /// If the number of poses differs from the number of objects.

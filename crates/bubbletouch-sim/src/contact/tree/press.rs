@@ -209,9 +209,10 @@ pub(crate) fn stop(patch: &Patch, workspace: &mut Workspace) -> Contact {
 
 /// Presses a patch on objects at their given poses and records the contacts; `patch_from_objects` contains one pose per object.
 ///
-/// Parts of objects behind the substrate of a taxel do not count for this taxel (rule in the module `contact`). An object below a forearm therefore does not
-/// press on its upper side. A part pushed far past the stroke is also behind the substrate; a press to a depth counts it because its path is known. One part
-/// determines each deflection; if several parts require equal deflections, it is the first sphere of the first object.
+/// Parts of objects behind the substrate of a taxel do not push this taxel (rule in the module `contact`). An object below a forearm therefore does not press
+/// the taxels on the upper side. A part pushed far past the stroke is also behind the substrate; only a press to a depth includes such parts, because the
+/// path is known. One part determines each deflection. If several parts require equal deflections, the first sphere of the first object determines the
+/// deflection.
 ///
 /// ```
 /// use bubbletouch_sim::contact::{Workspace, press_with_contacts, spring_load};

@@ -13,7 +13,7 @@ impl Layout {
     /// Creates a grid bent around a cylinder. Rings of taxels surround the z axis, in ascending order; each is numbered from its right to its left end. Axes
     /// point away from the z axis.
     ///
-    /// - `radius`: radius to the rest centres, metres.
+    /// - `radius`: distance of the taxels' centres (at rest) from the axis of the cylinder, metres.
     /// - `length`: distance between the first and the last ring, metres, not negative; the middle is at z = 0.
     /// - `arc`: angle, radians, above 0 to 2π, with its middle at +x. There is a taxel at either end. If the remaining gap is less than half a pitch, the ring
     ///   is closed.
@@ -39,7 +39,7 @@ impl Layout {
 
     /// Creates rings of taxels on a sphere around the origin, from its pole at +z outwards; axes point away from the centre.
     ///
-    /// - `radius`: radius to the rest centres, metres.
+    /// - `radius`: distance of the taxels' centres (at rest) from the centre of the sphere, metres.
     /// - `half_angle`: angle from the pole to the last ring, radians, above 0 to π; π/2 is half a sphere, π a whole one.
     /// - `pitch`: distance along the surface, metres, adjusted to whole numbers of rings and of taxels per ring. A cap
     ///   smaller than 0.75 pitches from its pole to its end has one taxel, at the pole.

@@ -8,8 +8,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Dome: a slice (lune) of a sphere around the origin, from its pole at +z, divided into rings of taxels whose axes point away from the centre.
 ///
-/// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: rings ascend in polar angle, none is empty, and `directions` have
-/// length one.
+/// Taxels are numbered ring by ring from the pole, each ring by ascending angle. Invariant: the polar angles of the rings ascend, no ring is empty, and each
+/// vector in `directions` has length one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dome {
     radius: f64,
@@ -44,8 +44,8 @@ impl Dome {
 
     /// Creates a dome that extends `polar` radians from the pole (above 0 to π). The dome is `arc` radians wide (above 0 to 2π), with its middle at +x.
     ///
-    /// Rings, and the taxels of a ring, are about `pitch` apart, adjusted to whole numbers. Half a step is left at every edge, so that taxels of an adjacent
-    /// lune or cylinder continue at equal distances.
+    /// The distances between rings, and between the taxels of a ring, are about `pitch` (metres), adjusted to whole numbers of rings and taxels. Half a
+    /// distance is left at every edge, so that taxels of an adjacent dome or cylinder continue at equal distances.
     ///
     /// # Errors
     /// If an argument is out of its range, or the layout has too many taxels.

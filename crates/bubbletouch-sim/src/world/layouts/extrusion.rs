@@ -13,8 +13,8 @@ use std::f64::consts::TAU;
 
 /// Row of taxels in the plane of the coordinates u and v, repeated along the coordinate w.
 ///
-/// Taxel `row · n_columns + column` rests at `places[column]` in the plane and at `rows[row]` along w; its axis is `axes[column]`, in the plane. Invariant:
-/// there are as many axes as places (at least one), all finite. Axes are unit vectors, and rows ascend.
+/// Taxel `row · n_columns + column` has its centre (at rest) at `places[column]` in the plane and at `rows[row]` along w; its axis is `axes[column]`, in the
+/// plane. Invariant: there are as many axes as places (at least one), all finite. Axes are unit vectors, and rows ascend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extrusion {
     places: Vec<DVec2>,

@@ -90,8 +90,8 @@ impl Curve {
         }
     }
 
-    /// Returns the extremes of the curve in closed form. Extremes of the value are at waypoints and at zeros of the velocity, extremes of the velocity at
-    /// waypoints and at zeros of the acceleration.
+    /// Returns the extremes of the curve in closed form. Extremes of the value occur at waypoints and where the velocity is zero. Extremes of the velocity
+    /// occur at waypoints and where the acceleration is zero.
     pub fn extremes(&self, times: &[f64]) -> Extremes {
         let end = Taken {
             value: self.last,

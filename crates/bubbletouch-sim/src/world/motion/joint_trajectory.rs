@@ -12,8 +12,8 @@ use std::io::Read;
 
 /// Joint positions of a robot over time, interpolated through waypoints; constant before the first and after the last waypoint.
 ///
-/// Invariant: a joint that mimics no other joint never violates its limits of position and velocity by more than 1e-6 rad or m, or these per second. A
-/// mimicking joint follows its `<mimic>`; if it leaves its own limits, the trajectory has a note.
+/// Invariant: a joint that mimics no other joint never violates its limits of position and velocity by more than 1e-6 (rad or m, rad/s or m/s). A mimicking
+/// joint follows its `<mimic>`; if it leaves its own limits, the trajectory has a note.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTrajectory {
     times: Vec<f64>,

@@ -8,7 +8,8 @@ use glam::{DQuat, DVec3};
 ///
 /// `R(s) = R₀ exp(ω₁ b₁(s)) exp(ω₂ b₂(s)) exp(ω₃ b₃(s))`, `b = (1 − (1−s)³, 3s² − 2s³, s³)`
 ///
-/// \[KKS\]: a cubic for rotations, whose angular velocity is 3 ω₁ / h at the start and 3 ω₃ / h at the end. If ω₁, ω₂ and ω₃ are equal, the curve is slerp.
+/// \[KKS\]: a cubic for rotations, whose angular velocity is 3 ω₁ / h at the start and 3 ω₃ / h at the end. If ω₁, ω₂ and ω₃ are equal, the curve is
+/// spherical linear interpolation (slerp).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RotationCurve {
     segments: Vec<CurveSegment>,

@@ -3,8 +3,9 @@
 /// Returns the velocities at n waypoints for a cubic spline with continuous acceleration and zero velocity at both ends. `steps` are the n − 1 durations, and
 /// `secants` the mean velocities between the waypoints.
 ///
-/// Adjacent pieces have equal accelerations at their common waypoint: `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`. The symbol h is the duration and
-/// d the secant before and after the waypoint. The equations form a tridiagonal system with a dominant diagonal, solved by elimination.
+/// Adjacent pieces have equal accelerations at their common waypoint: `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`. The symbols h₋ and h₊ are the
+/// durations, and d₋ and d₊ the mean velocities, before and after the waypoint; m₋, m, m₊ are the velocities at three waypoints. The equations form a
+/// tridiagonal system with a dominant diagonal, solved by elimination.
 pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     let n = steps.len() + 1;
     let mut slopes = vec![0.0; n];

@@ -102,8 +102,9 @@ fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
 /// Returns the point t at which the maximum of all linear functions `pieces` and `walls` is lowest, and this maximum. The linear program in three variables
 /// is solved by the dual simplex method.
 ///
-/// The basis contains three pieces whose slopes have the weighted mean 0 with `weights` ≥ 0. The common point of the three pieces is the minimum of their
-/// maximum. The piece that is highest there enters the basis, and the piece whose weight reaches zero first leaves.
+/// The basis of the method contains three linear functions whose slopes have the weighted mean 0 with `weights` ≥ 0. The maximum of the three functions is
+/// lowest at their common point. The function that is highest at this point enters the basis, and the function whose weight first becomes zero leaves the
+/// basis.
 fn lowest_maximum(pieces: &[LinearBound], walls: [LinearBound; 3]) -> ([f64; 2], f64) {
     let mut basis = walls;
     let mut weights = [1.0 / 3.0; 3];

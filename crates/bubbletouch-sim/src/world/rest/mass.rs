@@ -13,8 +13,8 @@ const OUTSIDE: u8 = 2;
 
 /// Returns the centre of mass of a union of spheres, in the union's frame, metres.
 ///
-/// The union is divided into cubes. Cavities enclosed by spheres count as solid: a shell of spheres around a mesh
-/// has the mass of the mesh's interior, but a mug stays hollow.
+/// The union is divided into cubes. Cavities enclosed by spheres are treated as solid: a shell of spheres around a mesh has the mass of the mesh's interior,
+/// but a mug stays hollow.
 pub fn center_of_mass(spheres: &SphereUnion) -> DVec3 {
     let mut cells = Cells::around(spheres);
     cells.mark_spheres(spheres);

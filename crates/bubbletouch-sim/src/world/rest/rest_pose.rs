@@ -20,7 +20,7 @@ const LEAST_PROBABILITY: f64 = 0.02;
 /// Pose in which an object rests on the table, with its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RestPose {
-    /// Pose of the object on the table: it rests on z = 0 with its bounding box centred at x = y = 0.
+    /// Pose of the object on the table: the object lies on z = 0 with its bounding box centred at x = y = 0.
     pub table_from_object: Pose,
     /// Height of the object's top above the table, metres.
     pub height: f64,
@@ -35,8 +35,8 @@ pub fn as_modelled(object: &Model) -> RestPose {
 
 /// Returns the resting poses of an object on a table, most likely first; at least one. The object is treated as a homogeneous solid.
 ///
-/// A round object that rolls has one pose for all directions through which it rolls. Poses less likely than 2 % are
-/// omitted. The run time is 15 to 30 ms for 3,000 spheres, longest if a long side rolls.
+/// A round object that rolls has one pose for all directions through which it rolls. Poses less likely than 2 % are omitted. The run time is 15 to 30 ms for
+/// 3,000 spheres, longest for objects that can roll on a long side.
 pub fn stable_poses(object: &Model) -> Vec<RestPose> {
     stable_poses_about(object, object.center_of_mass())
 }

@@ -190,7 +190,7 @@ impl Robot {
 
     /// Writes the pose `world_from_link` of every link into a slice of one pose per link, without allocation.
     ///
-    /// Limits are not checked here, but in a `JointTrajectory`.
+    /// The function does not check joint limits; a `JointTrajectory` does.
     ///
     /// # Errors
     /// If the number of positions or poses differs from the robot's, or a position is not finite.
