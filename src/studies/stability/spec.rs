@@ -38,7 +38,7 @@ pub struct StabilitySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StabilityPartSpec {
-    /// Scene that is simulated: `rest`, `press`, `plunger`, `stack_of_two` or `stack_of_four`.
+    /// Scene that is simulated.
     pub scene: StabilityScene,
     /// Methods that simulate the contact, at least one.
     pub methods: Vec<ContactMethod>,

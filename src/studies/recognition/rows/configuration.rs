@@ -63,9 +63,9 @@ pub struct Configuration {
     configuration: usize => always (Note, "configuration", "", Linear);
     /// Pitch of the taxels, mm: side of the square area per taxel.
     pitch_mm: f64 => always of "skin.pitch_mm";
-    /// Number of taxel columns (along x).
+    /// Number of columns of taxels in the array (along x).
     nx: usize => always (Note, "taxels along x", "", Linear);
-    /// Number of taxel rows (along y).
+    /// Number of rows of taxels in the array (along y).
     ny: usize => always (Note, "taxels along y", "", Linear);
     /// Numbers of rows and columns of the images that represent frames of the array.
     image_shape: (usize, usize) => hidden;
