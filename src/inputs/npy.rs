@@ -12,7 +12,7 @@ use std::path::Path;
 /// First bytes of a `.npy` file of version 1, which NumPy writes for all arrays of numbers and texts. The length of the header follows.
 const MAGIC: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
-/// Returns the text that describes an array in a `.npy` header, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
+/// Returns the text of a `.npy` header that describes an array, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
 fn dictionary(descr: &str, shape: &[usize]) -> String {
     let lengths: Vec<String> = shape.iter().map(usize::to_string).collect();
     let comma = if shape.len() == 1 { "," } else { "" };

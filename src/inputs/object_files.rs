@@ -57,7 +57,7 @@ pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<O
     Ok(objects)
 }
 
-/// Reads the objects of a TOML file as a set of objects that has the name of the file.
+/// Reads a TOML file of objects as a set, whose name is the name of the file.
 ///
 /// # Errors
 /// If the file cannot be read or does not describe objects.

@@ -43,7 +43,7 @@ pub struct Swept<'a> {
     pub free: Vec<Setting<'a>>,
     /// Varying settings whose values are determined by other settings.
     pub following: Vec<Setting<'a>>,
-    /// Independent settings of a study that changes one setting at a time: each row changes at most one of them from its value in the first row. The list is
+    /// Independent settings of a study that changes one setting at a time. Each row changes at most one of them from its value in the first row. The list is
     /// empty for other studies, or if there are fewer than two such settings.
     pub one_at_a_time: Vec<Setting<'a>>,
     /// Settings that have an equal value in all rows.

@@ -82,9 +82,9 @@ pub enum PoseControl {
     Pressed {
         /// Distance of the object from the pose of its imposed motion, metres.
         travel: f64,
-        /// Sum of the spring forces of all taxels of the patch, newtons.
+        /// Total spring force of the patch, newtons.
         force: f64,
-        /// Target of the sum of spring forces, newtons.
+        /// Target of the patch's total spring force, newtons.
         wanted: f64,
     },
     /// The object is free and in equilibrium.

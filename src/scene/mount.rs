@@ -11,9 +11,9 @@ use crate::scene::spec_motion::PoseSpec;
 /// Body to which a patch of skin or another mounted body is fixed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mount {
-    /// The world: the pose `world_from_mounted` is constant.
+    /// The body is fixed to the world; its pose `world_from_mounted` is constant.
     World(Pose),
-    /// A link of a robot.
+    /// The body is fixed to a link of a robot.
     Link {
         /// Index of the robot in the scene.
         robot: usize,
@@ -22,7 +22,7 @@ pub enum Mount {
         /// Pose of the mounted body on the link, `link_from_mounted`.
         link_from_mounted: Pose,
     },
-    /// An object of the scene.
+    /// The body is fixed to an object of the scene.
     Object {
         /// Index of the object in the scene.
         object: usize,

@@ -17,8 +17,7 @@ pub struct PlannedPress {
     pub direction: DVec3,
     /// Times at which target forces are given, seconds, strictly increasing; at least one.
     pub times: Vec<f64>,
-    /// Target of the patch's total spring force at each of the times, N, at least 0. Between the times, the target is interpolated linearly; outside, it is
-    /// constant.
+    /// Target of the patch's total spring force at each time, N, at least 0. Between the times, the target is interpolated linearly; outside, it is constant.
     pub forces: Vec<f64>,
     /// Maximum speed of the object along the direction of travel, m/s, positive.
     pub speed: f64,

@@ -10,7 +10,7 @@ use crate::geometry::Pose;
 #[derive(Clone, Debug)]
 pub(super) struct PressedObjects {
     all: Vec<Pressed>,
-    /// Pose of each object of the scene in the frame of a patch, `patch_from_object`.
+    /// Pose of each object relative to a patch, `patch_from_object`.
     poses: Vec<Pose>,
     workspace: Workspace,
 }

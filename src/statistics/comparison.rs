@@ -10,7 +10,7 @@ use ndarray::ArrayView2;
 /// Comparison of the scores of two configurations in their common trials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
-    /// Mean over the trials of the score of `a` minus the score of `b`.
+    /// Score of `a` minus score of `b`, averaged over the trials.
     pub mean_difference: f64,
     /// Confidence interval of the mean difference.
     pub interval: Interval,
@@ -70,8 +70,8 @@ pub fn compare(
     estimate.test(n_trials, confidence).map(Some)
 }
 
-/// Compares two configurations whose trials combine all S splits (rows of `a` and `b`) with all P projections (columns). Returns `None` for fewer than two
-/// splits or two projections, or if `a` and `b` differ in shape.
+/// Tests the difference between the scores of two configurations whose trials combine every split with every projection. Splits are the rows of `a` and `b`,
+/// projections the columns. Returns `None` for fewer than two splits or two projections, or if `a` and `b` differ in shape.
 ///
 /// With the mean squares of the differences by splits, projections and residual, the variance of the mean difference is
 ///

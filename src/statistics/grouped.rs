@@ -35,7 +35,7 @@ use std::collections::BTreeMap;
 /// Minimum number of groups for an informative interval. With four groups, the 95 % quantile of Student's t is 3.2, whereas the normal quantile is 2.
 pub const FEW_GROUPS: usize = 5;
 
-/// Number of test rows and of correctly recognised test rows in one group of a test.
+/// Numbers of all test rows and of correctly recognised test rows in one group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "[usize; 3]", into = "[usize; 3]")]
 pub struct GroupCount {

@@ -2,7 +2,7 @@
 
 use crate::dual::DualSolution;
 
-/// A binary problem of a multi-class SVM and its solution.
+/// Binary problem of a multi-class SVM (one class against another or against all others), with its solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinaryProblem {
     /// Position of the positive class: in this problem, its rows have the label +1.

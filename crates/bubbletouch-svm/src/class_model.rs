@@ -66,7 +66,7 @@ pub fn log_vote_shares(mut votes: Array2<f64>) -> Array2<f64> {
     votes
 }
 
-/// Returns the log-prior of each class: the logarithm of the fraction of training rows that have the label of the class.
+/// Returns the log-prior of each class: the logarithm of its fraction of the training rows.
 pub fn log_priors(labels: ArrayView1<usize>, classes: &[usize]) -> Array1<f64> {
     let share = |class: &usize| {
         let n_class = labels.iter().filter(|&label| label == class).count();

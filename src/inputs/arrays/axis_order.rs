@@ -8,10 +8,10 @@ use crate::error::{Error, Result};
 use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};
 use ndarray::{Array2, ArrayD};
 
-/// Maximum ratio of the sides of a grid for which the last two axes of an array are assumed to be rows and columns. With a larger value, time may be mistaken
+/// Maximum ratio of the last two axis lengths for which these axes are assumed to be the rows and columns of a grid. With a larger value, time may be mistaken
 /// for taxels; with a smaller value, the order must be given for more arrays.
 const MAX_ASPECT: usize = 6;
-/// Maximum length of the last axis of an array for which this axis is assumed to contain the values of one taxel (three force components).
+/// Maximum length at which an array's last axis is assumed to contain the values of one taxel (three force components).
 const MAX_VALUES: usize = 3;
 
 /// Order of the axes in an array of recorded frames, as given in a study.
@@ -126,7 +126,7 @@ impl FrameShape {
     }
 }
 
-/// Determines the meaning of each axis of an array of frames.
+/// Determines which axes of an array are touches, frames, taxels, rows and columns.
 ///
 /// # Errors
 /// If the order does not fit the array, or no order is given and two orders are possible.

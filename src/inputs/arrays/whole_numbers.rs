@@ -50,7 +50,8 @@ fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
     }
 }
 
-/// Reads one class value for each of `n` touches: integers of any type, texts, an n × 1 array of either, or a column of 0 and 1 for each class.
+/// Reads one class value for each of `n` touches. The file contains integers of any type, texts, an n × 1 array of either, or a column of 0 and 1 for each
+/// class.
 ///
 /// # Errors
 /// If the file does not exist or contains other data, or a position has no class.

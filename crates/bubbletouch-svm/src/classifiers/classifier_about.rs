@@ -93,7 +93,7 @@ macro_rules! classifiers {
             $(#[doc = $doc] $name,)*
         }
 
-        /// Deserialises a classifier from one of its [`NAMES`](ClassifierKind::NAMES).
+        /// Deserialises a kind of classifier from its name in [`NAMES`](ClassifierKind::NAMES).
         impl<'de> Deserialize<'de> for ClassifierKind {
             fn deserialize<D: serde::Deserializer<'de>>(names: D) -> Result<Self, D::Error> {
                 use serde::de::Error;

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use ndarray::Array1;
 
-/// Number of recent steps that L-BFGS stores together with their changes of the gradient: 10, as in SciPy. With a larger value, more memory is used; with a
-/// smaller value, more iterations are needed.
+/// Number of recent steps that L-BFGS stores, each with the change of the gradient: 10, as in SciPy. With a larger value, more memory is used; with a smaller
+/// value, more iterations are needed.
 const MEMORY: usize = 10;
 
 /// Minimum decrease of the function in an accepted step, as a fraction of the decrease that the gradient predicts (Armijo's condition).

@@ -175,7 +175,7 @@ fn mean_loss(
     (loss, gradient)
 }
 
-/// Normalises each row of log-scores to log-probabilities by subtracting the logarithm of the sum of exponentials of the row.
+/// Normalises each row of log-scores to log-probabilities, so that the exponentials of a row sum to 1.
 fn normalise(values: &mut Array2<f64>) {
     for mut row in values.rows_mut() {
         let max = row.fold(f64::NEG_INFINITY, |max, &value| max.max(value));

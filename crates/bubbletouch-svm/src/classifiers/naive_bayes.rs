@@ -13,7 +13,7 @@ use crate::class_model::{ClassModel, log_priors};
 use crate::dataset::{Dataset, check_width, checked_classes};
 use crate::{Error, Result};
 
-/// Smoothing of naive Bayes: this fraction of the largest feature variance is added to every variance; 1e-9 is scikit-learn's default.
+/// Fraction of the largest feature variance that naive Bayes adds to every variance; 1e-9 is scikit-learn's default.
 pub const VARIANCE_SMOOTHING: f64 = 1e-9;
 
 /// Trained Gaussian naive Bayes classifier. The score of class k for features x is `ln p(x | k)`.

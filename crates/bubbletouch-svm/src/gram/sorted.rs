@@ -10,7 +10,7 @@ use crate::gram::centered_rows::CenteredRows;
 use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 
-/// Returns all pairs of classes `(a, b)` with a < b, where a is in the first range and b in the second; the ranges may be equal.
+/// Returns all pairs of classes `(a, b)` with a < b, where a is in the first range and b in the second. The ranges may be equal.
 pub(crate) fn pairs(
     own: Range<usize>,
     other: Range<usize>,

@@ -5,11 +5,11 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 
 use crate::linalg::scalar::Scalar;
 
-/// Number of rows per matrix product when the inner products of all pairs of rows are computed block by block. A few products of each block are computed twice.
+/// Number of rows per block when all rows are multiplied with each other. A few products of each block are computed twice.
 const ROWS_AT_ONCE: usize = 128;
 /// Maximum number of rows that are multiplied without copying them; for more rows, a matrix product with packed copies is faster.
 pub(crate) const FEW_ROWS: usize = 4;
-/// Number of rows and columns of a tile when a triangle of a matrix is copied to the other: a cache line of f32.
+/// Number of rows and columns that are mirrored together: a cache line of f32.
 const TILE: usize = 16;
 
 /// Writes the inner products `x_i · z_j` of rows x (n_left × m) and rows z (n × m): shape n_left × n.

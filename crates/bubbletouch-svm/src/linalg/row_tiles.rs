@@ -189,7 +189,7 @@ mod avx512 {
         ]
     }
 
-    /// Adds groups of four neighbouring lanes in each of four registers a, b, c, d; returns the sums interleaved: a₀ b₀ c₀ d₀ a₁ b₁ ….
+    /// Adds groups of four neighbouring lanes in each of four registers. Returns the sums in the order a₀ b₀ c₀ d₀ a₁ b₁ ….
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn add_lanes([a, b, c, d]: [__m512; N]) -> __m512 {

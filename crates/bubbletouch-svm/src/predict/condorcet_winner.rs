@@ -27,7 +27,8 @@ pub(crate) struct Pairs<T> {
     n_classes: usize,
     /// Support vectors and their coefficients in all decision functions, one pair of classes after another.
     terms: Vec<(u32, T)>,
-    /// For each pair of classes (0, 1), (0, 2), …, (1, 2), …: the end of its range in `terms`, and the offset ρ of its decision function.
+    /// For each pair of classes, the end of its range in `terms` and the offset ρ of its decision function. The order of the pairs is (0, 1), (0, 2), …, (1,
+    /// 2), ….
     ends: Vec<(usize, f64)>,
 }
 
@@ -86,7 +87,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// Returns the terms (support vector, coefficient) and the offset ρ of the decision function of a pair of classes.
+    /// For a pair of classes, returns the terms (support vector, coefficient) and the offset ρ of the decision function.
     #[inline(always)]
     fn pair(&self, pair: usize) -> (&[(u32, T)], f64) {
         let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };

@@ -76,7 +76,7 @@ impl VoteCounter {
         }
     }
 
-    /// Adds the votes of one binary problem: a value above the offset ρ is a vote for the positive class, any other value for the negative class. Problems must
+    /// Adds the votes of one binary problem. A value above the offset ρ is a vote for the positive class, any other value for the negative class. Problems must
     /// be added in the order of all problems of the multi-class strategy.
     pub fn take<T: Scalar>(
         &mut self,

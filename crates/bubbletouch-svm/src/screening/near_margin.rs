@@ -78,7 +78,7 @@ type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
 struct Round<T> {
     /// Normals of the hyperplanes of all pairs in the round.
     normals: Vec<T>,
-    /// Inner products of the hyperplane normals with all rows of the two classes of each pair, class by class.
+    /// Inner products of each pair's hyperplane normal with all rows of its two classes, class by class.
     products: Vec<T>,
     /// For each pair, the ranges of its two classes in `products`.
     places: Vec<[Range<usize>; 2]>,

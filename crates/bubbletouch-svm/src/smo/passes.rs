@@ -97,8 +97,8 @@ pub(crate) fn step_along<T: Scalar>(
 
 /// Second variable of a pairwise step, which decreases, and the violation of the optimality conditions.
 pub(crate) struct Down<T> {
-    /// Variable to decrease while `i` increases: the one with the largest second-order gain of the dual objective [Fan, Chen, Lin 2005]. `None` if no pair
-    /// violates the optimality conditions.
+    /// Variable to decrease while `i` increases; `None` if no pair violates the optimality conditions. The variable has the largest second-order gain of the
+    /// dual objective [Fan, Chen, Lin 2005].
     pub j: Option<usize>,
     /// Violation of the optimality conditions: the largest gradient of variables that can increase minus the smallest gradient of variables that can decrease.
     pub violation: T,

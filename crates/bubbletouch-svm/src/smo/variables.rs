@@ -31,7 +31,8 @@ fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut 
     }
 }
 
-/// Returns the bounds of a row's coefficient, which depend on its label y: (0, C) for y = 1, (−C, 0) for y = −1, (0, 0) for y = 0.
+/// Returns the lower and upper bound of a row's coefficient, given its label y and the penalty C. The bounds are (0, C) for y = 1, (−C, 0) for y = −1, and (0,
+/// 0) for an excluded row (y = 0).
 #[inline(always)]
 pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
     (c * y.min(0.0), c * y.max(0.0))
