@@ -74,21 +74,21 @@ const fn entry<K: Study>() -> Entry {
     }
 }
 
-/// Form of the files of a kind of study.
+/// Description of the files that a kind of study reads and writes.
 pub(crate) struct KindFiles {
-    /// Description of the kind.
+    /// Description of the kind of study.
     pub about: About,
-    /// JSON Schema of a study file.
+    /// JSON Schema of the kind's study files.
     pub schema: serde_json::Value,
     /// Function that returns the keys that the reader of a study accepts; see [`accepted_keys`].
     pub accepted_keys: fn(toml::Value) -> Vec<String>,
-    /// Descriptions of all keys.
+    /// Descriptions of all keys that a study file of the kind may have.
     pub keys: Vec<KeyAbout>,
-    /// Table files.
+    /// Table files that a study of the kind writes.
     pub tables: TableFiles,
 }
 
-/// Returns the form of the files of each kind.
+/// For each kind of study, returns the description of the files that it reads and writes.
 pub(crate) fn kind_files(generator: fn() -> SchemaGenerator) -> Vec<KindFiles> {
     let kinds = KINDS.iter().map(|entry| KindFiles {
         about: entry.about,

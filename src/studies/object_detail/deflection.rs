@@ -108,8 +108,8 @@ impl Truth {
         DeflectionError::new(self.errors(model, offset))
     }
 
-    /// Returns the deflection error of a model that is pressed to an equal depth past its own first contact. A study that knows only the model makes this
-    /// error.
+    /// Returns the deflection error of a model if each touch has the same depth past first contact on the model as on the mesh. A study that knows only the
+    /// model makes this error.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::new(self.errors_of(|pose, reading, workspace| {

@@ -134,9 +134,9 @@ pub struct DetailRecognition {
     classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
     /// Number of objects that the classifier distinguishes.
     n_objects: usize => Note "objects": Linear;
-    /// Number of training rows, summed over all objects.
+    /// Number of rows with which the classifier is trained, summed over all objects.
     n_training: usize => Note "training touches": Linear;
-    /// Number of test rows, summed over all objects.
+    /// Number of rows with which the classifier is tested, summed over all objects.
     n_test: usize => Note "test touches": Linear;
     /// Number of measurements per touch.
     n_measurements: usize => Note "measurements": Linear;

@@ -86,7 +86,7 @@ pub struct ReconstructionScore {
 row! {
 /// Computing time of a configuration. A row of `timing.csv` is a [`ReconstructionConfiguration`] followed by a `ReconstructionTime`.
 pub struct ReconstructionTime {
-    /// Time to prepare the solver, s, without the time for the product ΦΨ of measurement matrix and dictionary.
+    /// Time to prepare the solver, s, without the time to multiply the measurement matrix by the dictionary.
     prepare_s: f64 => Cost "time to prepare" in "s": Log;
     /// Reconstruction time per frame on one core, µs; frames are reconstructed in blocks.
     us_per_frame: f64 => Cost "time of a frame" in "us": Log;
@@ -109,11 +109,10 @@ pub struct ReconstructionPareto {
 } }
 
 row! {
-/// Isometry statistics of an ensemble and a dictionary: a row of `ensembles.csv`. A support is a randomly drawn set of s atoms; Φ is the measurement matrix,
-/// and Ψ the dictionary.
+/// Isometry statistics of an ensemble and a dictionary: a row of `ensembles.csv`. A support is a randomly drawn set of s atoms.
 ///
-/// For each support, σ_min and σ_max are the smallest and largest singular values of its s columns of ΦΨ. All columns of ΦΨ are scaled to a mean square norm of
-/// 1.
+/// For each support, σ_min and σ_max are the smallest and largest singular values of the matrix of its s measured atoms. A measured atom is an atom multiplied
+/// by the measurement matrix. All measured atoms are scaled to a mean square norm of 1.
 pub struct EnsembleStatistics {
     /// Ensemble from which the measurement matrix is drawn.
     ensemble: Ensemble => Choice named ENSEMBLES;
@@ -125,28 +124,30 @@ pub struct EnsembleStatistics {
     dictionary: Basis => Choice named DICTIONARIES;
     /// Number k of atoms that the dictionary has.
     atoms: usize => Note "atoms of the dictionary": Linear;
-    /// Mutual coherence of the atoms after measurement, 0 to 1: the largest absolute cosine between two columns of ΦΨ. Atoms that Φ maps to zero are excluded.
+    /// Mutual coherence of the measured atoms, 0 to 1: the largest absolute cosine of the angle between two of them. Atoms that the measurement matrix maps to
+    /// zero are excluded.
     coherence: f64 => Value(Less) "mutual coherence": Share;
-    /// Welch bound: the smallest mutual coherence that is possible for this number of columns in m dimensions, 0 to 1.
+    /// Welch bound, 0 to 1: the smallest mutual coherence that this number of atoms can have in m dimensions (m measurements).
     welch_bound: f64 => Note "Welch bound": Share;
     /// Number of atoms that the measurement matrix Φ maps to zero.
     n_invisible: usize => Note "invisible atoms": Linear;
-    /// Number s of atoms in each support.
+    /// Number s of atoms in each randomly drawn set of atoms (support).
     sparsity: usize => Condition: Linear;
-    /// Number of randomly drawn supports for this number of atoms.
+    /// Number of randomly drawn sets of atoms (supports) of this size.
     n_subsets: usize => Note "supports drawn": Linear;
-    /// Smallest σ²_min over all drawn supports, where σ_min is the smallest singular value of a support's columns of ΦΨ.
+    /// Smallest σ²_min over all drawn sets of atoms (supports). Here σ_min is the smallest singular value of the matrix of a set's measured atoms.
     low_min: f64 => Value(More) "least σ²": Linear;
-    /// Median of σ²_min over all drawn supports, where σ_min is the smallest singular value of a support's columns of ΦΨ.
+    /// Median of σ²_min over all drawn sets of atoms (supports). Here σ_min is the smallest singular value of the matrix of a set's measured atoms.
     low_median: f64 => Value(More) "median of the least σ²": Linear;
-    /// Median of σ²_max over all drawn supports, where σ_max is the largest singular value of a support's columns of ΦΨ.
+    /// Median of σ²_max over all drawn sets of atoms (supports). Here σ_max is the largest singular value of the matrix of a set's measured atoms.
     high_median: f64 => Value(Less) "median of the largest σ²": Linear;
-    /// Largest σ²_max over all drawn supports, where σ_max is the largest singular value of a support's columns of ΦΨ.
+    /// Largest σ²_max over all drawn sets of atoms (supports). Here σ_max is the largest singular value of the matrix of a set's measured atoms.
     high_max: f64 => Value(Less) "largest σ²": Linear;
-    /// Median over all drawn supports of max(1 − σ²_min, σ²_max − 1): how much a support's columns of ΦΨ may change the squared norm of a vector.
+    /// Median deviation over all drawn sets of atoms (supports). The deviation is max(1 − σ²_min, σ²_max − 1) for the smallest and largest singular value of
+    /// the matrix of a set's measured atoms.
     deviation_median: f64 => Value(Less) "median deviation": Linear;
-    /// Largest value of max(1 − σ²_min, σ²_max − 1) over all drawn supports. It is a lower bound on the isometry constant δₛ, whose exact value is NP-hard to
-    /// compute.
+    /// Largest deviation max(1 − σ²_min, σ²_max − 1) over all drawn sets of atoms, where σ_min and σ_max are singular values of a set's measured atoms. It is a
+    /// lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
 

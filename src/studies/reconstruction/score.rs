@@ -67,8 +67,8 @@ impl Truth {
         }
     }
 
-    /// Returns Σe / Σ‖x‖² and the half width of its 95 % interval over frames, where e are the `errors` of single frames. The interval is computed by
-    /// linearisation of the ratio of means (delta method).
+    /// Returns Σe / Σ‖x‖² and the half width of its 95 % interval over frames. Here e are the `errors` of single frames, and x are the clean frames. The
+    /// interval is computed by linearisation of the ratio of means (delta method).
     fn ratio(&self, errors: &[f64]) -> (f64, f64) {
         let n = errors.len() as f64;
         let mean = self.squares.iter().sum::<f64>() / n;

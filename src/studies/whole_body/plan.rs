@@ -25,7 +25,7 @@ pub struct WholeBodyPlan {
     pub place: String,
     /// Folder to which paths in the study file are relative.
     pub folder: PathBuf,
-    /// Specification as written in the study file.
+    /// Specification of the study: its keys with the values and units of the study file.
     pub spec: WholeBodyStudySpec,
     /// Robot that is covered with skin.
     pub robot: Robot,
@@ -53,7 +53,7 @@ pub struct WholeBodyPlan {
 /// Plan of a scene: an object, its motion, and the joint positions of the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePlan {
-    /// Specification as written in the study file.
+    /// Specification of the scene: its keys with the values and units of the study file.
     pub spec: BodySceneSpec,
     /// Target position, approach direction and motion of the object.
     pub aim: Aim,

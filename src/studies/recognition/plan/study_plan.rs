@@ -31,7 +31,7 @@ pub fn as_written(value: f64) -> f64 {
 /// Checked study: its specification, and its values in SI units.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Specification as written in the study file.
+    /// Specification of the study: its keys with the values and units of the study file.
     pub spec: StudySpec,
     /// Arrays of taxels, one for each combination of pitch and size.
     pub arrays: Vec<TaxelArray>,

@@ -22,7 +22,7 @@ impl Default for ClassifierParameters {
 }
 
 impl ClassifierParameters {
-    /// Returns a classifier with the values of the parameters that its kind declares.
+    /// Returns the classifier after setting the parameters that its kind declares.
     ///
     /// # Panics
     /// If a value is out of its range.
@@ -36,7 +36,7 @@ impl ClassifierParameters {
     }
 }
 
-/// Writes integers as integers, in the order of the declarations.
+/// Writes the parameters as keys of a table, in the order of the declarations; integers are written without a decimal point.
 impl Serialize for ClassifierParameters {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
@@ -56,7 +56,7 @@ impl Serialize for ClassifierParameters {
     }
 }
 
-/// Adds the declared parameters to the schema of `[recognition]`.
+/// Adds the parameters that classifiers declare to the JSON Schema of `[recognition]`.
 pub(super) fn with_parameters(schema: &mut Schema) {
     let keys = schema.ensure_object().get_mut("properties");
     let Some(keys) = keys.and_then(Value::as_object_mut) else {
@@ -88,7 +88,7 @@ pub(super) fn with_parameters(schema: &mut Schema) {
     }
 }
 
-/// Table `[recognition]` while it is read: parameters are stored, and all other keys are left to the fields of the specification.
+/// Reader of the table `[recognition]`: it stores declared parameters, and leaves all other keys to the fields of the specification.
 pub(super) struct OtherKeys<'a, M> {
     pub map: M,
     pub parameters: &'a mut ClassifierParameters,
@@ -119,13 +119,13 @@ impl<'de, M: MapAccess<'de>> MapAccess<'de> for OtherKeys<'_, M> {
     }
 }
 
-/// Key of a table: a declared parameter, or a field of the specification.
+/// Key of the table `[recognition]`: a declared parameter of a classifier, or a field of the specification.
 enum Key<F> {
     Parameter(&'static Parameter),
     Field(F),
 }
 
-/// Reads a key. The seed of a field is used only if the key is no parameter.
+/// Reader of a key of the table `[recognition]`. The inner seed reads the key of a field, and is used only if the key is no parameter.
 struct KeySeed<'a, K>(&'a mut Option<K>);
 
 impl<'de, K: DeserializeSeed<'de>> DeserializeSeed<'de> for KeySeed<'_, K> {
@@ -145,7 +145,7 @@ impl<'de, K: DeserializeSeed<'de>> DeserializeSeed<'de> for KeySeed<'_, K> {
     }
 }
 
-/// Reads the value of a parameter: an integer, or a number.
+/// Reader of the value of a classifier's parameter: an integer, or a number.
 struct ValueSeed(&'static Parameter);
 
 impl<'de> DeserializeSeed<'de> for ValueSeed {
