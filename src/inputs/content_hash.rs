@@ -15,7 +15,7 @@ pub struct Hashed<T> {
 }
 
 impl<T> Hashed<T> {
-    /// Creates a value with its hash. The function `bytes` converts the value to bytes; different values must give different bytes.
+    /// Wraps a value so that the hash of its bytes represents it. The function `bytes` converts the value to bytes; different values must give different bytes.
     pub fn new(value: T, bytes: fn(&T) -> Vec<u8>) -> Self {
         let hash = OnceLock::new();
         Self { value, bytes, hash }

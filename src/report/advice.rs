@@ -381,7 +381,7 @@ impl<'a> Candidates<'a> {
 }
 
 impl ColumnSelector {
-    /// Returns the numeric columns of a table that match a name, or have the role if `name` is `None`. Columns that vary come first.
+    /// Returns the numeric columns of a table that the name selects; without a name, all numeric columns with the role. Columns that vary come first.
     fn columns<'t>(&self, table: &'t Table, name: Option<&str>) -> Vec<&'t Column> {
         let shared = self.shared.iter().find(|(known, _)| Some(*known) == name);
         let is_named = |column: &str| match name {

@@ -11,7 +11,8 @@ pub struct Answer {
     pub advice: Result<Advice>,
 }
 
-/// Returns one answer for each condition. If `worst` is true, returns a single answer that is based on the worst value of each choice over all conditions.
+/// Returns the advice for each condition, or the reason why no advice exists. If `worst` is true, returns a single answer that is based on the worst value of
+/// each choice over all conditions.
 ///
 /// # Errors
 /// If no condition has advice; returns the error of the first condition.

@@ -298,7 +298,7 @@ fn letters(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Wraps a text at spaces (not at U+00A0) into lines of at most `width` characters, each with a line break.
+/// Wraps a text at spaces (not at no-break spaces) into lines of at most `width` characters, each with a line break.
 pub(crate) fn paragraph(text: &str, width: usize) -> String {
     break_lines(text, |line| letters(line) <= width).join("\n") + "\n"
 }

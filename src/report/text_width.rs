@@ -21,12 +21,12 @@ pub fn text_width(text: &str, size: f64) -> f64 {
     thousandths as f64 * size / 1000.0
 }
 
-/// Wraps a text at spaces (not at U+00A0) into lines of at most `width`, in the unit of the font size. A longer word has a line of its own.
+/// Wraps a text at spaces (not at no-break spaces) into lines of at most `width`, in the unit of the font size. A longer word has a line of its own.
 pub fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     break_lines(text, |line| text_width(line, size) <= width)
 }
 
-/// Wraps a text at spaces (not at U+00A0) into lines for which `fits` is true. A word that does not fit has a line of its own.
+/// Wraps a text at spaces (not at no-break spaces) into lines for which `fits` returns true. A word that does not fit has a line of its own.
 pub(super) fn break_lines(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {

@@ -18,9 +18,9 @@ use crate::objects::SphereUnion;
 #[derive(Clone, Debug)]
 pub(super) struct FreeObjects {
     all: Vec<Free>,
-    /// Scene numbers of the free objects that took part in the last equilibrium.
+    /// Numbers (indices in the scene) of the free objects that took part in the last equilibrium.
     there: Vec<usize>,
-    /// Scene numbers of the imposed or pressed objects, which act as obstacles.
+    /// Numbers (indices in the scene) of the imposed and pressed objects, which act as obstacles.
     obstacles: Vec<usize>,
     balancer: EquilibriumSolver,
     /// For each patch, the deflections that imposed and pressed objects cause, metres; empty if none of these objects touches the patch.

@@ -63,7 +63,7 @@ impl PlacedObjects {
     }
 }
 
-/// State of a patch at one time.
+/// State of a patch of skin at one time.
 #[derive(Clone, Debug)]
 pub(super) struct SkinState {
     /// Current pose of the patch, `world_from_patch`.

@@ -73,7 +73,7 @@ pub fn compare(
 /// Tests the difference between the scores of two configurations whose trials combine every split with every projection. Splits are the rows of `a` and `b`,
 /// projections the columns. Returns `None` for fewer than two splits or two projections, or if `a` and `b` differ in shape.
 ///
-/// With the mean squares of the differences by splits, projections and residual, the variance of the mean difference is
+/// With S splits, P projections, and the mean squares of the differences by splits, projections and residual, the variance of the mean difference is
 ///
 /// `(1/S + n_test/n_train) MS_splits / P  +  max(0, MS_projections − MS_rest) / (S P)`
 ///

@@ -166,7 +166,7 @@ impl Paired {
         }))
     }
 
-    /// Compares the first configuration with the second; returns `None` for a single trial, or if trials with some split and projection are missing.
+    /// Compares the first configuration with the second; returns `None` for a single trial, or if a combination of split and projection has no trial.
     fn test(&self, sizes: &[TrialSize]) -> Result<Option<Comparison>> {
         let (Some(ours), Some(theirs)) = (scores(&self.ours), scores(&self.theirs)) else {
             return Ok(None);

@@ -24,9 +24,9 @@ pub enum Scaling {
 /// Scaling of features that is fitted to training rows: subtracts the offset of each feature, then divides by its scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedScaling {
-    /// Offset subtracted from each feature (m), in feature units.
+    /// Offset that is subtracted from each feature (m values), in feature units.
     pub offset: Array1<f64>,
-    /// Divisor of each feature (m), in feature units; 1 if the feature is constant.
+    /// Divisor of each feature (m values), in feature units; 1 if the feature is constant.
     pub scale: Array1<f64>,
 }
 

@@ -11,7 +11,7 @@ use crate::world::Grid;
 use bubbletouch_sim::raster::pixels::{CellShape, paint_cells};
 use glam::DVec2;
 
-/// Height of the map of a patch, pixels; the width of the map is at most twice the height.
+/// Height of a patch in its picture, pixels; the width is at most twice the height.
 const SIDE: f64 = 400.0;
 /// Maximum number of cells along each side of a grid's picture. In a larger grid, each cell shows the largest value of a block of taxels.
 const MAX_CELLS: usize = 400;

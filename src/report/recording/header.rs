@@ -29,7 +29,7 @@ pub struct RecordedPatch {
     /// Unit axis vector of each taxel, pointing away from the substrate.
     #[serde(skip)]
     pub axes: Vec<DVec3>,
-    /// Grid layout, if the taxels form a grid, with taxel = row · nx + column; `None` otherwise.
+    /// Grid of the taxels (taxel = row · nx + column); `None` for other layouts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grid: Option<Grid>,
     /// Kind of the recorded forces: one number or one vector per taxel.

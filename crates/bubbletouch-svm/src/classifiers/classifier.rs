@@ -55,7 +55,7 @@ pub struct Classifier {
     pub solver: Solver,
     /// Penalty C: a fixed value, or candidates to choose from.
     pub c: Cost,
-    /// Values of the parameters that the kind declares; see [`with`](Self::with).
+    /// Values of the parameters that the kind of classifier declares; see [`with`](Self::with).
     pub parameters: Parameters,
     /// Stopping tolerance of the solver, above 0, in units of the decision value. Logistic regression uses one tenth of this tolerance.
     pub tolerance: f64,
@@ -79,7 +79,7 @@ impl Classifier {
         }
     }
 
-    /// Returns a copy with another value of a parameter that the kind declares.
+    /// Returns a copy of the classifier with another value of the parameter `key`.
     ///
     /// ```
     /// # use bubbletouch_svm::classifiers::{ClassifierKind, classifier::Classifier};
@@ -96,14 +96,14 @@ impl Classifier {
         Ok(changed)
     }
 
-    /// Returns a copy with another γ of the kernel. γ is in inverse squared units of the scaled features.
+    /// Returns a copy of the classifier with another kernel parameter γ. The unit of γ is in inverse squared units of the scaled features.
     pub fn with_gamma(&self, gamma: Gamma) -> Self {
         let mut changed = self.clone();
         changed.parameters.set_gamma(gamma);
         changed
     }
 
-    /// Returns γ of the kernel.
+    /// Returns the kernel parameter γ.
     pub fn gamma(&self) -> Gamma {
         self.parameters.gamma()
     }

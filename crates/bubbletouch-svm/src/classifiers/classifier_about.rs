@@ -21,7 +21,7 @@ pub struct ClassifierAbout {
     pub parameters: &'static [Parameter],
     /// Kernel of a kernel SVM; `None` for other kinds. Kernel SVMs solve several values of C together and keep kernel values in memory.
     pub kernel: Option<fn(&Parameters) -> Kernel>,
-    /// Function that trains the classifier on scaled rows, with C if the kind has one; random draws use the given seed.
+    /// Function that trains the classifier on scaled rows. C is ignored if the kind of classifier has none; random draws use the given seed.
     pub train: Train,
 }
 
@@ -64,17 +64,17 @@ impl fmt::Debug for ClassifierAbout {
 }
 
 impl ClassifierKind {
-    /// Returns whether the kind has a penalty C (soft-margin SVMs and logistic regression). Other kinds ignore C.
+    /// Returns whether the kind of classifier has a penalty C (soft-margin SVMs and logistic regression). Other kinds ignore C.
     pub fn has_c(self) -> bool {
         self.about().has_c
     }
 
-    /// Returns whether the kind is a kernel SVM of this crate.
+    /// Returns whether the kind of classifier is a kernel SVM of this crate.
     pub fn is_kernel_svm(self) -> bool {
         self.about().kernel.is_some()
     }
 
-    /// Returns whether the kind has a kernel with a parameter γ.
+    /// Returns whether the kind of classifier has a kernel with a parameter γ.
     pub fn has_gamma(self) -> bool {
         self.uses(GAMMA.key)
     }
@@ -114,7 +114,7 @@ macro_rules! classifiers {
             /// Names of all kinds of classifiers: the name in a study file and the common name in words.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
-            /// Returns the descriptor of the kind.
+            /// Returns the descriptor of the kind of classifier.
             pub const fn about(self) -> &'static ClassifierAbout {
                 match self {
                     $(Self::$name => &$file::ABOUT,)*

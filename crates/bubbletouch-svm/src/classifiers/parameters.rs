@@ -13,28 +13,28 @@ pub const MAX_COUNT: f64 = 1e8;
 pub struct Parameter {
     /// Key in `[recognition]`. The option of `bubbletouch classify` has hyphens instead of underscores.
     pub key: &'static str,
-    /// Meaning of the parameter, a noun phrase without article.
+    /// Meaning of the parameter in words, such as `number of neighbours`, without article.
     pub words: &'static str,
-    /// Whether only integers are allowed.
+    /// Whether the parameter allows only integers.
     pub is_integer: bool,
-    /// Smallest and largest allowed value.
+    /// Smallest and largest value that the parameter allows.
     pub range: [f64; 2],
-    /// Value of a classifier for which no value is given.
+    /// Default of the parameter, which holds if no value is given.
     pub default: DefaultValue,
-    /// Whether a study that is written with its defaults contains the parameter, although none of its classifiers may use it.
+    /// Whether a study that is written with all defaults contains the parameter even if none of its classifiers uses it.
     pub is_always_written: bool,
 }
 
-/// Default of a parameter.
+/// Default of a classifier's parameter: a number or a rule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DefaultValue {
     /// A number.
     Number(f64),
-    /// No number, but a rule of the classifier: the word that names the rule, and its meaning.
+    /// Rule that determines the value from the training data: its name in files, and its meaning in words.
     Rule(&'static str, &'static str),
 }
 
-/// Width γ of a kernel. At the upper bound, a polynomial kernel of degree 20 over 10,000 features is finite in f64.
+/// Declaration of the width parameter γ of a kernel. At the upper bound, a polynomial kernel of degree 20 over 10,000 features is finite in f64.
 pub(crate) const GAMMA: Parameter = Parameter::real(
     "gamma",
     "kernel parameter γ (RBF, Laplacian, polynomial)",
@@ -46,7 +46,7 @@ pub(crate) const GAMMA: Parameter = Parameter::real(
 );
 
 impl Parameter {
-    /// Declares an integer between two bounds, including both.
+    /// Declares a parameter that is an integer between two bounds, including both.
     pub(crate) const fn integer(
         key: &'static str,
         words: &'static str,
@@ -59,7 +59,7 @@ impl Parameter {
         }
     }
 
-    /// Declares a real number between two bounds, including both.
+    /// Declares a parameter that is a real number between two bounds, including both.
     pub(crate) const fn real(
         key: &'static str,
         words: &'static str,
@@ -76,7 +76,7 @@ impl Parameter {
         }
     }
 
-    /// Declares that every study is written with this parameter.
+    /// Declares that a study written with all defaults always contains this parameter.
     pub(crate) const fn always_written(self) -> Self {
         Self {
             is_always_written: true,
@@ -84,7 +84,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the default number; `None` if the default is a rule.
+    /// Returns the default value of the parameter; `None` if the default is a rule.
     pub fn default_number(&self) -> Option<f64> {
         match self.default {
             DefaultValue::Number(number) => Some(number),
@@ -92,13 +92,13 @@ impl Parameter {
         }
     }
 
-    /// Returns whether a value is allowed.
+    /// Returns whether the parameter allows a value.
     pub fn allows(&self, value: f64) -> bool {
         let [min, max] = self.range;
         (min..=max).contains(&value) && (!self.is_integer || value.fract() == 0.0)
     }
 
-    /// Returns the allowed values in words: `at least 1 and at most 20`, `0 to 1e6`.
+    /// Returns the allowed values in words, such as `at least 1 and at most 20` or `0 to 1e6`.
     pub fn allowed(&self) -> String {
         let [min, max] = self.range;
         match self.is_integer {
@@ -118,14 +118,14 @@ impl Parameter {
         value.expect("the default of the parameter is a number")
     }
 
-    /// Returns the value of a parameter; `None` if the classifier's own rule is to be used.
+    /// Returns the value of this parameter; `None` if the default rule of the classifier determines it.
     pub(crate) fn value(&self, parameters: &Parameters) -> Option<f64> {
         let given = parameters.get(self.key);
         given.or(self.default_number())
     }
 }
 
-/// Writes a number with an exponent if it has many zeros.
+/// Formats a number, with an exponent if it would have many zeros.
 fn short(number: f64) -> String {
     match number == 0.0 || (1e-3..1e4).contains(&number.abs()) {
         true => format!("{number}"),
@@ -138,19 +138,19 @@ fn short(number: f64) -> String {
 pub struct Parameters(BTreeMap<&'static str, f64>);
 
 impl Parameters {
-    /// Returns the defaults of a kind of classifier.
+    /// Returns the default values of all parameters that a kind of classifier declares.
     pub fn new(kind: ClassifierKind) -> Self {
         let declared = kind.about().parameters.iter();
         let numbers = declared.filter_map(|one| Some((one.key, one.default_number()?)));
         Self(numbers.collect())
     }
 
-    /// Returns the value of a key; `None` if the kind's own rule is used, or if the kind has no such parameter.
+    /// Returns the value of the parameter with this key. Returns `None` if a rule of the classifier determines it, or if the classifier has no such parameter.
     pub fn get(&self, key: &str) -> Option<f64> {
         self.0.get(key).copied()
     }
 
-    /// Sets a parameter that `kind` declares.
+    /// Sets the value of a parameter that the given kind of classifier declares.
     ///
     /// # Errors
     /// If the kind declares no parameter with this key, or if the value is not allowed.
@@ -172,12 +172,12 @@ impl Parameters {
         Ok(())
     }
 
-    /// Returns γ of the kernel.
+    /// Returns the width parameter γ of the kernel.
     pub(crate) fn gamma(&self) -> Gamma {
         GAMMA.value(self).map_or(Gamma::Scale, Gamma::Value)
     }
 
-    /// Sets γ of the kernel. Multiples of 'scale' may be outside of the range of given values.
+    /// Sets the width parameter γ of the kernel. Multiples of 'scale' may be outside of the range of given values.
     pub(crate) fn set_gamma(&mut self, gamma: Gamma) {
         match gamma {
             Gamma::Scale => self.0.remove(GAMMA.key),
@@ -186,7 +186,7 @@ impl Parameters {
     }
 }
 
-/// Keys of `[recognition]` that several classifiers use and no file of a classifier declares, and the classifiers that use them.
+/// Keys of `[recognition]` that several kinds of classifiers share, each with a function that returns whether a kind uses the key.
 const SHARED: [(&str, fn(ClassifierKind) -> bool); 7] = [
     ("tolerance", ClassifierKind::has_c),
     ("c", ClassifierKind::has_c),
@@ -197,7 +197,7 @@ const SHARED: [(&str, fn(ClassifierKind) -> bool); 7] = [
     ("solver_memory_gib", ClassifierKind::is_kernel_svm),
 ];
 
-/// Returns all declared parameters in the order of the classifiers, each once.
+/// Returns all parameters that classifiers declare, each once, in the order of the classifiers.
 pub fn declared() -> impl Iterator<Item = &'static Parameter> {
     let of = |kind: &ClassifierKind| kind.about().parameters.iter();
     let all = move || ClassifierKind::ALL.iter().flat_map(of);
@@ -215,7 +215,7 @@ pub fn keys() -> impl Iterator<Item = &'static str> {
 }
 
 impl ClassifierKind {
-    /// Returns whether the training of the kind depends on a key of [`keys`].
+    /// Returns whether the training of this kind of classifier depends on a key of [`keys`].
     pub fn uses(self, key: &str) -> bool {
         let mut shared = SHARED.iter().filter(|(shared, _)| *shared == key);
         let mut declared = self.about().parameters.iter();
@@ -223,7 +223,7 @@ impl ClassifierKind {
     }
 }
 
-/// Returns the study names of the classifiers that use a key: `k_nearest`, `linear_svm or rbf_svm`.
+/// Returns a list of the classifiers that use a key, by their names in studies, such as `linear_svm or rbf_svm`.
 pub fn users(key: &str) -> String {
     let all = ClassifierKind::ALL.iter().zip(ClassifierKind::NAMES);
     let users = all.filter(|(kind, _)| kind.uses(key));

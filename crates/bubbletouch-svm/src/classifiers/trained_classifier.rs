@@ -98,7 +98,7 @@ impl TrainedClassifier {
         }
     }
 
-    /// Returns the penalty C used in training; `None` for a kind without C.
+    /// Returns the penalty C used in training; `None` for a kind of classifier without C.
     pub fn c(&self) -> Option<f64> {
         self.c
     }

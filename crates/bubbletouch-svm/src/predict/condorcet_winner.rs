@@ -272,7 +272,7 @@ fn wins<T: Scalar>(pairs: &mut impl Decides<T>, (first, second): (usize, usize))
     }
 }
 
-/// Returns the inner product of a hyperplane normal and a row, and the sum of the absolute values of its terms.
+/// Returns the inner product of a hyperplane normal and a row, and the sum of the absolute values of all terms.
 #[inline(always)]
 fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     let (mut sums, mut sizes) = ([T::zero(); WIDE], [T::zero(); WIDE]);
@@ -298,7 +298,7 @@ fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     (sum, size)
 }
 
-/// Returns the sum of the coefficients times the kernel values, and the sum of the absolute values of its terms.
+/// Returns the sum of coefficients times kernel values, and the sum of the absolute values of all terms.
 #[inline(always)]
 fn sum_and_size<T: Scalar>(terms: &[(u32, T)], kernel_values: &[T]) -> (T, T) {
     let (mut sum, mut size) = ([T::zero(); LANES], [T::zero(); LANES]);

@@ -47,7 +47,7 @@ impl<T: SolverScalar> Within<T> {
 pub(crate) struct PairWorkspace<'r, T> {
     /// Active rows (rows in the reduced problem) of both classes.
     rows: [Vec<&'r [T]>; 2],
-    /// New inner products between the rows of the two classes.
+    /// Inner products between newly active rows of one class and active rows of the other.
     across: Vec<T>,
     /// Rows ranked by their distance from the margin.
     pub ranked: Ranked,

@@ -73,7 +73,7 @@ pub(crate) struct NearMargin<'c, 'a, T> {
 /// Result of a round for one pair: the normal of the hyperplane, and the inner product of the normal with each row of both classes.
 type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
 
-/// Results of a round for several pairs of classes, one pair after another.
+/// Results of one screening round for several pairs of classes, one pair after another.
 #[derive(Default)]
 struct Round<T> {
     /// Normals of the hyperplanes of all pairs in the round.
@@ -237,7 +237,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         points.in_place().add_weighted(sums, rows);
     }
 
-    /// Activates rows of both classes of a pair; `number` is the pair's number in the last round.
+    /// Adds rows of both classes to the reduced problem of a pair; `number` is the pair's number in the last round.
     fn join(&mut self, pair: usize, joining: &Sides, number: Option<usize>) {
         let classes: &'c Classes<'a, T> = self.classes;
         let starts = classes.starts(self.pairs[pair].classes());

@@ -74,7 +74,7 @@ pub(crate) fn run<G: Gram<f32>>(
 struct Largest {
     values: __m512,
     places: __m512i,
-    /// Positions of the values that are compared next.
+    /// Indices of the 16 values that are compared next.
     next: __m512i,
 }
 

@@ -19,7 +19,7 @@ pub(crate) struct Smo<'a, G> {
     pub(super) f: Vec<f64>,
     /// Penalty C for which the coefficients β were computed; 0 before the first solution.
     pub(super) c: f64,
-    /// Whether the gradient f was computed from the coefficients β in f64.
+    /// Whether the gradient f was computed in f64 from the coefficients β, not only updated.
     pub(super) is_summed: bool,
     /// Maximum number of iterations of the solver.
     pub(super) max_iterations: u64,
