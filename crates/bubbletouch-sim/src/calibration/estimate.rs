@@ -8,7 +8,7 @@ const NARROW: f64 = 0.1;
 /// Value below which an effect (such as noise or crosstalk) is negligible, relative to the full scale or to one.
 pub(super) const NONE: f64 = 0.01;
 
-/// Estimate of a parameter of the signal chain.
+/// Estimate of one parameter of the signal chain, such as the noise.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Estimate {
     /// Estimate of a parameter that the recorded frames determine.

@@ -62,7 +62,7 @@ pub struct Calibration {
     pub stiffness: Estimate,
 }
 
-/// Estimates all parameters of the signal chain.
+/// Estimates all parameters of the signal chain of a recorded skin.
 ///
 /// # Errors
 /// If frames, times or forces have inconsistent sizes, or if readings are not finite.

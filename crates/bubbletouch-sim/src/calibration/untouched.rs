@@ -43,7 +43,7 @@ pub struct Untouched<'a> {
     pub times: Vec<f64>,
     /// Number of consecutive frames per run.
     pub n_run: usize,
-    /// Whether values below zero are clipped.
+    /// Whether the recorded readings are clipped at zero.
     pub is_clipped: bool,
     /// Whether enough runs are free of clipped readings to omit the other runs.
     pub is_clear: bool,

@@ -43,7 +43,7 @@ impl Instructions {
         Vec::new()
     }
 
-    /// Replaces `Best`, and any unsupported instruction set, by the best supported one.
+    /// Returns this instruction set if it is supported and not `Best`, otherwise the best supported instruction set.
     pub fn resolved(self) -> Self {
         let here = Self::here();
         match here.contains(&self) {

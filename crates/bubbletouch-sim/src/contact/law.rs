@@ -30,8 +30,8 @@ pub fn saturation_limit(stroke: f64) -> f64 {
     stroke * (1.0 + 1e-12)
 }
 
-/// Factor slightly below 1, by more than the rounding error, for comparisons of squares before a root is taken. If larger, rounding decides comparisons; if
-/// smaller, roots are taken needlessly.
+/// Factor slightly below 1, by more than the rounding error, for comparisons of squared deflections before a root is taken. If larger, rounding decides
+/// comparisons; if smaller, roots are taken needlessly.
 const ALMOST: f64 = 1.0 - 1e-12;
 
 /// Returns the deflection √q − h that contact with a sphere requires, metres. The height h is along the taxel's axis; q is the squared sum of radii minus the
@@ -75,14 +75,15 @@ pub(super) fn may_exceed(q: f64, height: f64, deflection: f64) -> bool {
     shortfall(q, height, deflection) < 0.0
 }
 
-/// Returns a value, m², that is negative if √q − h may exceed the given deflection.
+/// Returns a value, m², that is negative if the deflection √q − h, which contact with a sphere requires, may exceed `deflection`. The symbol h is `height`.
 #[inline(always)]
 fn shortfall(q: f64, height: f64, deflection: f64) -> f64 {
     let bar = (height + deflection).max(0.0);
     bar * bar * ALMOST - q
 }
 
-/// Returns the given squares q (m²) of the spheres that can push a taxel, and −1 for the other spheres. `heights` are the heights of the spheres, metres.
+/// Returns `squares` (m²) with −1 in place of the values of spheres that cannot push their taxel. `heights` are the heights of the spheres, and `behind` is
+/// the height of the substrate, metres.
 #[inline(always)]
 pub(crate) fn squares_in_front<const N: usize>(
     squares: &[f64; N],
@@ -97,7 +98,8 @@ pub(crate) fn squares_in_front<const N: usize>(
     squares
 }
 
-/// Returns whether √q − h may exceed the deflection in any lane, for the squares q (m²) and the heights h (metres). The result `false` is exact.
+/// Returns whether the deflection √q − h, which contact with a sphere requires, may exceed the present deflection in any lane. The symbols q and h are
+/// `squares` (m²) and `heights` (metres). The result `false` is exact.
 #[inline(always)]
 pub(crate) fn beats<const N: usize>(
     squares: &[f64; N],
@@ -111,7 +113,8 @@ pub(crate) fn beats<const N: usize>(
     !LanesBelow::new(&shortfalls, 0.0).is_empty()
 }
 
-/// Raises each deflection to √q − h if this value is larger and q is positive, for the squares q (m²) and the heights h (metres).
+/// Raises each deflection to √q − h, the deflection that contact with a sphere requires, if this value is larger and q is positive. The symbols q and h are
+/// `squares` (m²) and `heights` (metres).
 ///
 /// Indexed loops over local copies let the compiler vectorise this function. Iterator adapters compiled elsewhere would remain function calls, and loops over
 /// memory that may alias are not vectorised. The roots of all lanes are taken, because roots of negative numbers cost no more. The maximum avoids a masked

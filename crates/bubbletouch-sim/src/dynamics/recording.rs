@@ -20,7 +20,7 @@ pub struct Steps<'a> {
     pub energy_limit: f64,
 }
 
-/// Reason why a run was stopped.
+/// Reason why a simulation ended before its last time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Divergence {
     /// A value of the state is not finite.
@@ -47,7 +47,7 @@ pub struct DynamicRecording {
 /// Number of time steps between two checks of the energy. If larger, a diverged run continues longer; if smaller, the checks take more time.
 const LOOK_EVERY: usize = 64;
 
-/// Advances a system from the integrator's state, and records frames.
+/// Simulates a system from the present state of the integrator, and records frames.
 ///
 /// # Errors
 /// If `dt` is not positive, or the frames are not ascending step numbers.

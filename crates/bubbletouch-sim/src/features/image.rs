@@ -91,7 +91,7 @@ impl Image {
     }
 }
 
-/// Converts a frame to an image whose shape is already set.
+/// Writes the image of a frame into `image`, whose shape is already set.
 #[multiversion(targets("x86_64+avx2"))]
 fn read(image: &mut Image, frame: &[f64], cut: Cut) {
     let Touched { x, y, value } = &mut image.touched;

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 const N_RINGS: usize = 26;
 /// Number of sampled angles per ring, a multiple of 4, so that a quarter turn is a whole number of steps.
 const N_ANGLES: usize = 32;
-/// Number of harmonics per ring: all except the harmonic that 32 steps cannot distinguish from its mirror image.
+/// Number of harmonics per ring: all except the highest, which 32 samples cannot distinguish from its mirror image.
 const N_HARMONICS: usize = 16;
 
 pub(super) const ABOUT: FeatureAbout = FeatureAbout {

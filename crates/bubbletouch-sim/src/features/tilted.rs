@@ -58,8 +58,8 @@ mod tests {
         out
     }
 
-    /// Compares a tilted copy with the frame of the tilted surface where both are touched. The two are equal up to an offset, which is 0 if the foremost point
-    /// was touched before.
+    /// Compares a tilted copy with the frame of the tilted surface where both are touched. The two frames are equal up to an offset, which is 0 if the
+    /// foremost point of the tilted surface was already touched before the tilt.
     #[test]
     fn a_copy_is_the_frame_of_the_tilted_surface_where_that_was_touched() {
         let ball = |x: f64, y: f64| -(x * x + y * y) / 200.0;

@@ -129,7 +129,7 @@ struct Cut {
 }
 
 impl Cut {
-    /// Returns the cheapest cut along any axis with the bounding boxes of both sides; `None` if the centres of all boxes coincide.
+    /// Returns the cheapest cut of a node along any axis, with the bounding boxes of both sides; `None` if the centres of all boxes coincide.
     fn cheapest(
         boxes: &[Aabb],
         centers: &[DVec3],

@@ -155,7 +155,7 @@ impl<'a> Parts<'a> {
         side.is_forward != self.is_turned[side.triangle as usize]
     }
 
-    /// Returns for each part whether it is closed: along every edge, equally many triangles pass in both directions.
+    /// Returns for each part whether the part is closed, that is, equally many triangles pass every edge in both directions.
     fn closed(&self) -> Vec<bool> {
         // Triangles with a repeated corner have no edges of their own; they are parts that enclose nothing.
         let mut is_closed = vec![true; self.triangles.len()];
@@ -168,8 +168,8 @@ impl<'a> Parts<'a> {
         is_closed
     }
 
-    /// Turns as few triangles as possible in each open part, so that neighbours across edges of two triangles are consistent.
-    /// Parts that do not become closed stay unchanged.
+    /// Turns as few triangles as possible in each open part, so that the two triangles at an edge are consistently oriented. Parts that do not become closed
+    /// stay unchanged.
     fn make_neighbours_agree(&mut self) {
         if self.is_closed.iter().all(|&closed| closed) {
             return;
@@ -332,7 +332,7 @@ impl<'a> Parts<'a> {
 /// Closed part that may contain other parts.
 struct Enclosure {
     bounds: Aabb,
-    /// Triangles of the part before it was turned.
+    /// Triangles of the part before they were turned.
     triangles: Vec<Triangle>,
     bvh: Option<Bvh>,
     is_turned: bool,

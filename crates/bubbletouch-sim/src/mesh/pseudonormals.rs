@@ -49,7 +49,7 @@ impl Pseudonormals {
         }
     }
 
-    /// Returns the pseudonormal of a face, edge or corner of a triangle. The vector points outwards and has any length.
+    /// Returns the pseudonormal of a face, edge or corner of a triangle. The vector points outwards; its length has no meaning.
     pub fn at(&self, triangle: usize, feature: Feature) -> DVec3 {
         match feature {
             Feature::Face => self.faces[triangle],

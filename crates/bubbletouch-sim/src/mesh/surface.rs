@@ -63,7 +63,8 @@ impl Surface {
         self.bvh.closest(point, within)
     }
 
-    /// Returns the outward normal of the mesh at a nearest point. The vector has any length; it is zero on faces too thin to have a normal.
+    /// Returns the outward normal of the mesh at a nearest point. The length of the vector has no meaning; the vector is zero on faces too thin to have a
+    /// normal.
     pub fn pseudonormal(&self, closest: &Closest) -> DVec3 {
         self.normals.at(closest.triangle, closest.feature)
     }

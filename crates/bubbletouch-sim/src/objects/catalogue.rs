@@ -87,7 +87,7 @@ impl Catalogue {
         Ok(Self { entries })
     }
 
-    /// Parses one set from the text of a catalogue file.
+    /// Reads one object set from the text of a catalogue file.
     ///
     /// # Errors
     /// If the text is invalid; errors begin with `place`, the name of the file.

@@ -52,7 +52,7 @@ impl Lathe {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Packs the solid with spheres: adds rings of balls until every point of the profile is covered all around.
+    /// Packs the solid with spheres: adds rings of balls until every point of the profile is covered at all angles about the axis.
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let mut uncovered = Uncovered::new(&self.outline);
         while let Some(ring) = self.next_ring(&uncovered, fit) {
@@ -141,7 +141,7 @@ impl Lathe {
         })
     }
 
-    /// Returns the interval of an edge that a ring of balls covers all around; `None` if there is none.
+    /// Returns the interval of an edge that a ring of balls covers at all angles about the axis; `None` if there is none.
     ///
     /// A ring has n balls of radius r with centres at the distance ρc from the axis and the height zc. Half-way between two balls the squared distance of the
     /// profile point (ρ, z) from their centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. The squared distance is quadratic along an edge, and the point

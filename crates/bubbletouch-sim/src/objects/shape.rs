@@ -58,7 +58,7 @@ pub enum Shape {
         /// Height of the tube along z.
         height: f64,
     },
-    /// Polygon rotated about z: cups, bowls, bottles.
+    /// Solid of revolution of a polygon about z, such as a cup, a bowl or a bottle.
     Lathe {
         /// Corners (distance from the axis, height z) in either direction; the outline is closed automatically.
         profile: Vec<DVec2>,
@@ -89,9 +89,9 @@ pub enum Shape {
 /// Names and units of dimensions in error messages.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Wording {
-    /// Field names, and lengths in metres, such as `height: -0.002 m`.
+    /// Messages with field names and lengths in metres, such as `height: -0.002 m`.
     Metres,
-    /// Keys of object files, and lengths in millimetres, such as `height_mm: -2`.
+    /// Messages with keys of object files and lengths in millimetres, such as `height_mm: -2`.
     MillimetreKeys,
 }
 

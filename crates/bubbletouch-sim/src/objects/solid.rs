@@ -35,7 +35,7 @@ pub struct Solid {
 /// subtracted shape ends in a part's surface. If smaller, rounding leaves such membranes; if larger, walls beside subtracted shapes become thinner.
 const SEAM: f64 = 4e-6;
 
-/// Basic form of a shape; five forms represent all shapes.
+/// Basic form that represents a shape; five basic forms represent all shapes.
 #[derive(Clone, Debug)]
 enum Kernel {
     Block(Block),
@@ -223,7 +223,7 @@ impl Solid {
         (-nearest(&self.parts, point)).min(nearest(&self.cuts, point) - growth)
     }
 
-    /// Returns the exact bounding box of the parts, ignoring cuts, metres.
+    /// Returns the exact bounding box of the parts, metres; subtracted shapes are ignored.
     pub fn bounds(&self) -> Aabb {
         let support = |direction: DVec3| {
             let supports = self.parts.iter().map(|part| part.support(direction));

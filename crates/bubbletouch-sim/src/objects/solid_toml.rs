@@ -56,7 +56,7 @@ enum ShapeName {
 }
 
 impl Solid {
-    /// Reads a union of parts where they are written, from the text of `[[part]]` tables with the keys of a [catalogue](super::Catalogue) file.
+    /// Reads a solid from the text of `[[part]]` tables, which have the keys of a [catalogue](super::Catalogue) file. The parts keep their written positions.
     ///
     /// # Errors
     /// If the text is invalid; errors begin with `place`.

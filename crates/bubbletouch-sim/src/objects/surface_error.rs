@@ -53,7 +53,7 @@ fn outermost_point(solid: &Solid, sphere: &Sphere) -> DVec3 {
     sphere.center + sphere.radius * gradient.normalize_or(DVec3::Z)
 }
 
-/// Returns the maximum, over the points, of the distance to the nearest sphere, metres.
+/// Returns the largest distance from one of the points to the nearest sphere, metres.
 ///
 /// The search for the sphere nearest to a point ends as soon as a sphere is nearer than the largest distance so far. Neighbours in the list are neighbours on
 /// the surface, so the sphere that ended the previous search is tested first.

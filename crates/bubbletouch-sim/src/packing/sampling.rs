@@ -44,7 +44,7 @@ pub(super) struct Effort {
     pub steps_a_ball: f64,
     /// Number of shifted copies per chosen ball that the next local search may choose instead.
     pub moves_a_ball: f64,
-    /// Number of optimisation passes over all cells.
+    /// Number of optimisation passes over all cells of the surface.
     pub n_passes: usize,
 }
 
@@ -127,7 +127,7 @@ pub(super) fn sample(target: &Target) -> Result<Sampling> {
     Ok(sampling)
 }
 
-/// Returns the approximate number of spheres of a packing.
+/// Returns the estimated number of spheres that a packing of the target needs.
 pub(super) fn estimated_spheres(target: &Target) -> f64 {
     let demand = Demand::new(target);
     demand.bent.min(demand.flat)

@@ -26,7 +26,7 @@ pub struct Coherence {
     pub n_invisible: usize,
 }
 
-/// Extreme squared singular values of a random subset of the measured atoms, scaled so that the mean over all atoms is 1.
+/// Extreme squared singular values of a random subset of the measured atoms, scaled so that the mean squared norm of all measured atoms is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremes {
     /// Smallest squared singular value of the subset, 0 or more.

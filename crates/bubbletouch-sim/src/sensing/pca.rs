@@ -28,7 +28,7 @@ pub(super) struct Pca {
     pub mean: Array1<f64>,
     /// Orthonormal components, shape (n_components, n_taxels), in order of decreasing variance; the largest entry of each component is positive.
     pub components: Array2<f64>,
-    /// Mean square of the frames along each component (divisor: number of frames).
+    /// Variance of the training frames along each component (divisor: number of frames).
     pub variance: Array1<f64>,
     /// Mean square distance of the frames from their mean, summed over all taxels.
     pub total_variance: f64,

@@ -45,7 +45,7 @@ impl Wavelet {
         ))
     }
 
-    /// Computes the wavelet pyramid of a frame in place: averages and details. Each level halves every side longer than one.
+    /// Computes the wavelet pyramid of a frame in place: averages and details. Each level of the pyramid halves every side that is longer than one taxel.
     pub(super) fn analyse(&self, mut frame: ArrayViewMut2<f64>) {
         for (ny, nx) in levels(frame.dim()) {
             let mut corner = frame.slice_mut(s![..ny, ..nx]);

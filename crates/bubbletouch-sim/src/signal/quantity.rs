@@ -37,7 +37,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the name of the quantity in charts.
+    /// Returns the name of the quantity in charts: `deflection` or `force`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Deflection => "deflection",

@@ -126,8 +126,8 @@ impl BodyState {
         })
     }
 
-    /// Measures the deflections of the last step: [`Columns::measure_touched`] of the [touched](Self::touched) taxels. The loop is compiled with this
-    /// crate, also for callers that are compiled without optimisation.
+    /// Computes the measurements of the last deflections, as [`Columns::measure_touched`] does for the [touched](Self::touched) taxels. The loop is compiled
+    /// with this crate, also for callers that are compiled without optimisation.
     ///
     /// # Panics
     /// If a touched taxel has no column, or `measurements` does not have length m.

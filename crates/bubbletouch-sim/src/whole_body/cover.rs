@@ -56,7 +56,7 @@ struct On<'a> {
 
 impl CoveredRobot {
     /// Covers the collision cylinders, capsules, spheres and boxes of a robot with equal patches of about `side` by `side` metres. Taxels are about `pitch`
-    /// metres apart, also across seams; on boxes 0.5 to 1.5 pitches across seams.
+    /// metres apart, also across seams; on boxes, taxels are 0.5 to 1.5 pitches apart across seams.
     ///
     /// - The side of a cylinder is divided around and along. The name of a patch contains the link, the ring from its lower end, and the position around it
     ///   from +x, both from 1: `trunk 2.3`. Names for the link's second shape begin with `trunk'`.

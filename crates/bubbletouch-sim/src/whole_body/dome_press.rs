@@ -76,7 +76,8 @@ fn half_width(least: f64, around: f64) -> Option<f64> {
     Some((least / around).min(1.0).acos() + ACOS_ROUNDING)
 }
 
-/// Returns the taxels of a ring within `half_width` radians of an angle. There are up to three ranges if the ring is closed.
+/// Returns the taxels of a ring within `half_width` radians of an angle, as ranges of indices in the ring. There are up to three ranges if the ring is
+/// closed.
 fn covered(ring: &DomeRing, angle: f64, half_width: f64) -> [Range<usize>; 3] {
     [-TAU, 0.0, TAU].map(|turn| {
         let middle = (angle + turn - ring.start) / ring.step;

@@ -65,7 +65,7 @@ struct Descent<'a> {
     levels: &'a [Vec<Balls>],
     center: DVec3,
     reach: f64,
-    /// Present level of the tree of bounding balls.
+    /// Level of the tree of bounding balls that the iterator has reached.
     level: usize,
     /// For each level down to the present one, the index of the visited block and its balls that are still to be visited.
     blocks: [(usize, LanesBelow); MAX_LEVELS],

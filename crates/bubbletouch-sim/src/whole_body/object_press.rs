@@ -20,7 +20,7 @@ pub(super) trait Pushed {
 }
 
 impl PatchState {
-    /// Relaxes the deflected taxels of a patch for `dt` seconds, then pushes them by objects at poses in the patch frame.
+    /// Relaxes the deflected taxels of a patch for `dt` seconds, then raises the deflections by objects at poses in the patch frame.
     pub fn step<'a>(
         &mut self,
         patch: &BodyPatch,

@@ -24,9 +24,9 @@ pub(super) struct PatchState {
     /// Deflected taxels before the last step, stored only with dampers, whose forces depend on them.
     before: Vec<(u32, f64)>,
     n_saturated: usize,
-    /// Number of spheres for which rows, rings or tiles were evaluated in the last step.
+    /// Number of spheres for which rows, rings or tiles of taxels were evaluated in the last time step.
     pub n_evaluated: usize,
-    /// Number of spheres near the patch that were excluded before evaluating rows, rings or tiles.
+    /// Number of spheres near the patch that were excluded without evaluating rows, rings or tiles of taxels.
     pub n_rejected: usize,
     /// Scratch memory of a search: a bound for each cluster of an object's spheres, negative if a sphere of the cluster may touch the patch.
     pub gaps: Vec<f64>,

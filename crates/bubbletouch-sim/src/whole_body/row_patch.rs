@@ -100,12 +100,13 @@ impl RowPatch {
         &self.lines
     }
 
-    /// Returns the bundles of columns.
+    /// Returns the bundles of neighbouring columns of taxels.
     pub fn bundles(&self) -> &[Bundle] {
         &self.bundles
     }
 
-    /// Returns circles around the bundles of columns in the plane across the rows, stored as balls with their centres at w = 0.
+    /// Returns bounding circles of the bundles of columns in the plane perpendicular to the rows. The circles are stored as balls with their centres at w =
+    /// 0.
     pub fn circles(&self) -> &[Balls] {
         &self.circles
     }

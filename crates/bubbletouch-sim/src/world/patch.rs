@@ -57,7 +57,7 @@ impl Travelling {
 }
 
 impl Patch {
-    /// Creates a patch and checks its taxels. The search tree is built at the first press, which takes about a microsecond per taxel.
+    /// Creates a patch and checks the properties of its taxels. The search tree is built at the first press, which takes about a microsecond per taxel.
     ///
     /// # Errors
     /// If a property of a taxel is out of its range, or the numbers of taxel properties and rest centres differ. The message begins with the patch's name and

@@ -49,7 +49,7 @@ pub enum RestPoses {
 }
 
 impl RestPoses {
-    /// Returns the resting poses of one object that this choice selects.
+    /// Returns the resting poses of an object that this choice selects.
     pub fn poses(self, object: &Model) -> Vec<RestPose> {
         match self {
             Self::AsModelled => vec![as_modelled(object)],
@@ -129,7 +129,7 @@ impl TouchAxis {
     }
 }
 
-/// Rules for choosing the touches of an object, applied by `touches`.
+/// Rules for choosing the touches of an object, which the function `touches` applies.
 ///
 /// - No uniform spread, no `per_object`: every combination of resting poses and values; the first [`TouchAxis`] varies slowest.
 /// - No uniform spread, `per_object` given: this number of different combinations, drawn without replacement, all equally likely.
@@ -159,7 +159,7 @@ pub struct Placement {
 /// One touch of one object, given by resting pose, offsets, angles and depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Touch {
-    /// Index of the resting pose in the object's list of poses.
+    /// Index of the resting pose in the object's list of resting poses.
     pub rest: usize,
     /// Offset of the patch's axis at the height of the object's top, along table x and y, metres.
     pub offset: [f64; 2],

@@ -34,7 +34,7 @@ impl Shear {
 pub type Shears = PerTaxel<Shear>;
 
 impl Shears {
-    /// Checks that the shear springs fit a patch.
+    /// Returns an error unless there is one shear spring, or one per taxel of the patch, and each is valid.
     ///
     /// # Errors
     /// If a property is out of its range (the error names its taxel, from 1), or the numbers of shear springs and taxels differ.

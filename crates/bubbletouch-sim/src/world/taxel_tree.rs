@@ -229,7 +229,7 @@ impl Leaf {
         DVec3::new(of[0][k], of[1][k], of[2][k])
     }
 
-    /// Returns the taxels of the leaf one by one.
+    /// Returns an iterator over the taxels of the leaf, without unused entries.
     fn taxels(&self) -> impl Iterator<Item = PlacedTaxel> {
         let numbers = self.numbers.iter().enumerate();
         let numbers = numbers.take_while(|(_, number)| **number != NONE);

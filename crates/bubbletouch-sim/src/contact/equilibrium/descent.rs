@@ -19,8 +19,8 @@ const MAX_STEPS: usize = 4000;
 const MAX_ROUNDS: usize = 40;
 /// Imbalance (relative residual of force and torque) at which the iteration stops: a tenth of the largest accepted imbalance.
 const TARGET_IMBALANCE: f64 = 1e-7;
-/// Largest imbalance (relative residual of force and torque) of a pose that is reported as at rest. The value is needed for steep flanks, near which no pose is
-/// better.
+/// Largest imbalance (relative residual of force and torque) of a pose that is reported as at rest. Near steep surfaces of objects, no pose has a smaller
+/// imbalance.
 const ACCEPTED_IMBALANCE: f64 = 1e-6;
 /// Complementarity residual (relative violation of the contact constraints) at which the iteration stops.
 const TARGET_RESIDUAL: f64 = 1e-7;

@@ -20,7 +20,7 @@ pub(super) struct Loose {
 }
 
 impl Loose {
-    /// Returns all unsupported groups among `n_bodies` bodies with the given contacts, and the unions of such groups.
+    /// Returns all groups of bodies that no skin or obstacle supports, and the unions of such groups. `pairs` are the contacts of the `n_bodies` bodies.
     pub fn all(pairs: &Pairs, n_bodies: usize) -> Vec<Self> {
         let islands = pairs.islands(n_bodies);
         let mut all = vec![Self::default(); n_bodies];

@@ -49,7 +49,7 @@ pub struct PlacedSkin<'a> {
     pub patch: &'a Patch,
     /// Pose of the patch in the world.
     pub world_from_patch: Pose,
-    /// Deflection of each taxel due to fixed or imposed objects, metres; empty if there are none.
+    /// Deflection of each taxel due to objects that are fixed or move along a given path, metres; empty if there are none.
     pub pushed: &'a [f64],
     /// Deflection of each taxel at the end of the previous time step, metres, and the length of the present step, seconds, for the dampers. `None` if there
     /// are no dampers or the taxels have relaxed.

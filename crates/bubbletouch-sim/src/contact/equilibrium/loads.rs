@@ -28,19 +28,19 @@ pub(super) struct Multipliers {
 /// Parameters that smooth the kinks of the energy, where one sphere takes over a taxel from another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smoothness {
-    /// Smoothing width of soft taxels, metres.
+    /// Width of the smoothing between spheres that push one taxel equally far, for soft taxels, metres.
     pub smoothing: f64,
-    /// Smoothing width of stiff taxels, given as a force (width times stiffness) relative to the weight. A width that is small for a soft taxel can exceed
-    /// the deflection of a stiff taxel.
+    /// Width of the smoothing between spheres that push one taxel equally far, for stiff taxels, given as a force (width times stiffness) relative to the
+    /// weight. A width that is small for a soft taxel can exceed the deflection of a stiff taxel.
     pub load: f64,
-    /// Minimum smoothing width, metres; below this value, rounding of deflections would decide ties.
+    /// Minimum width of the smoothing, metres; below this value, rounding of deflections would decide ties between spheres.
     pub least: f64,
     /// Stiffness in the augmented Lagrangian of the hard limit at the end of each taxel's stroke, N/m.
     pub stop_stiffness: f64,
 }
 
 impl Smoothness {
-    /// Returns the smoothing width of a taxel, metres.
+    /// Returns the width of the smoothing between spheres that push a taxel equally far, metres.
     fn for_group(&self, group: &Group) -> f64 {
         let of_load = self.load * group.weight / group.stiffness;
         self.smoothing.min(of_load).max(self.least)
@@ -60,7 +60,7 @@ pub(super) struct Load {
     pub n_sharing: usize,
     /// Largest deflection that contact with a sphere requires, metres; negative if nothing touches the taxel.
     pub deepest: f64,
-    /// Smoothing width of the taxel, metres.
+    /// Width of the smoothing between spheres that push the taxel equally far, metres.
     pub smoothing: f64,
     /// Force of the hard limit at the end of the taxel's stroke, newtons.
     pub stop: f64,

@@ -19,7 +19,7 @@ pub(super) enum Key {
     Rigid(Part, Touched),
 }
 
-/// Value that stands for the sphere of a pair if the deflection of the taxel is due to fixed or imposed objects.
+/// Value that stands for the sphere of a pair if the deflection of the taxel is due to objects that are fixed or move along a given path.
 pub(super) const OTHERS: Part = (u32::MAX, u32::MAX);
 
 /// Sphere of a free object, with the taxel or rigid counterpart that it pushes.
@@ -39,7 +39,7 @@ pub(super) struct Pair {
 pub(super) enum Kind {
     Taxel(Reach),
     Rigid(Touching),
-    /// The deflection does not depend on free bodies, because fixed or imposed objects push the taxel.
+    /// The deflection does not depend on free bodies, because objects that are fixed or move along a given path push the taxel.
     Fixed,
 }
 

@@ -21,7 +21,7 @@ pub(super) struct Group {
     pub stiffness: f64,
     /// Remaining stroke of the taxel from its relaxed deflection, metres; 0 for a rigid contact.
     pub stroke: f64,
-    /// Deflection of the taxel due to fixed or imposed objects, metres.
+    /// Deflection of the taxel due to objects that are fixed or move along a given path, metres.
     pub others: f64,
     /// Weight of the lightest body that pushes the taxel, newtons.
     pub weight: f64,
@@ -184,7 +184,7 @@ impl Pairs {
         }
     }
 
-    /// Adds the deflections due to fixed or imposed objects to those taxels that a free object also pushes.
+    /// Adds deflections due to objects that are fixed or move along a given path. The deflections are added only for taxels that a free object also pushes.
     fn gather_others(&mut self, number: u32, skin: &PlacedSkin) {
         let deepest = self.deepest.iter_mut().zip(skin.pushed);
         for (taxel, (deepest, others)) in deepest.enumerate() {

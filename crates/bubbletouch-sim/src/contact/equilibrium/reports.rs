@@ -11,7 +11,7 @@ use glam::DVec3;
 /// Load between one taxel and one sphere of a free object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaxelLoad {
-    /// Index of the skin in the list of skins of the ground.
+    /// Index of the skin in the list of skins that support the objects.
     pub skin: usize,
     /// Index of the taxel in its layout.
     pub taxel: usize,

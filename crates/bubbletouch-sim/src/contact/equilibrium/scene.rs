@@ -17,7 +17,7 @@ pub(super) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Returns the largest norm of the energy gradient of a body, divided by the body's weight.
+    /// Returns the largest ratio, over all bodies, between the norm of a body's energy gradient and the body's weight.
     pub fn slope(&self, gradient: &[f64]) -> f64 {
         let each = self.bodies.iter().zip(gradient.chunks(6));
         each.map(|(body, part)| norm(part) / body.weight.length())

@@ -19,7 +19,7 @@ pub enum Outcome {
     AtRest,
     /// The object left all patches, or no patch supports it.
     Escaped {
-        /// Direction from the start position, unit vector in the world; perpendicular to gravity unless the object fell straight down.
+        /// Direction of the motion from the start position, unit vector in the world; perpendicular to gravity unless the object fell straight down.
         direction: DVec3,
     },
     /// The solver reached its step limit for this object and the objects that touch it. The other objects are at rest without them.
@@ -37,8 +37,7 @@ pub struct Equilibrium {
     pub force: DVec3,
     /// Torque of the contact forces about the object's centre of mass, N·m, in the world.
     pub torque: DVec3,
-    /// Largest of the force residual divided by the weight and the torque residual divided by weight times radius of the object;
-    /// dimensionless.
+    /// Larger of two ratios, dimensionless: force residual to weight, and torque residual to weight times radius of the object.
     pub imbalance: f64,
     /// Number of taxels that the object presses.
     pub n_touched: usize,

@@ -25,7 +25,7 @@ pub struct TangentialSpring {
 /// State of a tangential spring in equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialSpringState {
-    /// Index of the skin in the list of skins of the ground.
+    /// Index of the skin in the list of skins that support the objects.
     pub skin: usize,
     /// Index of the taxel in its layout.
     pub taxel: usize,

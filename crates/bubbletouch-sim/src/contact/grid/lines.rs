@@ -21,7 +21,7 @@ pub struct GridLines {
 pub struct Lines {
     /// Positions of the lines, metres.
     pub positions: Vec<f64>,
-    /// Number of lines per metre.
+    /// Number of lines per metre, the reciprocal of their distance.
     density: f64,
 }
 

@@ -48,7 +48,7 @@ impl<'a> Approach<'a> {
         }
     }
 
-    /// Returns the copy of the taxels whose axes are the direction of travel.
+    /// Returns the copy of the patch's taxels whose axes are replaced by the direction of travel.
     fn travelling(&self) -> &Travelling {
         if self.direction == DVec3::Z {
             return self.patch.ahead();

@@ -39,8 +39,8 @@ pub(crate) const fn about(words: &'static str, draw: Draw) -> EnsembleAbout {
     }
 }
 
-/// Returns a matrix of m rows of n random numbers of variance 1, divided by √n. Row r depends only on child r of the stream, so a larger m keeps the rows of
-/// a smaller m.
+/// Returns a matrix of m rows of n random numbers of variance 1, divided by √n. Row r depends only on child r of the random stream, so a larger m keeps the
+/// rows of a smaller m.
 pub(crate) fn by_rows(
     m: usize,
     n: usize,

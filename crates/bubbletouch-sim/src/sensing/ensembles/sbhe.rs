@@ -23,7 +23,7 @@ type Lanes = [f64; LANES];
 pub(crate) struct ScrambledHadamard {
     n_taxels: usize,
     block: usize,
-    /// Index of the taxel at each position before the transform; indices of at least the number of taxels denote added zeros.
+    /// Index of the taxel at each position before the transform; indices equal to or above the number of taxels denote added zeros.
     taxels: Vec<usize>,
     /// Pairs of indices, ascending: a coefficient of the Hadamard transform, and the measurement that uses this coefficient.
     picks: Vec<(usize, usize)>,

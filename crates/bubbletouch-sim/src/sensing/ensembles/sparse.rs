@@ -15,7 +15,7 @@ const LANES: usize = 8;
 /// Smaller arrays draw every entry for compatibility with earlier results.
 const BY_GAPS_FROM: usize = 1 << 17;
 
-/// Matrix Φ with entries ±√(s/n) at a density of 1/s, s = √n.
+/// Matrix Φ for n taxels with nonzero entries ±√(s/n) at a density of 1/s, s = √n.
 #[derive(Clone, Debug)]
 pub(crate) struct VerySparse {
     n_taxels: usize,
@@ -40,7 +40,7 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
 };
 
 impl VerySparse {
-    /// Draws a matrix of m rows for n taxels. Row r depends only on child r of the stream, so a larger m keeps the rows of a smaller m.
+    /// Draws a matrix of m rows for n taxels. Row r depends only on child r of the random stream, so a larger m keeps the rows of a smaller m.
     pub(crate) fn new(m: usize, n: usize, stream: &Seed) -> Self {
         let s = (n as f64).sqrt();
         let rows = (0..m as u64).map(|row| Row::draw(n, 1.0 / s, &stream.numbered(row)));

@@ -102,7 +102,8 @@ impl Posture {
         hand
     }
 
-    /// Returns the height of the anchor point above the skin at first contact of the open hand, metres; `surface` is the radius of the arm.
+    /// Returns the height of the hand's anchor point ([`Posture::anchor`]) above the skin at first contact of the open hand, metres; `surface` is the radius
+    /// of the arm.
     pub fn first_contact(&self, surface: f64) -> f64 {
         let hand = spheres(&self.open);
         let heights = hand
@@ -112,7 +113,8 @@ impl Posture {
         heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Returns the height of the anchor point at which a ball of the hand touches the arm, metres; `None` if the ball passes beside the arm.
+    /// Returns the height of the hand's anchor point ([`Posture::anchor`]) at which a ball of the hand touches the arm, metres; `None` if the ball passes
+    /// beside the arm.
     fn touches_at(&self, ball: &Sphere, surface: f64) -> Option<f64> {
         let at = self.place_from_hand * (ball.center - self.anchor);
         let reach = ball.radius + surface;
@@ -120,13 +122,15 @@ impl Posture {
         (square > 0.0).then(|| square.sqrt() - at.z - surface)
     }
 
-    /// Returns the depth to which a ball of the hand penetrates the arm if the anchor point is at `height`, metres; negative if the ball is outside.
+    /// Returns the depth to which a ball of the hand penetrates the arm, metres; negative if the ball is outside. `height` is the height of the hand's anchor
+    /// point ([`Posture::anchor`]).
     fn sunk(&self, ball: Sphere, surface: f64, height: f64) -> f64 {
         let at = self.place_from_hand * (ball.center - self.anchor);
         ball.radius + surface - at.y.hypot(at.z + height + surface)
     }
 
-    /// Returns the pose `patch_from_hand` for which the anchor point is above the point (along, around) of the arm, `radius` metres from the arm's axis.
+    /// Returns the pose `patch_from_hand` for which the hand's anchor point ([`Posture::anchor`]) is above the point (along, around) of the arm, `radius`
+    /// metres from the arm's axis.
     pub fn pose(&self, (along, around): (f64, f64), radius: f64) -> Pose {
         // Frame of the touched place at +x (its x is −z of the arm, y is unchanged, z is the arm's x), rotated around the arm.
         let rotation = DQuat::from_rotation_z(around) * DQuat::from_rotation_y(FRAC_PI_2);

@@ -40,7 +40,7 @@ pub struct Layout {
 pub(crate) enum Rule {
     /// Rows and columns in a plane.
     Grid(Grid),
-    /// One row repeated along a line.
+    /// One row of taxels repeated along a line.
     Rows(Extrusion),
     /// Rings on a sphere.
     Dome(Dome),

@@ -4,7 +4,7 @@ use super::curve::{Interpolation, Moment};
 use super::slopes::monotone_slope;
 use glam::{DQuat, DVec3};
 
-/// Rotation as a function of time. Between two waypoints, with s from 0 to 1,
+/// Rotation as a smooth function of time, given by pieces between waypoints. Between two waypoints, with s from 0 to 1,
 ///
 /// `R(s) = R₀ exp(ω₁ b₁(s)) exp(ω₂ b₂(s)) exp(ω₃ b₃(s))`, `b = (1 − (1−s)³, 3s² − 2s³, s³)`
 ///

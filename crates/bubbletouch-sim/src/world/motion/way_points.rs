@@ -8,7 +8,7 @@ use ndarray::Array2;
 pub(super) struct WayPoints {
     /// Times of the waypoints, seconds.
     pub times: Vec<f64>,
-    /// Values, one row per waypoint.
+    /// Values of all coordinates, one row per waypoint.
     pub values: Array2<f64>,
     /// Origin of the waypoints, for error messages.
     pub origin: Origin,
