@@ -14,7 +14,7 @@ pub const MAX_VALUES: usize = 10_000;
 /// Maximum number of configurations in a study, all of which are created before the first one runs.
 const MAX_CONFIGURATIONS: f64 = 1e6;
 
-/// Checks of the keys and values in one study file.
+/// Checker of the keys and values in one study file.
 pub struct Check<'a> {
     /// Name of the study file in error messages.
     pub place: &'a str,

@@ -14,7 +14,7 @@ struct ColumnSelector {
     /// Default column name, used if no name is given and at least one table has this column. Otherwise, the first column with the role is used.
     usual: &'static str,
     has_role: fn(Role) -> bool,
-    /// Column names that are valid for all kinds of studies, each with the columns of single kinds that it stands for.
+    /// Names that select a column in every kind of study, each with the actual column names in the different kinds.
     shared: &'static [(&'static str, &'static [&'static str])],
 }
 
@@ -77,7 +77,7 @@ pub struct Candidate {
     pub cost: f64,
 }
 
-/// Advice for one condition: the selected choice and alternatives.
+/// Advice for one condition: the advised choice and its alternatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advice {
     /// Advised choice: the cheapest candidate with a sufficient value, or the best candidate within the budget.

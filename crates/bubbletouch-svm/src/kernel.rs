@@ -49,7 +49,7 @@ pub enum Kernel {
         gamma: Gamma,
         /// Constant c₀ ≥ 0 (a negative constant makes the dual problem non-convex).
         coef0: f64,
-        /// Degree d ≥ 1.
+        /// Degree d of the polynomial, at least 1.
         degree: u32,
     },
 }

@@ -13,7 +13,7 @@ pub const MAX_COUNT: f64 = 1e8;
 pub struct Parameter {
     /// Key in `[recognition]`. The option of `bubbletouch classify` has hyphens instead of underscores.
     pub key: &'static str,
-    /// Meaning of the parameter in words, such as `number of neighbours`, without article.
+    /// Meaning of the parameter in words, such as `constant c₀ of the polynomial kernel`.
     pub words: &'static str,
     /// Whether the parameter allows only integers.
     pub is_integer: bool,
@@ -30,7 +30,7 @@ pub struct Parameter {
 pub enum DefaultValue {
     /// A number.
     Number(f64),
-    /// Rule that determines the value from the training data: its name in files, and its meaning in words.
+    /// Rule of the classifier instead of a number: the name of the rule in files, and its meaning in words.
     Rule(&'static str, &'static str),
 }
 

@@ -275,8 +275,8 @@ mod tests {
         (features, (0..60).map(|i| i * i / 7 % 3).collect())
     }
 
-    /// Labels predicted by a shallow tree equal those of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally
-    /// good, so scikit-learn's tree does not depend on its `random_state`.
+    /// Labels predicted by a shallow tree equal the labels of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are
+    /// equally good, so scikit-learn's tree does not depend on its `random_state`.
     #[test]
     fn a_shallow_tree_is_scikit_learns() {
         let (features, label) = waves();

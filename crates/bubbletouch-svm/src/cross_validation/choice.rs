@@ -214,7 +214,7 @@ fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
     }
 }
 
-/// Returns the number of correctly classified validation rows per kernel and C (kernels.len() × path.len()). Also returns the number of solver runs that
+/// For each kernel and C, returns the number of correctly classified validation rows (kernels.len() × path.len()). Also returns the number of solver runs that
 /// stopped at the iteration cap.
 fn on_one_matrix(
     params: &SvmParams,

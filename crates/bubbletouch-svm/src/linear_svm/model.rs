@@ -10,7 +10,7 @@ use crate::linear_svm::coordinate_descent::{self, Rows};
 use crate::linear_svm::params::LinearSvmParams;
 use crate::streams::Streams;
 
-/// Convergence of the solver on one binary problem.
+/// Result of the solver on one binary problem: objectives, number of passes, and whether it stopped early.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Convergence {
     /// Value of the primal objective, computed from the weights: an upper bound of the optimum.

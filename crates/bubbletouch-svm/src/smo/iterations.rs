@@ -7,7 +7,8 @@ use crate::linalg::scalar::Scalar;
 
 /// Number of iterations after which the solver checks whether variables can be omitted (shrinking).
 pub(super) const SHRINK_PERIOD: u64 = 1000;
-/// Minimum number of rows for shrinking (solving a submatrix without settled variables). With fewer rows, copying the submatrix takes longer than it saves.
+/// Minimum number of rows for shrinking (omitting variables that probably stay at their bounds). With fewer rows, copying the submatrix takes longer than it
+/// saves.
 const SHRINK_ROWS: usize = 400;
 /// Maximum fraction of variables that remain after shrinking; with a larger fraction, copying the submatrix is not worthwhile.
 const SHRINK_SHARE: f64 = 0.7;
