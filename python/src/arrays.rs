@@ -85,7 +85,7 @@ pub fn points(place: &str, given: &Bound<PyAny>) -> PyResult<Vec<DVec3>> {
     })
 }
 
-/// Returns n numbers: those of an array of n numbers, or a single number repeated n times.
+/// Returns n numbers from an array of n numbers, or from a single number that is repeated n times.
 ///
 /// # Errors
 /// If the shape is wrong.

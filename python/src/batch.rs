@@ -12,7 +12,7 @@ const MAX_AT_ONCE: usize = 16;
 /// Minimum number of items of a batch per thread. For fewer items, waking a thread (5 to 50 µs) takes too long.
 const LEAST_PER_THREAD: usize = 4;
 
-/// Returns the number of threads that a Python call requests; `None` stands for all threads of the pool.
+/// Returns the number of threads that a Python call requests; `None` means all threads of the pool.
 ///
 /// # Errors
 /// If the number is zero or less.

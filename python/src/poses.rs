@@ -8,8 +8,8 @@ use ndarray::ArrayView1;
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Tolerance for each entry of R Rᵀ − 1, where R is a rotation matrix, and for the deviation of a quaternion's length from 1. It accepts numbers with few
-/// digits and float32 rounding.
+/// Tolerance for each entry of R Rᵀ − 1, where R is a rotation matrix, and for the deviation of a quaternion's length from 1. The tolerance accepts poses
+/// written with few digits or rounded to float32.
 const ROUNDING: f64 = 1e-3;
 const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
 

@@ -102,7 +102,7 @@ fn data_of(features: &Bound<PyAny>, labels: &Bound<PyAny>) -> PyResult<Dataset> 
 #[pyo3(from_item_all)]
 struct SvmArguments {
     kernel: String,
-    /// Kernel parameter γ; `None` stands for the default 'scale'.
+    /// Kernel parameter γ; `None` means the default 'scale'.
     gamma: Option<f64>,
     coef0: f64,
     degree: u32,

@@ -21,7 +21,7 @@ pub(super) struct DeflectionError {
 }
 
 impl DeflectionError {
-    /// Computes the mean and the 95th percentile of the errors of single taxels, given in metres. Both are 0 if there are no taxels.
+    /// Computes the mean and the 95th percentile of the errors of single taxels, given in metres. If there are no taxels, both statistics are 0.
     pub fn new(mut errors: Vec<f64>) -> Self {
         Self {
             mean_mm: in_mm(mean(&errors)),
@@ -108,7 +108,7 @@ impl Truth {
         DeflectionError::new(self.errors(model, offset))
     }
 
-    /// Returns the deflection error of a model if each touch has the same depth past first contact on the model as on the mesh. A study that knows only the
+    /// Returns the deflection error of a model if each touch has the same depth past first contact on the model as on the mesh. A study that contains only the
     /// model makes this error.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));

@@ -82,8 +82,8 @@ impl ReconstructionStudy {
     }
 }
 
-/// Returns two table rows to show for a noise level: the best configuration whose m is nearest to a quarter of the taxels, and the best one with the smallest
-/// m, where m is the number of measurements.
+/// For a noise level, returns two table rows to show. One is the best configuration whose number of measurements is nearest to a quarter of the taxels. The
+/// other is the best configuration with the fewest measurements.
 fn shown_rows(configurations: &Table, level: f64) -> Vec<usize> {
     let of_level: Vec<usize> = (0..configurations.n_rows)
         .filter(|&row| configurations.number("noise_std", row) == level)

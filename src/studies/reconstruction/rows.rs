@@ -70,8 +70,8 @@ pub struct ReconstructionScore {
     error_low: f64 => Note "95 % interval over touches, lower end": Log;
     /// Upper end of the 95 % interval of `error`, which covers its variation over touches.
     error_high: f64 => Note "95 % interval over touches, upper end": Log;
-    /// Relative error √(Σ‖y − x‖² / Σ‖x‖²) of the noisy frames y with respect to the clean frames x, dimensionless: the error if all taxels are read without
-    /// compression.
+    /// Relative error √(Σ‖y − x‖² / Σ‖x‖²) of the noisy frames y with respect to the clean frames x, dimensionless. This is the error if all taxels are read
+    /// without compression.
     full_sampling_error: f64 => Note: Log;
     /// Signal-to-noise ratio of the reconstructed frames, −20 log₁₀ `error`, dB.
     snr_db: f64 => Value(More) "SNR" in "dB": Linear;
@@ -146,8 +146,8 @@ pub struct EnsembleStatistics {
     /// Median deviation over all drawn sets of atoms (supports). The deviation is max(1 − σ²_min, σ²_max − 1) for the smallest and largest singular value of
     /// the matrix of a set's measured atoms.
     deviation_median: f64 => Value(Less) "median deviation": Linear;
-    /// Largest deviation max(1 − σ²_min, σ²_max − 1) over all drawn sets of atoms, where σ_min and σ_max are singular values of a set's measured atoms. It is a
-    /// lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
+    /// Largest deviation max(1 − σ²_min, σ²_max − 1) over all drawn sets of atoms, where σ_min and σ_max are singular values of a set's measured atoms. The
+    /// value is a lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
 

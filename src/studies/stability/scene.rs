@@ -117,8 +117,8 @@ impl TestBed {
         inwards.map(wall).into()
     }
 
-    /// Returns the dynamic system for methods that step through time: taxels and balls. It contains the taxels within `reach` metres below the first ball, and
-    /// the balls that are stacked on it.
+    /// Returns the dynamic system for methods that step through time: taxels and balls. The system contains the taxels within `reach` metres below the first
+    /// ball, and the balls that are stacked on it.
     fn system(
         &self,
         configuration: &StabilityConfiguration,

@@ -73,8 +73,8 @@ pub enum StabilityScene {
     /// A ball has an imposed motion: from 2 mm above the array, at 0.5 m/s, to half the stroke, a pause, and back at the same speed. The damping of a taxel is
     /// 0.508 of critical, as in SkinSim.
     Press,
-    /// A ball that can only move vertically is released as in `rest`. The dampers are those of SkinSim: the ratio of damping to stiffness is c / k = 0.13 /
-    /// 16.37 s.
+    /// A ball that can only move vertically is released as in `rest`. The taxels have the dampers of SkinSim, with a ratio of damping to stiffness of c / k =
+    /// 0.13 / 16.37 s.
     Plunger,
     /// Two equal balls are stacked in a smooth square tube of their width and released as in `rest`. `object_mass_kg` is the mass of each ball.
     StackOfTwo,

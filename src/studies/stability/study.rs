@@ -86,7 +86,7 @@ impl Study for StabilityPlan {
         }
     }
 
-    /// Returns all work items. They are named by their settings, because the list of configurations depends on the features of the build.
+    /// Returns all work items. Work items are named by their settings, because the list of configurations depends on the features of the build.
     fn work_items(&self) -> Vec<WorkItem> {
         let items = self.configurations.iter().enumerate();
         let items = items.map(|(group, (configuration, taxel))| {

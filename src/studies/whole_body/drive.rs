@@ -8,7 +8,7 @@ use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
 use crate::world::Oscillation;
 use glam::DVec3;
 
-/// Time step after which a damped taxel without contact has returned to its rest position, seconds. It is longer than any relaxation.
+/// Time step after which a damped taxel without contact has returned to its rest position, seconds. The value is longer than any relaxation.
 pub(super) const FORGOTTEN: f64 = 1e9;
 /// Distance that the object moves between two tests for contact in the search for the first contact, metres. Bisection then refines the contact to
 /// `SEARCH_END`.

@@ -152,8 +152,8 @@ impl Curve {
         }
     }
 
-    /// Returns the condition's value at which half of the accuracy above chance is lost, and both ends of its interval. `None` stands for a value beyond the
-    /// last one.
+    /// Returns the condition's value at which half of the accuracy above chance is lost, and both ends of its interval. A result is `None` if it lies beyond
+    /// the last value of the condition.
     fn half(&self, direction: Direction, seed: &Seed) -> [Option<f64>; 3] {
         let places: Vec<f64> = self.values.iter().map(|&value| self.place(value)).collect();
         let outwards = self.outwards(direction);

@@ -58,7 +58,7 @@ impl HumanTouches {
         })
     }
 
-    /// Returns the touches of one kind; `label` is the number of the kind.
+    /// Returns all touches of a kind, given by its number `label`.
     pub fn with_label(&self, label: usize) -> &[RecordedTouch] {
         &self.touches[label * self.spec.per_kind..][..self.spec.per_kind]
     }

@@ -208,8 +208,8 @@ fn read_channel(
     }
 }
 
-/// Returns the deflection rate δ̇ of every taxel, m/s. It is the approach speed if the object pushes the taxel and the taxel is below its stroke, otherwise 0.
-/// Returns `None` if the press is at rest.
+/// Returns the deflection rate δ̇ of every taxel, m/s. The rate of a taxel is the approach speed if the object pushes the taxel and its deflection is below the
+/// stroke, otherwise 0. Returns `None` if the press is at rest.
 pub fn rates_of<'a>(
     frame: &[f64],
     taxel: &Taxel,

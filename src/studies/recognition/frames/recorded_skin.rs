@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 pub enum UntouchedFrames {
     /// The recording does not state in which frames nothing touches the skin.
     None,
-    /// Separate file of frames in which nothing touches the skin. They are recorded at even intervals over the session of the main file, in order of time.
+    /// Separate file of frames in which nothing touches the skin. The untouched frames are recorded at even intervals over the session of the main file, in
+    /// order of time.
     File(PathBuf),
     /// Numbers of the untouched frames in the main file, as ranges.
     Among(Vec<Range<usize>>),

@@ -22,8 +22,8 @@ pub fn simulate_array(
 
 /// Presses one array on every object, touch by touch; the result does not depend on the number of threads.
 ///
-/// A touch to depth d is read as F = `n_frames` frames, at the depths d/F, 2d/F, …, d; if the array slides, at F points of its path. Each frame is simulated as
-/// a separate touch, because a taxel at rest has no memory.
+/// A touch to depth d consists of F = `n_frames` frames, read at the depths d/F, 2d/F, …, d. If the array slides, the frames are read at F points of its path.
+/// Each frame is simulated as a separate touch, because a taxel at rest has no memory.
 pub(crate) fn press_objects(
     touched: &[TouchedObject],
     (array, n_frames): (&TaxelArray, usize),

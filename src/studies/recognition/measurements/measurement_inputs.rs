@@ -64,8 +64,8 @@ pub struct TestInputs<'a> {
 pub struct MeasuredTrial<'a> {
     /// Number of the trial, from 0.
     pub number: usize,
-    /// Split into training and test touches; `None` if the measurements do not depend on it. They depend on it if something is fitted to training touches, or
-    /// if test touches have another skin.
+    /// Split into training and test touches; `None` if the measurements do not depend on it. Measurements depend on the split if something is fitted to
+    /// training touches, or if test touches have another skin.
     pub split: Option<&'a Hashed<Split>>,
 }
 

@@ -25,8 +25,8 @@ pub struct MeasurementGroup {
 }
 
 impl MeasurementGroup {
-    /// Returns the configurations by family. The configurations of a family use the same rows of features. They differ only in the penalty C, the number of
-    /// touches per decision, and the choice of the next touch. Configurations with equal C are adjacent.
+    /// Returns the configurations by family. The configurations of a family use the same rows of features. Configurations of a family differ only in the
+    /// penalty C, the number of touches per decision, and the choice of the next touch. Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {
         let family = |configuration: &Configuration| {
             let (m, kind) = (configuration.measurements, configuration.classifier);

@@ -31,7 +31,7 @@ impl HumanTouchSpec {
         (self.n_frames() - 1) as f64 * self.interval()
     }
 
-    /// Returns a patch with the array bent around the arm: the columns of the array form rings, its rows run along the arm, and its middle is at +x.
+    /// Returns a patch with the array bent around the arm. The columns of the array form rings, its rows run along the arm, and its middle is at +x.
     ///
     /// # Errors
     /// If the array does not fit around the arm.

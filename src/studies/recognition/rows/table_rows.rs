@@ -97,7 +97,7 @@ pub struct ConfigurationScore {
     /// touches. Empty with fewer than five trials, splits or projections.
     #[serde(default)]
     bootstrap_low: Option<f64> => Note "mean over trials, lower end": Share;
-    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials. It is empty under the same conditions as `bootstrap_low`.
+    /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials. Empty under the conditions under which `bootstrap_low` is empty.
     #[serde(default)]
     bootstrap_high: Option<f64> => Note "mean over trials, upper end": Share;
     /// F1 score (harmonic mean of precision and recall), averaged over all objects and trials, 0 to 1.

@@ -75,8 +75,8 @@ pub struct TouchesSpec {
 }
 
 impl TouchesSpec {
-    /// Returns a text that names those keys of `[touches]` whose list of values may be mistaken for an axis of the study; returns `None` if there is no such
-    /// key.
+    /// Returns a text that names the keys of `[touches]` with a list of values, which may be mistaken for an axis of the study. Returns `None` if there is no
+    /// such key.
     pub fn mixed_values(&self) -> Option<String> {
         let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");
         let lists = table.iter().filter_map(|(key, spread)| {

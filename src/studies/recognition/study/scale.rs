@@ -15,9 +15,9 @@ use bubbletouch_svm::{Multiclass, Solver};
 
 /// Memory of the result rows that a configuration has in a trial, bytes.
 const CELL_BYTES: f64 = 4e3;
-/// Memory per value of the training rows, bytes. It covers four copies: original, scaled, sorted by class, and as support vectors.
+/// Memory per value of the training rows, bytes. The memory covers four copies of a value: original, scaled, sorted by class, and as support vectors.
 const TRAINING_BYTES: f64 = 32.0;
-/// Memory per value of the test rows, bytes. It covers three copies: original, scaled, and in the format of the kernel.
+/// Memory per value of the test rows, bytes. The memory covers three copies of a value: original, scaled, and in the format of the kernel.
 const TEST_BYTES: f64 = 20.0;
 /// Memory of a score, and of its contribution to decisions on several touches, bytes.
 const SCORE_BYTES: f64 = 16.0;

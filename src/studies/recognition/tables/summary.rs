@@ -174,8 +174,8 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
 /// Maximum number of pairs of objects in the table of the most frequent confusions.
 const MAX_CONFUSED: usize = 15;
 
-/// Returns the pairs of objects that a configuration confuses most often. They are ordered by the fraction of the touched object's test rows; pairs with equal
-/// fractions keep the order of the table. `fused` is the number of the configuration with the most touches per decision, and this number of touches.
+/// Returns the pairs of objects that a configuration confuses most often. The pairs are ordered by the fraction of the touched object's test rows; pairs with
+/// equal fractions keep the order of the table. `fused` is the number of the configuration with the most touches per decision, and this number of touches.
 ///
 /// # Errors
 /// Returns no error for the counts of a table.

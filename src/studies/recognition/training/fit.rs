@@ -41,7 +41,7 @@ pub struct Fitted {
 }
 
 impl Training<'_> {
-    /// Trains one classifier for each penalty C, in order. `None` stands for a C that is chosen by cross-validation, or for a classifier without C.
+    /// Trains one classifier for each penalty C, in order. A penalty of `None` means that C is chosen by cross-validation, or that the classifier has no C.
     ///
     /// # Errors
     /// If a fold cannot be drawn or the training fails.

@@ -68,7 +68,7 @@ fn decider<'a>(
 }
 
 impl Trial<'_> {
-    /// Trains and tests the configurations of a family in order. They use the first m measurements of each frame.
+    /// Trains and tests the configurations of a family in order. Configurations use the first m measurements of each frame.
     ///
     /// # Errors
     /// If rows of the family cannot be computed, or the training fails.
