@@ -43,7 +43,7 @@ impl Pose {
         [t.x, t.y, t.z, q.w, q.x, q.y, q.z]
     }
 
-    /// Returns the composition of two motions: `a_from_b.compose(&b_from_c)` is `a_from_c`. The argument acts first.
+    /// Returns the composition of two motions: `a_from_b.compose(&b_from_c)` is `a_from_c`. The motion `inner` acts first.
     pub fn compose(&self, inner: &Self) -> Self {
         Self::new(
             (self.rotation * inner.rotation).normalize(),

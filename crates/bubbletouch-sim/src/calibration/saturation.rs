@@ -7,9 +7,9 @@ const MIN_SHARE: f64 = 0.01;
 /// level by chance.
 const MIN_EXCESS: usize = 3;
 
-/// Returns the largest reading if it is a plateau, that is, shared by many frames. A plateau occurs on at least two taxels, and in at least 3 frames and 1 % of
-/// all frames. A plateau is also at least three times as frequent as the next smaller reading. The closure yields the readings of each frame in the order of
-/// taxels; NaN is omitted.
+/// Returns the largest reading if it is a plateau, that is, shared by many frames. A plateau occurs on at least two taxels, and in at least 3 frames and 1 %
+/// of all frames. A plateau is also at least three times as frequent as the next smaller reading. The function `frames` yields the readings of each frame in
+/// the order of taxels; NaN is omitted.
 pub fn plateau<F: Iterator<Item = f64>, I: Iterator<Item = F>>(
     frames: impl Fn() -> I,
 ) -> Option<f64> {

@@ -78,7 +78,7 @@ impl State {
     }
 }
 
-/// Time integrator of a system.
+/// Time integrator of a dynamic system.
 pub trait Integrator {
     /// Advances the system by one time step of `dt` seconds.
     fn step(&mut self, system: &System, dt: f64);

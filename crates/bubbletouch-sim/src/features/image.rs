@@ -6,7 +6,7 @@ use ndarray::ArrayView2;
 /// Parts of a frame that are omitted from its image. The limits `level` and `foremost` are in the unit of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cut {
-    /// Threshold, zero or positive. Smaller values count as 0, as do negative values (from noise or estimates) and NaN.
+    /// Threshold of the frame's values, zero or positive. Smaller values become 0, as do negative values (from noise or estimates) and NaN.
     pub level: f64,
     /// Depth window d, positive: the image keeps the depth within d of the largest value δ_max, that is, max(0, δ − δ_max + d). If a rigid object moves
     /// deeper, δ increases equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.

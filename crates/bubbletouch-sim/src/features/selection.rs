@@ -4,7 +4,7 @@ use super::{ImageFeature, Join, fourier_magnitude, fourier_mellin};
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
 
-/// Features of a touch, as listed in a study.
+/// Features of a touch, as listed in the file of a study.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]

@@ -120,8 +120,8 @@ impl Serialize for FilePath {
     }
 }
 
-/// Returns a copy of a specification in which every [`FilePath`] is absolute; relative paths are resolved relative to `folder`. The copy is made
-/// through TOML. Each path is resolved during serialization, so no key can be missed.
+/// Returns a copy of a specification in which every [`FilePath`] is absolute; relative paths are resolved relative to `folder`. The copy is made by
+/// serialization to TOML and parsing. Each path is resolved during serialization, so no key can be missed.
 ///
 /// # Errors
 /// If the specification of `place` cannot be represented in TOML, for example because of an integer above 2⁶³ − 1.

@@ -39,7 +39,8 @@ impl Fit {
         self.outside + self.inside
     }
 
-    /// Returns the radius of the disc that an enlarged ball covers on a flat face, around the point where a ball of radius r touches the face; metres.
+    /// Returns the radius of the disc that an enlarged ball covers on a flat face, around the point where the ball touches the face; metres. `radius` is the
+    /// ball's radius before enlargement.
     pub fn disc(&self, radius: f64) -> f64 {
         self.disc_squared(radius).sqrt()
     }

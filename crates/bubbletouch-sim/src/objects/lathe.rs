@@ -226,8 +226,8 @@ impl Uncovered {
         }
     }
 
-    /// Returns the index of the first edge that is not covered, one end of its first uncovered interval, and the direction (±1) from this end into the
-    /// interval. The end is the one nearer to a corner, so balls are added from both corners of an edge towards its middle.
+    /// Returns the index of the first edge that is not completely covered, one end of its first uncovered interval, and the direction (±1) from this end into
+    /// the interval. The end is the one nearer to a corner, so balls are added from both corners of an edge towards its middle.
     fn first_end(&self, outline: &Outline) -> Option<(usize, f64, f64)> {
         let edge = self.intervals.iter().position(|i| !i.is_empty())?;
         let first = self.intervals[edge][0];

@@ -8,7 +8,7 @@ pub(super) struct Edge {
     pub start: DVec2,
     /// Unit vector from the start to the end of the edge.
     pub along: DVec2,
-    /// Unit normal into the polygon.
+    /// Unit normal of the edge, pointing into the polygon.
     pub inward: DVec2,
     pub length: f64,
 }

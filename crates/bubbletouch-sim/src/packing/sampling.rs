@@ -274,7 +274,7 @@ pub(super) struct SampleTree {
 const MARGIN: f64 = 0.7;
 
 impl SampleTree {
-    /// Builds the tree of at least one sample.
+    /// Builds the search tree over the samples; there must be at least one.
     pub fn new(samples: &[Sample]) -> Self {
         let boxes = samples.iter().map(|sample| Aabb {
             min: sample.position,

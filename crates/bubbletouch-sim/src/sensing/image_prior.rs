@@ -27,7 +27,8 @@ pub struct Readings<'a> {
 pub struct ImagePrior {
     /// Dictionary of the principal components, with the mean square of each coefficient.
     pub(super) dictionary: Dictionary,
-    /// Wiener factors max(0, 1 − νⱼ / λⱼ) of the components j, where λⱼ is the mean square of the coefficient and νⱼ the mean square of its noise.
+    /// Wiener factor of each component, 0 to 1. The factor is one minus the mean square of the coefficient's noise divided by the mean square of the
+    /// coefficient, but at least 0.
     pub(super) shrinkage: Array1<f64>,
     pub(super) untouched: Array2<f64>,
 }

@@ -25,9 +25,9 @@ pub struct TouchSource<'a> {
 enum Order {
     /// Total of `n` touches, each drawn randomly from its own index.
     Drawn(usize),
-    /// All `n` combinations of values, in order.
+    /// All `n` combinations of listed values, in order.
     Product(usize),
-    /// Randomly chosen combinations, by their indices.
+    /// Randomly chosen combinations of listed values, by their indices.
     Chosen(Vec<usize>),
 }
 

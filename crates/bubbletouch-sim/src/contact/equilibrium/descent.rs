@@ -70,7 +70,7 @@ pub(super) enum End {
     Rest,
     /// Some bodies fall without end; contains the indices of these bodies.
     Endless(Vec<usize>),
-    /// The descent reached its step limit.
+    /// The descent reached its maximum number of steps.
     Exhausted,
 }
 
@@ -333,7 +333,7 @@ impl<'a, 'b> Descent<'a, 'b> {
         bodies.for_each(|&body| self.scene.bodies[body].center += by);
     }
 
-    /// Returns the distance, metres, below which two positions count as equal.
+    /// Returns the distance, metres, below which two positions of the bodies count as equal.
     fn same_place(&self) -> f64 {
         let bodies = self.scene.bodies.iter();
         let sizes = bodies.map(|body| body.arm() + body.center.length());

@@ -35,7 +35,7 @@ pub(super) struct Smoothness {
     pub load: f64,
     /// Minimum width of the smoothing, metres; below this value, rounding of deflections would decide ties between spheres.
     pub least: f64,
-    /// Stiffness in the augmented Lagrangian of the hard limit at the end of each taxel's stroke, N/m.
+    /// Stiffness of the hard limit at the end of each taxel's stroke, N/m, in the augmented Lagrangian.
     pub stop_stiffness: f64,
 }
 

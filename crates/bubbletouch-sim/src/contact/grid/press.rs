@@ -71,7 +71,7 @@ impl GridPress {
         first.is_finite().then_some(first)
     }
 
-    /// Computes the deflections of the patch at a travel. The objects must have been gathered for this travel or a larger one.
+    /// Computes the deflections of the patch at a travel. The method `gather` must have been called before, for this travel or a larger travel.
     pub(crate) fn indent(
         &mut self,
         grid: &EvenGrid,

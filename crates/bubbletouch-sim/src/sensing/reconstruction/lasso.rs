@@ -17,7 +17,8 @@ const CHECK_EVERY: usize = 5;
 const POWER_STEPS: usize = 60;
 const MARGIN: f64 = 1.02;
 
-/// Parameters of the ℓ1 problem: minimise ½‖Aα − y‖² + λ‖α‖₁ for each frame, with a stopping rule.
+/// Parameters of the ℓ1 problem, with a stopping rule. The coefficients α of a frame minimise ½‖Aα − y‖² + λ‖α‖₁, where y are the measurements and A the
+/// measured atoms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lasso {
     /// Penalty λ of the ℓ1 norm, positive, in the unit of the measurements times the norm of an atom.

@@ -7,8 +7,8 @@ use glam::DVec3;
 const TILE: usize = 8;
 
 impl Layout {
-    /// Returns the reordered layout, and each taxel's old index. Each aligned group of 8, 64, 512 and so on consists of neighbouring taxels. The order is
-    /// deterministic.
+    /// Returns the layout with its taxels reordered so that neighbours have close indices, and each taxel's old index. Each aligned group of 8, 64, 512 and
+    /// so on consists of neighbouring taxels. The order is deterministic.
     pub fn with_neighbours_together(&self) -> (Self, Vec<usize>) {
         let mut order: Vec<usize> = (0..self.n_taxels()).collect();
         halve(&mut order, self.centers());

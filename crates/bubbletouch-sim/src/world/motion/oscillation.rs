@@ -14,7 +14,7 @@ pub struct Oscillation {
     pub linear: DVec3,
     /// Amplitude of the rotation vector, radians.
     pub angular: DVec3,
-    /// Period, seconds, positive.
+    /// Period of the oscillation, seconds, positive.
     pub period: f64,
 }
 

@@ -101,8 +101,8 @@ fn body_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
 
 /// Returns angular velocities at the waypoints, in the body's frame, rad/s, for which a turn about one axis stays between its waypoints. The velocity is zero
 /// at the first and last waypoint and at reversals. Elsewhere its direction bisects the turns before and after the waypoint, and its magnitude is the
-/// [`monotone_slope`] of their components along this direction. With ω₁ = v h / 3 the end of the first control turn is then no farther from either waypoint
-/// than the waypoints are from each other. For ω₃ the bound is symmetric.
+/// [`monotone_slope`] of their components along this direction. The first control turn is v h / 3, with the velocity v at the waypoint and the duration h.
+/// Its end is then no farther from either waypoint than the waypoints are from each other. For the third control turn the bound is symmetric.
 fn monotone_velocities(steps: &[f64], turns: &[DVec3]) -> Vec<DVec3> {
     let mut velocities = vec![DVec3::ZERO; steps.len() + 1];
     for i in 1..steps.len() {
