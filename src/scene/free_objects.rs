@@ -35,7 +35,7 @@ struct Free {
     mass: f64,
     center_of_mass: glam::DVec3,
     reading: ObjectReading,
-    /// Whether the object was placed by hand and has not reached an equilibrium since.
+    /// Whether the object was placed by the program and has not reached an equilibrium since.
     is_put: bool,
 }
 

@@ -17,7 +17,7 @@ use crate::world::Motion;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Checked object of a scene that is ready to be simulated.
+/// Object of a scene after its keys were checked, as input of a simulation.
 #[derive(Clone, Debug)]
 pub struct PlannedObject {
     /// Name of the object in the scene.

@@ -43,7 +43,7 @@ pub struct Simulation<'p> {
     pub(super) time: f64,
     /// Whether the program makes the steps instead of the scene's clock.
     pub(super) is_by_hand: bool,
-    /// Length of the last step, seconds, if its patches are not computed yet. What must be computed depends on whether a frame is read next.
+    /// Length of the last step, seconds, if its patches are not computed yet. The required computations depend on whether a frame is read next.
     unfelt: Option<f64>,
     n_read: usize,
     pub(super) n_steps: usize,

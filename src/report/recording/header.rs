@@ -168,8 +168,8 @@ impl RecordingHeader {
         Ok(())
     }
 
-    /// Returns the arrays of the recording that have one row per frame. They contain the time, the deflection, force, signal (if any) and pose of each patch,
-    /// and the pose of each object.
+    /// Returns the arrays of the recording that have one row per frame. The arrays contain the time, the deflection, force, signal (if any) and pose of each
+    /// patch, and the pose of each object.
     pub(super) fn members(&self) -> Vec<Member> {
         use Element::{Double, Single};
         let pose = |name: &String| Member::new(format!("{name}/pose"), Double, &[7]);

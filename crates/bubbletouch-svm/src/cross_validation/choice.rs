@@ -84,8 +84,8 @@ pub fn choose(
     Ok(Chosen::new(tried.collect(), n_capped))
 }
 
-/// Chooses C by cross-validation for any classifier. The function `train` trains a classifier on given rows with a given C. It returns a prediction function
-/// and the number of solver runs that stopped at the iteration cap.
+/// Chooses C by cross-validation for any classifier. The function `train` trains a classifier on given rows with a given C. The result of `train` is a
+/// prediction function and the number of solver runs that stopped at the iteration cap.
 ///
 /// # Errors
 /// Returns the errors of [`choose`] and of `train`.

@@ -67,8 +67,8 @@ impl<T: Scalar> InverseCurvatures<T> {
     }
 }
 
-/// For one row i, writes the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)` of all pairs (i, j); `own` is K_ii. Curvatures below `smallest` are raised to this
-/// value.
+/// For one row i, writes the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)` of all pairs (i, j); `own` is K_ii. Curvatures below `smallest` are replaced by
+/// this value.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn write<T: Scalar>(to: &mut [T], (row, diagonal): (&[T], &[T]), (own, smallest): (T, T)) {
     let n = to.len();

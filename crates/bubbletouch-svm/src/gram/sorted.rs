@@ -33,8 +33,8 @@ pub(crate) struct Sorted<T> {
     centre: Array1<f64>,
     /// Largest squared distance between a row and the centre.
     farthest: f64,
-    /// Product `(x − c)·c` of each sorted row x with the centre c, for a linear kernel. It converts the offset ρ of decision functions about the centre to an
-    /// offset about the origin. The list is empty for other kernels.
+    /// Product `(x − c)·c` of each sorted row x with the centre c, for a linear kernel. The product converts the offset ρ of decision functions about the
+    /// centre to an offset about the origin. The list is empty for other kernels.
     centre_products: Vec<f64>,
 }
 

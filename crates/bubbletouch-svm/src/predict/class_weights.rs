@@ -20,7 +20,7 @@ pub(crate) struct ClassWeights<T> {
 }
 
 impl<V: Scalar> ClassWeights<V> {
-    /// Creates coefficients of 0 for a class in those of the given binary problems (positive class, negative class) that contain it.
+    /// Creates coefficients of 0 for a class in all given binary problems (positive class, negative class) that contain the class.
     pub fn zeros(
         class: usize,
         vectors: Range<usize>,
