@@ -107,8 +107,15 @@ fn number(value: f64) -> Value {
     }
 }
 
-/// Returns the last allowed number on the way from an allowed number to another one, by bisection of the ordered numbers.
+/// Returns the last allowed number on the way from an allowed number to another one, by bisection of the ordered numbers. If the neighbours of the allowed
+/// number are not allowed, only whole numbers are.
 fn last_allowed(allowed: f64, refused: f64, is_allowed: impl Fn(f64) -> bool) -> f64 {
+    const NEAR: f64 = 1e-9;
+    if !is_allowed(allowed + NEAR) && !is_allowed(allowed - NEAR) {
+        let most = refused.clamp(-MAX_WHOLE, MAX_WHOLE) as i128;
+        let number = |number: i128| number as f64;
+        return number(bisect(allowed as i128, most, |whole| is_allowed(number(whole))));
+    }
     // Consecutive floating-point numbers have consecutive keys.
     let key = |number: f64| {
         let bits = number.to_bits() as i64;
@@ -116,21 +123,24 @@ fn last_allowed(allowed: f64, refused: f64, is_allowed: impl Fn(f64) -> bool) ->
     };
     let number = |key: i128| {
         let key = key as i64;
-        f64::from_bits(if key < 0 {
-            (i64::MIN - key) as u64
-        } else {
-            key as u64
-        })
+        f64::from_bits(if key < 0 { (i64::MIN - key) as u64 } else { key as u64 })
     };
-    let (mut inside, mut outside) = (key(allowed), key(refused));
+    number(bisect(key(allowed), key(refused), |key| is_allowed(number(key))))
+}
+
+/// Largest number up to which all whole numbers are exact.
+const MAX_WHOLE: f64 = 9_007_199_254_740_992.0;
+
+/// Returns the last number that is inside, on the way from a number inside to one outside.
+fn bisect(mut inside: i128, mut outside: i128, is_inside: impl Fn(i128) -> bool) -> i128 {
     while (outside - inside).abs() > 1 {
         let middle = inside + (outside - inside) / 2;
-        match is_allowed(number(middle)) {
+        match is_inside(middle) {
             true => inside = middle,
             false => outside = middle,
         }
     }
-    number(inside)
+    inside
 }
 
 #[cfg(test)]
@@ -155,6 +165,14 @@ mod tests {
             (
                 bounds(|n| (2.0..=1e8).contains(&n)),
                 json!({ "minimum": 2, "maximum": 100_000_000 }),
+            ),
+            (
+                bounds(|n| n.fract() == 0.0 && (0.0..=24.0).contains(&n)),
+                json!({ "minimum": 0, "maximum": 24 }),
+            ),
+            (
+                bounds(|n| n.fract() == 0.0 && (1.0..=1e8).contains(&n)),
+                json!({ "minimum": 1, "maximum": 100_000_000 }),
             ),
             (bounds(f64::is_finite), json!({})),
             (
