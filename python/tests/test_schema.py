@@ -100,14 +100,13 @@ def test_examples_of_the_guide_are_valid(validators: dict[str, Any], block: str)
     if "object" in table:
         pytest.skip("a file of objects")
     # A part of a file, or of one of its tables.
-    schemas = [partial(validator.schema) for validator in validators.values()]
-    schemas += [part for schema in schemas for part in schema["properties"].values() if "properties" in part]
-    found = [[fault.message for fault in errors(schema, table)] for schema in schemas]
+    found = []
+    for whole in validators.values():
+        schema = partial(whole.schema)
+        tables = [name for name, key in schema["properties"].items() if "properties" in key]
+        for file in [table, *({name: table} for name in tables)]:
+            found.append([fault.message for fault in jsonschema.Draft202012Validator(schema).iter_errors(file)])
     assert not all(found), found
-
-
-def errors(schema: Any, table: Any) -> Any:
-    return jsonschema.Draft202012Validator(schema).iter_errors(table)
 
 
 BROKEN = [

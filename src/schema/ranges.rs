@@ -114,7 +114,9 @@ fn last_allowed(allowed: f64, refused: f64, is_allowed: impl Fn(f64) -> bool) ->
     if !is_allowed(allowed + NEAR) && !is_allowed(allowed - NEAR) {
         let most = refused.clamp(-MAX_WHOLE, MAX_WHOLE) as i128;
         let number = |number: i128| number as f64;
-        return number(bisect(allowed as i128, most, |whole| is_allowed(number(whole))));
+        return number(bisect(allowed as i128, most, |whole| {
+            is_allowed(number(whole))
+        }));
     }
     // Consecutive floating-point numbers have consecutive keys.
     let key = |number: f64| {
@@ -123,9 +125,15 @@ fn last_allowed(allowed: f64, refused: f64, is_allowed: impl Fn(f64) -> bool) ->
     };
     let number = |key: i128| {
         let key = key as i64;
-        f64::from_bits(if key < 0 { (i64::MIN - key) as u64 } else { key as u64 })
+        f64::from_bits(if key < 0 {
+            (i64::MIN - key) as u64
+        } else {
+            key as u64
+        })
     };
-    number(bisect(key(allowed), key(refused), |key| is_allowed(number(key))))
+    number(bisect(key(allowed), key(refused), |key| {
+        is_allowed(number(key))
+    }))
 }
 
 /// Largest number up to which all whole numbers are exact.
