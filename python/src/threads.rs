@@ -95,7 +95,7 @@ impl Stop {
 
 /// Runs a long call in the pool, without the interpreter's lock, while this thread checks for Ctrl-C.
 ///
-/// After Ctrl-C, the function returns at once. The call ends at its next check of [`Stop`]. Without checks, it runs to its end, and its result is dropped.
+/// After Ctrl-C, the function returns at once. The call ends at its next check of [`Stop`]. A call without checks runs to its end, and its result is dropped.
 ///
 /// # Errors
 /// Returns the errors of the call, `KeyboardInterrupt` after Ctrl-C, or an error after a panic of the call.

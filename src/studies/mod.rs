@@ -120,7 +120,7 @@ pub fn keys(kind: &str) -> Option<Vec<KeyAbout>> {
     Some((entry.keys)())
 }
 
-/// Returns the names of the tables that identify the kinds of study, such as `stability`. Each is a valid argument of [`keys`].
+/// Returns the names of the tables that identify the kinds of study, such as `stability`. Each name is a valid argument of [`keys`].
 pub fn kinds() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|entry| entry.about.table)
 }

@@ -30,7 +30,7 @@ pub struct About {
 /// Rule that decides which studies of a kind may resume each other's runs.
 #[derive(Clone, Copy, Debug)]
 pub enum Resumes {
-    /// Two studies may resume each other's runs if they differ only in these keys and in keys of the tables below them. Each such key is a text, or selects
+    /// Two studies may resume each other's runs if they differ only in these keys and in keys of the tables below them. Keys in this list are texts, or select
     /// work items without changing their results.
     ButFor(&'static [&'static str]),
     /// Two studies may resume each other's runs if they have work items in common. The name of a work item is derived from all inputs of the item.
@@ -175,8 +175,8 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Table files to which a study writes its results.
     const TABLES: TableFiles;
 
-    /// Function that returns the text shown at the end of a run, wrapped at the given number of characters. If it is `None`, the text consists of the first
-    /// table that has a value column, and the answers.
+    /// Function that returns the text shown at the end of a run, wrapped at the given number of characters. Without such a function, the text consists of the
+    /// first table that has a value column, and the answers.
     const SUMMARY: Option<fn(&[Table], usize) -> String> = None;
 
     /// Specification of a study: the keys that its file may have.
@@ -212,8 +212,8 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// If the journal cannot be written, a work item fails and the first failure ends the run, or data that all items need cannot be computed.
     fn measure(&self, pending: &PendingItems<Self::Rows>) -> Result<()>;
 
-    /// Sets the values in a work item's rows that depend on the item's number, such as configuration numbers. This is needed because rows in the journal may
-    /// come from a run with other axes, in which the item had another number.
+    /// Sets the values in a work item's rows that depend on the item's number, such as configuration numbers. Rows in the journal may come from a run with
+    /// other axes, in which the work item had another number.
     fn place(&self, _number: usize, _rows: &mut Self::Rows) {}
 
     /// Describes the work item with the given number for failure messages.

@@ -50,7 +50,7 @@ pub struct DetailScore {
     error_p95_mm: f64 => Value(Less) "deflection error, 95th percentile" in "mm": Log;
     /// Distance by which the patch is retracted to minimise `error_after_offset_mm`, mm; negative if the patch is advanced.
     offset_mm: f64 => Note "best constant offset" in "mm": Linear;
-    /// Deflection error, defined as `error_mm`, while the patch is retracted by `offset_mm`, mm. This constant offset minimises the error.
+    /// Deflection error, defined as `error_mm`, while the patch is retracted by `offset_mm`, mm. The constant offset `offset_mm` minimises the error.
     error_after_offset_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log;
     /// 95th percentile of |δ − δ*| over taxels while the patch is retracted by `offset_mm`, mm. Here δ is the deflection on the model and δ* on the mesh.
     error_after_offset_p95_mm: f64 => Value(Less) "deflection error after offset, 95th percentile" in "mm": Log;

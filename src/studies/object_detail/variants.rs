@@ -93,8 +93,8 @@ pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     levels
 }
 
-/// Returns `n` distinct positions from `vertices`; at least two, and all if there are fewer. The first is the first vertex. Each further one is the vertex that
-/// is farthest from all previous ones.
+/// Returns `n` distinct positions from `vertices`; at least two, and all if there are fewer. The first position is the first vertex. Each further position is
+/// the vertex that is farthest from all previous positions.
 fn evenly_chosen(vertices: &[DVec3], n: usize) -> Vec<DVec3> {
     let places = distinct_places(vertices);
     if n >= places.len() {

@@ -39,7 +39,8 @@ pub struct ReconstructionPlan {
     pub dictionaries: Vec<Basis>,
 }
 
-/// Maximum value of the key `isometry_subsets`: supports (sets of atoms) that are randomly drawn for each support size. All are in memory together.
+/// Maximum value of the key `isometry_subsets`: supports (sets of atoms) that are randomly drawn for each support size. All drawn supports are in memory
+/// together.
 const MAX_SUBSETS: usize = 1_000_000;
 
 /// Maximum value of the key `atoms` (number of atoms of a dictionary), more than any array has taxels. The minimum is two, because λ = √(2 ln k) vanishes for k

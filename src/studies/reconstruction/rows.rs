@@ -70,8 +70,8 @@ pub struct ReconstructionScore {
     error_low: f64 => Note "95 % interval over touches, lower end": Log;
     /// Upper end of the 95 % interval of `error`, which covers its variation over touches.
     error_high: f64 => Note "95 % interval over touches, upper end": Log;
-    /// Relative error √(Σ‖y − x‖² / Σ‖x‖²) of the noisy frames y with respect to the clean frames x, dimensionless. This is the error if all taxels are read
-    /// without compression.
+    /// Relative error √(Σ‖y − x‖² / Σ‖x‖²) of the noisy frames y with respect to the clean frames x, dimensionless. The value is the error if all taxels are
+    /// read without compression.
     full_sampling_error: f64 => Note: Log;
     /// Signal-to-noise ratio of the reconstructed frames, −20 log₁₀ `error`, dB.
     snr_db: f64 => Value(More) "SNR" in "dB": Linear;
@@ -103,8 +103,8 @@ pub struct ReconstructionPareto {
     us_per_frame: f64 => Cost "time of a frame on one core" in "us": Log;
     /// Number of frames reconstructed per second on one core, equal to the column `frames_per_s_per_core` of `timing.csv`.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
-    /// Whether the configuration is on the Pareto front. If it is, no configuration with equal noise is at least as fast and as accurate, and better in one of
-    /// the two.
+    /// Whether the configuration is on the Pareto front. On the front, no other configuration with equal noise is at least as fast and as accurate, and better
+    /// in one of the two.
     on_front: bool => Outcome "on the front";
 } }
 

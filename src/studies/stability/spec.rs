@@ -100,8 +100,8 @@ pub enum ContactMethod {
     /// Method of this library: massless taxels, solved in closed form. Balls at rest are computed by the equilibrium solver, plungers by a press to a force,
     /// and motions over time with damper states.
     QuasiStatic,
-    /// Semi-implicit Euler steps with the better of two contact stiffnesses. One limits the penetration to 1/400 of the deflection or stroke. The other is the
-    /// largest stiffness that is stable for the time step.
+    /// Semi-implicit Euler steps with the better of two contact stiffnesses. One stiffness limits the penetration to 1/400 of the deflection or stroke. The
+    /// other stiffness is the largest that is stable for the time step.
     SemiImplicit,
     /// Implicit Euler steps in which the contact conditions hold exactly.
     ImplicitEuler,

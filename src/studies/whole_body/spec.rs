@@ -71,8 +71,8 @@ pub struct BodySceneSpec {
     /// at 0, or at its limit nearest to 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
-    /// Object that touches the skin, with the keys of `[[objects]]` in a scene file. Its `link` is a link of the covered robot. Its `motion` can only be an
-    /// oscillation; by default, the object does not move.
+    /// Object that touches the skin, with the keys of `[[objects]]` in a scene file. The key `link` is a link of the covered robot. The key `motion` can only
+    /// be an oscillation; by default, the object does not move.
     pub object: ObjectSpec,
     /// Direction from the position `object.at` to the start of the approach, in the frame of the link; used with `depth_mm`. Default: +x.
     #[serde(default = "default_from")]

@@ -232,7 +232,7 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     })
 }
 
-/// Returns the path of the file that contains an array. The first existing file counts: `.npy`, `.npz`, `.csv`, or the archive `features.npz`.
+/// Returns the path of the file that contains an array. If several files exist, the order is `.npy`, `.npz`, `.csv`, and the archive `features.npz`.
 fn array_file(folder: &Path, name: &str) -> PathBuf {
     let usual = folder.join(format!("{name}.npy"));
     let others = [

@@ -42,8 +42,8 @@ impl TaxelArray {
 }
 
 impl ArrayPress<'_> {
-    /// Presses the array to a depth past first contact, metres, and then slides it. Only the given first part of this path is simulated, as a fraction of it.
-    /// Returns `None` if the path misses the object.
+    /// Presses the array to a depth past first contact, metres, and then slides it. Only the first part of this path is simulated; `part` is its fraction of
+    /// the whole path. Returns `None` if the path misses the object.
     pub fn touch(
         &self,
         pose: Pose,

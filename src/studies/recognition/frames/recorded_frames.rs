@@ -405,8 +405,8 @@ impl RecordedSpec {
         Ok(zeros)
     }
 
-    /// Returns the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. The latter is the given
-    /// full scale, or a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because equal depths may
+    /// Returns the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. A taxel counts as saturated above the given full
+    /// scale, or above a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because equal depths may
     /// cause it.
     fn full_scale_of(
         &self,

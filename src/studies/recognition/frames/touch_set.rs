@@ -58,7 +58,7 @@ pub trait TouchSet: Sync {
         (0, 0)
     }
 
-    /// Computes data that all touches need, on all threads. Without this call, the first touches would compute them one after the other.
+    /// Computes data that all touches need, on all threads. Without this call, the first touches would compute the data one after the other.
     fn prepare(&self) {}
 
     /// Simulates all touches on an array with the given number of frames per touch; the result does not depend on the number of threads.

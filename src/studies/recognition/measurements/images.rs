@@ -74,7 +74,7 @@ impl Images {
     }
 
     /// Returns the image features of all frames: one array for each requested kind. A row contains the k values of each of the F frames of a touch, shape
-    /// (n_touches, F·k). The rows of all tilted copies follow in the same order. Each image is estimated once and then used for all kinds.
+    /// (n_touches, F·k). The rows of all tilted copies follow in the same order. Each image is estimated once and then used for all kinds of features.
     ///
     /// # Panics
     /// If there is no estimator for the number of measurements.

@@ -25,7 +25,7 @@ pub struct TaxelArray {
     radius: f64,
     sensed: Sensed,
     slide: DVec2,
-    /// Whether the positions of the taxels are known. If they are unknown, the taxels are treated as a single row.
+    /// Whether the positions of the taxels are known. If the positions are unknown, the taxels are treated as a single row.
     is_placed: bool,
     patch: Arc<Patch>,
 }

@@ -4,8 +4,8 @@ use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::studies::recognition::spec::study::StudySpec;
 
-/// Each trial t has split t and projection (measurement matrix) t. With P = `projections_per_split`, it has split t / P and projection t mod P, so that each
-/// split is combined with P projections. All other random numbers are drawn anew in each trial.
+/// Each trial t has split t and projection (measurement matrix) t. With P = `projections_per_split`, trial t has split t / P and projection t mod P, so that
+/// each split is combined with P projections. All other random numbers are drawn anew in each trial.
 impl StudySpec {
     /// Returns the number of the split into training and test touches that a trial uses.
     pub fn split_of(&self, trial: usize) -> usize {
@@ -18,8 +18,8 @@ impl StudySpec {
     }
 }
 
-/// Returns the number of the projection (measurement matrix) that a trial uses. Without `projections_per_split`, each trial has its own; otherwise, all splits
-/// share that many projections.
+/// Returns the number of the projection (measurement matrix) that a trial uses. Without `projections_per_split`, each trial has its own projection; otherwise,
+/// all splits share that many projections.
 pub(crate) fn projection_of(projections_per_split: Option<usize>, trial: usize) -> usize {
     projections_per_split.map_or(trial, |n| trial % n)
 }

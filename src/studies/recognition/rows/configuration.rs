@@ -94,8 +94,8 @@ pub struct Configuration {
     temporal_features: Option<TemporalFeatures> => if_given of "recognition.temporal_features";
     /// Features that are computed from the measurements of a touch, such as `raw`.
     features: Features => always of "recognition.features";
-    /// Depth window of image features, as a fraction of the full scale. Only deflections within the window below the largest deflection of a frame count. 1 for
-    /// features of measurements, which have no window. The column is present only if the study has the key.
+    /// Depth window of image features, as a fraction of the full scale. Image features use only deflections that are within the window below the largest
+    /// deflection of a frame. 1 for features of measurements, which have no window. The column is present only if the study has the key.
     depth_window_full_scale: Option<f64> => if_given of "recognition.depth_window_full_scale";
     /// Number of randomly tilted copies that are added for each training touch. The column is present only if the study has the key.
     tilt_augmentation: Option<usize> => if_given of "recognition.tilt_augmentation";
@@ -110,7 +110,7 @@ pub struct Configuration {
     /// Number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The column is present only if
     /// the study has the key.
     class_imbalance: Option<f64> => if_given of "recognition.class_imbalance";
-    /// Number of test touches of an object that are combined into one decision. Their scores are added.
+    /// Number of test touches of an object that are combined into one decision. The scores of the combined touches are added.
     touches_per_decision: usize => always of "recognition.touches_per_decision";
     /// Policy that chooses the touches of a decision after the first one, such as `random`. The column is present only if the study has the key.
     next_touch: Option<NextTouch> => if_given of "recognition.next_touch";

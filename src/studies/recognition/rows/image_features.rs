@@ -7,8 +7,8 @@ use bubbletouch_sim::features::Join;
 pub struct FeaturesOfImages {
     /// Kinds of image features; their values are joined into one feature vector.
     pub join: Join,
-    /// Depth window of the features, as a fraction of the full scale; `None` for the whole image. Only deflections within the window below the largest
-    /// deflection count.
+    /// Depth window of the features, as a fraction of the full scale; `None` for the whole image. The features use only deflections that are within the window
+    /// below the largest deflection of a frame.
     pub foremost: Option<f64>,
     /// Number of measurements from which the images of frames are estimated.
     pub measurements: usize,

@@ -17,8 +17,8 @@ pub struct RowInputs {
     pub temporal_features: Option<TemporalFeatures>,
     /// Features that are computed from the measurements of a frame.
     pub features: Features,
-    /// Depth window of image features, as a fraction of the full scale; `None` for no window. Only deflections within the window below the largest deflection
-    /// count.
+    /// Depth window of image features, as a fraction of the full scale; `None` for no window. Image features use only deflections that are within the window
+    /// below the largest deflection of a frame.
     pub depth_window_full_scale: Option<f64>,
     /// Number of tilted copies that are added for each training touch.
     pub n_copies: usize,

@@ -24,7 +24,7 @@ use std::sync::LazyLock;
 const MAX_TRIALS: usize = 100_000;
 /// Maximum number of tilted copies of a training touch; further copies do not improve a classifier.
 const MAX_COPIES: usize = 1000;
-/// Maximum number of readings of a training touch. All are in memory at once, and further readings do not improve training.
+/// Maximum number of readings of a training touch. All readings are in memory together, and further readings do not improve training.
 const MAX_READINGS: usize = 100;
 /// Allowed tilt angles, degrees. Much larger tilts make no new part of the object touch the array.
 const TILT: Range = Between(1e-12, 45.0, "above 0, at most 45");

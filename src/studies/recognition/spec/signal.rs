@@ -25,7 +25,8 @@ pub struct SignalSpec {
     pub axes: SignalAxes,
     /// Axis: skin that the test touches use, `same_skin` (default, the skin of the training touches) or `another_skin`.
     pub test_sensor: Option<Axis<TestSensor>>,
-    /// Way in which the axes of `[signal]` are combined with each other: `all` (default) or `one_at_a_time`. All combinations with other axes are run.
+    /// Way in which the axes of `[signal]` are combined with each other: `all` (default) or `one_at_a_time`. The axes of `[signal]` are always combined with
+    /// all other axes of the study.
     #[serde(skip_serializing_if = "is_default")]
     pub combine: CombineSpec,
 }

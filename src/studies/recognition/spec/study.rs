@@ -112,8 +112,8 @@ pub struct RecognitionSpec {
     #[serde(default = "default_features")]
     #[schemars(with = "Axis<FeatureNames>")]
     pub features: Axis<Features>,
-    /// Axis: depth window of the image features, as a fraction of the full scale. Only deflections within the window below the largest deflection of a frame
-    /// count, which makes the features independent of the press depth. Default: the whole image.
+    /// Axis: depth window of the image features, as a fraction of the full scale. Image features use only deflections that are within the window below the
+    /// largest deflection of a frame, so that the features do not depend on the press depth. Default: the whole image.
     pub depth_window_full_scale: Option<Axis<f64>>,
     /// Axis: number of additional copies of each training touch, whose images are tilted at random. The copies make recognition robust to tilts that do not
     /// occur in training. Copies require image features. Default: 0.
@@ -140,7 +140,7 @@ pub struct RecognitionSpec {
     pub scaling: Scaling,
     /// Axis: penalty C of the classifiers that have one, positive. Default: 1.
     pub c: Option<Axis<f64>>,
-    /// Candidate values of the penalty C; replaces `c`. Each fit chooses one of them by cross-validation within its training rows.
+    /// Candidate values of the penalty C; replaces `c`. Each fit chooses one candidate by cross-validation within its training rows.
     pub c_grid: Option<Vec<f64>>,
     /// Candidate values of the kernel parameter γ, as multiples of its default; replaces `gamma`. The default is 1 / (F · m · variance), where F · m is the
     /// number of features of a touch. For the Laplacian kernel, the standard deviation replaces the variance. Each fit chooses one candidate together with C.
@@ -167,8 +167,8 @@ pub struct RecognitionSpec {
     /// Axis: number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The numbers of all objects
     /// form a geometric sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
     pub class_imbalance: Option<Axis<f64>>,
-    /// Axis: number k of test touches of an object that are combined into one decision, at least 1. Their scores are added. An object's test touches are
-    /// grouped at random; a remainder of fewer than k touches is omitted. Default: 1.
+    /// Axis: number k of test touches of an object that are combined into one decision, at least 1. The scores of the combined touches are added. An object's
+    /// test touches are grouped at random; a remainder of fewer than k touches is omitted. Default: 1.
     #[serde(default = "one_value")]
     pub touches_per_decision: Axis<usize>,
     /// Axis: policy that chooses the touches of a decision after the first one. Values: `random` (default), `farthest` (the pose farthest from the previous
@@ -203,7 +203,7 @@ pub struct ReportSpec {
     /// Configurations whose confusion matrix is written to `confusion.csv`: `all` (default) or `best`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub confusion: ConfusionMatrices,
-    /// Published accuracies. Each is compared with the most accurate configuration to which its claim applies.
+    /// Published accuracies. Each published accuracy is compared with the most accurate configuration to which its claim applies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<PublishedSpec>,
 }
@@ -229,8 +229,8 @@ pub struct PublishedSpec {
     pub accuracy: f64,
     /// Publication that makes the claim.
     pub source: String,
-    /// Further keys, which select the configurations to compare with. Each is the name of a column of [`Configuration`] with its value (`noise` is short for
-    /// `noise_std`).
+    /// Further keys, which select the configurations to compare with. Each key is the name of a column of [`Configuration`] with its value (`noise` is short
+    /// for `noise_std`).
     #[serde(flatten)]
     #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     pub at: toml::Table,

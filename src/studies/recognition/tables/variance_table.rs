@@ -7,7 +7,8 @@ use crate::statistics::variance::{Component, components};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{Source, TrialScore, Variance};
 
-/// Returns the rows of `variance.csv`: three for each configuration whose trials combine every split with every projection. Other configurations have no rows.
+/// Returns the rows of `variance.csv`: three for each configuration whose trials combine every split with every projection. Configurations without all
+/// combinations have no rows.
 ///
 /// # Errors
 /// If the scores of a configuration cannot be decomposed.

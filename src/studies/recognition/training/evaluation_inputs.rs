@@ -103,7 +103,7 @@ impl TrialInputs<'_> {
         seed.numbered(self.number as u64)
     }
 
-    /// Returns the split into training and test touches for a family. Its training touches are reduced to the family's number per object and class imbalance.
+    /// Returns the split into training and test touches for a family. The training touches are reduced to the family's number per object and class imbalance.
     ///
     /// # Errors
     /// If an object has no training touches after the reduction.

@@ -73,7 +73,7 @@ impl Training<'_> {
         Ok(fitted.collect())
     }
 
-    /// Trains one classifier with a given C, a chosen C, or no C. Its γ is also given or chosen.
+    /// Trains one classifier with a given C, a chosen C, or no C. The kernel parameter γ is also given or chosen.
     fn train(&self, c: Option<f64>) -> Result<Fitted> {
         let start = Instant::now();
         let classifier = &self.inputs.classifier;
