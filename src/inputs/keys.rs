@@ -30,9 +30,9 @@ pub struct KeyAbout {
 /// Place at which a key may have a list of values that are swept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisPlace {
-    /// The table of the key, or `[axes]`.
+    /// In the table of the key, or in `[axes]`.
     Table,
-    /// The table `[axes]` only.
+    /// Only in the table `[axes]`.
     Axes,
     /// Nowhere: the key has one value in all configurations of a study.
     Never,

@@ -24,7 +24,7 @@ pub fn not_negative(value: f64) -> bool {
 pub enum Range {
     /// Numbers above zero.
     Positive,
-    /// Numbers of at least zero.
+    /// Numbers that are at least 0.
     NotNegative,
     /// All finite numbers.
     Finite,
@@ -32,7 +32,7 @@ pub enum Range {
     Fraction,
     /// Fractions between 0 and 1, excluding both ends.
     Part,
-    /// Numbers of at least one.
+    /// Numbers that are at least 1.
     AtLeastOne,
     /// Integers between two bounds, including both.
     Count(usize, usize),

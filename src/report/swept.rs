@@ -30,7 +30,7 @@ const GIVEN_UP_FIRST: [&str; 16] = [
 /// Setting of a table (choice, condition or subject): a column and its values.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
-    /// Description of the column.
+    /// Description of the setting's column.
     pub column: &'a Column,
     /// Values of the setting, one per row of the table.
     pub data: &'a Data,

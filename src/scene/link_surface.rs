@@ -20,7 +20,7 @@ const N_FACETS: [f64; 2] = [16.0, 720.0];
 
 /// Selection of the shapes of a robot link that form a surface.
 pub(super) struct LinkSurface<'a> {
-    /// Name of the link.
+    /// Name of the robot link.
     pub link: &'a str,
     /// Role of the selected shapes. If `None`, the collision shapes are selected if the link has any, otherwise the visual shapes.
     pub role: Option<ShapeRole>,

@@ -16,7 +16,7 @@ pub struct Comparison {
     pub interval: Interval,
     /// Two-sided p-value of the null hypothesis that there is no difference.
     pub p_value: f64,
-    /// Number of common trials.
+    /// Number of trials that both configurations have.
     pub n_trials: usize,
 }
 

@@ -39,7 +39,7 @@ pub const FEW_GROUPS: usize = 5;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "[usize; 3]", into = "[usize; 3]")]
 pub struct GroupCount {
-    /// Number of the group.
+    /// Number that identifies the group.
     pub group: usize,
     /// Number of test rows in the group. A decision on touches of several groups counts as a row of each group, which widens intervals.
     pub n_rows: usize,

@@ -17,7 +17,7 @@ pub struct ClassifierAbout {
     pub words: &'static str,
     /// Whether the classifier has a soft-margin penalty C.
     pub has_c: bool,
-    /// Parameters of the classifier. Classifiers with an equal key share its declaration.
+    /// Parameters that the kind of classifier declares. Classifiers with an equal key share its declaration.
     pub parameters: &'static [Parameter],
     /// Kernel of a kernel SVM; `None` for other kinds. Kernel SVMs solve several values of C together and keep kernel values in memory.
     pub kernel: Option<fn(&Parameters) -> Kernel>,

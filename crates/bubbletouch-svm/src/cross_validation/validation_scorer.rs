@@ -165,7 +165,7 @@ mod tests {
     const C: [f64; 4] = [0.1, 1.0, 10.0, 10.0];
     const RANGES: [Range<usize>; 4] = [0..16, 16..30, 30..44, 44..60];
 
-    /// Four classes that overlap on a line.
+    /// Returns the kernel matrix of four classes that overlap on a line.
     fn kernel() -> Array2<f64> {
         let at = |i: usize| (i / 15) as f64 * 0.8 + (i as f64 * 1.7).sin();
         Array2::from_shape_fn((N, N), |(i, j)| (-(at(i) - at(j)).powi(2)).exp())

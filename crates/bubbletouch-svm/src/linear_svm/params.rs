@@ -8,7 +8,7 @@ pub const MAX_PASSES: usize = 1000;
 /// Parameters of a linear SVM that is trained by coordinate descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearSvmParams {
-    /// Penalty C > 0 per unit of margin violation.
+    /// Penalty C for each unit of margin violation, above 0.
     pub c: f64,
     /// Stopping tolerance, above 0: the difference between the largest and smallest projected gradient, in units of the margin. scikit-learn's default for
     /// LinearSVC is 1e-4.

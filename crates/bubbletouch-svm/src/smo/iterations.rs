@@ -30,7 +30,7 @@ impl Search {
     }
 }
 
-/// Reason why the pairwise steps stopped.
+/// Reason why the pairwise steps of the solver stopped.
 pub(crate) enum Stop {
     /// The tolerance or the iteration cap was reached.
     Done,
@@ -38,8 +38,8 @@ pub(crate) enum Stop {
     Shrink(Vec<usize>),
 }
 
-/// Runs pairwise steps without explicit vector instructions. Stops if the optimality conditions hold, the iteration cap is reached, or few variables can still
-/// move.
+/// Runs the pairwise steps of the solver without explicit vector instructions. Stops if the optimality conditions hold, the iteration cap is reached, or few
+/// variables can still move.
 pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
     gram: &mut G,
     variables: &mut Variables<T>,

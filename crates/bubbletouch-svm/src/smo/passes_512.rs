@@ -14,7 +14,8 @@ use crate::gram::matrix::Gram;
 use crate::linalg::lanes::LANES;
 use crate::linalg::vector_registers::{load, store};
 
-/// Runs pairwise steps with explicit vector instructions. The passes are closures, because function calls would take as long as a few of their steps.
+/// Runs the pairwise steps of the solver with explicit vector instructions. The passes are closures, because function calls would take as long as a few of
+/// their steps.
 #[target_feature(enable = "avx512f")]
 pub(crate) fn run<G: Gram<f32>>(
     gram: &mut G,

@@ -116,8 +116,8 @@ impl<G> Smo<'_, G> {
         false
     }
 
-    /// Runs pairwise steps once on all variables. If most variables are soon omitted, the tolerance is rough at first, because omitted variables must be
-    /// checked again before further work.
+    /// Runs the pairwise steps of the solver once on all variables. If most variables are soon omitted, the tolerance is rough at first, because omitted
+    /// variables must be checked again before further work.
     fn search_once<T: SolverScalar>(&mut self, c: f64, search: &mut Search, is_first: bool)
     where
         G: Gram<T>,

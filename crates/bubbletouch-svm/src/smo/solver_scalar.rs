@@ -9,7 +9,7 @@ use crate::linalg::scalar::Scalar;
 
 /// Floating-point type of a Gram matrix that the solver supports.
 pub(crate) trait SolverScalar: Scalar {
-    /// Runs [pairwise steps](run_plain) in this precision.
+    /// Runs the [pairwise steps](run_plain) of the solver in this precision.
     fn run<G: Gram<Self>>(
         gram: &mut G,
         variables: &mut Variables<Self>,

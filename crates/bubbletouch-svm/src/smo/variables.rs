@@ -38,7 +38,7 @@ pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
     (c * y.min(0.0), c * y.max(0.0))
 }
 
-/// State of the variables during pairwise steps. Slices are padded to whole lanes with variables that cannot move.
+/// State of the variables during the pairwise steps of the solver. Slices are padded to whole lanes with variables that cannot move.
 #[derive(Clone, Debug)]
 pub(crate) struct Variables<T> {
     /// Coefficient of each row: its label times its multiplier.

@@ -30,7 +30,7 @@ pub(crate) struct ActiveSetGoal {
     pub c: f64,
     /// Maximum violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
-    /// Maximum number of steps. Each step ends at the optimum of the free variables, or at a bound that removes one variable.
+    /// Maximum number of active-set steps. Each step ends at the optimum of the free variables, or at a bound that removes one variable.
     pub most_ways: u64,
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     n_ways
 }
 
-/// State of the active-set method.
+/// State of the active-set method: coefficients, gradient and factors of the equations.
 struct ActiveSet<'a> {
     labels: &'a [f64],
     beta: &'a mut [f64],
