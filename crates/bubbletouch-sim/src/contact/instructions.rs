@@ -8,10 +8,10 @@ use std::sync::OnceLock;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Instructions {
-    /// Best instructions that the processor supports.
+    /// Best instruction set that the processor supports.
     #[default]
     Best,
-    /// Instructions that every processor of the compilation target supports.
+    /// Instruction set that every processor of the compilation target supports.
     Baseline,
     /// AVX2 instructions with vectors of 256 bits.
     Avx2,

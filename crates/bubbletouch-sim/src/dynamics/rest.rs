@@ -17,7 +17,7 @@ pub struct Rest {
 /// Returns the state in which the springs carry the weight of the object and of the balls on it. Taxels at the end of their stroke carry the remaining
 /// weight. The travel is accurate to the last bit, as a reference for the integrators.
 ///
-/// Returns `None` for an imposed motion, or if the object meets no taxel.
+/// Returns `None` if the motion of the object is given in advance, or if the object meets no taxel.
 pub fn rest(system: &System) -> Option<Rest> {
     let Drive::Free { mass, gravity, .. } = system.drive else {
         return None;

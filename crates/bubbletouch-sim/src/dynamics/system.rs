@@ -8,7 +8,7 @@ use crate::text::in_range::positive;
 use crate::world::{Patch, VelocityPlan};
 use glam::DVec3;
 
-/// Cause of the object's motion along the z axis: gravity, or an imposed motion.
+/// Cause of the object's motion along the z axis: gravity, or a motion that is given in advance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
     /// Free motion under gravity.
@@ -20,7 +20,7 @@ pub enum Drive {
         /// Travel of the object at the start, metres; its speed at the start is zero.
         travel: f64,
     },
-    /// Imposed motion of the object's origin in the patch frame. Only the component along z is used. The travel is 0 at the start.
+    /// Given motion of the object's origin in the patch frame. Only the component along z is used. The travel is 0 at the start.
     Imposed(VelocityPlan),
 }
 
@@ -136,7 +136,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Returns the travel of the object in an imposed motion at a time, metres.
+    /// Returns the travel of the object at a time, metres, for a motion that is given in advance.
     pub(super) fn imposed(&self, plan: &VelocityPlan, time: f64) -> f64 {
         plan.pose_at(0.0).translation.z - plan.pose_at(time).translation.z
     }

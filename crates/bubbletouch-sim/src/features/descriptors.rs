@@ -169,7 +169,7 @@ mod tests {
         }
     }
 
-    /// Checks the level areas relative to the foremost point. A deeper press of a rigid object adds a constant to every touched taxel.
+    /// Checks the areas at depth levels below the largest value of the image. A deeper press of a rigid object adds a constant to every touched taxel.
     #[test]
     fn areas_behind_the_foremost_point_do_not_change_with_depth() {
         let shape = (32, 32);

@@ -231,7 +231,8 @@ fn every_name_reads_back_and_others_are_told_what_there_is() {
     }
 }
 
-/// Checks the depth window. A deeper press of a rigid object adds a constant to every touched taxel, and touches more taxels.
+/// Checks that images with a depth window do not change if the press becomes deeper. A deeper press of a rigid object adds a constant to every touched taxel,
+/// and touches more taxels.
 #[test]
 fn what_is_behind_the_foremost_point_does_not_change_with_depth() {
     let shape = (32, 32);

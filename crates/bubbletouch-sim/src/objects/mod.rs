@@ -55,7 +55,7 @@ pub use vertex_spheres::vertex_spheres;
 pub struct Object {
     /// Name of the object, unique within its set, such as `mug` or `can_68x40`.
     pub name: String,
-    /// Contact model in the object's frame: z up, resting on z = 0, centred in x and y unless its source defines another frame.
+    /// Contact model in the object's frame. The object lies on z = 0 with z up, centred in x and y, unless its source defines another frame.
     pub model: Model,
     /// Number of solid parts of the object (1 for a mesh).
     pub n_parts: usize,

@@ -63,21 +63,21 @@ pub enum Shape {
         /// Corners (distance from the axis, height z) in either direction; the outline is closed automatically.
         profile: Vec<DVec2>,
     },
-    /// Polygon in the plane z = 0 with a thickness, centred on the plane: blades, jaws.
+    /// Prism of a polygon in the plane z = 0, centred on this plane, such as a blade or a jaw.
     Prism {
         /// Corners (x, y) in either direction; the outline is closed automatically.
         outline: Vec<DVec2>,
         /// Thickness of the prism along z.
         thickness: f64,
     },
-    /// Hexagonal bar along z with two corners on the x axis: nuts, bolt heads, pencils.
+    /// Hexagonal bar along z with two corners on the x axis, such as a nut, a bolt head or a pencil.
     HexagonalPrism {
         /// Distance between opposite sides (the spanner size).
         across_flats: f64,
         /// Height of the bar along z.
         height: f64,
     },
-    /// Ball swept along a polyline with a diameter that changes linearly between points: handles, rings, bananas.
+    /// Ball swept along a polyline with a diameter that changes linearly between points, such as a handle, a ring or a banana.
     SphereSweep {
         /// Points of the polyline; the sweep is closed if the last ball equals the first.
         points: Vec<DVec3>,

@@ -87,7 +87,7 @@ struct Covering<'a> {
     chosen: Vec<Ball>,
     /// Number of chosen balls that cover each sample.
     counts: Vec<u32>,
-    /// Index of each sample among the rows of the current cell; [`NOT_HERE`] for samples that do not belong to the cell.
+    /// Index of each sample among the samples of the current cell; [`NOT_HERE`] for samples that do not belong to the cell.
     row_of: Vec<u32>,
 }
 

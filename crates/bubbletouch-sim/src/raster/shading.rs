@@ -16,7 +16,7 @@ pub const BACKGROUND: u8 = 250;
 pub enum Lighting {
     /// Smoothed normals, which show the shape instead of the single spheres.
     Smoothed,
-    /// True normals, which show every sphere and every face.
+    /// Exact normals, which show every sphere and every face.
     Plain,
     /// No shading, for colours that represent values.
     Unlit,

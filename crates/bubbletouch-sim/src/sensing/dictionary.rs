@@ -25,7 +25,7 @@ pub enum Basis {
     Pca,
 }
 
-/// Dictionary of k orthonormal atoms ψⱼ of n taxels with an origin x₀: a frame is approximately x = x₀ + Σⱼ αⱼ ψⱼ.
+/// Dictionary of k orthonormal atoms ψⱼ of n taxels with an origin x₀: a frame is approximately x = x₀ + Σⱼ αⱼ ψⱼ with coefficients αⱼ.
 ///
 /// ```
 /// use bubbletouch_sim::sensing::{Basis, Dictionary};
@@ -43,7 +43,7 @@ pub struct Dictionary {
     basis: Basis,
     grid: (usize, usize),
     form: Form,
-    /// Origin x₀: the mean training frame for PCA, otherwise zero.
+    /// Origin of the dictionary: the mean training frame for PCA, otherwise zero.
     origin: Array1<f64>,
     energy: Option<Energy>,
 }

@@ -13,7 +13,7 @@ use rand::Rng;
 /// there are usually fewer measurements.
 pub const N_COMPONENTS: usize = 512;
 
-/// Readings from which the statistics are learned, one row of n taxels each; all have passed one signal chain.
+/// Readings from which the statistics are learned, one row of n taxels each; one signal chain has processed all of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Readings<'a> {
     /// Readings of training touches.

@@ -70,7 +70,7 @@ pub struct BodyReadout {
 /// Indices and readings of selected taxels of a body. A reused instance allocates no memory if no touch deflects more taxels than earlier touches.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodyReading {
-    /// Indices of the taxels in the body, ascending.
+    /// Indices of the selected taxels in the body, ascending.
     pub taxels: Vec<usize>,
     /// Readings of the taxels in `taxels`, metres or newtons.
     pub values: Vec<f64>,

@@ -28,6 +28,8 @@ pub(super) enum Surface {
 }
 
 impl BodyPatch {
+    /// Converts a patch to the form that a whole body stores.
+    ///
     /// # Errors
     /// If the patch is not suitable for a whole body.
     fn new(patch: &Patch) -> Result<Self> {

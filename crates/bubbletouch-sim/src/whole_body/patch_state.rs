@@ -84,7 +84,7 @@ impl PatchState {
         self.relax(patch, relaxation_factor(patch.taxel(), dt));
     }
 
-    /// Returns the deflected taxels, ascending, with the forces, newtons, that moved them in the last step of `dt` seconds.
+    /// Returns the deflected taxels, ascending, with the forces on them in the last time step, newtons; `dt` is its duration in seconds.
     pub fn forces(&self, patch: &BodyPatch, dt: f64) -> impl Iterator<Item = (u32, f64)> {
         let relaxation = Relaxation::new(patch.taxel(), dt);
         let mut before = self.before.iter().copied().peekable();

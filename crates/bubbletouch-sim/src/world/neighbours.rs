@@ -168,7 +168,7 @@ fn others_within(skin: &Patch, taxel: usize, radius: f64) -> Vec<usize> {
     others
 }
 
-/// Returns whether no taxel of the list `around` lies between the taxels `a` and `b`. A taxel that coincides with one of the two is not between them.
+/// Returns whether no taxel of the list `around` lies between the taxels `a` and `b`. A taxel that coincides with `a` or `b` is not between them.
 fn is_free(skin: &Patch, [a, b]: [usize; 2], around: &[usize]) -> bool {
     let centers = skin.layout().centers();
     let middle: DVec3 = 0.5 * (centers[a] + centers[b]);

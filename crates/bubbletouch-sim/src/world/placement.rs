@@ -188,8 +188,8 @@ impl Placement {
 }
 
 impl Touch {
-    /// Returns the group of this touch: the index of its value on each of these axes. Data splits keep whole groups (an offset, a yaw, a resting pose) out of
-    /// training.
+    /// Returns the group of this touch: the index of its value on each of the given axes. Data splits keep whole groups (an offset, a yaw, a resting pose)
+    /// out of training.
     ///
     /// # Errors
     /// If the values of an axis are uniformly distributed, because no two touches share a value.

@@ -81,8 +81,8 @@ pub(super) fn unit_motions(axes: &[DVec3; 3], from_center: DVec3, arm: f64) -> [
     [x, y, z, turn(x), turn(y), turn(z)]
 }
 
-/// Returns the derivatives of a function with respect to the six motions of a body, by the chain rule. `gradient` is its derivative with respect to the
-/// displacement of a point.
+/// Returns the derivatives of a function with respect to the six motions of a body, by the chain rule. `gradient` is the derivative of the function with
+/// respect to the displacement of a point.
 pub(super) fn along(ways: &[DVec3; 6], gradient: DVec3) -> Six {
     ways.map(|way| gradient.dot(way))
 }

@@ -55,7 +55,7 @@ pub(super) struct DescentWorkspace {
 /// State of an energy descent: bodies, step lengths and energies.
 pub(super) struct Descent<'a, 'b> {
     pub workspace: &'b mut DescentWorkspace,
-    /// Bodies, ground, and present multipliers of the descent.
+    /// Bodies, ground, and present Lagrange multipliers of the descent.
     pub scene: Scene<'a>,
     /// Length of the longest allowed step of the bodies, metres.
     pub farthest: f64,

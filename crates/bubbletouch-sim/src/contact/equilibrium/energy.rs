@@ -22,7 +22,7 @@ pub(super) struct Energy {
 /// Load of one pair; a pair is a sphere with the taxel or rigid counterpart that it pushes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PairLoad {
-    /// Index of the pair in the list of all pairs.
+    /// Index of the pair (sphere and taxel or rigid counterpart) in the list of all pairs.
     pub pair: usize,
     /// Force on the sphere along the taxel's axis, newtons, including the force at the end of the taxel's stroke.
     pub force: f64,

@@ -103,7 +103,7 @@ pub struct HalfSpace {
 pub struct Obstacle<'a> {
     /// Shape of the obstacle.
     pub spheres: &'a SphereUnion,
-    /// Pose `world_from_object`.
+    /// Pose of the obstacle in the world (`world_from_object`).
     pub pose: Pose,
 }
 

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 /// Lagrange multipliers: forces of taxels at the end of their stroke, and shares of spheres that push one taxel together.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Multipliers {
-    /// Forces at the end of the stroke, newtons, for each taxel or rigid contact.
+    /// Forces of the hard limit at the end of the stroke, newtons, for each taxel; forces of rigid contacts.
     pub stops: BTreeMap<Key, f64>,
     /// Shares of the spheres in the force of a taxel that several spheres push.
     pub shares: BTreeMap<Key, Vec<(Part, f64)>>,
@@ -46,7 +46,7 @@ impl Smoothness {
         self.smoothing.min(of_load).max(self.least)
     }
 
-    /// Multiplies the smoothing widths by a factor below 1.
+    /// Multiplies the widths of the smoothing by a factor below 1.
     pub fn tighten(&mut self, factor: f64) {
         self.smoothing *= factor;
         self.load *= factor;

@@ -27,7 +27,8 @@ pub(super) const OTHERS: Part = (u32::MAX, u32::MAX);
 pub(super) struct Pair {
     pub key: Key,
     pub part: Part,
-    /// Deflection past the taxel's free position, metres; negative if sphere and taxel do not touch yet.
+    /// Deflection that contact with the sphere requires, measured from the taxel's relaxed deflection, metres. The value is negative if sphere and taxel do
+    /// not touch yet.
     pub deflection: f64,
     pub kind: Kind,
     /// Vector from the centre of mass to the sphere's centre, metres; in the patch frame for taxels, in the world for rigid contacts.

@@ -29,7 +29,7 @@ pub enum Outcome {
 /// Final pose of a free object, and the contact forces that act on the object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// Pose `world_from_object`.
+    /// Final pose of the object in the world (`world_from_object`).
     pub pose: Pose,
     /// Outcome of the search for equilibrium.
     pub outcome: Outcome,

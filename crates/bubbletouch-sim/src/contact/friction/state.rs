@@ -128,7 +128,7 @@ pub struct FrictionState {
     held: Vec<TaxelContactState>,
     /// Contacts at the previous time step, ascending by taxel; used only during a step.
     before: Vec<TaxelContactState>,
-    /// Poses `patch_from_object` after the last step.
+    /// Poses of the objects in the patch frame (`patch_from_object`) after the last step.
     poses: Vec<Pose>,
 }
 

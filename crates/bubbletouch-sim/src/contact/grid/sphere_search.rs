@@ -14,7 +14,7 @@ pub(crate) struct SphereSearch {
     views: Vec<View>,
     /// Travel before which no sphere of a cluster presses a taxel, metres, for each cluster. The travel is infinite if the cluster passes beside the patch.
     starts: Vec<f64>,
-    /// Spheres that can press a taxel, in the patch frame before the travel.
+    /// Spheres that can press a taxel, in the patch frame at a travel of 0.
     pub found: Vec<PlacedSphere>,
 }
 

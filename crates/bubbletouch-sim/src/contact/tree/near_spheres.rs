@@ -60,8 +60,8 @@ impl<'a> PlacedUnion<'a> {
 }
 
 /// Returns the deflection that contact with a sphere requires, metres; at most 0 if the sphere misses the taxel or lies behind its substrate. `from` is the
-/// vector from the sphere's centre to the taxel's. `frame` contains two unit vectors perpendicular to the axis, and the axis. `reach` is the sum of both radii,
-/// metres, and `behind` the substrate's height along the axis.
+/// vector from the sphere's centre to the taxel's centre. `frame` contains two unit vectors perpendicular to the axis, and the axis. `reach` is the sum of
+/// both radii, metres, and `behind` the substrate's height along the axis.
 ///
 /// The operations have the order of the grid kernel, so that the two kernels return equal bits on a grid.
 #[inline(always)]

@@ -253,7 +253,7 @@ pub fn press_with_contacts(
     meet(patch, objects, patch_from_objects, workspace)
 }
 
-/// Limits the deflections of the touched taxels to their strokes and records the contacts.
+/// Limits the deflections of the touched taxels to their strokes, and records the contacts of these taxels.
 fn meet(
     patch: &Patch,
     objects: &[Model],

@@ -21,7 +21,7 @@ pub enum Source {
     Learned(Learn),
 }
 
-/// Description of an ensemble of measurements.
+/// Description of an ensemble, that is, a family of measurement maps.
 #[derive(Debug)]
 pub struct EnsembleAbout {
     /// Display name of the ensemble.

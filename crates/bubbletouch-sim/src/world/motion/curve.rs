@@ -30,7 +30,7 @@ pub(super) struct Curve {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Taken {
     pub value: f64,
-    /// Time at which the value occurs, seconds, with the waypoints' origin of time.
+    /// Time at which the value occurs, seconds, counted as in the times of the waypoints.
     pub time: f64,
     /// Index of the waypoint before this time.
     pub piece: usize,

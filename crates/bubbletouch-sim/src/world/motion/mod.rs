@@ -26,7 +26,7 @@ pub use pose_trajectory::PoseTrajectory;
 use super::VelocityPlan;
 use crate::geometry::Pose;
 
-/// Imposed motion of a robot's base or of an object.
+/// Motion of a robot's base or of an object that is given in advance.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// Pose that does not change.

@@ -10,11 +10,11 @@ pub(super) struct WayPoints {
     pub times: Vec<f64>,
     /// Values of all coordinates, one row per waypoint.
     pub values: Array2<f64>,
-    /// Origin of the waypoints, for error messages.
+    /// Source of the waypoints (argument or file), for error messages.
     pub origin: Origin,
 }
 
-/// Origin of waypoints, for error messages.
+/// Source of waypoints (argument or file), for error messages.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Origin {
     /// Function argument with this name.

@@ -66,8 +66,8 @@ pub enum LinkGeometry {
     },
     /// Triangle mesh in a separate file.
     Mesh {
-        /// Name as written, which is a path relative to the URDF file, a `file://` or a `package://` address. The file is opened only for skin that is draped
-        /// over the link.
+        /// Name of the mesh file as written: a path relative to the URDF file, or a `file://` or `package://` address. The file is opened only for skin that
+        /// is draped over the link.
         file: String,
         /// Metres per unit of the mesh file along each axis; not zero, negative for mirrored axes.
         scale: DVec3,

@@ -13,7 +13,7 @@ pub struct TactileSensor {
     pub name: String,
     /// Name of the link that carries the sensor.
     pub link: String,
-    /// Pose `link_from_sensor`, metres.
+    /// Pose of the sensor on its link (`link_from_sensor`), metres.
     pub link_from_sensor: Pose,
     /// Pose `sensor_from_taxel` of each taxel, metres, in the order of the data vector; z is the taxel's normal.
     pub taxels: Vec<Pose>,
