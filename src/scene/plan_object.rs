@@ -224,7 +224,7 @@ impl Reader<'_> {
     }
 
     /// Returns the solid of a built-in object, or the solid that the key `parts` describes.
-    fn solid(&self, key: &str, spec: &ObjectSpec) -> Result<Solid> {
+    pub fn solid(&self, key: &str, spec: &ObjectSpec) -> Result<Solid> {
         let Some(name) = &spec.object else {
             let text = toml::to_string(&BTreeMap::from([("part", &spec.parts)]));
             let text = text.expect("tables that were read have a TOML form");

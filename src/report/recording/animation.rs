@@ -8,6 +8,7 @@ use crate::error::{Error, Result};
 use crate::files::write_bytes;
 use crate::report::pictures::heat_map::ColourScale;
 use crate::signal::Quantity;
+use bubbletouch_sim::raster::pixels::changed_rows;
 use png::{BitDepth, BlendOp, ColorType, Encoder, EncodingError};
 use std::path::Path;
 
@@ -159,25 +160,14 @@ fn add(
     now: &Picture,
     shown: &ShownFrame,
 ) -> std::result::Result<(), EncodingError> {
-    let pixels = now.rgb.as_chunks::<3>().0;
-    let same =
-        |at: usize| before.is_some_and(|before| before.rgb[3 * at..3 * at + 3] == pixels[at]);
-    let changed = |row: &usize| !(row * now.width..(row + 1) * now.width).all(same);
-    // A frame must have at least one row.
-    let first = (0..now.height).find(changed).unwrap_or(0);
-    let last = (first..now.height).rfind(changed).unwrap_or(first);
-    let part = first * now.width..(last + 1) * now.width;
-    let part = part.flat_map(|at| match (same(at), pixels[at]) {
-        (true, _) => [0; 4],
-        (false, [r, g, b]) => [r, g, b, 255],
-    });
-    let part: Vec<u8> = part.collect();
+    let before = before.map(|before| &before.rgb[..]);
+    let (rows, part) = changed_rows(before, &now.rgb, now.width);
     let (numerator, denominator) = delay(shown.milliseconds);
     film.set_frame_delay(numerator, denominator)?;
     // The position is reset first, because the new rows must fit at the position of the previous ones.
     film.set_frame_position(0, 0)?;
-    film.set_frame_dimension(now.width as u32, (last + 1 - first) as u32)?;
-    film.set_frame_position(0, first as u32)?;
+    film.set_frame_dimension(now.width as u32, rows.len() as u32)?;
+    film.set_frame_position(0, rows.start as u32)?;
     film.write_image_data(&part)
 }
 

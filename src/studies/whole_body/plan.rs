@@ -208,6 +208,10 @@ fn scene_plan(
         let allowed = "at and motion, and depth_mm beside the object";
         return Err(check.error(&key(&format!("object.{name}")), "given", allowed));
     }
+    // Solids are packed when the scene runs; their keys are checked before.
+    if object.mesh.is_none() && object.spheres.is_none() {
+        reader.solid(&key("object"), object)?;
+    }
     let on_robot = ObjectSpec {
         robot: Some(object.robot.clone().unwrap_or(ROBOT.to_owned())),
         ..object.clone()

@@ -254,6 +254,21 @@ fn keys_of_a_body_study_that_are_out_of_range_are_named() {
             "key whole_body.scenes[1].object.robot: `other`",
         ),
         (
+            "object = \"tennis_ball\"\ncentered = true\nlink = \"arm\"",
+            "object = \"tennis_balls\"\ncentered = true\nlink = \"arm\"",
+            "key whole_body.scenes[1].object.object: object: `tennis_balls`",
+        ),
+        (
+            "shape = \"capsule\"",
+            "shape = \"torus\"",
+            "key whole_body.scenes[2].object.parts, part 1 (torus): ",
+        ),
+        (
+            "parts = [{ shape = \"capsule\", diameter_mm = 16.0, length_mm = 40.0 }]",
+            "",
+            "key whole_body.scenes[2].object.parts: ",
+        ),
+        (
             "depth_mm = 1.5",
             "depth_mm = -1.5",
             "key whole_body.scenes[1].depth_mm: -1.5",

@@ -50,6 +50,32 @@ pub fn darken(rgb: &mut [u8], other: &[u8]) {
     }
 }
 
+/// Returns the rows that differ between two pictures of equal size with `width` pixels in a row, from the first to the last, and their pixels with opacity.
+/// Pixels that are equal in both pictures are transparent black. Without a picture before, all rows are returned; without a difference, the first row.
+pub fn changed_rows(
+    before: Option<&[u8]>,
+    now: &[u8],
+    width: usize,
+) -> (std::ops::Range<usize>, Vec<u8>) {
+    let height = now.len() / (3 * width);
+    let row = |row: usize| 3 * row * width..3 * (row + 1) * width;
+    let is_changed =
+        |number: &usize| before.is_none_or(|before| before[row(*number)] != now[row(*number)]);
+    let first = (0..height).find(is_changed).unwrap_or(0);
+    let last = (first..height).rfind(is_changed).unwrap_or(first);
+    let part = 3 * first * width..3 * (last + 1) * width;
+    let mut rgba = Vec::with_capacity(part.len() / 3 * 4);
+    for at in part.step_by(3) {
+        let pixel = &now[at..at + 3];
+        if before.is_some_and(|before| before[at..at + 3] == *pixel) {
+            rgba.extend([0; 4]);
+        } else {
+            rgba.extend([pixel[0], pixel[1], pixel[2], 255]);
+        }
+    }
+    (first..last + 1, rgba)
+}
+
 /// Paints the cells of a map, one colour each, on a picture with `width` pixels in a row. `places` are the centres, pixels from the top left corner; `radius`
 /// is half the side of a square, or the radius of a disc, pixels.
 pub fn paint_cells(
@@ -75,6 +101,14 @@ pub fn paint_cells(
                 // Anti-aliasing: the rim is approximated as straight within a pixel.
                 let cover = (radius - distance + 0.5).clamp(0.0, 1.0);
                 let at = 3 * (row * width + column);
+                // The mixture of a pixel inside or outside is exact without rounding.
+                if cover == 0.0 {
+                    continue;
+                }
+                if cover == 1.0 {
+                    rgb[at..at + 3].copy_from_slice(colour);
+                    continue;
+                }
                 for (value, &colour) in rgb[at..at + 3].iter_mut().zip(colour) {
                     let mixed = cover * f64::from(colour) + (1.0 - cover) * f64::from(*value);
                     *value = mixed.round() as u8;
@@ -112,6 +146,20 @@ mod tests {
         assert_eq!(rgb, [1, 2, 3, 4, 5, 6]);
         darken(&mut rgb, &[255, 0, 3, 3, 255, 255]);
         assert_eq!(rgb, [1, 0, 3, 3, 5, 6]);
+    }
+
+    #[test]
+    fn rows_from_the_first_change_to_the_last_are_returned_and_equal_pixels_are_transparent() {
+        let before = [[1, 2, 3]; 2 * 4].as_flattened().to_vec();
+        let mut now = before.clone();
+        assert_eq!(changed_rows(Some(&before), &now, 2), (0..1, vec![0; 8]));
+        (now[6], now[3 * 5]) = (9, 8);
+        let mut expected = vec![0; 4 * 4];
+        expected[..4].copy_from_slice(&[9, 2, 3, 255]);
+        expected[12..].copy_from_slice(&[8, 2, 3, 255]);
+        assert_eq!(changed_rows(Some(&before), &now, 2), (1..3, expected));
+        let (rows, rgba) = changed_rows(None, &now, 2);
+        assert_eq!((rows, rgba.len(), rgba[7]), (0..4, 4 * 8, 255));
     }
 
     /// Counts the pixels that each of three colours covers in a picture of 80 × 60 pixels.
