@@ -28,8 +28,8 @@ pub enum RapierJoints {
     /// Motors of joints to the world, which the solver integrates as stiff springs. Locked axes keep taxels on their lines,
     /// so that fewer constraints remain for the solver.
     Motors,
-    /// Model of SkinSim \[SK\]: forces computed before each step and constant within it. Taxels are held by joints only,
-    /// on a light base that a joint without range of motion holds in the world.
+    /// Model of SkinSim \[SK\]: forces are computed before each time step and constant within the step. Only joints hold the taxels on a light base; a joint
+    /// without range of motion holds the base in the world.
     SkinSim {
         /// Mass of the base, the body to which the taxels are attached, kg.
         base_mass: f64,

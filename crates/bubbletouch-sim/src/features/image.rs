@@ -8,8 +8,8 @@ use ndarray::ArrayView2;
 pub struct Cut {
     /// Threshold of the frame's values, zero or positive. Smaller values become 0, as do negative values (from noise or estimates) and NaN.
     pub level: f64,
-    /// Depth window d, positive: the image keeps the depth within d of the largest value δ_max, that is, max(0, δ − δ_max + d). If a rigid object moves
-    /// deeper, δ increases equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.
+    /// Depth window d, positive: each value δ of the frame becomes max(0, δ − δ_max + d), where δ_max is the largest value. If a rigid object moves deeper, δ
+    /// increases equally on all touched taxels below their stroke. The images of all presses of depth d or more are therefore exactly equal.
     pub foremost: Option<f64>,
 }
 

@@ -16,8 +16,8 @@
 use super::Features;
 use ndarray::{ArrayView1, ArrayViewMut1, ArrayViewMut2};
 
-/// Largest rounding error, in double precision, of an element of the vector Φ1 that is exactly 0. (Rows of the projection Φ have norms of about 1, and at
-/// most 2²⁴ taxels.) Smaller elements count as 0.
+/// Largest rounding error, in double precision, of a measurement of a frame of ones whose exact value is 0. Smaller measurements of this frame count as 0.
+/// (Rows of the projection have norms of about 1, and at most 2²⁴ taxels.)
 const ROUNDING: f64 = 1e-12;
 
 impl Features {

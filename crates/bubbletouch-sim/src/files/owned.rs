@@ -227,7 +227,8 @@ impl DataFolder {
         self.files.insert(name.to_owned(), facts);
     }
 
-    /// Writes the manifest. Call this before the files are moved to their paths: if the process is killed in between, the next run may replace them.
+    /// Writes the manifest. Call this function before the files are moved to their paths. The next run may then replace the files even if the process is
+    /// killed in between.
     ///
     /// # Errors
     /// If the manifest cannot be written.

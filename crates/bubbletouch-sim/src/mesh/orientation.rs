@@ -81,9 +81,8 @@ impl fmt::Display for Orientation {
 }
 
 impl TriangleMesh {
-    /// Turns the triangles of closed parts so that the mesh faces outwards: neighbours are consistent, and no point has a negative
-    /// winding number. Cavities stay cavities. Open parts are not changed; rays from their faces decide whether they face
-    /// outwards.
+    /// Turns the triangles of closed parts so that the mesh faces outwards: neighbours are consistent, and no point has a negative winding number. Cavities
+    /// inside other parts remain cavities. Open parts are not changed; rays from their faces decide whether they face outwards.
     pub fn turned_outwards(self) -> (Self, Orientation) {
         let welded = Welded::new(&self);
         let mut parts = Parts::new(&self, &welded);

@@ -9,7 +9,6 @@ const ROUNDING: f64 = 1e-12;
 impl Triangle {
     /// Returns whether a plane certainly separates two triangles. The test uses their normals and the 9 products of their edges (separating axes). Returns
     /// false for triangles that touch or lie in one plane.
-    /// false for triangles that touch or lie in one plane.
     pub fn is_apart(&self, other: &Self) -> bool {
         let origin = self.0[0];
         let [a, b] = [self, other].map(|triangle| triangle.0.map(|corner| corner - origin));

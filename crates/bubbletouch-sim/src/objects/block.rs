@@ -28,7 +28,8 @@ impl Block {
         core.dot(direction.abs()) + self.rounding * direction.length()
     }
 
-    /// Packs the box with spheres: first the corners, then rows along each edge, then rows on each face that become wider towards its middle.
+    /// Packs the box with spheres: first the corners, then rows along each edge, then rows on each face whose spacing increases towards the middle of the
+    /// face.
     ///
     /// A ball of radius r that touches a flat face covers a disc of radius sqrt(h(2r + h)) around the touching point after its enlargement; h is the sum of
     /// both tolerances. This disc contains a square cell of half side sqrt(h(r + h/2)).

@@ -71,7 +71,7 @@ impl Solid {
     }
 }
 
-/// Packs a solid from which shapes are subtracted with spheres.
+/// Returns spheres that approximate a solid from which shapes are subtracted.
 fn pack_less(solid: &Solid, tolerance: f64, fit: Fit) -> Result<SphereUnion> {
     match pack_difference(solid, fit) {
         Some(spheres) => SphereUnion::new(spheres),

@@ -218,7 +218,7 @@ impl Solid {
         nearest(&self.parts, point).max(self.seam - nearest(&self.cuts, point))
     }
 
-    /// Returns the depth of a point (minus the signed distance), metres, with all cuts enlarged by `growth` (metres).
+    /// Returns the depth of a point (minus the signed distance), metres, with all subtracted shapes enlarged by `growth` (metres).
     pub(super) fn depth_with_cuts_grown(&self, point: DVec3, growth: f64) -> f64 {
         (-nearest(&self.parts, point)).min(nearest(&self.cuts, point) - growth)
     }

@@ -27,8 +27,8 @@ const TARGET_RESIDUAL: f64 = 1e-7;
 /// Largest complementarity residual of a pose that is reported as at rest. The value is needed if many taxels at the end of their stroke carry load and
 /// rounding limits their stiffness.
 const ACCEPTED_RESIDUAL: f64 = 1e-5;
-/// Largest step, relative to the longest allowed step, for which all possible contacts are gathered. A larger value gathers more pairs of spheres and taxels;
-/// a smaller value needs more steps.
+/// Largest step of the bodies, relative to the longest allowed step, for which all possible contacts are collected. A larger value collects more pairs of
+/// spheres and taxels; a smaller value needs more steps.
 const NEARBY: f64 = 0.04;
 /// Width of the smoothing of ties (taxels pushed equally far by several spheres). The width is relative to the largest deflection and to the deflection at
 /// which one taxel carries all the weight.

@@ -31,7 +31,7 @@ pub(super) struct PairLoad {
 }
 
 impl Energy {
-    /// Evaluates the energy at the present poses of the bodies, and gathers all contacts that can occur after a motion of at most `step` metres. `behind`
+    /// Evaluates the energy at the present poses of the bodies, and collects all contacts that can occur after a motion of at most `step` metres. `behind`
     /// lists the spheres that were behind a taxel's substrate at the previous poses.
     pub fn look(&mut self, scene: &Scene, step: f64, behind: &[(Key, Part)]) {
         let margins = Margins {

@@ -76,7 +76,8 @@ impl Pairs {
         }
     }
 
-    /// Returns the island number of each of `n_bodies` bodies. Bodies that touch one another or push a common taxel form an island.
+    /// Returns, for each of `n_bodies` bodies, the number of its island (group of bodies in contact). Bodies that touch one another or push a common taxel
+    /// form an island.
     pub fn islands(&self, n_bodies: usize) -> Vec<usize> {
         let mut islands: Vec<usize> = (0..n_bodies).collect();
         for group in &self.groups {

@@ -125,7 +125,7 @@ impl Operator for ScrambledHadamard {
     }
 }
 
-/// Applies the unscaled Walsh–Hadamard transform in natural order, in place, to a power of two of values per lane.
+/// Applies the unscaled Walsh–Hadamard transform in natural order, in place, to the values of each lane, whose number is a power of two.
 fn transform(values: &mut [Lanes]) {
     let mut half = 1;
     while half < values.len() {

@@ -50,9 +50,9 @@ impl JointTrajectory {
         Self::through(robot, &way_points.checked()?, interpolation)
     }
 
-    /// Reads a trajectory from CSV: a column `time_s` and one column for each moving coordinate of the robot, in any order. A coordinate
-    /// without a column stays at its rest position. A column of angles has the coordinate's name, optionally with `_rad`, for radians, or `_deg` for degrees. A
-    /// column of lengths has `_m` for metres or `_mm` for millimetres.
+    /// Reads a trajectory from CSV: a column `time_s` and one column for each moving coordinate of the robot, in any order. A coordinate without a column
+    /// stays at its default position. A column of angles has the coordinate's name, optionally with `_rad`, for radians, or `_deg` for degrees. A column of
+    /// lengths has `_m` for metres or `_mm` for millimetres.
     ///
     /// # Errors
     /// If the table is invalid. The message begins with `place`, the file's name, and contains the line.

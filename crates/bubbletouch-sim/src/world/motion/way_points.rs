@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use ndarray::Array2;
 
-/// Waypoints: rows of numbers at given times. Invariant after `checked`: at least one row, all numbers finite, times ascending.
+/// Waypoints: rows of numbers at given times. After a call of `checked`, there is at least one row, all numbers are finite, and the times ascend.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct WayPoints {
     /// Times of the waypoints, seconds.

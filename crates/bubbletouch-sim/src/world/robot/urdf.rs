@@ -73,7 +73,7 @@ fn read_parts(root: Element) -> Result<Parts> {
     Ok((name.to_owned(), links, joints, tree, drives))
 }
 
-/// Adds the link `world` if a joint has it as its parent but the file does not contain it; some tools define it implicitly.
+/// Adds the link `world` if a joint names this link as its parent but the file does not contain the link. Some tools define the link implicitly.
 fn add_world<'a>(root: Element<'a>, links: &mut Vec<Link>, link_of: &mut HashMap<&'a str, usize>) {
     const WORLD: &str = "world";
     let mut parents = root
