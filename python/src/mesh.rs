@@ -48,7 +48,7 @@ impl Mesh {
         &self.model
     }
 
-    /// Returns the triangle mesh.
+    /// Returns the triangle mesh of the Rust library that this object wraps.
     pub fn triangle_mesh(&self) -> &TriangleMesh {
         self.triangles.mesh()
     }

@@ -15,7 +15,7 @@ const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without 
 
 /// Poses of an argument, with a flag that states whether the argument was a single pose.
 pub struct Poses {
-    /// Poses `patch_from_object`.
+    /// Poses of the object in the patch frame, `patch_from_object`.
     pub poses: Vec<Pose>,
     /// Whether the argument was a single pose, without the first axis n.
     pub is_one: bool,

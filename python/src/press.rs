@@ -40,9 +40,9 @@ impl Real for f32 {
 /// Results that a call of `Patch.press` requests in addition to the frames.
 #[derive(Clone, Copy)]
 pub struct Wanted {
-    /// Whether contacts are requested.
+    /// Whether the call requests the contacts of each press.
     pub contacts: bool,
-    /// Whether derivatives of the deflections with respect to the pose are requested.
+    /// Whether the call requests the derivatives of the deflections with respect to the pose.
     pub jacobian: bool,
 }
 
@@ -57,7 +57,7 @@ pub struct PatchToPress<'a> {
     pub spare: &'a Spare<Workspace>,
 }
 
-/// Presses a patch at all poses. Returns the frames of deflections, or a tuple of the frames and the other requested results, contacts first.
+/// Presses a patch on an object at all poses. Returns the frames of deflections, or a tuple of the frames and the other requested results, contacts first.
 ///
 /// # Errors
 /// If an argument is invalid, a force cannot be reached (the error names the pose), or Ctrl-C was pressed.
@@ -116,7 +116,7 @@ fn is_single(py: Python, dtype: &Bound<PyAny>) -> PyResult<bool> {
     }
 }
 
-/// Returns the function `numpy.zeros`. Memory of untouched taxels is never written, and large arrays use large memory pages.
+/// Returns the function `numpy.zeros`, which creates the output arrays. Memory of untouched taxels is never written, and large arrays use large memory pages.
 fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
     static ZEROS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     ZEROS.import(py, "numpy", "zeros")

@@ -66,7 +66,7 @@ pub trait AnyStudy: Send {
     fn report(&self, folder: &Path, about: StudyAbout) -> Result<()>;
 }
 
-/// Result of running a study.
+/// Result of running a study: its tables, and the number of failed work items.
 pub struct Outcome {
     /// All result tables, including the table of failed work items.
     pub tables: Vec<Table>,

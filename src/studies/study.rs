@@ -83,7 +83,7 @@ pub trait AnyFile: Sync {
     /// Returns the file name of the table.
     fn name(&self) -> &'static str;
 
-    /// Describes the file; see [`File::about`].
+    /// Returns the description of the table file; see [`File::about`].
     fn about(&self) -> FileAbout;
 
     /// Reads the table from a result folder.
@@ -161,13 +161,13 @@ impl TableFiles {
 
 /// Charts and answers of a study, computed from its tables for the page and the terminal.
 pub struct Findings {
-    /// Charts, the most important first.
+    /// Charts of the results, the most important one first.
     pub charts: Vec<ChartSpec>,
     /// Answers in sentences, shown at the top of the page and at the end of the run.
     pub answers: Vec<String>,
 }
 
-/// Kind of study. The engine runs, resumes, shards, merges, plans, verifies and reports studies of any kind.
+/// Kind of study, such as recognition studies. The engine runs, resumes, shards, merges, plans, verifies and reports studies of any kind.
 pub trait Study: Send + Sized + Sync + 'static {
     /// Description of the kind of study.
     const ABOUT: About;

@@ -22,7 +22,7 @@ pub struct ObjectDetailPlan {
     pub meshes: PathBuf,
     /// Array of taxels that touches the objects.
     pub array: TaxelArray,
-    /// Distribution of touch poses.
+    /// Distribution from which the poses of touches are drawn.
     pub placement: Placement,
 }
 

@@ -10,7 +10,7 @@ const METHODS: &[(&str, &str)] = &[("mesh", "exact mesh")];
 row! {
 /// Model of an object; each row of `object_detail.csv` and `timing.csv` begins with these columns.
 pub struct DetailConfiguration {
-    /// Name of the touched object.
+    /// Name of the object that is touched.
     object: String => Subject;
     /// Method that makes the model from the mesh.
     method: DetailMethod => Choice "model" named METHODS;
@@ -59,7 +59,7 @@ pub struct DetailScore {
 } }
 
 row! {
-/// Computing cost of a model. A row of `timing.csv` is a [`DetailConfiguration`] followed by a `DetailTime`.
+/// Computing time per touch of a model, and time to compute the model. A row of `timing.csv` is a [`DetailConfiguration`] followed by a `DetailTime`.
 pub struct DetailTime {
     /// Computing time per touch of the model on one thread, median over touches, µs.
     us_per_touch: f64 => Cost "time of a touch" in "µs": Log;
@@ -138,7 +138,7 @@ pub struct DetailRecognition {
     n_training: usize => Note "training touches": Linear;
     /// Number of rows with which the classifier is tested, summed over all objects.
     n_test: usize => Note "test touches": Linear;
-    /// Number of measurements per touch.
+    /// Number of measurements of a touch, from which the classifier recognises the object.
     n_measurements: usize => Note "measurements": Linear;
     /// Median, over all objects, of `error_own_contact_mm`, mm: the deflection error of the training models. Training touches are also pressed past each
     /// model's own first contact.

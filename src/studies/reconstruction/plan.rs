@@ -27,7 +27,7 @@ pub struct ReconstructionPlan {
     pub spec: ReconstructionStudySpec,
     /// Array of taxels that touches the objects.
     pub array: TaxelArray,
-    /// Distribution of touch poses.
+    /// Distribution from which the poses of touches are drawn.
     pub placement: Placement,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,

@@ -141,7 +141,7 @@ pub type StabilityRow = (StabilityConfiguration, StabilityScore, StabilityTime);
 pub struct PeerSource {
     /// Name of the other program, such as MuJoCo.
     pub program: String,
-    /// Version of the other program.
+    /// Version of the other program that computed the result.
     pub version: String,
     /// Date on which the other program computed the result, year-month-day.
     pub date: String,

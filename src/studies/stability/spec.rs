@@ -93,7 +93,7 @@ impl StabilityScene {
     }
 }
 
-/// Method that simulates contact.
+/// Method that simulates the contact between balls and taxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactMethod {

@@ -30,7 +30,7 @@ pub(super) struct Posture<'a> {
 /// Motion of an object in the frame of a link.
 #[derive(Clone, Copy)]
 pub(super) struct Path {
-    /// Pose of the link, `world_from_link`.
+    /// Pose of the link in the world, `world_from_link`.
     pub world_from_link: Pose,
     /// Motion of the object in the frame of the link.
     pub motion: Oscillation,

@@ -33,7 +33,7 @@ pub struct BodyCase {
 } }
 
 row! {
-/// Counts of a simulated case. A row of `whole_body.csv` is a [`BodyCase`] followed by a `BodyCount`.
+/// Counts of touched taxels, patches and spheres in a simulated case. A row of `whole_body.csv` is a [`BodyCase`] followed by a `BodyCount`.
 pub struct BodyCount {
     /// Number of simulated steps of the case.
     n_steps: usize => Note "steps": Linear;
@@ -140,7 +140,7 @@ pub struct BodyTouch {
 row! {
 /// Median and percentiles of the computing time per step.
 pub struct StepTime {
-    /// Median computing time per step, µs.
+    /// Median of the computing time per step, µs.
     us_median: f64 => Cost "time of a step" in "us": Log between [us_p05, us_p95];
     /// 5th percentile of the computing time per step, µs.
     us_p05: f64 => Note "5th to 95th percentile, lower end" in "us": Log;

@@ -64,7 +64,8 @@ impl HumanTouches {
     }
 }
 
-/// Records a touch. Returns its frames (shape (n_frames, n_taxels), metres), whether the hand missed the skin, and whether it saturated a taxel.
+/// Simulates the recording of a human touch. Returns its frames (shape (n_frames, n_taxels), metres), whether the hand missed the skin, and whether it
+/// saturated a taxel.
 pub fn record_touch(
     skin: &Patch,
     touch: &RecordedTouch,

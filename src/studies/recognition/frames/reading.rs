@@ -39,7 +39,8 @@ pub struct ReadSkin<'a> {
 /// Touch to be read by a skin: its number, random seed, timing and preceding touch.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchToRead {
-    /// Number of the touch. In the frames of the skin, its first frame has the index `number · F`, where F is the number of frames per touch.
+    /// Number of the touch among all touches of the study. In the frames of the skin, its first frame has the index `number · F`, where F is the number of
+    /// frames per touch.
     pub number: usize,
     /// Seed of the random numbers of this reading, derived from the touch's name.
     pub seed: Seed,

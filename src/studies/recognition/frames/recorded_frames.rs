@@ -70,7 +70,7 @@ pub struct RecordedFrames {
     depths: Option<Vec<f64>>,
 }
 
-/// Frames of one file, with their shape.
+/// Frames that one file contains, with the shape of a frame.
 struct FramesOfFile {
     shape: FrameShape,
     readings: Array2<f64>,
@@ -81,7 +81,7 @@ struct FramesOfFile {
 }
 
 impl RecordedFrames {
-    /// Reads the recorded files. If `ceiling` is given, the frames must fit into this number of bytes.
+    /// Reads the files of a recording. If `ceiling` is given, the frames must fit into this number of bytes.
     ///
     /// # Errors
     /// If a file cannot be read or does not fit the others, or a reading is infinite, or NaN although its taxel is not masked.
@@ -562,8 +562,8 @@ impl TouchSet for RecordedFrames {
         frames
     }
 
-    /// Returns how each touch is read. Touches are read at the study's speed or frame rate. Each touch follows a randomly drawn touch or no touch, depending on
-    /// the study's keys.
+    /// For each touch, returns its timing and its preceding touch. Touches are read at the study's speed or frame rate. Each touch follows a randomly drawn
+    /// touch or no touch, depending on the study's keys.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         let streams = self.streams.iter().map(String::as_str);
         let mut touches = touches_to_read(streams.zip(self.counts.iter().copied()), seed);

@@ -32,7 +32,8 @@ pub struct Measurements {
     pub n_frames: usize,
     /// Measurements of a frame in which every value is 1, shape (m,).
     pub of_ones: Array1<f64>,
-    /// Image features by kind. Each array has the shape (n_touches, F·k) for F frames of k features, and is followed by the rows of tilted copies.
+    /// Image features of all touches, one array for each kind of features. Each array has the shape (n_touches, F·k) for F frames of k features, and is
+    /// followed by the rows of tilted copies.
     pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
     /// Tilted copies of the training touches; `None` if the group uses no copies.
     pub copies: Option<TiltedCopies>,

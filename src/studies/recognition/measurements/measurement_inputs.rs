@@ -23,7 +23,7 @@ use bubbletouch_svm::split::Split;
 pub struct MeasurementInputs<'a> {
     /// Array of taxels that is pressed on the objects.
     pub array: &'a TaxelArray,
-    /// Seed of all random numbers.
+    /// Seed from which all random numbers of the study are derived.
     pub seed: u64,
     /// Number of projections (measurement matrices) with which each split into training and test touches is combined; `None` if each trial has its own
     /// projection.
@@ -72,7 +72,7 @@ pub struct MeasuredTrial<'a> {
 /// Inputs of the signal chain; steps without effect are omitted.
 #[derive(Clone, Debug)]
 pub struct SignalInputs {
-    /// Steps of the signal chain, in order.
+    /// Steps of the signal chain, in the order in which they are applied.
     pub steps: Vec<StepSpec>,
     /// Unit of the noise standard deviation; full scale if there is no noise.
     pub noise_unit: NoiseUnit,

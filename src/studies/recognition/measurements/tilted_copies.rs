@@ -8,9 +8,9 @@ use std::collections::HashMap;
 /// Tilted copies of touches: the copied touches, and the tilt of each copy.
 #[derive(Clone, Debug)]
 pub struct TiltedCopies {
-    /// Numbers of the copied touches.
+    /// Numbers of the touches of which copies are made.
     pub touches: Vec<usize>,
-    /// Number of copies of each touch.
+    /// Number of tilted copies of each touch in `touches`.
     pub n_copies: usize,
     /// For each copy of each touch, its slope along x and y: the increase of the reading from one taxel to the next.
     pub slopes: Vec<(f64, f64)>,

@@ -25,8 +25,8 @@ pub struct MeasurementGroup {
 }
 
 impl MeasurementGroup {
-    /// Returns the configurations by family. The configurations of a family use the same rows of features. Configurations of a family differ only in the
-    /// penalty C, the number of touches per decision, and the choice of the next touch. Configurations with equal C are adjacent.
+    /// Returns the configurations of the group, divided into families. The configurations of a family use the same rows of features. Configurations of a family
+    /// differ only in the penalty C, the number of touches per decision, and the choice of the next touch. Configurations with equal C are adjacent.
     pub fn families(&self) -> impl Iterator<Item = &[Configuration]> {
         let family = |configuration: &Configuration| {
             let (m, kind) = (configuration.measurements, configuration.classifier);
@@ -73,8 +73,8 @@ impl MeasurementGroup {
         all
     }
 
-    /// Returns the numbers of measurements to compute. If smaller sets of measurements are prefixes of larger ones, this is only the largest number m;
-    /// otherwise every m.
+    /// Returns the numbers of measurements per frame that are computed for the group. If smaller sets of measurements are prefixes of larger ones, this is only
+    /// the largest number m; otherwise every m.
     pub fn projected(&self) -> Vec<usize> {
         let mut counts: Vec<usize> = self.configurations.iter().map(|c| c.measurements).collect();
         counts.sort_unstable();

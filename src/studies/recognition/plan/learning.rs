@@ -240,7 +240,8 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks `next_touch`. The policy requires several touches per decision, and poses that a robot can command for any object.
+    /// Checks the key `next_touch`, a policy that chooses the touches of a decision. The policy requires several touches per decision, and poses that a robot
+    /// can command for any object.
     pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         let Some(chosen) = recognition.chosen_next().next() else {

@@ -35,7 +35,7 @@ impl Sensed {
     }
 }
 
-/// Returns the random seed of a channel. The first channel has the seed `named` itself.
+/// Returns the random seed for one of the channels (quantities) that a taxel reads. The first channel has the seed `named` itself.
 pub(crate) fn of_channel(named: &Seed, channel: usize) -> Seed {
     match channel {
         0 => *named,

@@ -58,7 +58,7 @@ impl Check<'_> {
         Err(self.error(&key, given, allowed))
     }
 
-    /// Checks the strengths of sensor errors. Errors that act only during motion require that the press moves while frames are read.
+    /// Checks the strengths of the sensor errors in `[signal]`. Errors that act only during motion require that the press moves while frames are read.
     pub fn sensor_errors(&self, signal: &SignalSpec, touches: &TouchesSpec) -> Result<()> {
         let largest = |strength: &Strength| {
             let axis = signal.axes.get(strength.key).into_iter();
@@ -107,8 +107,8 @@ impl Check<'_> {
         Err(self.error("signal.test_sensor", given, allowed))
     }
 
-    /// Checks the signal steps. Each step occurs at most once; a step whose axis is set is listed; a listed sensor error has at least one strength. Without the
-    /// check, a key could be ignored silently.
+    /// Checks the steps of the signal chain. Each step occurs at most once; a step whose axis is set is listed; a listed sensor error has at least one
+    /// strength. Without the check, a key could be ignored silently.
     pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
         const KEY: &str = "signal.steps";
         if !signal.steps.is_empty() {

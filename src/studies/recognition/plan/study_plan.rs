@@ -39,7 +39,7 @@ pub struct Plan {
     pub placement: Placement,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
-    /// Unit of the noise standard deviation.
+    /// Unit in which noise standard deviations are given.
     pub noise_unit: NoiseUnit,
     /// Numbers of frames per touch (axis `touches.frames`).
     pub frames: Vec<usize>,

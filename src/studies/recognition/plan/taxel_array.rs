@@ -73,7 +73,7 @@ impl TaxelArray {
         self
     }
 
-    /// Returns whether the taxel positions are known.
+    /// Returns whether the positions of the array's taxels are known.
     pub fn is_placed(&self) -> bool {
         self.is_placed
     }

@@ -77,7 +77,7 @@ pub struct Configuration {
     noise_unit: NoiseUnit => always (Note, "noise unit", "", Words);
     /// Standard deviation of the Gaussian that smooths the readings over the array, mm; 0 without smoothing.
     smoothing_mm: f64 => always of "signal.smoothing_mm";
-    /// Strength of each sensor error. The study has one column for each strength that it sets.
+    /// Strength of each sensor error, such as the gain error. The study has one column for each strength that it sets.
     strengths: Strengths => each_strength;
     /// Skin that the test touches use: the training skin or another one. The column is present only if the study has the key.
     test_sensor: Option<TestSensor> => if_given of "signal.test_sensor";

@@ -10,7 +10,7 @@ use crate::studies::recognition::rows::configuration::Configuration;
 use serde::{Deserialize, Serialize};
 
 row! {
-/// Score of one configuration in one trial. A row of `accuracy.csv` is a [`Configuration`] followed by a `TrialScore`.
+/// Accuracy and counts of one configuration in one trial. A row of `accuracy.csv` is a [`Configuration`] followed by a `TrialScore`.
 pub struct TrialScore {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
@@ -112,7 +112,7 @@ row! {
 pub struct Confusion {
     /// Number of the configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
-    /// Name of the touched object.
+    /// Name of the object that is touched.
     object: String => Subject;
     /// Name of the recognised object.
     predicted: String => Subject "recognised as";
@@ -129,7 +129,7 @@ row! {
 pub struct Confused {
     /// Number of the best configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
-    /// Name of the touched object.
+    /// Name of the object that is touched.
     object: String => Subject;
     /// Name of the recognised object.
     predicted: String => Subject "recognised as";
@@ -315,11 +315,11 @@ row! {
 pub struct Variance {
     /// Number of the configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
-    /// Source of the variance.
+    /// Source from which the variance comes: split, projection or rest.
     source: Source => Subject "source of variance";
     /// Number of random levels of the source: of splits, of projections, or of trials for `rest`.
     n_levels: usize => Note "levels": Linear;
-    /// Degrees of freedom of `mean_square`.
+    /// Degrees of freedom of the source's mean square, `mean_square`.
     degrees_of_freedom: usize => Note: Linear;
     /// Mean square of the source in the analysis of variance of the accuracies.
     mean_square: f64 => Note: Linear;

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HumanTouchSpec {
-    /// Kinds of human touch to distinguish. Default: all six.
+    /// Kinds of human touch that the classifier distinguishes. Default: all six.
     #[serde(default = "all_kinds")]
     #[schemars(with = "Vec<Names<TouchKind>>")]
     pub kinds: Vec<TouchKind>,

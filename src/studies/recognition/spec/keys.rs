@@ -36,7 +36,7 @@ const SLIDE: Range = Between(0.0, 1e6, "0 to 1000000");
 const NOISE: Range = ZeroOrBetween(1e-12, 1000.0, "0, or 1e-12 to 1000");
 /// Allowed penalties C. At the bounds, a classifier has no margin or no slack.
 const PENALTY: Range = Between(1e-12, 1e12, "above 0, 1e-12 to 1e12");
-/// Multiples of the default kernel parameter γ.
+/// Allowed multiples of the default kernel parameter γ.
 const GAMMA: Range = Between(1e-12, 1e9, "above 0, 1e-12 to 1e9");
 
 const OVER_TIME: &[(&str, &str)] = &[

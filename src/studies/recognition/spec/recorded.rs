@@ -119,7 +119,7 @@ impl Default for ZeroSpec {
 
 impl<'de> Deserialize<'de> for ZeroSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        /// Deserialises either a number or a path.
+        /// Visitor that deserialises a `zero` key: either a number or a path.
         struct NumberOrPath;
         impl Visitor<'_> for NumberOrPath {
             type Value = ZeroSpec;

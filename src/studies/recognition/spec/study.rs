@@ -203,7 +203,8 @@ pub struct ReportSpec {
     /// Configurations whose confusion matrix is written to `confusion.csv`: `all` (default) or `best`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub confusion: ConfusionMatrices,
-    /// Published accuracies. Each published accuracy is compared with the most accurate configuration to which its claim applies.
+    /// Published accuracies with which the study is compared. Each published accuracy is compared with the most accurate configuration to which its claim
+    /// applies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<PublishedSpec>,
 }

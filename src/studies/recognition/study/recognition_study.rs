@@ -416,7 +416,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Returns the name of a stage. If touches have several frames, the number of frames per touch is added.
+/// Returns the name of a stage for the table of stages. If touches have several frames, the number of frames per touch is added.
 pub(crate) fn in_frames(stage: &str, n_frames: usize) -> String {
     match n_frames {
         1 => stage.to_owned(),

@@ -73,7 +73,7 @@ pub struct StudyPart {
 }
 
 impl Sweep {
-    /// Draws the splits and lists the configurations.
+    /// Draws the splits of all trials and lists the configurations of a study.
     ///
     /// # Errors
     /// If there are too few objects or touches, or a sample object does not exist.
@@ -147,7 +147,7 @@ impl Sweep {
         }
     }
 
-    /// Returns all configurations, in sweep order.
+    /// Returns all configurations of the sweep in the order of their numbers.
     pub fn configurations(&self) -> impl Iterator<Item = &Configuration> {
         self.groups.iter().flat_map(|group| &group.configurations)
     }

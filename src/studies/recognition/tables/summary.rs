@@ -18,8 +18,9 @@ use std::collections::BTreeMap;
 /// Row of the table `accuracy.csv`: a configuration, and its score in one trial.
 type Row = (Configuration, TrialScore);
 
-/// Returns one row per configuration. The argument has one row per configuration and trial; the trials of a configuration are adjacent. For each of these rows,
-/// `groups` contains the tested groups, if there are any. `n_folds` returns the number of folds of a configuration, or 1 without folds.
+/// Returns one row per configuration, which summarises its trials. The argument has one row per configuration and trial; the trials of a configuration are
+/// adjacent. For each of these rows, `groups` contains the tested groups, if there are any. `n_folds` returns the number of folds of a configuration, or 1
+/// without folds.
 ///
 /// # Errors
 /// If the trials of a configuration have no rows.

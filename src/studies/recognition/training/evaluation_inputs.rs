@@ -27,7 +27,7 @@ const DIGITS: usize = 24;
 /// Inputs of a trial that all families of configurations share.
 #[derive(Clone, Copy, Debug)]
 pub struct TrialInputs<'a> {
-    /// Seed of all random numbers.
+    /// Seed from which all random numbers of the study are derived.
     pub seed: u64,
     /// Number of the trial, from 0.
     pub number: usize,
