@@ -58,7 +58,7 @@ fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
     pairs.fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs()))
 }
 
-/// Tolerance for rounding of numbers of order 1 to 10, and of roots of numbers that are 0 except for rounding.
+/// Tolerance for rounding errors of numbers from 1 to 10, and of square roots of numbers that are 0 except for rounding.
 const ROUNDING: f64 = 1e-7;
 
 #[test]

@@ -7,10 +7,10 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Number of files that this process has started; it makes temporary names unique if two threads write one path.
+/// Number of files that this process has started. The number makes temporary names unique if two threads write to one path.
 static N_STARTED: AtomicU64 = AtomicU64::new(0);
 
-/// File under construction. Committing moves it to its path; if it is dropped earlier, the temporary file is removed.
+/// File that is being written. `commit` moves the temporary file to its path; if the value is dropped earlier, the temporary file is removed.
 #[derive(Debug)]
 pub struct WholeFile {
     /// Path of the file as given, for error messages.

@@ -80,7 +80,7 @@ pub(super) fn has_equal([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Disjoint sets (union-find).
+/// Disjoint sets of indices (union-find).
 pub(super) struct Joined(Vec<u32>);
 
 impl Joined {

@@ -89,7 +89,7 @@ impl Outline {
         Self { vertices, edges }
     }
 
-    /// Returns the signed distance to the nearest edge of the surface, metres, negative inside.
+    /// Returns the signed distance to the nearest edge of the surface, metres, negative inside the polygon.
     pub fn distance(&self, point: DVec2) -> f64 {
         let distances = self.edges.iter().map(|edge| edge.distance(point));
         let distance = distances.fold(f64::INFINITY, f64::min);

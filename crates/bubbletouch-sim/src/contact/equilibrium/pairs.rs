@@ -52,7 +52,7 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Gathers the pairs at the present poses of the bodies; `behind` lists the pairs whose sphere was behind the substrate of the taxel before.
+    /// Collects the pairs at the present poses of the bodies; `behind` lists the pairs whose sphere was behind the substrate of the taxel before.
     pub fn look(
         &mut self,
         bodies: &[Body],

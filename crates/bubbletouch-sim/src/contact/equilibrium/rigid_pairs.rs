@@ -77,7 +77,7 @@ fn gather_plane(
     }
 }
 
-/// Gathers the pairs of a body's spheres and other spheres that are less than `gap` metres apart. Spheres are sorted along the line from the body to the
+/// Collects the pairs of a body's spheres and other spheres that are less than `gap` metres apart. Spheres are sorted along the line from the body to the
 /// middle of the nearby others, so the sweep skips most pairs.
 fn gather_spheres(
     pairs: &mut Vec<Pair>,

@@ -14,7 +14,7 @@ const SURFACE_ERROR: f64 = 0.5e-3;
 /// Largest inclination of a hand against the skin, radians. If larger, a flat hand (which is rigid) touches only with the ball of the thumb or a finger.
 const LEVEL: f64 = 0.03;
 
-/// Bending of the fingers of a fist, as a fraction of [`Hand::curled`].
+/// Bending of the fingers in a fist: the argument of [`Hand::curled`].
 const FIST: f64 = 0.85;
 
 /// Posture of a hand before it moves: finger positions, orientation, and the point of the hand that lies above the touched point of the arm.

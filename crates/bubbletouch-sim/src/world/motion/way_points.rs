@@ -17,7 +17,7 @@ pub(super) struct WayPoints {
 /// Source of waypoints (argument or file), for error messages.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Origin {
-    /// Function argument with this name.
+    /// Argument of a function, given by its name.
     Argument(&'static str),
     /// File, and the line number of each waypoint.
     File { place: String, lines: Vec<u64> },

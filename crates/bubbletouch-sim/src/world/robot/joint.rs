@@ -15,7 +15,7 @@ pub struct Joint {
     pub parent: usize,
     /// Index of the child link, which the joint moves.
     pub child: usize,
-    /// Pose `parent_from_joint` of the child link at zero coordinates.
+    /// Pose of the child link on the parent link (`parent_from_joint`) if all coordinates are zero.
     pub origin: Pose,
     /// Axis of the joint, unit vector in the joint's frame; unused by fixed and floating joints.
     pub axis: DVec3,
