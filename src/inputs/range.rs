@@ -63,7 +63,7 @@ impl Range {
             Self::Count(least, most) => (least as f64..=most as f64).contains(&value),
             Self::Between(low, high, _) => (low..=high).contains(&value),
             Self::ZeroOrBetween(low, high, _) => value == 0.0 || (low..=high).contains(&value),
-            Self::Declared(parameter) => parameter.allows(value),
+            Self::Declared(Parameter { range, .. }) => (range[0]..=range[1]).contains(&value),
             Self::Of(is_allowed, _) => is_allowed(value),
             Self::Any | Self::Unchecked => true,
         }

@@ -174,7 +174,7 @@ fn fused_touches_are_decided_on_by_the_sum_of_their_scores() {
             assert_eq!(labels, trained.labels_of_scores(scores.view()));
         }
         let seed = Seed::new(2018)
-            .named("touches_per_decision")
+            .named("fused_touches")
             .numbered(score.trial as u64);
         let fused = fuse_rows(truth.view(), configuration.touches_per_decision, &seed);
         let mut n_correct = 0;

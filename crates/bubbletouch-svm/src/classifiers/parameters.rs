@@ -191,7 +191,9 @@ const SHARED: [(&str, fn(ClassifierKind) -> bool); 7] = [
     ("tolerance", ClassifierKind::has_c),
     ("c", ClassifierKind::has_c),
     ("c_grid", ClassifierKind::has_c),
-    ("gamma_grid", ClassifierKind::has_gamma),
+    ("gamma_grid", |kind| {
+        kind.is_kernel_svm() && kind.has_gamma()
+    }),
     ("multiclass", ClassifierKind::is_kernel_svm),
     ("solver", ClassifierKind::is_kernel_svm),
     ("solver_memory_gib", ClassifierKind::is_kernel_svm),

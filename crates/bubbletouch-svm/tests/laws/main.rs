@@ -7,5 +7,6 @@ mod inseparable;
 mod libsvm;
 mod limits;
 mod linear;
+mod linfa;
 mod svm;
 mod svm_conditions;

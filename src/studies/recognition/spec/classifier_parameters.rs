@@ -67,19 +67,16 @@ pub(super) fn with_parameters(schema: &mut Schema) {
             true => json!(value as u64),
             false => json!(value),
         };
-        let [min, max] = parameter.range.map(number);
         let mut words = parameter.words.chars();
         let first = words.next().map(|first| first.to_uppercase().to_string());
         let words = first.unwrap_or_default() + words.as_str();
         let mut key = json!({
             "type": if parameter.is_integer { "integer" } else { "number" },
-            "minimum": min,
-            "maximum": max,
         });
         let default = match parameter.default {
             DefaultValue::Number(default) => {
                 key["default"] = number(default);
-                number(default).to_string()
+                default.to_string()
             }
             DefaultValue::Rule(rule, meaning) => format!("'{rule}', {meaning}"),
         };
