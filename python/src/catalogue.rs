@@ -50,19 +50,19 @@ impl Catalogue {
         self.entries.sets()
     }
 
-    /// Returns the object with this name. If there is none, raises ValueError, which lists similar names.
+    /// Returns the object with the given name. If there is none, raises ValueError, which lists similar names.
     fn object(&self, name: &str) -> PyResult<Solid> {
         let entry = self.entries.object(name).map_err(exception)?;
         Ok(Solid(entry.clone()))
     }
 
-    /// Returns all objects of a set. If there is no such set, raises ValueError, which lists the sets.
+    /// Returns all objects of the set with the given name. If there is no such set, raises ValueError, which lists the sets.
     fn set(&self, name: &str) -> PyResult<Vec<Solid>> {
         let entries = self.entries.set(name).map_err(exception)?;
         Ok(entries.into_iter().cloned().map(Solid).collect())
     }
 
-    /// Number of objects.
+    /// Number of objects in the catalogue.
     fn __len__(&self) -> usize {
         self.entries.entries().len()
     }
@@ -85,13 +85,13 @@ impl Solid {
         &self.0.name
     }
 
-    /// Name of the object's set: balls, boxes, cans, household, hands, or the name of a file.
+    /// Name of the set to which the object belongs: balls, boxes, cans, household, hands, or the name of a file.
     #[getter]
     fn set(&self) -> &str {
         &self.0.set
     }
 
-    /// Source of the object's dimensions.
+    /// Source of the object's dimensions, such as a standard.
     #[getter]
     fn source(&self) -> &str {
         &self.0.source

@@ -7,31 +7,31 @@ use glam::DVec3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-/// Contacts of n presses: m pairs of a taxel and the part of the object that touches the taxel, ordered by pose and taxel.
+/// Contacts of presses at n poses: m pairs of a taxel and the part of the object (sphere or triangle) that touches it, ordered by pose and taxel.
 #[pyclass(frozen, get_all, module = "bubbletouch")]
 pub struct Contacts {
-    /// Number of the pose (m,), from 0.
+    /// For each contact (m,), the number of its pose, from 0.
     pose: Py<PyArray1<i64>>,
-    /// Number of the taxel in the patch (m,), from 0.
+    /// For each contact (m,), the number of its taxel in the patch, from 0.
     taxel: Py<PyArray1<i64>>,
-    /// Number of the sphere or triangle (m,) that determines the taxel's deflection.
+    /// For each contact (m,), the number of the sphere or triangle that determines the taxel's deflection.
     part: Py<PyArray1<i64>>,
-    /// Deflection of the taxel (m,), metres; equals the deflection in the frame up to rounding.
+    /// For each contact (m,), the deflection of its taxel, metres; equals the deflection in the frame up to rounding.
     deflection: Py<PyArray1<f64>>,
-    /// Contact normal (m, 3): unit vector from the object's surface to the taxel, in the patch frame.
+    /// For each contact (m, 3), the contact normal: unit vector from the object's surface to the taxel, in the patch frame.
     normal: Py<PyArray2<f64>>,
-    /// Contact point (m, 3), metres, in the patch frame.
+    /// For each contact (m, 3), the contact point, metres, in the patch frame.
     point: Py<PyArray2<f64>>,
-    /// Frictionless force of the taxel's spring on the object (m, 3), newtons, in the patch frame.
+    /// For each contact (m, 3), the frictionless force of the taxel's spring on the object, newtons, in the patch frame.
     force: Py<PyArray2<f64>>,
-    /// Gradient ∂δ/∂x (m, 3) for a motion x of the part in the patch frame, without the limit of the stroke. For a sphere of radius R, the length of
-    /// the gradient is ∂δ/∂R.
+    /// For each contact (m, 3), the gradient ∂δ/∂x of the deflection δ for a motion x of the touching part in the patch frame, without the limit of the stroke.
+    /// For a sphere of radius R, the length of the gradient is ∂δ/∂R.
     gradient: Py<PyArray2<f64>>,
-    /// Travel of the patch along its z axis (n,), metres; NaN if no taxel touched the object.
+    /// For each pose (n,), the travel of the patch along its z axis, metres; NaN if no taxel touched the object.
     travel: Py<PyArray1<f64>>,
-    /// Number of deflected taxels (n,).
+    /// For each pose (n,), the number of deflected taxels.
     n_touched: Py<PyArray1<i64>>,
-    /// Number of saturated taxels (n,): their deflection equals the stroke, and the object pushes further.
+    /// For each pose (n,), the number of saturated taxels: their deflection equals the stroke, and the object pushes further.
     n_saturated: Py<PyArray1<i64>>,
 }
 

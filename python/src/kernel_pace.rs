@@ -9,7 +9,8 @@ use bubbletouch::contact::Workspace;
 use pyo3::prelude::*;
 use std::time::Instant;
 
-/// Measures the taxel readings per second of the kernel on one thread, without output arrays. The result is the reference for presses into arrays.
+/// Measures how many taxel readings per second the press kernel computes on one thread, without output arrays. The number is the reference for presses that
+/// fill arrays.
 #[pyfunction]
 pub fn _kernel_pace(
     py: Python,

@@ -198,7 +198,7 @@ impl Mesh {
         vec![x, y, z].into_pyarray(py)
     }
 
-    /// Number of triangles.
+    /// Number of triangles of the mesh.
     fn __len__(&self) -> usize {
         self.triangle_mesh().n_triangles()
     }

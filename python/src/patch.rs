@@ -400,13 +400,13 @@ impl Patch {
         })
     }
 
-    /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
+    /// Shape of a frame of the patch: (ny, nx) for a grid, otherwise (n_taxels,).
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.shape)
     }
 
-    /// Number of taxels.
+    /// Number of taxels of the patch.
     #[getter]
     fn n_taxels(&self) -> usize {
         self.patch.n_taxels()
@@ -460,7 +460,7 @@ impl Patch {
         self.property(py, |taxel| taxel.damping)
     }
 
-    /// Number of taxels.
+    /// Number of taxels of the patch.
     fn __len__(&self) -> usize {
         self.patch.n_taxels()
     }

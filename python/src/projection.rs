@@ -89,7 +89,7 @@ impl Projection {
         guarded(|| Ok(py.detach(|| self.projection.matrix()).into_pyarray(py)))
     }
 
-    /// Name of the matrix ensemble.
+    /// Name of the ensemble from which the measurement matrix is drawn.
     #[getter]
     fn ensemble(&self) -> &str {
         &self.asked.0

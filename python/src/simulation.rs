@@ -154,7 +154,7 @@ impl Simulation {
         found.ok_or_else(|| bad_input("patch", format!("`{name}`"), self.patches().join(", ")))
     }
 
-    /// Time since the start of the scene, seconds.
+    /// Time since the start of the scene, seconds, in the current state.
     #[getter]
     fn time(&mut self) -> f64 {
         self.going
@@ -189,13 +189,13 @@ impl Simulation {
         })
     }
 
-    /// Number of frames of the whole scene.
+    /// Number of frames in the whole scene.
     #[getter]
     fn n_frames(&self) -> usize {
         self.plan.n_frames
     }
 
-    /// Number of frames per second of the scene's time.
+    /// Number of frames per second of simulated time.
     #[getter]
     fn output_rate(&self) -> f64 {
         self.plan.output_rate

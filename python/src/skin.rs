@@ -29,7 +29,7 @@ pub struct Skin {
     bodies: Vec<Body>,
     /// Number of taxels of all patches.
     n_taxels: usize,
-    scratch: Mutex<Scratch>,
+    scratch: Mutex<SkinWorkspace>,
 }
 
 /// Patch of a skin, with a ball (centre and radius) that contains all its taxels.
@@ -63,7 +63,7 @@ impl Ball {
 
 /// Memory that successive calls of `read` reuse.
 #[derive(Default)]
-struct Scratch {
+struct SkinWorkspace {
     workspace: Workspace,
     patch_poses: Vec<Pose>,
     body_poses: Vec<Pose>,
@@ -134,7 +134,7 @@ impl Skin {
         self.n_taxels
     }
 
-    /// First and last index (exclusive) of each patch's taxels in a frame, a list of pairs.
+    /// First and last index (exclusive) of each patch's taxels in a frame: a list of pairs, one per patch.
     #[getter]
     fn ranges(&self) -> Vec<(usize, usize)> {
         let of = |patch: &SkinPatch| (patch.first, patch.first + patch.patch.n_taxels());
@@ -234,7 +234,7 @@ impl Skin {
 
 impl Skin {
     /// Computes the frames for `n` sets of poses; the results are in the scratch memory.
-    fn compute(&self, scratch: &mut Scratch, n: usize, output: Output) {
+    fn compute(&self, scratch: &mut SkinWorkspace, n: usize, output: Output) {
         let (n_patches, n_bodies) = (self.patches.len(), self.bodies.len());
         scratch.frame.clear();
         scratch.frame.resize(n * self.n_taxels, 0.0);

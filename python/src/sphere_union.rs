@@ -98,7 +98,7 @@ impl SphereUnion {
         corners(py, &self.union().bounds())
     }
 
-    /// Number of spheres.
+    /// Number of spheres of the union.
     fn __len__(&self) -> usize {
         self.spheres().len()
     }

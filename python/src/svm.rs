@@ -202,8 +202,8 @@ impl KernelSvm {
         })
     }
 
-    /// Binary problems of the SVM, one dict each: classes, training rows, signed multipliers, ρ, objective, number of iterations, and whether the
-    /// solver stopped at the iteration cap.
+    /// Binary problems of the SVM, one dict each: classes, training rows, signed multipliers, ρ (negative bias), objective, number of iterations, and whether
+    /// the solver stopped at the iteration cap.
     #[getter]
     fn problems<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let problem = |problem: &bubbletouch::recognition::svm::BinaryProblem| {
@@ -225,7 +225,7 @@ impl KernelSvm {
         self.model.problems().iter().map(problem).collect()
     }
 
-    /// Number of binary problems that stopped at the iteration cap.
+    /// Number of binary problems whose training stopped at the iteration cap.
     #[getter]
     fn n_capped(&self) -> usize {
         self.model.n_capped()
@@ -318,7 +318,7 @@ impl LinearModel {
         self.svm.model().bias.clone().into_pyarray(py)
     }
 
-    /// Largest number of passes over the rows in any binary problem.
+    /// Number of passes over the training rows: the largest number of any binary problem.
     #[getter]
     fn n_passes(&self) -> usize {
         let passes = self.svm.convergence().iter().map(|end| end.n_passes);

@@ -100,7 +100,7 @@ class Mesh:
         """Centroid of the mesh's volume (3,), metres."""
 
     def __len__(self) -> int:
-        """Number of triangles."""
+        """Number of triangles of the mesh."""
 
     def __getnewargs__(self) -> tuple[NDArray[np.float64], NDArray[np.uint32]]: ...
 
@@ -119,7 +119,7 @@ class Skin:
 
     @property
     def ranges(self) -> list[tuple[int, int]]:
-        """First and last index (exclusive) of each patch's taxels in a frame, a list of pairs."""
+        """First and last index (exclusive) of each patch's taxels in a frame: a list of pairs, one per patch."""
 
     def read(
         self,
@@ -177,7 +177,7 @@ class SphereUnion:
         """Bounding box (2, 3): the smallest and largest coordinates, metres."""
 
     def __len__(self) -> int:
-        """Number of spheres."""
+        """Number of spheres of the union."""
 
     def __getnewargs__(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 
@@ -191,11 +191,11 @@ class Solid:
 
     @property
     def set(self) -> str:
-        """Name of the object's set: balls, boxes, cans, household, hands, or the name of a file."""
+        """Name of the set to which the object belongs: balls, boxes, cans, household, hands, or the name of a file."""
 
     @property
     def source(self) -> str:
-        """Source of the object's dimensions."""
+        """Source of the object's dimensions, such as a standard."""
 
     @property
     def bounds(self) -> NDArray[np.float64]:
@@ -225,63 +225,63 @@ class Catalogue:
         """Names of all sets."""
 
     def object(self, name: str) -> Solid:
-        """Returns the object with this name. If there is none, raises ValueError, which lists similar names."""
+        """Returns the object with the given name. If there is none, raises ValueError, which lists similar names."""
 
     def set(self, name: str) -> list[Solid]:
-        """Returns all objects of a set. If there is no such set, raises ValueError, which lists the sets."""
+        """Returns all objects of the set with the given name. If there is no such set, raises ValueError, which lists the sets."""
 
     def __len__(self) -> int:
-        """Number of objects."""
+        """Number of objects in the catalogue."""
 
 @final
 class Contacts:
-    """Contacts of n presses: m pairs of a taxel and the part of the object that touches the taxel, ordered by pose and taxel."""
+    """Contacts of presses at n poses: m pairs of a taxel and the part of the object (sphere or triangle) that touches it, ordered by pose and taxel."""
 
     @property
     def pose(self) -> NDArray[np.int64]:
-        """Number of the pose (m,), from 0."""
+        """For each contact (m,), the number of its pose, from 0."""
 
     @property
     def taxel(self) -> NDArray[np.int64]:
-        """Number of the taxel in the patch (m,), from 0."""
+        """For each contact (m,), the number of its taxel in the patch, from 0."""
 
     @property
     def part(self) -> NDArray[np.int64]:
-        """Number of the sphere or triangle (m,) that determines the taxel's deflection."""
+        """For each contact (m,), the number of the sphere or triangle that determines the taxel's deflection."""
 
     @property
     def deflection(self) -> NDArray[np.float64]:
-        """Deflection of the taxel (m,), metres; equals the deflection in the frame up to rounding."""
+        """For each contact (m,), the deflection of its taxel, metres; equals the deflection in the frame up to rounding."""
 
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Contact normal (m, 3): unit vector from the object's surface to the taxel, in the patch frame."""
+        """For each contact (m, 3), the contact normal: unit vector from the object's surface to the taxel, in the patch frame."""
 
     @property
     def point(self) -> NDArray[np.float64]:
-        """Contact point (m, 3), metres, in the patch frame."""
+        """For each contact (m, 3), the contact point, metres, in the patch frame."""
 
     @property
     def force(self) -> NDArray[np.float64]:
-        """Frictionless force of the taxel's spring on the object (m, 3), newtons, in the patch frame."""
+        """For each contact (m, 3), the frictionless force of the taxel's spring on the object, newtons, in the patch frame."""
 
     @property
     def gradient(self) -> NDArray[np.float64]:
-        """Gradient ∂δ/∂x (m, 3) for a motion x of the part in the patch frame, without the limit of the stroke. For a sphere of radius R, the length of
-        the gradient is ∂δ/∂R.
+        """For each contact (m, 3), the gradient ∂δ/∂x of the deflection δ for a motion x of the touching part in the patch frame, without the limit of the stroke.
+        For a sphere of radius R, the length of the gradient is ∂δ/∂R.
         """
 
     @property
     def travel(self) -> NDArray[np.float64]:
-        """Travel of the patch along its z axis (n,), metres; NaN if no taxel touched the object."""
+        """For each pose (n,), the travel of the patch along its z axis, metres; NaN if no taxel touched the object."""
 
     @property
     def n_touched(self) -> NDArray[np.int64]:
-        """Number of deflected taxels (n,)."""
+        """For each pose (n,), the number of deflected taxels."""
 
     @property
     def n_saturated(self) -> NDArray[np.int64]:
-        """Number of saturated taxels (n,): their deflection equals the stroke, and the object pushes further."""
+        """For each pose (n,), the number of saturated taxels: their deflection equals the stroke, and the object pushes further."""
 
     def __len__(self) -> int:
         """Number m of contacts."""
@@ -457,11 +457,11 @@ class Patch:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,)."""
+        """Shape of a frame of the patch: (ny, nx) for a grid, otherwise (n_taxels,)."""
 
     @property
     def n_taxels(self) -> int:
-        """Number of taxels."""
+        """Number of taxels of the patch."""
 
     @property
     def n_left_out(self) -> int:
@@ -496,7 +496,7 @@ class Patch:
         """Damping of the taxels, N·s/m: one number, or one per taxel."""
 
     def __len__(self) -> int:
-        """Number of taxels."""
+        """Number of taxels of the patch."""
 
     @overload
     def press(
@@ -750,7 +750,7 @@ class Projection:
 
     @property
     def ensemble(self) -> str:
-        """Name of the matrix ensemble."""
+        """Name of the ensemble from which the measurement matrix is drawn."""
 
     @property
     def n_taxels(self) -> int:
@@ -849,7 +849,7 @@ class Simulation:
 
     @property
     def time(self) -> float:
-        """Time since the start of the scene, seconds."""
+        """Time since the start of the scene, seconds, in the current state."""
 
     @property
     def robots(self) -> dict[str, list[str]]:
@@ -859,11 +859,11 @@ class Simulation:
     def __next__(self) -> dict[str, Any]: ...
     @property
     def n_frames(self) -> int:
-        """Number of frames of the whole scene."""
+        """Number of frames in the whole scene."""
 
     @property
     def output_rate(self) -> float:
-        """Number of frames per second of the scene's time."""
+        """Number of frames per second of simulated time."""
 
     @property
     def patches(self) -> list[str]:
@@ -893,13 +893,13 @@ class KernelSvm:
 
     @property
     def problems(self) -> list[dict[str, Any]]:
-        """Binary problems of the SVM, one dict each: classes, training rows, signed multipliers, ρ, objective, number of iterations, and whether the
-        solver stopped at the iteration cap.
+        """Binary problems of the SVM, one dict each: classes, training rows, signed multipliers, ρ (negative bias), objective, number of iterations, and whether
+        the solver stopped at the iteration cap.
         """
 
     @property
     def n_capped(self) -> int:
-        """Number of binary problems that stopped at the iteration cap."""
+        """Number of binary problems whose training stopped at the iteration cap."""
 
 @final
 class LinearModel:
@@ -934,7 +934,7 @@ class LinearModel:
 
     @property
     def n_passes(self) -> int:
-        """Largest number of passes over the rows in any binary problem."""
+        """Number of passes over the training rows: the largest number of any binary problem."""
 
     @property
     def n_capped(self) -> int:
@@ -1013,7 +1013,9 @@ def write_frame(path: _Path, frame: ArrayLike, pitch: float) -> None:
 def _kernel_pace(
     patch: Patch, object: _Model, poses: ArrayLike, depth: ArrayLike, seconds: float
 ) -> float:
-    """Measures the taxel readings per second of the kernel on one thread, without output arrays. The result is the reference for presses into arrays."""
+    """Measures how many taxel readings per second the press kernel computes on one thread, without output arrays. The number is the reference for presses that
+    fill arrays.
+    """
 
 def _panic() -> None:
     """Panics; used in tests of the conversion to an exception."""

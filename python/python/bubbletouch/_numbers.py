@@ -46,7 +46,7 @@ def whole(name: str, value: Any, *, least: int, most: int = _MOST) -> int:
 
 
 def _range(kind: str, above: float, least: float) -> str:
-    """Returns the allowed range as text, for error messages."""
+    """Returns the allowed range of a number as text, for error messages."""
     if above > -math.inf:
         return f"{kind} above {above:g}"
     return f"{kind}, at least {least:g}" if least > -math.inf else kind

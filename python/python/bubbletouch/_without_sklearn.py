@@ -106,7 +106,7 @@ class _Folds:
 
 
 def check_cv(cv: int | Iterable[Any], labels: NDArray[Any], *, classifier: bool) -> _Folds:
-    """Returns the folds for a number of folds or for given pairs of arrays. Raises ValueError if `cv` is neither."""
+    """Returns cross-validation folds for a number of folds, or for given pairs of training and test rows. Raises ValueError if `cv` is neither."""
     if not isinstance(cv, int | Iterable):
         raise ValueError(f"cv: {cv!r}; a number of folds, or pairs of arrays of training and test rows")
     return _Folds(cv if isinstance(cv, int) else list(cv))

@@ -39,7 +39,7 @@ N_TRAINING = 400
 
 
 class _World:
-    """Objects, patch and classifier, shared by any number of episodes."""
+    """Objects, patch and classifier of the environments, shared by any number of episodes."""
 
     def __init__(self, objects: Sequence[str], n_taxels: int, reach: float, training_seed: int) -> None:
         n_taxels = whole("n_taxels", n_taxels, least=2, most=2048)

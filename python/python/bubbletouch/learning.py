@@ -64,7 +64,7 @@ class _Classifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
         return cast(Floats, validate_data(self, X, dtype=np.float64, order="C", reset=False))
 
     def _warn_of(self, n_capped: int, limit: str) -> None:
-        """Issues a ConvergenceWarning if problems stopped at a limit."""
+        """Issues a ConvergenceWarning if binary problems stopped at an iteration limit."""
         if n_capped:
             said = f"{n_capped} problems stopped at {limit} before they converged"
             warnings.warn(said, ConvergenceWarning, stacklevel=3)

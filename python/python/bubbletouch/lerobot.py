@@ -116,7 +116,7 @@ def _columns(
 
 
 def _lists(values: NDArray[Any]) -> Any:
-    """Returns a pyarrow column of the values; rows with several dimensions become nested fixed-size lists."""
+    """Returns the values as a pyarrow column; rows with several dimensions become nested fixed-size lists."""
     import pyarrow as pa
 
     column = pa.array(values.ravel())

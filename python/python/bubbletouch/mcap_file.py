@@ -77,7 +77,7 @@ def _channels(recording: Recording) -> Iterator[tuple[str, str, Callable[[int], 
 
 
 def _points(felt: RecordedPatch) -> Callable[[int], dict[str, Any]]:
-    """Returns the message function of the taxel positions and forces of a patch."""
+    """Returns the function that makes the message of a frame with the taxel positions and forces of a patch."""
     fields = [
         {"name": name, "offset": 4 * place, "type": _FLOAT32}
         for place, name in enumerate(("x", "y", "z", "fx", "fy", "fz"))
@@ -93,7 +93,7 @@ def _points(felt: RecordedPatch) -> Callable[[int], dict[str, Any]]:
 
 
 def _touch(felt: RecordedPatch) -> Callable[[int], dict[str, Any]]:
-    """Returns the message function of the deflections, forces and wrench of a patch."""
+    """Returns the function that makes the message of a frame with the deflections, forces and wrench of a patch."""
     return lambda frame: {
         "deflection_m": felt.deflection[frame].ravel().tolist(),
         "force_n": felt.force[frame].ravel().tolist(),
@@ -102,7 +102,7 @@ def _touch(felt: RecordedPatch) -> Callable[[int], dict[str, Any]]:
 
 
 def _in_world(poses: Floats) -> Callable[[int], dict[str, Any]]:
-    """Returns the message function of poses (n, 7) in the world."""
+    """Returns the function that makes the message of a frame from the poses (n, 7) of an object or patch in the world."""
     def message(frame: int) -> dict[str, Any]:
         x, y, z, qw, qx, qy, qz = poses[frame].tolist()
         turn = {"x": qx, "y": qy, "z": qz, "w": qw}

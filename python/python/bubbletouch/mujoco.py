@@ -192,7 +192,7 @@ def _can_touch(model: mujoco.MjModel, geom: int, carriers: set[int]) -> bool:
 
 
 def _box(half: Array) -> tuple[Array, NDArray[np.uint32]]:
-    """Returns vertices and triangles of a box with half side lengths `half`."""
+    """Returns the vertices and triangles of a box about the origin; `half` contains its half side lengths."""
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
