@@ -26,8 +26,8 @@ pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Returns the biweight midvariance of the values, divided by its value for normal data of variance 1 (Mosteller and Tukey, *Data analysis and regression*,
-/// 1977). With the median M, the median absolute deviation MAD and u = (x − M) / (9 MAD), the biweight midvariance is n Σ (x − M)² (1 − u²)⁴ / (Σ (1 − u²)(1
-/// − 5u²))² over |u| < 1. If most values are equal, returns the ordinary variance.
+/// 1977). Let M be the median, MAD the median absolute deviation, and u = (x − M) / (9 MAD). The biweight midvariance is n Σ (x − M)² (1 − u²)⁴ / (Σ (1 −
+/// u²)(1 − 5u²))² over |u| < 1. If most values are equal, returns the ordinary variance.
 pub fn variance(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     let middle = median(&mut sorted);

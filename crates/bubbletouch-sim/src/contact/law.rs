@@ -41,8 +41,8 @@ pub(crate) fn deflection(q: f64, height: f64) -> f64 {
     q.sqrt() - height
 }
 
-/// Returns whether a sphere can push a taxel: the taxel meets the sphere (q > 0), and the sphere is not behind the substrate, whose height is `behind`,
-/// metres.
+/// Returns whether a sphere can push a taxel. The taxel must meet the sphere (q > 0), and the sphere must not be behind the substrate, whose height is
+/// `behind`, metres.
 #[inline(always)]
 pub(crate) fn is_in_front(q: f64, height: f64, behind: f64) -> bool {
     let gap = (behind - height).max(0.0);

@@ -9,7 +9,7 @@ use glam::DVec3;
 /// Sum of the spring forces at some contacts, and the centre of pressure of these forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpringLoad {
-    /// Force and torque of the taxels on the objects without friction: Σ k δ n_c / (n_c·n) at the contact points, with stiffness k, deflection δ, contact
+    /// Force and torque of the taxels on the objects without friction. The force is Σ f n_c / (n_c·n) at the contact points, with spring force f, contact
     /// normal n_c and taxel axis n.
     pub on_object: Wrench,
     /// Sum of the spring forces (stiffness times deflection), N.
@@ -30,8 +30,8 @@ impl SpringLoad {
 /// Sum of the forces along the taxels' axes at some contacts, and the centre of pressure of these forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxialLoad {
-    /// Force and torque of the taxels on the objects without friction: Σ f n_c / (n_c·n) at the contact points, with force f, contact normal n_c and taxel
-    /// axis n.
+    /// Force and torque of the taxels on the objects without friction. The force is Σ f n_c / (n_c·n) at the contact points, with force f, contact normal n_c
+    /// and taxel axis n.
     pub on_object: Wrench,
     /// Sum of the forces along the taxels' axes, N.
     pub force: f64,

@@ -31,8 +31,8 @@ pub struct TaxelContact {
 }
 
 impl TaxelContact {
-    /// Returns the gradient of the deflection for a motion of the object in the patch frame: `−n_c / (n_c·n)`, with the contact normal n_c and the taxel axis
-    /// n. Its length is at most 1 / [`GRAZING`].
+    /// Returns the gradient of the deflection for a motion of the object in the patch frame. The gradient is `−n_c / (n_c·n)`, with the contact normal n_c
+    /// and the taxel axis n. Its length is at most 1 / [`GRAZING`].
     ///
     /// A spring force f of the taxel exerts the frictionless force `−f ∂δ/∂x` on the object, the negative gradient of the energy ½ k δ² \[BT\]. For a
     /// saturated taxel the gradient is computed from the deflection that contact would require without a limit of the stroke.

@@ -49,8 +49,8 @@ impl State {
         }
     }
 
-    /// Returns the energy of the system, joules: Σ ½ m δ̇² + Σ ½ k δ² over the taxels plus ½ M ẋ² − M g x of each free object. Energy stored in contacts and
-    /// at the end of a stroke is not included.
+    /// Returns the energy of the system, joules. The energy is Σ ½ m δ̇² + Σ ½ k δ² over the taxels plus ½ M ẋ² − M g x of each free object. Energy stored in
+    /// contacts and at the end of a stroke is not included.
     pub fn energy(&self, system: &System) -> f64 {
         let m = system.taxel_mass;
         let taxels = self.deflection.iter().zip(&self.velocity).enumerate();

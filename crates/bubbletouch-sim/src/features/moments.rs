@@ -33,7 +33,7 @@ pub enum Weight {
 /// Number of weights for which the sums are computed at a time.
 const LANES: usize = 4;
 
-/// Returns the nine moments of an image for each of up to four weights, in units of columns and rows; zeros if the sum of the weights is 0.
+/// Returns the nine moments of an image for each of up to four weights, in units of columns and rows. The moments are zero if the sum of the weights is 0.
 pub fn moments<const N: usize>(image: &Image, weights: [Weight; N]) -> [[f64; N_MOMENTS]; N] {
     const { assert!(N <= LANES) };
     let mut lanes = [Weight::Touched; LANES];

@@ -55,8 +55,8 @@ fn along_ray(bvh: &Bvh, point: DVec3, direction: DVec3) -> Option<i32> {
     is_clear.then_some(sum)
 }
 
-/// Returns 1 if the ray crosses a triangle from behind, −1 if the ray enters through its front, 0 if the ray misses it; `None` near the triangle's edges. A
-/// triangle too thin to have a normal is missed by every ray that avoids the edges of its neighbours.
+/// Returns 1 if the ray crosses a triangle from behind, −1 if it enters through the front, and 0 if it misses the triangle. Returns `None` near the
+/// triangle's edges. A triangle too thin to have a normal is missed by every ray that avoids the edges of its neighbours.
 fn crossing(triangle: &Triangle, origin: DVec3, direction: DVec3) -> Option<i32> {
     let [a, b, c] = triangle.0;
     let (ab, ac, from_a) = (b - a, c - a, origin - a);

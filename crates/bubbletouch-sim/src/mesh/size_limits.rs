@@ -19,7 +19,8 @@ const MAX_SIDES: f64 = 10.0;
 const ALWAYS_ALLOWED: f64 = 1.0;
 
 impl SizeLimits {
-    /// Size limits for an unknown array: 0.1 mm, which is below the pitch of every tactile sensor, to 10 m, ten sides of an array of one square metre.
+    /// Size limits for an unknown array. The lower limit, 0.1 mm, is below the pitch of every tactile sensor; the upper limit, 10 m, is ten sides of an array
+    /// of one square metre.
     pub const ANY: Self = Self {
         smallest: 1e-4,
         largest: 10.0,

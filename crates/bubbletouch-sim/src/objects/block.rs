@@ -31,8 +31,8 @@ impl Block {
     /// Packs the box with spheres: first the corners, then rows along each edge, then rows on each face whose spacing increases towards the middle of the
     /// face.
     ///
-    /// A ball of radius r that touches a flat face covers a disc of radius sqrt(h(2r + h)) around the touching point after its enlargement; h is the sum of
-    /// both tolerances. This disc contains a square cell of half side sqrt(h(r + h/2)).
+    /// A ball of radius r that touches a flat face covers, after its enlargement, a disc of radius sqrt(h(2r + h)). Here h is the sum of both tolerances.
+    /// This disc contains a square cell of half side sqrt(h(r + h/2)).
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         let edge = EdgeRow::new(self, fit);
         self.pack_corners(&edge, fit, spheres);

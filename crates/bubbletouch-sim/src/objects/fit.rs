@@ -9,8 +9,8 @@ pub const MAX_SPHERES: usize = 2_000_000;
 
 /// Allowed distances between the surface of the spheres and the surface of the solid, outside and inside the solid, metres.
 ///
-/// A ball of radius r inside the solid that touches its surface is enlarged by the tolerance `outside`. The resulting sphere with centre c comes within the
-/// tolerance `inside` of every surface point p with |p − c| ≤ r + h, where h = outside + inside.
+/// A ball of radius r inside the solid that touches its surface is enlarged by the tolerance `outside`. Let c be the centre of the resulting sphere and h =
+/// outside + inside. The sphere comes within the tolerance `inside` of every surface point p with |p − c| ≤ r + h.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
     /// Largest height to which a sphere may protrude from the solid, metres.

@@ -144,8 +144,8 @@ impl Lathe {
     /// Returns the interval of an edge that a ring of balls covers at all angles about the axis; `None` if there is none.
     ///
     /// A ring has n balls of radius r with centres at the distance ρc from the axis and the height zc. Half-way between two balls the squared distance of the
-    /// profile point (ρ, z) from their centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. The squared distance is quadratic along an edge, and the point
-    /// is covered if this value is at most `(r + h)²`, where h is the sum of both tolerances.
+    /// profile point (ρ, z) from their centres is `(ρ − ρc)² + (z − zc)² + 4 ρ ρc sin²(π/2n)`. The squared distance is quadratic along an edge. The point is
+    /// covered if this value is at most `(r + h)²`, where h is the sum of both tolerances.
     fn covered(&self, ring: &Ring, edge: usize, fit: Fit) -> Option<[f64; 2]> {
         let edge = &self.outline.edges[edge];
         let from_center = edge.start - ring.center;
@@ -226,8 +226,8 @@ impl Uncovered {
         }
     }
 
-    /// Returns the index of the first edge that is not completely covered, one end of its first uncovered interval, and the direction (±1) from this end into
-    /// the interval. The end is the one nearer to a corner, so balls are added from both corners of an edge towards its middle.
+    /// Returns the index of the first edge that is not completely covered, and one end of its first uncovered interval. Also returns the direction (±1) from
+    /// this end into the interval. The end is the one nearer to a corner, so balls are added from both corners of an edge towards its middle.
     fn first_end(&self, outline: &Outline) -> Option<(usize, f64, f64)> {
         let edge = self.intervals.iter().position(|i| !i.is_empty())?;
         let first = self.intervals[edge][0];

@@ -46,8 +46,8 @@ impl Edge {
     /// Returns the radius at which a disc that touches the point `foot` and grows along `inward` first touches this edge. Infinite if the disc never touches
     /// the edge.
     ///
-    /// The disc through a point q has the radius |q − foot|² / 2 n·(q − foot), where n is `inward`. Along a line this radius is quasi-convex, so its minimum
-    /// on the edge lies where the disc is tangent to the line, or at an end of the edge.
+    /// The disc through a point q has the radius |q − foot|² / 2 n·(q − foot), where n is `inward`. Along a line this radius is quasi-convex. Its minimum on
+    /// the edge therefore lies where the disc is tangent to the line, or at an end of the edge.
     fn tangent_radius(&self, foot: DVec2, inward: DVec2) -> f64 {
         let height = (foot - self.start).dot(self.inward);
         let towards = self.inward * height.signum();

@@ -39,8 +39,9 @@ impl Prism {
     /// Packs the prism with spheres. The walls are divided into cells first, then the uncovered remainder of the two faces into cells of a square around the
     /// outline.
     ///
-    /// The ball of a cell touches the surface in the middle of the cell. The cell is divided until the enlarged ball with centre c and radius r covers the
-    /// farthest point p of the cell: |p − c| ≤ r + h, where h is the sum of both tolerances. On a plane this condition is |p − foot|² ≤ (r + h)² − r².
+    /// The ball of a cell touches the surface in the middle of the cell. The cell is divided until the enlarged ball covers the farthest point p of the cell:
+    /// |p − c| ≤ r + h. Here c is the ball's centre, r its radius, and h the sum of both tolerances. On a plane this condition is |p − foot|² ≤ (r + h)² −
+    /// r².
     pub fn pack(&self, fit: Fit, spheres: &mut Vec<Sphere>) {
         for edge in 0..self.outline.edges.len() {
             let length = self.outline.edges[edge].length;

@@ -47,8 +47,8 @@ impl Hull {
         (1.0 - self.slope * self.slope).sqrt()
     }
 
-    /// Returns the signed distance from a point p to the hull, metres: the minimum of |p − c(t)| − r(t) over the balls with centre c(t) and radius r(t). This
-    /// function is convex in t.
+    /// Returns the signed distance from a point p to the hull, metres. This is the minimum of |p − c(t)| − r(t) over the balls with centre c(t) and radius
+    /// r(t). This function is convex in t.
     fn distance(&self, point: DVec3) -> f64 {
         let from_first = point - self.first.center;
         let x = from_first.dot(self.along);

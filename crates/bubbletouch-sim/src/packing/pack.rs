@@ -58,14 +58,14 @@ pub fn pack_mesh_watched(
     })
 }
 
-/// Minimum number of spheres for which [`slow_packing`] returns a sentence; so many take about half a minute on one processor. If larger, long packings start
-/// without a notice; if smaller, packings of a few seconds are announced.
+/// Minimum number of spheres for which [`slow_packing`] announces a long packing. Packings of this size take about half a minute on one processor. If larger,
+/// long packings start without a notice; if smaller, packings of a few seconds are announced.
 const MANY_SPHERES: f64 = 5_000.0;
 
 /// Approximate computing time of a packing per sphere on one processor, milliseconds: 13 s for 2201 spheres of a scan.
 const MS_A_SPHERE: f64 = 6.0;
 
-/// Returns a sentence about the expected computing time of a packing if it is likely to take minutes; `None` otherwise.
+/// Returns a message about the expected computing time of a packing if it is likely to take minutes; `None` otherwise.
 pub fn slow_packing(surface: &Surface, body: Body, tolerance: f64) -> Option<String> {
     let target = Target::new(surface, body, tolerance).ok()?;
     let n_spheres = estimated_spheres(&target);

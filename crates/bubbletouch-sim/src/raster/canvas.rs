@@ -31,8 +31,8 @@ pub fn view_from(azimuth: f64, elevation: f64) -> DMat3 {
     DMat3::from_cols(right, towards_eye.cross(right), towards_eye)
 }
 
-/// Function that takes the start and the direction of a ray. It returns the hit point and the outward unit normal (metres, object frame), or `None` if the
-/// ray hits nothing.
+/// Function from the start and the direction of a ray to the hit point and the outward unit normal (metres, object frame). The result is `None` if the ray
+/// hits nothing.
 pub type SurfaceHit<'a> = dyn Fn(DVec3, DVec3) -> Option<(DVec3, DVec3)> + Sync + 'a;
 
 /// Supersampled part of a picture that shows an object.

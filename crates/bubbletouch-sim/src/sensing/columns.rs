@@ -4,8 +4,8 @@ use super::projection::Projection;
 
 /// Projection y = Φx with Φ stored by columns, which measures a frame from its touched taxels only.
 ///
-/// The memory is 4 bytes per taxel and 16 bytes per nonzero entry of Φ. For m measurements of n taxels, the numbers of entries are 32 m for scrambled blocks,
-/// m√n for very sparse rows, n for averages, and m n for dense ensembles.
+/// The memory is 4 bytes per taxel and 16 bytes per nonzero entry of Φ. For m measurements of n taxels, scrambled blocks have 32 m entries, very sparse rows
+/// m√n, averages n, and dense ensembles m n.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;

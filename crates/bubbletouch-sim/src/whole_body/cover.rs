@@ -73,8 +73,8 @@ impl CoveredRobot {
         Self::with_cover(robot, Cover { taxel, pitch, side }, &[])
     }
 
-    /// Covers a robot with skin as `new` does, and also covers each flat end of a cylinder with a round patch of staggered rows, such as `palm end 1`. An end
-    /// that lies on another cylinder, sphere or box when all joints are at zero cannot be touched and is omitted.
+    /// Covers a robot with skin as `new` does, and also covers the flat ends of cylinders. Each flat end has a round patch of staggered rows, such as `palm
+    /// end 1`. An end that lies on another cylinder, sphere or box when all joints are at zero cannot be touched and is omitted.
     ///
     /// # Errors
     /// If `new` fails for these arguments.

@@ -10,11 +10,11 @@ use glam::{DMat3, DVec3};
 
 /// Surface with taxels that spheres push. A trait is used because closures would be compiled without vector instructions.
 pub(super) trait Pushed {
-    /// Returns whether a ball comes near any taxel. `center` is in the frame of the surface; `reach` is the radius of the ball plus the taxels' radius;
+    /// Returns whether a ball comes near any taxel. `center` is in the frame of the surface. `reach` is the radius of the ball plus the taxels' radius,
     /// metres.
     fn is_near(&self, center: DVec3, reach: f64) -> bool;
 
-    /// Raises the deflections of the taxels by a sphere. `center` is in the frame of the surface; `reach` is the sum of the radii of sphere and taxel;
+    /// Raises the deflections of the taxels by a sphere. `center` is in the frame of the surface. `reach` is the sum of the radii of sphere and taxel,
     /// metres.
     fn push(&self, state: &mut PatchState, center: DVec3, reach: f64);
 }

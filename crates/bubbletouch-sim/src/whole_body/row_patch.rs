@@ -137,7 +137,7 @@ pub(super) struct SphereOverBundle {
 
 impl SphereOverBundle {
     /// Returns the sphere's position relative to the columns. Also returns the square of the largest distance along the rows, m², at which the sphere pushes
-    /// a taxel from the front; zero or less if it pushes no taxel.
+    /// a taxel from the front. The square is zero or less if the sphere pushes no taxel.
     #[inline(always)]
     pub fn new(bundle: &Bundle, center: DVec3, reach: f64) -> (Self, f64) {
         let (mut squares, mut heights, mut spares) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);

@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 
 /// Neighbours of every taxel of a skin, as a symmetric graph of taxels.
 ///
-/// Invariant: if taxel a is a neighbour of b, then b is a neighbour of a; the neighbours of each taxel are in ascending order.
+/// If taxel a is a neighbour of b, then b is a neighbour of a. The neighbours of each taxel are in ascending order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Neighbours {
     /// Index of each taxel's first neighbour in the list of neighbours, followed by the length of the list.

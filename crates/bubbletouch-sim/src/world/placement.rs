@@ -91,8 +91,8 @@ impl TouchAxis {
         }
     }
 
-    /// Returns the list of the given values without duplicates. Of several values that describe one pose, only the first is kept. For example, the yaws 0 and
-    /// 2π describe one pose.
+    /// Returns the list of the given values without duplicates. If several values describe one pose, only the first value is kept. For example, the yaws 0
+    /// and 2π describe one pose.
     pub fn listed(self, values: Vec<f64>) -> Spread {
         let mut first: Vec<usize> = (0..values.len()).collect();
         let pairs = self.same_poses(&values);

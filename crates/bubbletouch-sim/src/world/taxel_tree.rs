@@ -11,7 +11,7 @@ use glam::DVec3;
 /// Maximum number of taxels in a leaf, evaluated with one or two vector instructions. If larger, taxels are evaluated needlessly; if smaller, more bounding
 /// boxes are tested.
 pub(crate) const LEAF: usize = 8;
-/// Stroke that stands for an unlimited stroke, metres.
+/// Stroke of taxels without a limit of the deflection, metres.
 const ENDLESS: f64 = 1e6;
 /// Factor that covers rounding of a sum of radii: far above 1e-16 and far below any measurable difference.
 const ROUNDING: f64 = 1.0 + 1e-9;

@@ -113,8 +113,8 @@ impl Energy {
     }
 }
 
-/// Returns for each body the force (N) and the torque about its centre of mass (N·m), in the world frame. Both are sums over all contacts and tangential
-/// springs.
+/// Returns for each body the force (N) and the torque about its centre of mass (N·m), in the world frame. Force and torque are sums over all contacts and
+/// tangential springs.
 pub(super) fn wrenches(
     (loads, pairs): (&[PairLoad], &[Pair]),
     springs: &[Spring],

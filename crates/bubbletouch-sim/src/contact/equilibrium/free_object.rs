@@ -78,8 +78,8 @@ impl<'a> PlacedSkin<'a> {
         })
     }
 
-    /// Returns the stiffness of a taxel beyond its relaxed deflection, N/m: k / (1 − φ) with the spring stiffness k and the relaxation factor φ of the time
-    /// step.
+    /// Returns the stiffness of a taxel beyond its relaxed deflection, N/m. The value is k / (1 − φ) with the spring stiffness k and the relaxation factor φ
+    /// of the time step.
     pub(super) fn stiffness(&self, taxel: usize) -> f64 {
         let taxel = self.patch.taxels().at(taxel);
         match self.before {

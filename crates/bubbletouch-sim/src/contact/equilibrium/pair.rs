@@ -19,7 +19,7 @@ pub(super) enum Key {
     Rigid(Part, Touched),
 }
 
-/// Value that stands for the sphere of a pair if the deflection of the taxel is due to objects that are fixed or move along a given path.
+/// Placeholder for the sphere of a pair if the deflection of the taxel is due to objects that are fixed or move along a given path.
 pub(super) const OTHERS: Part = (u32::MAX, u32::MAX);
 
 /// Sphere of a free object, with the taxel or rigid counterpart that it pushes.
@@ -69,8 +69,8 @@ impl Pair {
         own.into_iter().chain(other)
     }
 
-    /// Returns the force on the sphere, newtons, that results from a `force` (N) along the taxel's axis; in the patch frame for taxels, in the world for
-    /// rigid contacts.
+    /// Returns the force on the sphere, newtons, that results from a `force` (N) along the taxel's axis. The result is in the patch frame for taxels, in the
+    /// world for rigid contacts.
     pub fn push(&self, force: f64) -> DVec3 {
         let gradient = self.derivatives().map(|(gradient, _)| gradient);
         -force * gradient.unwrap_or(DVec3::ZERO)

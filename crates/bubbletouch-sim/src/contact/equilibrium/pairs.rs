@@ -40,7 +40,7 @@ pub(super) struct Margins {
 /// Pairs of spheres and taxels or rigid counterparts at the present poses of all bodies.
 ///
 /// A sphere behind a taxel's substrate does not push the taxel, even if the sphere later moves to the front of the substrate. Otherwise the energy would jump
-/// at the substrate, and an object could hang on this jump. Such pairs are stored until sphere and taxel separate.
+/// at the substrate, and an object could hang on this jump. The list `behind` contains these pairs until sphere and taxel separate.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
     /// Pairs that push or could push, sorted by taxel or rigid contact and then by sphere.

@@ -32,8 +32,8 @@ impl Reach {
     /// cannot push it after a motion of `motion` metres.
     ///
     /// The deflection is `δ = √(S² − b²) − h` for `√(S² − b²) ≥ γS` with γ = [`GRAZING`]. S is the sum of the radii, b the distance of the sphere's centre
-    /// from the taxel's axis, and h the height along this axis. Where the sphere's surface is steeper, δ continues along the tangent, so that a sphere from
-    /// the side deflects the taxel with a slope of 1/γ instead of a jump. Forces use the same bound 1/γ of the gradient.
+    /// from the taxel's axis, and h the height along this axis. Where the sphere's surface is steeper, δ continues along the tangent. A sphere that comes
+    /// from the side thus deflects the taxel gradually, with a slope of 1/γ. Forces use the same bound 1/γ of the gradient.
     pub fn new(center: DVec3, radius: f64, taxel: &PlacedTaxel, motion: f64) -> Option<Self> {
         let (axis, reach) = (taxel.axis, taxel.radius + radius);
         let from_rest = center - taxel.center;

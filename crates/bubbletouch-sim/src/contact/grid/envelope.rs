@@ -104,8 +104,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Returns a lower bound, metres, of the travel at which a triangle in a bounding box stops a taxel; infinite if no triangle in the box can lower a
-    /// height.
+    /// Returns a lower bound, metres, of the travel at which a triangle in a bounding box stops a taxel. The bound is infinite if no triangle in the box can
+    /// lower a height.
     fn bound(&self, bounds: &Aabb) -> f64 {
         let [low, high] = self.view.turned(bounds);
         if self.view.is_beside(low, high) || self.is_hidden(low, high) {

@@ -25,8 +25,8 @@ pub(crate) struct GridPress {
     /// Heights at which the meshes stop the taxels; empty if there are no meshes.
     envelope: Envelope,
     deflections: DeflectionGrid,
-    /// Height of the substrate, metres, below which spheres push only taxels whose substrate is inside the sphere. −∞ if the press comes from the front,
-    /// where spheres push at any distance behind the taxels.
+    /// Height of the substrate, metres, below which spheres push only taxels whose substrate is inside the sphere. The value is −∞ if the press comes from
+    /// the front, where spheres push at any distance behind the taxels.
     behind: f64,
     /// Travels at which the taxels began to move in the last press to a force, metres.
     starts: Vec<f64>,

@@ -17,7 +17,7 @@ use glam::{DVec2, DVec3, Vec3Swizzles};
 /// is less than a nanometre, and its heights would be dominated by rounding.
 const STEEP: f64 = 1e-8;
 
-/// Returns the height of the centre of a ball that rises along z at the position `at` (x, y) until a triangle stops it; `None` if the ball misses the
+/// Returns the height of the centre of a ball that rises along z at the position `at` (x, y) until a triangle stops it. Returns `None` if the ball misses the
 /// triangle.
 ///
 /// All lengths are in metres. The triangle is solid from both sides and may degenerate to a line or a point.

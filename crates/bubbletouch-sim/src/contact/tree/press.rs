@@ -27,8 +27,8 @@ pub(crate) fn push(
     push_held(patch, objects, patch_from_objects, workspace);
 }
 
-/// Raises the deflections of the taxels of a tree, which may have been built from an even grid. The function ignores object parts that are marked as held
-/// ([`Workspace::hold`]).
+/// Raises the deflections of the taxels of a tree, which may have been built from an even grid. The function ignores object parts that are marked as held by
+/// `Workspace::hold`.
 pub(crate) fn push_tree(
     (taxels, even_grid): (&TaxelTree, Option<&EvenGrid>),
     n_taxels: usize,

@@ -14,7 +14,7 @@ const SURFACE_ERROR: f64 = 0.5e-3;
 /// Largest inclination of a hand against the skin, radians. If larger, a flat hand (which is rigid) touches only with the ball of the thumb or a finger.
 const LEVEL: f64 = 0.03;
 
-/// Bending of the fingers in a fist: the argument of [`Hand::curled`].
+/// Bending of the fingers in a fist, as argument of [`Hand::curled`].
 const FIST: f64 = 0.85;
 
 /// Posture of a hand before it moves: finger positions, orientation, and the point of the hand that lies above the touched point of the arm.
@@ -71,8 +71,8 @@ impl Posture {
         }
     }
 
-    /// Closes each finger until it would be `grip` metres deep in the skin. The hand is at the depth `depth`, on an arm of radius `surface`. A finger that
-    /// misses the arm closes to a fist.
+    /// Closes each finger up to the bending at which it would be `grip` metres deep in the skin. The hand is at the depth `depth`, on an arm of radius
+    /// `surface`. A finger that misses the arm closes to a fist.
     pub fn close(&mut self, surface: f64, depth: f64, grip: f64) {
         let height = self.first_contact(surface) - depth;
         let fist = Hand::curled(1.0);
@@ -102,8 +102,7 @@ impl Posture {
         hand
     }
 
-    /// Returns the height of the hand's anchor point ([`Posture::anchor`]) above the skin at first contact of the open hand, metres; `surface` is the radius
-    /// of the arm.
+    /// Returns the height of the hand's `anchor` point above the skin at first contact of the open hand, metres. `surface` is the radius of the arm.
     pub fn first_contact(&self, surface: f64) -> f64 {
         let hand = spheres(&self.open);
         let heights = hand
@@ -113,8 +112,7 @@ impl Posture {
         heights.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Returns the height of the hand's anchor point ([`Posture::anchor`]) at which a ball of the hand touches the arm, metres; `None` if the ball passes
-    /// beside the arm.
+    /// Returns the height of the hand's `anchor` point at which a ball of the hand touches the arm, metres. Returns `None` if the ball passes beside the arm.
     fn touches_at(&self, ball: &Sphere, surface: f64) -> Option<f64> {
         let at = self.place_from_hand * (ball.center - self.anchor);
         let reach = ball.radius + surface;
@@ -122,15 +120,14 @@ impl Posture {
         (square > 0.0).then(|| square.sqrt() - at.z - surface)
     }
 
-    /// Returns the depth to which a ball of the hand penetrates the arm, metres; negative if the ball is outside. `height` is the height of the hand's anchor
-    /// point ([`Posture::anchor`]).
+    /// Returns the depth to which a ball of the hand penetrates the arm, metres; negative if the ball is outside. `height` is the height of the hand's
+    /// `anchor` point above the skin.
     fn sunk(&self, ball: Sphere, surface: f64, height: f64) -> f64 {
         let at = self.place_from_hand * (ball.center - self.anchor);
         ball.radius + surface - at.y.hypot(at.z + height + surface)
     }
 
-    /// Returns the pose `patch_from_hand` for which the hand's anchor point ([`Posture::anchor`]) is above the point (along, around) of the arm, `radius`
-    /// metres from the arm's axis.
+    /// Returns the pose `patch_from_hand` with the hand's `anchor` point above the point (along, around) of the arm, `radius` metres from the arm's axis.
     pub fn pose(&self, (along, around): (f64, f64), radius: f64) -> Pose {
         // Frame of the touched place at +x (its x is −z of the arm, y is unchanged, z is the arm's x), rotated around the arm.
         let rotation = DQuat::from_rotation_z(around) * DQuat::from_rotation_y(FRAC_PI_2);
@@ -146,7 +143,7 @@ pub(super) fn spheres(hand: &Hand) -> SphereUnion {
     solid.pack(SURFACE_ERROR).expect("a hand takes few spheres")
 }
 
-/// Bends one digit of `hand` (0 to 3 are fingers, 4 is the thumb) to a posture between those of the hands `from` and `to`.
+/// Interpolates the posture of one digit of `hand` (0 to 3 are fingers, 4 is the thumb) between the postures in `from` and `to`.
 fn bend(hand: &mut Hand, from: &Hand, to: &Hand, (digit, share): (usize, f64)) {
     let between = |a: f64, b: f64| a + share * (b - a);
     let pose = |a: &FingerPose, b: &FingerPose| FingerPose {
@@ -182,8 +179,8 @@ fn first_share(is_so: impl Fn(f64) -> bool) -> f64 {
     high
 }
 
-/// Returns the point of a hand that is placed above the touched point of the arm: the mean of the touching fingertips, or a point near the knuckles of the
-/// flat hand.
+/// Returns the point of a hand that is placed above the touched point of the arm. This point is the mean of the touching fingertips, or a point near the
+/// knuckles of the flat hand.
 fn anchor(hand: &Hand, fingers: usize) -> DVec3 {
     let strands = hand.strands();
     match fingers {

@@ -23,7 +23,7 @@ pub struct TouchRanges {
     pub clearance: RangeInclusive<f64>,
     /// Depth of the hand past first contact, metres.
     pub depth: RangeInclusive<f64>,
-    /// Time from first contact to the largest depth, seconds; the way back to first contact takes equally long.
+    /// Time from first contact to the largest depth, seconds; the withdrawal to first contact takes equally long.
     pub rise: RangeInclusive<f64>,
     /// Time that the hand stays at the largest depth, seconds.
     pub hold: RangeInclusive<f64>,

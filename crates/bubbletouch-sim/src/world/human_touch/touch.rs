@@ -39,7 +39,7 @@ pub struct HumanTouch {
     pub around: f64,
     /// Largest depth of the hand past first contact, metres; the palm's depth for a grab.
     pub depth: f64,
-    /// Time from first contact to the largest depth, seconds; the way back to first contact takes equally long.
+    /// Time from first contact to the largest depth, seconds; the withdrawal to first contact takes equally long.
     pub rise: f64,
     /// Time that the hand stays at the largest depth in each contact, seconds.
     pub hold: f64,

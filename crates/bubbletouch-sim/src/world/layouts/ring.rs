@@ -34,7 +34,7 @@ pub(crate) fn n_steps(length: f64, pitch: f64) -> usize {
     (length / pitch).round() as usize
 }
 
-/// Returns the ends of n equal steps of a length centred at zero, as fractions of the length: from −0.5 to 0.5, or only 0 if n is 0.
+/// Returns the ends of n equal steps of a length centred at zero, as fractions of the length. The ends are from −0.5 to 0.5, or only 0 if n is 0.
 pub(crate) fn ends_of_steps(n: usize) -> impl Iterator<Item = f64> + Clone {
     (0..=n).map(move |step| match n {
         0 => 0.0,

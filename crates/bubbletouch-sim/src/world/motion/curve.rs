@@ -20,7 +20,7 @@ pub enum Interpolation {
 /// One coordinate as a function of time. The owner stores the times of the waypoints, which several curves share.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve {
-    /// Coefficients c of each piece between two waypoints: `x = c₀ + c₁ s + c₂ s² + c₃ s³`, with s in seconds after the piece's first waypoint.
+    /// Coefficients c of each piece between two waypoints. The value is `x = c₀ + c₁ s + c₂ s² + c₃ s³`, with s in seconds after the piece's first waypoint.
     pieces: Vec<[f64; 4]>,
     /// Value of the curve at the last waypoint.
     last: f64,

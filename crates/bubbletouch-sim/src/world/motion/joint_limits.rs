@@ -47,8 +47,8 @@ pub(super) fn check_limits(
     Ok(notes)
 }
 
-/// Returns the largest violation of the first limit that a joint exceeds, with descriptions of the joint's motion and of the allowed range; `None` if there
-/// is no violation.
+/// Returns the largest violation of the first limit that a joint exceeds, with descriptions of the joint's motion and of the allowed range. Returns `None` if
+/// there is no violation.
 fn first_beyond(
     extremes: &Extremes,
     limits: &Limits,

@@ -4,7 +4,7 @@ use crate::geometry::Pose;
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Sinusoidal motion about a pose. With s = sin(2π t / period) at time t, the body is rotated about the origin of the fixed frame by s · `angular`, then
+/// Sinusoidal motion about a pose. Let s = sin(2π t / period) at time t. The body is rotated about the origin of the fixed frame by s · `angular`, then
 /// translated by s · `linear`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillation {

@@ -4,7 +4,7 @@
 /// `secants` the mean velocities between the waypoints.
 ///
 /// Adjacent pieces have equal accelerations at their common waypoint: `m₋/h₋ + 2 (1/h₋ + 1/h₊) m + m₊/h₊ = 3 (d₋/h₋ + d₊/h₊)`. The symbols h₋ and h₊ are the
-/// durations, and d₋ and d₊ the mean velocities, before and after the waypoint; m₋, m, m₊ are the velocities at three waypoints. The equations form a
+/// durations, and d₋ and d₊ the mean velocities, before and after the waypoint. The velocities at three waypoints are m₋, m and m₊. The equations form a
 /// tridiagonal system with a dominant diagonal, solved by elimination.
 pub(super) fn clamped_spline(steps: &[f64], secants: &[f64]) -> Vec<f64> {
     let n = steps.len() + 1;

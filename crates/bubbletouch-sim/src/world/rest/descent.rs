@@ -86,8 +86,8 @@ fn linear_step(
     (t[0] * u + t[1] * v, z)
 }
 
-/// Returns three linear functions that keep the step inside a triangle of inradius `reach`. They are steeper than the bound of any sphere, exceed `height`
-/// outside the triangle, and stay below every possible minimum well inside it.
+/// Returns three linear functions that keep the step inside a triangle of inradius `reach`. The functions are steeper than the bound of any sphere and exceed
+/// `height` outside the triangle. Well inside the triangle, they stay below every possible minimum.
 fn walls(radius: f64, height: f64, reach: f64) -> [LinearBound; 3] {
     let steep = 4.0 * radius;
     [0.0, 1.0, 2.0].map(|third| {
