@@ -1,5 +1,5 @@
-//! Estimation of drift from changes of the zeros. A zero is a Wiener process of standard deviation σ at the end of the session. Between the times s and t
-//! the zeros of all taxels therefore change with the variance σ² (t − s).
+//! Estimation of drift from changes of the taxels' zero offsets. The zero offset z of a taxel is a Wiener process of standard deviation σ at the end of the
+//! recording session. Between the times s and t the zero offsets of all taxels therefore change with the variance σ² (t − s).
 //!
 //! From the first run of untouched frames to the last: σ² = (Var(z(t) − z(s)) − noise) / (t − s). If most readings are clipped at zero, only
 //! positive zeros are visible; by symmetry, equally many are negative. Then σ² = Σ (z(t)² − noise) / Σ t over the visible zeros.

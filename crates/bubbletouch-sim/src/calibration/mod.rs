@@ -1,7 +1,7 @@
 //! Calibration: estimates the `[signal]` settings of a skin from its recorded frames.
 //!
-//! The model is a [`Chain`](crate::signal::Chain) in physical order, which consists of crosstalk, gain, drift, noise, smoothing,
-//! faults, and converter. Each parameter is estimated from an effect that it alone has, and from parameters estimated before:
+//! The model is a [`Chain`](crate::signal::Chain) in physical order, which consists of crosstalk, gain, drift, noise, smoothing, faults, and converter. Each
+//! parameter is estimated from an effect that no other parameter has, and from parameters estimated before:
 //!
 //! | parameter | from | by |
 //! |---|---|---|

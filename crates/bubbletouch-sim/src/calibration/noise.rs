@@ -1,4 +1,5 @@
-//! Estimation of noise: σ of the readings of untouched taxels, from differences between frames, which a slow drift does not affect.
+//! Estimation of noise: the standard deviation σ of the readings x of untouched taxels. The estimate uses differences between consecutive frames, which a
+//! slow drift does not affect.
 //!
 //! The estimate is σ² = Var(x(t + 1) − x(t)) / 2 − q²/12, where q²/12 is the rounding of a converter of step q (Sheppard's correction). If most readings are
 //! clipped, σ is the mean over taxels of the estimate from censored readings (Tobin 1958). Smoothing reduces the variance of the noise by a

@@ -1,4 +1,4 @@
-//! Touched frames with their zeros subtracted.
+//! Frames with contact after subtraction of the taxels' zero offsets.
 
 use super::RecordedSkin;
 use super::faults::FoundFaults;

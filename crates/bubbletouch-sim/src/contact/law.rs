@@ -1,4 +1,4 @@
-//! The contact law \[BT\]: how far a sphere deflects a taxel, and which spheres count.
+//! The contact law \[BT\]: how far a sphere deflects a taxel, and which spheres can push a taxel.
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! Workspace of a thread for presses.
+//! Scratch memory of a thread for presses.
 
 use super::grid::{GridLines, GridPress};
 use super::instructions::Instructions;

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! The second line is one equation for x', increasing and convex. Newton's method, started at a larger x', ends after a few steps, exactly. When the first
-//! taxel reaches its stroke, stops carry the remaining force. Stacked balls that would otherwise penetrate the balls below are merged into a group with one
-//! motion. The x' of a chain of balls is an isotonic regression of their free motions.
+//! taxel reaches the end of its stroke, hard limits carry the remaining force. Stacked balls that would otherwise penetrate the balls below are merged into a
+//! group with one motion. The x' of a chain of balls is an isotonic regression of their free motions.
 
 use super::state::{Integrator, Rider, State};
 use super::system::{Drive, System};

@@ -1,4 +1,4 @@
-//! Final state of a free object on its guide.
+//! Final state of a free object that can move only along the taxels' axis.
 
 use super::system::{Drive, System};
 use crate::contact::{Sample, crossing};

@@ -1,4 +1,4 @@
-//! Mechanical system: taxels with mass, and an object on a guide.
+//! Mechanical system: taxels with mass, and an object that can move only along the taxels' axis.
 
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};

@@ -9,9 +9,9 @@
 //! | 3 × 9 | [moments](super::moments) of δ, of the touched taxels, and of those above half of the largest |
 //! | 24 | Σ δ / (area) in rings about the centroid, r from k h / 24 to (k + 1) h / 24, h half the shorter side |
 //!
-//! The root of an area is a length, as are the other numbers. Each number is a sum over touched taxels that depends on their positions only through distances
-//! from the centroid. Descriptors are exactly invariant to shifts that keep the contact on the array and to quarter turns. Descriptors are also invariant to
-//! mirror images, except for two of the moments, which change sign. For other rotations the sampling limits the invariance.
+//! The square root of an area is a length, as are the other numbers. Each number is a sum over touched taxels that depends on their positions only through
+//! distances from the centroid. Descriptors are exactly invariant to shifts that keep the contact on the array and to quarter turns. Descriptors are also
+//! invariant to mirror images, except for two of the moments, which change sign. For other rotations the sampling limits the invariance.
 //!
 //! Sources: Hu (1962), IRE Transactions on Information Theory 8, 179 (moments). Level sets and radial profiles are common in granulometry: Serra (1982), *Image
 //! Analysis and Mathematical Morphology*.

@@ -1,6 +1,7 @@
 //! Solid of revolution: a polygon in the half plane (distance from the axis, height) that is rotated about z.
 //!
-//! The nearest surface point of a solid of revolution lies in the half plane of the query point, so the distance equals the distance to the polygon.
+//! The surface point nearest to a query point lies in the half plane of the query point. The distance to the solid therefore equals the distance to the
+//! polygon.
 
 use super::Sphere;
 use super::fit::{Fit, MAX_SPHERES};

@@ -1,4 +1,4 @@
-//! Ray casting: the rays of a picture, and their hits on spheres or another surface.
+//! Ray casting: the rays of a picture, and their first intersections with spheres or another surface.
 
 use crate::objects::Sphere;
 use glam::{DMat3, DVec2, DVec3};

@@ -1,9 +1,8 @@
 //! Readings of the taxels of a whole body, computed taxel by taxel; the cost is proportional to the number of taxels read.
 //!
-//! A `Chain` draws the noise of a frame taxel after taxel, so two million taxels cost two million normal numbers per frame.
-//! A [`BodyReadout`] computes noise, zeros, gains and faults with counter-based random numbers.
-//! These are functions of the skin's name, the taxel, the frame and the time. A taxel therefore reads the same value alone,
-//! among the touched taxels, or with its whole patch.
+//! A `Chain` draws the noise of a frame taxel after taxel, so two million taxels cost two million normal numbers per frame. A [`BodyReadout`] computes noise,
+//! zero offsets, gains and faults with counter-based random numbers. These are functions of the skin's name, the taxel, the frame and the time. A taxel
+//! therefore reads the same value alone, among the touched taxels, or with its whole patch.
 //!
 //! Steps and strengths have the same meaning and distributions as in a chain, but different random draws. A sensor error is supported
 //! if its description has `by_taxel`.

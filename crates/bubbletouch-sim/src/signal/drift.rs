@@ -1,13 +1,13 @@
-//! Offset drift: the zero of each taxel changes randomly over a session.
+//! Offset drift: the zero offset of each taxel changes randomly over a recording session.
 //!
-//! The zero of a taxel is a random walk over the time t of a session. The zero is 0 at the beginning (the skin has just been zeroed) and has the standard
-//! deviation σ at the end: xᵢ ← xᵢ + σ Wᵢ(t). W is a Wiener process, the usual model of a sensor's bias instability.
-//! The walk is computed from its Karhunen–Loève expansion
+//! The zero offset of a taxel is a random walk over the time t of the session. The offset is 0 at the beginning (the skin has just been zeroed) and has the
+//! standard deviation σ at the end: xᵢ ← xᵢ + σ Wᵢ(t). W is a Wiener process, the usual model of a sensor's bias instability. The walk is computed from its
+//! Karhunen–Loève expansion
 //!
 //! W(t) = c Σₖ ξₖ √2 sin((k − ½) π t) / ((k − ½) π),  ξₖ ~ N(0, 1),  k = 1 … 64,
 //!
-//! The zero at any time can be computed without earlier times, so touches need no order. The 64 terms contain 99.7 % of the
-//! variance; the factor c makes the variance at the end exactly σ².
+//! The zero offset at any time can be computed without earlier times, so touches need no order. The 64 terms contain 99.7 % of the variance; the factor c
+//! makes the variance at the end exactly σ².
 //!
 //! A `BodyReadout` uses counter-based random numbers. Its W is linear between 2⁶ + 1 equally spaced times of the session.
 

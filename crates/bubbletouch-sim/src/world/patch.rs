@@ -1,4 +1,4 @@
-//! Patch of skin with any layout of taxels.
+//! Skin patch with any layout of taxels.
 
 use super::taxel_tree::TaxelTree;
 use super::{Grid, Layout, Taxel, Taxels};

@@ -1,4 +1,4 @@
-//! Imposed motion of a floating robot: piecewise-constant velocities \[BT\].
+//! Given motion of a floating robot: piecewise-constant velocities \[BT\].
 
 use crate::error::{Error, Result};
 use crate::geometry::Pose;

@@ -1,4 +1,4 @@
-//! Free objects, and the ground that carries them: skins, planes and obstacles.
+//! Free objects, and the ground that supports these objects: skins, planes and obstacles.
 
 use crate::contact::friction::TangentialSpring;
 use crate::contact::relaxation_factor;

@@ -1,4 +1,4 @@
-//! Loads of taxels, and their distribution among the spheres that push them.
+//! Loads of taxels, and the distribution of each load among the spheres that push the taxel.
 //!
 //! For taxel i with ψ the smoothed maximum of its deflections, k its stiffness and s its stroke, the energy is
 //!

@@ -1,15 +1,15 @@
 //! Equilibrium of free objects on taxels, tables, obstacles and each other.
 //!
 //! Without friction the forces of the taxels are −∇ of their elastic energy. Objects are therefore at rest where `E = Σ ½ k δ² − Σ m g·x` is stationary, and
-//! stable where E has a minimum \[BT\]. All objects form one problem with six unknowns each, since δ is the largest deflection that any of them requires. The
-//! solver ([`EquilibriumSolver`]) minimises E from the initial poses by a trust-region Newton method with closed-form derivatives. The energy never increases,
-//! and the method leaves saddles because it follows negative curvature. If the energy has no minimum for an object, the object [escapes](Outcome::Escaped), and
-//! the others continue without it.
+//! stable where E has a minimum \[BT\]. All objects form one problem with six unknowns each, since δ is the largest deflection that any object requires. The
+//! solver ([`EquilibriumSolver`]) minimises E from the initial poses by a trust-region Newton method with closed-form derivatives. The energy never
+//! increases, and the method leaves saddles because it follows negative curvature. If the energy has no minimum for an object, the object leaves the skins
+//! ([escaped](Outcome::Escaped)), and the solver continues with the other objects.
 //!
 //! The energy E has three kinds of kinks, all of which are kept exactly by constraints with multipliers:
 //!
 //! - Taxels between two spheres of one object or of two (`tied_max`). The multipliers are the shares of the spheres.
-//! - Rigid stops of taxels at their stroke. The multipliers are the forces on the stops.
+//! - Hard limits of taxels at the end of their stroke. The multipliers are the forces of these limits.
 //! - Rigid contacts with half-spaces ([`HalfSpace`]), fixed objects ([`Obstacle`]), and other free objects. The multipliers are the contact forces.
 //!
 //! A damper delays its taxel. Within a step Δt a free taxel returns to φ δ_before (φ = e^(−k Δt / c)); beyond this deflection its stiffness is k / (1 − φ). The

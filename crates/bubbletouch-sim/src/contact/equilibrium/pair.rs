@@ -1,7 +1,7 @@
 //! Pair of a sphere of a free object and the taxel or rigid contact that it pushes.
 //!
-//! A rigid surface is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the contact
-//! force as the force of the stop.
+//! A rigid surface is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the
+//! contact force as the force at the end of the stroke.
 
 use super::reach::Reach;
 use super::rigid_contact::{Touched, Touching};

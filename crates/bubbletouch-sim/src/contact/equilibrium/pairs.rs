@@ -1,7 +1,7 @@
 //! Pairs of spheres of free objects and the taxels or rigid contacts that they push, or could push after a small step.
 //!
-//! A rigid contact is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the contact
-//! force as the force of the stop. Taxels and rigid contacts thus share one pair type.
+//! A rigid contact is treated as a taxel without a spring at the end of its stroke. The penetration of the sphere is treated as the deflection, and the
+//! contact force as the force at the end of the stroke. Taxels and rigid contacts thus share one pair type.
 
 use super::super::taxel_contact::GRAZING;
 use super::body::Body;

@@ -1,4 +1,4 @@
-//! Deflections of a flat grid, and the rectangle that contains those above zero.
+//! Deflections of a flat grid, and the rectangle that contains all deflections above zero.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Press kernel of a flat grid along its axis: evaluates only spheres and triangles that reach the skin, and only the taxels under them.
+//! Press kernel of a flat grid along its axis. The kernel evaluates only spheres and triangles that reach the skin, and only the taxels under these parts.
 
 use super::deflection_grid::DeflectionGrid;
 use super::envelope::Envelope;

@@ -1,4 +1,4 @@
-//! Rest centres and axes of the taxels of a skin.
+//! Centres (at rest) and axes of the taxels of a skin.
 
 use super::limits::check_count;
 use crate::error::{Error, Result};

@@ -1,4 +1,4 @@
-//! One number over time: a cubic polynomial between adjacent waypoints.
+//! One coordinate over time: a cubic polynomial between adjacent waypoints.
 
 use super::slopes::{clamped_spline, monotone};
 use serde::{Deserialize, Serialize};

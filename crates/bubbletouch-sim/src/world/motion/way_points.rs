@@ -1,4 +1,4 @@
-//! Waypoints before interpolation: rows of numbers at ascending times, with their origin for error messages.
+//! Waypoints before interpolation: rows of numbers at ascending times, with their source (argument or file) for error messages.
 
 use crate::error::{Error, Result};
 use ndarray::Array2;
