@@ -1,7 +1,7 @@
 //! Checks of the values of keys. Each error contains the file, the key, the given value, and the allowed values.
 
 use crate::error::{Error, Result};
-use crate::inputs::keys::KeyAbout;
+use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::memory::{check_memory, machine_memory};
 use crate::inputs::range::Range;
 use crate::inputs::toml_value::{number, value_at};
@@ -42,14 +42,14 @@ impl Check<'_> {
                 continue;
             };
             if !matches!(about.range, Range::Unchecked) {
-                self.key_value(&format!("{name}.{key}"), value, about.range)?;
+                self.key_value(&format!("{name}.{key}"), value, about)?;
             }
         }
         Ok(table)
     }
 
-    /// Checks the value, or the list of values, of a key against the allowed range.
-    fn key_value(&self, path: &str, value: &toml::Value, range: Range) -> Result<()> {
+    /// Checks the value, or the list of values, of a key against its allowed range.
+    fn key_value(&self, path: &str, value: &toml::Value, about: &KeyAbout) -> Result<()> {
         let one = std::slice::from_ref(value);
         let values = value.as_array().map_or(one, |values| &values[..]);
         let words: Vec<&str> = values.iter().filter_map(|value| value.as_str()).collect();
@@ -61,15 +61,15 @@ impl Check<'_> {
         match words.is_empty() {
             false => self.list(path, words).map(drop)?,
             // Two values with equal text in tables would be mistaken for each other.
-            true if path.ends_with("_mm") => {
+            true if path.ends_with("_mm") && about.axis == AxisPlace::Table => {
                 let shown = numbers.iter().map(|&mm| millimetres(mm * MM));
                 self.list(path, shown.collect()).map(drop)?;
             }
             true => self.list(path, numbers.clone()).map(drop)?,
         }
         let mut numbers = numbers.into_iter();
-        match numbers.find(|&number| !range.contains(number)) {
-            Some(number) => Err(self.error(path, number, range.words())),
+        match numbers.find(|&number| !about.range.contains(number)) {
+            Some(number) => Err(self.error(path, number, about.range.words())),
             None => Ok(()),
         }
     }

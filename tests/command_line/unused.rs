@@ -253,3 +253,135 @@ fn a_number_out_of_range_is_refused_when_the_file_is_read() {
     }
     assert_eq!(case.names(), ["x.toml"], "nothing is written");
 }
+
+/// Returns a recognition study with further lines at the end of some tables.
+fn with_lines(lines: &[(&str, &str)]) -> String {
+    let mut study = recognition("\"linear_svm\"", "[signal]\nsteps = [\"noise\"]\n[axes]");
+    for (table, line) in lines {
+        study = study.replace(&format!("[{table}]\n"), &format!("[{table}]\n{line}\n"));
+    }
+    study.replace("[axes]\n\n", "")
+}
+
+/// Keys that have an effect only beside other keys: lines that are refused, words of the error, and further lines with which the study is valid.
+#[test]
+fn a_key_that_has_an_effect_only_beside_others_is_refused_without_them() {
+    let case = Case::new();
+    let noise = ("signal", "noise_std_full_scale = 0.1");
+    let drawn = (
+        "touches",
+        "yaw_deg = { uniform = [0.0, 90.0] }\noffset_x_mm = { uniform = [0.0, 9.0] }",
+    );
+    let pose = ("recognition", "group_by = \"pose\"");
+    let image = ("recognition", "features = \"polar_harmonics\"");
+    let force = ("skin", "sensed = \"force\"");
+    for (lines, words, beside) in [
+        (
+            vec![("skin", "stiffness_n_per_m = 50.0")],
+            [
+                "key skin.stiffness_n_per_m: 50, but no force is read",
+                "\"force\" among signal.steps",
+            ],
+            vec![force],
+        ),
+        (
+            vec![("axes", "\"skin.stiffness_n_per_m\" = [100.0, 200.0]")],
+            [
+                "200, but no force is read",
+                "axes.\"skin.stiffness_n_per_m\"",
+            ],
+            vec![force],
+        ),
+        (
+            vec![("touches", "speed_mm_per_s = 5.0")],
+            [
+                "key touches.speed_mm_per_s: 5, but",
+                "skin.damping_n_s_per_m above 0",
+            ],
+            vec![force, ("skin", "damping_n_s_per_m = 0.1")],
+        ),
+        (
+            vec![("recognition", "readings_per_touch = 2")],
+            [
+                "key recognition.readings_per_touch: 2, but",
+                "signal.noise_std_full_scale above 0",
+            ],
+            vec![noise],
+        ),
+        (
+            vec![("sensing", "ensemble = \"identity\"")],
+            ["key sensing.ratio: 4, but", "another sensing.ensemble"],
+            vec![("sensing", "")],
+        ),
+        (
+            vec![
+                (
+                    "recognition",
+                    "tilt_augmentation_deg = 3.0\ntilt_augmentation = 0",
+                ),
+                image,
+            ],
+            [
+                "key recognition.tilt_augmentation_deg: 3, but",
+                "tilt_augmentation above 0",
+            ],
+            vec![],
+        ),
+        (
+            vec![
+                ("recognition", "group_by_mm = 3.0"),
+                pose,
+                ("touches", "yaw_deg = [0.0, 90.0]"),
+            ],
+            ["key recognition.group_by_mm: 3, but", "uniform"],
+            vec![],
+        ),
+        (
+            vec![
+                ("recognition", "group_by_deg = 3.0"),
+                pose,
+                ("touches", "yaw_deg = [0.0, 90.0]"),
+            ],
+            ["key recognition.group_by_deg: 3, but", "uniform"],
+            vec![],
+        ),
+    ] {
+        case.file("x.toml", with_lines(&lines));
+        for command in ["plan", "run"] {
+            refused(&case.run(&[command, "x.toml"]), 2, &words);
+        }
+        if !beside.is_empty() {
+            let study = with_lines(&[&lines[..], &beside].concat());
+            let ensembles = study.replace("\"identity\"", "[\"identity\", \"gaussian\"]");
+            case.file("x.toml", ensembles);
+            case.succeeds(&["plan", "x.toml"]);
+        }
+    }
+    // The values of one axis decide whether the key has an effect.
+    for lines in [
+        vec![
+            (
+                "recognition",
+                "tilt_augmentation_deg = 3.0\ntilt_augmentation = [0, 2]",
+            ),
+            image,
+        ],
+        vec![
+            ("recognition", "group_by_mm = 3.0\ngroup_by_deg = 9.0"),
+            pose,
+            drawn,
+        ],
+        vec![
+            ("skin", "stiffness_n_per_m = 50.0"),
+            ("axes", "\"skin.sensed\" = [\"deflection\", \"force\"]"),
+        ],
+        vec![
+            ("recognition", "readings_per_touch = 2"),
+            ("signal", "noise_std_full_scale = [0.0, 0.1]"),
+        ],
+    ] {
+        case.file("x.toml", with_lines(&lines));
+        case.succeeds(&["plan", "x.toml"]);
+    }
+    assert_eq!(case.names(), ["x.toml"], "nothing is written");
+}

@@ -298,7 +298,7 @@ fn a_drawn_pose_without_a_distance_and_a_distance_without_a_group_are_refused() 
             "key recognition.group_by_mm: left out, and offset_x is spread uniformly",
         ),
         (
-            "group_by = \"yaw\"\ngroup_by_mm = 2.0\n",
+            "group_by = \"pose\"\ngroup_by_mm = 2.0\n",
             "key recognition.group_by_deg: left out, and yaw is spread uniformly",
         ),
         ("group_by_mm = 2.0\n", "without recognition.group_by"),

@@ -43,8 +43,13 @@ ensemble = "identity"
 classifier = "linear_svm"
 "#;
 
+/// Returns the study with these keys of `[signal]`. A study without the step `scan` has no speed, which would have no effect.
 fn with_signal(signal: &str) -> String {
-    STUDY.replace("SIGNAL", signal)
+    let study = STUDY.replace("SIGNAL", signal);
+    match signal.contains("\"scan\"") {
+        true => study,
+        false => study.replace("speed_mm_per_s = 20.0\n", ""),
+    }
 }
 
 const ALL: &str = r#"

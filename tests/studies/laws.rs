@@ -356,7 +356,12 @@ fn more_readings_change_the_training_rows_if_and_only_if_the_error_is_random_by_
                 true => format!("{} = 5\n", strength.key),
                 false => format!("{} = {:?}\n", strength.key, strong(strength)),
             });
-        let signal = format!("steps = [\"{}\"]\n{}", about.step, keys.collect::<String>());
+        // The first configuration has no noise; the second one lets all errors have several readings.
+        let signal = format!(
+            "steps = [\"{}\", \"noise\"]\nnoise_std_full_scale = [0.0, 0.1]\n{}",
+            about.step,
+            keys.collect::<String>()
+        );
         let features = |readings: usize| {
             let keys = format!("readings_per_touch = {readings}");
             let text = study(&signal, "ensemble = \"identity\"", &keys);

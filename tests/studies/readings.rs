@@ -110,7 +110,8 @@ fn a_run_learns_all_readings_and_is_tested_on_one() {
 
 #[test]
 fn without_noise_a_touch_is_learned_once() {
-    let silent = |text: &str| text.replace("full_scale = 0.1", "full_scale = 0.0");
+    // The first configuration has no noise.
+    let silent = |text: &str| text.replace("full_scale = 0.1", "full_scale = [0.0, 0.1]");
     let (once, twice) = (silent(STUDY), silent(&with("readings_per_touch = 2")));
     assert_eq!(features(&twice).data, features(&once).data);
     assert_eq!(features(&once).data.records.len_of(Axis(0)), 120);

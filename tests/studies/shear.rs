@@ -109,7 +109,9 @@ fn each_channel_has_noise_of_its_own_and_the_first_is_the_force() {
     let force = with("\"shear\"", "\"force\"")
         .replace("friction = 0.4\nshear_stiffness_n_per_m = 300.0\n", "");
     assert_eq!(read(&force), noisy.slice(s![.., ..N_TAXELS]));
-    let deflection = force.replace("sensed = \"force\"\n", "");
+    let deflection = force
+        .replace("sensed = \"force\"\n", "")
+        .replace("stiffness_n_per_m = 200.0\n", "");
     let deflection = read(&clean(&deflection));
     let normal = felt.slice(s![.., ..N_TAXELS]);
     for (force, deflection) in normal.iter().zip(&deflection) {

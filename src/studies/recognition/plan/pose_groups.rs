@@ -26,7 +26,7 @@ pub struct KeepTogether {
 
 impl GroupSpec {
     /// Returns the pose parameters whose values define a group.
-    fn axes(self) -> &'static [TouchAxis] {
+    pub(super) fn axes(self) -> &'static [TouchAxis] {
         use TouchAxis::{Depth, OffsetX, OffsetY, Rest, TiltX, TiltY, Yaw};
         match self {
             Self::Pose => &[Rest, OffsetX, OffsetY, Yaw, TiltX, TiltY],

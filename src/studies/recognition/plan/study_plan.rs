@@ -56,7 +56,7 @@ impl Plan {
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
     pub fn new(place: &str, spec: StudySpec) -> Result<Self> {
         let plan = Self::with_any_keys(place, spec)?;
-        Check { place }.unused_keys(&plan.spec)?;
+        Check { place }.unused_keys(&plan)?;
         Ok(plan)
     }
 

@@ -1,21 +1,185 @@
-//! Checks for keys of `[skin]` and `[signal]` that have no effect in a study.
+//! Checks for keys that have no effect in a study.
 
-use crate::engine::axes::CombineSpec;
+use crate::engine::axes::{CombineSpec, StudyAxes};
+use crate::engine::axis::Axis;
 use crate::error::Result;
 use crate::inputs::check::Check;
+use crate::inputs::defaults::number;
+use crate::inputs::toml_value::is_at;
+use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::scene::SensedSpec;
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::spec::study::StudySpec;
+use crate::world::{Spread, TouchAxis};
+
+/// A key whose values have an effect only together with other keys.
+struct KeyUse {
+    key: &'static str,
+    /// Returns the value of the key, if some value of the key has no effect without the other keys.
+    given: fn(&Plan) -> Option<f64>,
+    /// Returns whether the other keys let the value have an effect.
+    has_effect: fn(&Plan) -> bool,
+    /// The other keys, or their tables. If one of these keys is an axis, the value may have an effect in another configuration.
+    beside: &'static [&'static str],
+    /// Why the value has no effect.
+    reason: &'static str,
+    allowed: &'static str,
+}
+
+const OF_FORCE: &str = "skin.sensed = \"force\" or \"force\" among signal.steps beside it";
+const WHOLE_FRAMES: &str = "every ensemble of the study measures all values of a frame";
+const ENSEMBLE: &str = "no such key, or another sensing.ensemble beside it";
+
+/// Keys that may have no effect.
+const USES: [KeyUse; 8] = [
+    KeyUse {
+        key: "skin.stiffness_n_per_m",
+        given: |plan| {
+            let given = plan.spec.skin.stiffness_n_per_m;
+            // A study of recorded frames may describe the skin completely.
+            (plan.spec.recorded.is_none() && given != number::<100>()).then_some(given)
+        },
+        has_effect: |plan| reads_force(&plan.spec),
+        beside: &["skin.sensed", "signal.steps"],
+        reason: "no force is read",
+        allowed: OF_FORCE,
+    },
+    KeyUse {
+        key: "touches.speed_mm_per_s",
+        given: |plan| Some(plan.spec.touches.speed_mm_per_s).filter(|&speed| speed > 0.0),
+        has_effect: |plan| {
+            let needs_motion = |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().needs_motion);
+            plan.spec.skin.damping_n_s_per_m > 0.0
+                || plan.spec.signal.steps.iter().any(needs_motion)
+        },
+        beside: &["skin.damping_n_s_per_m", "signal.steps"],
+        reason: "the skin has no damper and is not scanned",
+        allowed: "a skin.damping_n_s_per_m above 0 or \"scan\" among signal.steps beside it",
+    },
+    KeyUse {
+        key: "recognition.readings_per_touch",
+        given: |plan| {
+            let given = plan.spec.recognition.readings_per_touch;
+            given.filter(|&n| n > 1).map(|n| n as f64)
+        },
+        has_effect: |plan| {
+            let mut conditions = plan.conditions().into_iter();
+            conditions.any(|condition| condition.is_random_by_reading())
+        },
+        beside: &["signal"],
+        reason: "all readings of a touch are equal",
+        allowed: "a signal.noise_std_full_scale above 0, drift or pink noise beside it",
+    },
+    KeyUse {
+        key: "sensing.ratio",
+        given: |plan| {
+            let ratios = plan.spec.sensing.ratio.iter().flat_map(Axis::values);
+            ratios.into_iter().find(|&ratio| ratio != 1.0)
+        },
+        has_effect: compresses,
+        beside: &["sensing.ensemble"],
+        reason: WHOLE_FRAMES,
+        allowed: ENSEMBLE,
+    },
+    KeyUse {
+        key: "sensing.measurements",
+        given: |plan| {
+            let counts = plan.spec.sensing.measurements.iter().flat_map(Axis::values);
+            let is_all = |m: usize| plan.arrays.iter().all(|array| array.n_values() == m);
+            counts.into_iter().find(|&m| !is_all(m)).map(|m| m as f64)
+        },
+        has_effect: compresses,
+        beside: &["sensing.ensemble"],
+        reason: WHOLE_FRAMES,
+        allowed: ENSEMBLE,
+    },
+    KeyUse {
+        key: "recognition.tilt_augmentation_deg",
+        given: |plan| plan.spec.recognition.tilt_augmentation_deg,
+        has_effect: |plan| {
+            let copies = &plan.spec.recognition.tilt_augmentation;
+            copies.iter().flat_map(Axis::values).any(|n| n > 0)
+        },
+        beside: &["recognition.tilt_augmentation"],
+        reason: "no touch is copied",
+        allowed: "a recognition.tilt_augmentation above 0 beside it",
+    },
+    KeyUse {
+        key: "recognition.group_by_mm",
+        given: |plan| plan.spec.recognition.group_by_mm,
+        has_effect: |plan| groups_drawn(plan, |axis| !is_angle(axis)),
+        beside: &["touches", "recognition.group_by"],
+        reason: "no offset or depth that defines the groups is drawn",
+        allowed: "no such key, or { uniform = [low, high] } of such a key of [touches]",
+    },
+    KeyUse {
+        key: "recognition.group_by_deg",
+        given: |plan| plan.spec.recognition.group_by_deg,
+        has_effect: |plan| groups_drawn(plan, is_angle),
+        beside: &["touches", "recognition.group_by"],
+        reason: "no angle that defines the groups is drawn",
+        allowed: "no such key, or { uniform = [low, high] } of such a key of [touches]",
+    },
+];
+
+/// Returns whether the study reads forces.
+fn reads_force(spec: &StudySpec) -> bool {
+    spec.skin.sensed.unwrap_or_default() != SensedSpec::Deflection
+        || spec.signal.steps.contains(&StepSpec::Force)
+}
+
+/// Returns whether an ensemble of the study compresses frames.
+fn compresses(plan: &Plan) -> bool {
+    let mut ensembles = plan.spec.sensing.ensemble.values().into_iter();
+    ensembles.any(|ensemble| !ensemble.about().is_whole_frame)
+}
+
+fn is_angle(axis: TouchAxis) -> bool {
+    matches!(axis, TouchAxis::Yaw | TouchAxis::TiltX | TouchAxis::TiltY)
+}
+
+/// Returns whether the groups of the split depend on an axis of drawn values that a predicate selects.
+fn groups_drawn(plan: &Plan, is_selected: fn(TouchAxis) -> bool) -> bool {
+    let spreads = plan.placement.spreads();
+    let mut drawn = spreads
+        .iter()
+        .filter(|(_, spread)| matches!(spread, Spread::Uniform { .. }));
+    let axes = plan.group_by.map_or(&[][..], |groups| groups.kind.axes());
+    drawn.any(|(axis, _)| is_selected(*axis) && axes.contains(axis))
+}
+
+/// Returns whether one of these keys, or a key of one of these tables, is an axis.
+fn has_axis(axes: &StudyAxes, names: &[&str]) -> bool {
+    let keys = axes.axes.iter().flat_map(|axis| axis.keys());
+    let mut keys = keys.into_iter();
+    keys.any(|key| names.iter().any(|name| is_at(&key, name)))
+}
 
 impl Check<'_> {
-    /// Checks that the keys of dampers, friction and `signal.combine` have an effect. A key counts as used if one value of an axis or the separate test touches
-    /// use it.
-    pub fn unused_keys(&self, spec: &StudySpec) -> Result<()> {
+    /// Checks that keys have an effect. One value of an axis that uses a key suffices, as do separate test touches.
+    pub fn unused_keys(&self, plan: &Plan) -> Result<()> {
+        let spec = &plan.spec;
         if !spec.test.is_empty() {
             return Ok(());
         }
         self.used_damper(spec)?;
         self.used_friction(spec)?;
+        for KeyUse {
+            key,
+            given,
+            has_effect,
+            beside,
+            reason,
+            allowed,
+        } in &USES
+        {
+            if let Some(given) = given(plan)
+                && !has_effect(plan)
+                && !has_axis(&spec.axes, beside)
+            {
+                return Err(self.error(key, format!("{given}, but {reason}"), allowed));
+            }
+        }
         let signal = &spec.signal;
         let several = signal.axes.given();
         let several = several.filter(|(.., axis)| axis.values().len() > 1);
@@ -30,13 +194,7 @@ impl Check<'_> {
     /// Checks that the taxels' damper has an effect. A damper acts on moving taxels, and so affects only forces that are read during the press.
     fn used_damper(&self, spec: &StudySpec) -> Result<()> {
         let (skin, touches, axes) = (&spec.skin, &spec.touches, &spec.axes);
-        let sensed = skin.sensed.unwrap_or_default();
-        let reads_force = sensed != SensedSpec::Deflection
-            || spec.signal.steps.contains(&StepSpec::Force)
-            || ["skin.sensed", "signal.steps"]
-                .iter()
-                .any(|key| axes.has(key));
-        let of_force = "skin.sensed = \"force\" or \"force\" among signal.steps beside it";
+        let reads_force = reads_force(spec) || has_axis(axes, &["skin.sensed", "signal.steps"]);
         let speed = spec
             .recorded
             .as_ref()
@@ -54,7 +212,7 @@ impl Check<'_> {
             };
             let allowed = match reads_force {
                 true => "a touches.speed_mm_per_s above 0 beside it",
-                false => of_force,
+                false => OF_FORCE,
             };
             return Err(self.error("skin.damping_n_s_per_m", given, allowed));
         }

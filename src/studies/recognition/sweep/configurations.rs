@@ -43,6 +43,16 @@ macro_rules! nested {
 
 pub(crate) use nested;
 
+/// Pushes a struct for each combination of the values of some fields. The other fields are given first; the last field changes fastest.
+macro_rules! push_each {
+    ($all:expr, $type:ident { $($given:ident: $value:expr,)* } $($field:ident in $values:expr;)*) => {
+        nested! {
+            $($field in $values;)*
+            $all.push($type { $($given: $value,)* $($field,)* })
+        }
+    };
+}
+
 /// Splits and configurations of a study, determined before the first touch is simulated.
 #[derive(Clone, Debug)]
 pub struct Sweep {
@@ -196,7 +206,7 @@ impl Sweep {
     ) -> Result<()> {
         let array = &plan.arrays[group.array];
         self.check_learned(plan, &group)?;
-        let (ny, nx) = array.shape();
+        let (n_rows, n_columns) = array.shape();
         if !array.is_plain() {
             // A step that the layout does not support is detected before the run.
             let skin = skin(&Seed::new(plan.spec.seed), array);
@@ -213,7 +223,24 @@ impl Sweep {
             .last()
             .and_then(|group| group.configurations.last());
         let first = last.map_or(0, |configuration| configuration.configuration + 1);
-        nested! {
+        push_each! {
+            group.configurations, Configuration {
+                configuration: first + group.configurations.len(),
+                pitch_mm: millimetres(array.pitch()),
+                nx: n_columns,
+                ny: n_rows,
+                image_shape: array.image().0,
+                size_mm: millimetres(array.pitch() * array.grid().nx as f64),
+                noise_std: group.condition.noise,
+                noise_unit: plan.noise_unit,
+                smoothing_mm: millimetres(group.condition.smoothing),
+                strengths: group.condition.strengths,
+                test_sensor: plan.spec.signal.test_sensor.as_ref().map(|_| group.test_sensor),
+                ensemble: group.ensemble,
+                ratio: array.n_values() as f64 / measurements as f64,
+                frames: group.frames,
+                variant: AxisValues::default(),
+            }
             measurements in plan.measurement_counts(array, group.ensemble);
             temporal_features in Axis::optional_values(&learned.temporal_features);
             features in learned.features.values();
@@ -226,35 +253,6 @@ impl Sweep {
             c in penalties(classifier);
             touches_per_decision in learned.touches_per_decision.values();
             next_touch in learned.next_touches(touches_per_decision);
-            group.configurations.push(Configuration {
-                configuration: first + group.configurations.len(),
-                pitch_mm: millimetres(array.pitch()),
-                nx,
-                ny,
-                image_shape: array.image().0,
-                size_mm: millimetres(array.pitch() * array.grid().nx as f64),
-                noise_std: group.condition.noise,
-                noise_unit: plan.noise_unit,
-                smoothing_mm: millimetres(group.condition.smoothing),
-                strengths: group.condition.strengths,
-                test_sensor: plan.spec.signal.test_sensor.as_ref().map(|_| group.test_sensor),
-                ensemble: group.ensemble,
-                measurements,
-                ratio: array.n_values() as f64 / measurements as f64,
-                frames: group.frames,
-                temporal_features,
-                features,
-                depth_window_full_scale,
-                tilt_augmentation,
-                classifier,
-                c,
-                train_touches,
-                mislabelled_fraction,
-                class_imbalance,
-                touches_per_decision,
-                next_touch,
-                variant: AxisValues::default(),
-            })
         }
         // With many small groups, unused capacity would take most of the memory.
         group.configurations.shrink_to_fit();
