@@ -1,4 +1,4 @@
-//! `bubbletouch classify`: one classifier on one folder of features, timed.
+//! `bubbletouch classify`: trains and tests one classifier on a folder of features, and measures the times.
 
 use crate::command::classify_parameters::ParameterOptions;
 use crate::command::options::study_args::set_threads;
@@ -270,7 +270,7 @@ impl Args {
         Ok((findings, predicted))
     }
 
-    /// Folds of the choice, if there is one, each of whole groups, if there are groups.
+    /// Returns the cross-validation folds for the choice of parameters; a fold never divides a group.
     fn folds(&self, training: &Dataset, groups: Option<&Array1<usize>>) -> Result<Vec<Split>> {
         if self.c_grid.is_empty() {
             return Ok(Vec::new());

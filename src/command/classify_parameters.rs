@@ -11,14 +11,14 @@ pub struct ParameterOptions(Vec<(&'static Parameter, GivenValue)>);
 /// Value of an option: a number, or the classifier's own rule.
 type GivenValue = Option<f64>;
 
-/// All parameters with the names of their options.
+/// Parameters of all classifiers, each with the name of its command-line option.
 static OPTIONS: LazyLock<Vec<(String, &Parameter)>> = LazyLock::new(|| {
     let option = |one: &'static Parameter| (one.key.replace('_', "-"), one);
     declared().map(option).collect()
 });
 
 impl ParameterOptions {
-    /// Returns whether the option of a key is given.
+    /// Returns whether the command-line option of a parameter is given.
     pub fn has(&self, key: &str) -> bool {
         self.0.iter().any(|(parameter, _)| parameter.key == key)
     }

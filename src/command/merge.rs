@@ -1,4 +1,4 @@
-//! `bubbletouch merge`: the shards of a study put together.
+//! `bubbletouch merge`: combines the results of the shards of a study.
 
 use crate::command::options::study_run::{RunArgs, StudyRun};
 use crate::command::terminal::output::output_folder;

@@ -138,7 +138,7 @@ impl Args {
         submit(&self.name("merge")?, &options, &line, folder)
     }
 
-    /// What a job runs. Slurm runs it in the folder where it was submitted, so that paths need not be absolute.
+    /// Returns the command line that a cluster job runs. Slurm runs it in the folder where it was submitted, so that paths need not be absolute.
     fn line(&self, subcommand: &str, folder: &Path) -> Result<String> {
         let program = std::env::current_exe().map_err(|e| Error::io("bubbletouch", "read", e))?;
         let mut words = vec![program.display().to_string(), subcommand.to_owned()];

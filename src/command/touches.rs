@@ -118,7 +118,7 @@ pub fn touches(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Lists each set of touches on each array once, and names their folders by what differs between them.
+/// Returns the distinct sets of touches on each array; their folder names state the settings that differ.
 fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> Vec<DataSet<'a>> {
     let mut sets = Vec::new();
     let mut known = HashSet::new();

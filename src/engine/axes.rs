@@ -107,8 +107,8 @@ pub struct AxisValue {
     pub value: Option<toml::Value>,
 }
 
-/// Returns the table that contains the last key of a dotted path, and this key. Missing tables along the path are created. Returns `None` if a part of the path
-/// is not a table.
+/// Returns the table that contains the last key of a dotted path, and the name of this key. Missing tables along the path are created. Returns `None` if a part
+/// of the path is not a table.
 fn table_at<'t, 'k>(
     table: &'t mut toml::Table,
     path: &'k str,
@@ -354,7 +354,7 @@ impl StudyAxis {
         }
     }
 
-    /// Returns the key path of the axis without braces, and without a last part that only describes a distribution.
+    /// Returns the key path of the axis without braces and without a last part that only selects a distribution.
     fn path(&self) -> String {
         let path = self.key.replace(['{', '}', ',', ' '], "");
         path.strip_suffix(".within").unwrap_or(&path).to_owned()
@@ -406,7 +406,7 @@ impl StudyAxis {
         (!is_number || number(own).is_some()).then(|| own.clone())
     }
 
-    /// Returns whether a study has the given value at every key of the axis.
+    /// Returns whether every key of the axis has the given value in a study.
     fn is_at(&self, study: &toml::Table, value: &toml::Value) -> bool {
         let has = |key: &String| value_at(study, key).is_some_and(|own| is_same(own, value));
         self.keys().iter().all(has)
@@ -510,7 +510,7 @@ impl StudyAxes {
         all
     }
 
-    /// Returns the study of each combination of axis values, together with these values. If an axis keeps its value, the listed value is the value in `study`.
+    /// Returns one study for each combination of axis values, together with these values. If an axis keeps its value, the listed value is the value in `study`.
     ///
     /// # Errors
     /// If a value is invalid for the study; the error names the axis.

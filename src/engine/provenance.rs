@@ -69,7 +69,7 @@ pub struct Manifest {
     /// Peak memory of the last run, bytes; `None` if the system does not report it.
     #[serde(default)]
     pub peak_memory_bytes: Option<u64>,
-    /// Number of configurations that were already finished when the last run started, counted once per trial.
+    /// Number of pairs of configuration and trial that were already finished when the last run started.
     pub n_finished_before: usize,
     /// Seed from which all random numbers of the study are derived.
     pub seed: u64,

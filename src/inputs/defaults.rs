@@ -1,4 +1,4 @@
-//! Default values of keys. A key declares its default by `#[serde(default = "number::<4>")]`.
+//! Functions that return the default values of keys. A key declares its default by `#[serde(default = "number::<4>")]`.
 
 /// Returns the default `N` of a key with a floating-point value.
 pub(crate) fn number<const N: u32>() -> f64 {

@@ -6,7 +6,7 @@ use crate::inputs::range::Range;
 use crate::inputs::toml_value::is_at;
 use crate::table::{Column, Role, Scale};
 
-/// Description of one key of a study file, which also defines its table column and axis.
+/// Description of a key of study files, which also defines the key's table column and axis.
 #[derive(Clone, Copy, Debug)]
 pub struct KeyAbout {
     /// Path of the key, such as `skin.pitch_mm`. Entries of an array of tables share a path: `stability.parts.taxels`.

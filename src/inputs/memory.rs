@@ -5,7 +5,7 @@ use std::{fmt, fs};
 /// Number of bytes in a gibibyte.
 pub const GIB: f64 = (1u64 << 30) as f64;
 
-/// Returns the memory available to this process, bytes: the machine's memory, or the limit of its control group if that is less. Returns `None` if the system
+/// Returns the memory available to this process, bytes: the smaller of the machine's memory and the limit of the control group. Returns `None` if the system
 /// does not report it.
 pub fn machine_memory() -> Option<u64> {
     let of_machine = kilobytes("/proc/meminfo", "MemTotal")?;

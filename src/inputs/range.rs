@@ -112,7 +112,7 @@ pub const MAX_COUNTED: usize = 100_000_000;
 /// Numbers that a count allows: 1 to the largest count.
 pub const COUNT: Range = Range::Count(1, MAX_COUNTED);
 
-/// Allowed numbers of taxels along a side of an array.
+/// Allowed number of taxels along one side of an array.
 pub const SIDE: Range = Range::Count(1, MAX_SIDE);
 
 /// Allowed numbers of touches per object.

@@ -27,7 +27,7 @@ impl<T: DeserializeOwned> JsonSchema for Names<T> {
     }
 }
 
-/// Returns the names of all variants of an enum. The enum's deserialiser lists them in the error for an unknown name.
+/// Returns the names of all variants of an enum type. The enum's deserialiser lists them in the error for an unknown name.
 pub fn names<T: DeserializeOwned>() -> &'static [&'static str] {
     let found = T::deserialize(StrDeserializer::<Expected>::new("?"));
     found.err().map_or(&[], |Expected(names)| names)

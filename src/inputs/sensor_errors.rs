@@ -1,4 +1,4 @@
-//! Strengths of a study's sensor errors, and the skin of the test touches.
+//! Strengths of a study's sensor errors, and the choice of the skin that test touches use.
 
 use crate::inputs::keys::{AxisPlace, KeyAbout};
 use crate::inputs::range::Range;
@@ -120,7 +120,7 @@ impl Strengths {
     }
 }
 
-/// Keys that set the standard deviation of the noise, each with the unit of its value.
+/// Keys that set the standard deviation of the noise, each with the unit of the standard deviation.
 pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
     ("noise_std_full_scale", NoiseUnit::FullScale),
     ("noise_std_mm", NoiseUnit::Mm),

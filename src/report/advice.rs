@@ -11,7 +11,7 @@ use std::collections::HashSet;
 struct ColumnSelector {
     /// Name of the command-line option that selects the column, for error messages.
     option: &'static str,
-    /// Default column name, used if no name is given and at least one table has this column. Otherwise, the first column with the role is used.
+    /// Name of the default column, used if no name is given and at least one table has the column. Otherwise, the first column with the role is used.
     usual: &'static str,
     has_role: fn(Role) -> bool,
     /// Names that select a column in every kind of study, each with the actual column names in the different kinds.
@@ -84,7 +84,7 @@ pub struct Advice {
     pub choice: Candidate,
     /// Cheapest choice whose whole confidence interval meets the requirement; `None` if there is none or if `choice` already does.
     pub certain: Option<Candidate>,
-    /// Next better choice: the cheapest candidate whose value is better than the value of `choice`.
+    /// Cheapest candidate with a better value than `choice`.
     pub next_up: Option<Candidate>,
 }
 
@@ -94,7 +94,7 @@ pub struct Candidates<'a> {
     pub table: &'a Table,
     /// Value column to optimise.
     pub value: &'a Column,
-    /// Cost column to minimise.
+    /// Cost column whose values should be small.
     pub cost: &'a Column,
     swept: Swept<'a>,
     /// Indices of the rows that satisfy the given conditions and have both a value and a cost.
@@ -335,7 +335,7 @@ impl<'a> Candidates<'a> {
         format!("{} {value}{interval}, {cost}", self.value.words)
     }
 
-    /// Formats a value of the value column, or a difference of two values. Fractions have three decimal places.
+    /// Formats a value of the value column, or a difference between two such values. Fractions have three decimal places.
     pub fn value_words(&self, value: f64) -> String {
         match self.value.scale == Scale::Share && self.value.unit.is_empty() {
             true => format!("{value:.3}"),
@@ -381,7 +381,8 @@ impl<'a> Candidates<'a> {
 }
 
 impl ColumnSelector {
-    /// Returns the numeric columns of a table that the name selects; without a name, all numeric columns with the role. Columns that vary come first.
+    /// Returns the numeric columns of a table with the given name; if no name is given, all numeric columns with the required role. Columns that vary come
+    /// first.
     fn columns<'t>(&self, table: &'t Table, name: Option<&str>) -> Vec<&'t Column> {
         let shared = self.shared.iter().find(|(known, _)| Some(*known) == name);
         let is_named = |column: &str| match name {
@@ -508,7 +509,7 @@ mod tests {
     pub struct Setting {
         /// Name of the design.
         design: String => Choice;
-        /// Name of the condition.
+        /// Name of the condition, used as text in the table.
         world: String => Condition;
         /// Time, µs.
         time: f64 => Cost in "µs": Linear;

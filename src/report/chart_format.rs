@@ -11,6 +11,6 @@ pub enum ChartFormat {
     Svg,
     /// PNG files only, with two pixels per unit of the SVG file.
     Png,
-    /// Two files per chart: SVG and PNG.
+    /// Two files per chart, in the formats SVG and PNG.
     Both,
 }

@@ -1,4 +1,4 @@
-//! Reports: result tables are converted to files for readers.
+//! Reports, which present result tables as charts, pages and text.
 //!
 //! The inputs are the result tables with their chart specifications, frames (ny × nx, metres or newtons), and the metadata of the study. The outputs are CSV
 //! files, charts and pictures (SVG and PNG), terminal text, and one self-contained HTML page. Equal inputs give equal bytes. Each file is written completely or

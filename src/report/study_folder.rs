@@ -10,8 +10,8 @@ use crate::report::terminal::{paragraph, table_text};
 use crate::table::{ChartSpec, Role, Table};
 use rayon::prelude::*;
 
-/// Maximum number of charts on the page, and of drawn charts unless all charts are requested. With a larger value, the page is too large for a phone and
-/// drawing takes minutes.
+/// Maximum number of charts on the page; also the maximum number of drawn charts, unless all charts are requested. With a larger value, the page is too large
+/// for a phone and drawing takes minutes.
 pub const MAX_CHARTS: usize = 24;
 
 /// Returns the files of a result folder with charts, pictures and the page. The function `beyond` computes additional content while charts are drawn. Charts

@@ -6,8 +6,8 @@
 use crate::table::{Column, Data, Role, Table, Value};
 use std::collections::HashSet;
 
-/// Names of settings in the order in which they are omitted if other settings determine them. For one array, `measurements` and `ratio` determine each other;
-/// if `nx` is constant, `size_mm` depends on `pitch_mm`. Settings that a study can only choose directly come last.
+/// Names of settings that charts omit if other settings determine them; the first name is omitted first. For one array, `measurements` and `ratio` determine
+/// each other; if `nx` is constant, `size_mm` depends on `pitch_mm`. Settings that a study can only choose directly come last.
 const GIVEN_UP_FIRST: [&str; 16] = [
     "nx",
     "ny",
@@ -39,7 +39,7 @@ pub struct Setting<'a> {
 /// Settings of a table, divided into varying, dependent and constant settings.
 pub struct Swept<'a> {
     table: &'a Table,
-    /// Varying settings that no other settings determine, in the order of the table.
+    /// Varying settings whose values are not determined by other settings, in column order of the table.
     pub free: Vec<Setting<'a>>,
     /// Varying settings whose values are determined by other settings.
     pub following: Vec<Setting<'a>>,

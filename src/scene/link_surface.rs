@@ -15,14 +15,15 @@ use std::path::{Path, PathBuf};
 /// Maximum distance between a facet's middle and the round shape that it replaces, relative to the taxel pitch. With a larger value, taxels lie deeper; with a
 /// smaller value, more triangles are needed.
 const SAGITTA: f64 = 0.02;
-/// Minimum and maximum number of facets by which a circle of a round shape is approximated. More facets would need memory without moving taxels noticeably.
+/// Minimum and maximum number of facets that approximate a circle of a round shape. More facets would need memory without moving taxels noticeably.
 const N_FACETS: [f64; 2] = [16.0, 720.0];
 
 /// Selection of the shapes of a robot link that form a surface.
 pub(super) struct LinkSurface<'a> {
     /// Name of the robot link.
     pub link: &'a str,
-    /// Role of the selected shapes. If `None`, the collision shapes are selected if the link has any, otherwise the visual shapes.
+    /// Role of the shapes that are selected from the link: visual or collision. If `None`, the collision shapes are selected if the link has any, otherwise the
+    /// visual shapes.
     pub role: Option<ShapeRole>,
 }
 

@@ -1,4 +1,4 @@
-//! Value of a key: one number for all elements, or a list with one number per element.
+//! Value of a key: one number that applies to all elements, or a list with one number per element.
 
 use schemars::JsonSchema;
 use serde::de::{Deserializer, SeqAccess, Visitor};

@@ -9,8 +9,8 @@ use crate::geometry::Pose;
 use crate::inputs::check::Check;
 use crate::objects::{Model, Sphere};
 
-/// Maximum accepted overlap of two objects at the start, as a fraction of the smaller object's radius. With a larger value, deeper overlaps are accepted; with
-/// a smaller value, objects of coarse spheres are rejected.
+/// Maximum accepted overlap of two objects at the start, divided by the radius of the smaller object. With a larger value, deeper overlaps are accepted; with a
+/// smaller value, objects of coarse spheres are rejected.
 const MAX_SHARE: f64 = 0.5;
 
 /// Object of a scene at its initial pose, with its spheres in the object frame.

@@ -28,7 +28,7 @@ const MAX_STEPS: f64 = 1e9;
 pub struct ScenePlan {
     /// File name of the scene, for error messages.
     pub place: String,
-    /// Specification of the scene, in which the duration is filled in and all paths are absolute.
+    /// Specification of the scene, with the duration filled in and all paths absolute.
     pub spec: SceneSpec,
     /// Number of frames per second of scene time, Hz.
     pub output_rate: f64,
@@ -169,7 +169,7 @@ impl ScenePlan {
         frame as f64 / self.output_rate
     }
 
-    /// Iterates over notes about parts of the robots' files that are used or ignored; each note starts with the key of the robot.
+    /// Returns notes about parts of the robot files that are used or ignored; each note starts with the key of the robot.
     pub fn notes(&self) -> impl Iterator<Item = String> {
         let of_robot = |robot: &PlannedRobot| {
             let trajectory = robot.joints.iter().flat_map(|joints| joints.notes());

@@ -30,7 +30,7 @@ pub struct PlannedPatch {
 }
 
 impl PlannedPatch {
-    /// Returns whether the state of the patch depends on earlier steps, which is the case with dampers or friction.
+    /// Returns whether the state of the patch depends on earlier steps, as with dampers or friction.
     pub fn remembers(&self) -> bool {
         let mut taxels = self.skin.taxels().all().iter();
         self.shears.is_some() || taxels.any(|taxel| taxel.damping > 0.0)

@@ -15,7 +15,7 @@ pub(super) struct PressedObjects {
     workspace: Workspace,
 }
 
-/// Pressed object, with its travel, its force and its contacts.
+/// Pressed object, with its displacement, contact force and contacts.
 #[derive(Clone, Debug)]
 struct Pressed {
     object: usize,

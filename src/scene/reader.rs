@@ -64,7 +64,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Converts a vector of finite numbers to SI units; `unit` is the factor of the conversion.
+    /// Converts a vector to SI units by the factor `unit`; the numbers must be finite.
     pub fn vector(&self, key: &str, numbers: [f64; 3], unit: f64) -> Result<DVec3> {
         for number in numbers {
             self.check

@@ -8,7 +8,7 @@ use crate::geometry::Pose;
 #[derive(Clone, Debug)]
 pub(super) struct RobotState {
     positions: Vec<f64>,
-    /// Whether the joint positions were set by the program and no longer follow the scene.
+    /// Whether a program has set the joint positions, which then no longer follow the scene file.
     are_set: bool,
     /// Pose of the base that was set by the program, `world_from_base`; `None` if the base follows the scene.
     pub base: Option<Pose>,

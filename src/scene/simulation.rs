@@ -13,7 +13,7 @@ use crate::geometry::Pose;
 use crate::random::Seed;
 use crate::signal::SignalWorkspace;
 
-/// Selection of the time steps that are computed between frames.
+/// Rule that selects the time steps to compute between two frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
     /// Computes only patches and steps on which later frames depend. Steps between frames are skipped if no later frame depends on them; otherwise only patches
@@ -224,7 +224,7 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Updates the state of the patches after a step for which no frame is written.
+    /// Updates the deflections of the patches after a time step at which no frame is written.
     fn feel(&mut self, dt: f64) {
         let plan = self.plan;
         for (number, (skin, patch)) in self.skins.iter_mut().zip(&plan.patches).enumerate() {
@@ -241,7 +241,7 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// Returns the elapsed fraction of the scene's duration, 0 to 1, on which the drift of the sensors depends.
+    /// Returns the elapsed fraction of the scene's duration, 0 to 1; the drift of the sensors depends on this fraction.
     fn share(&self) -> f64 {
         let n_frames = match self.is_by_hand {
             true => self.time * self.plan.output_rate,

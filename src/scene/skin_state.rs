@@ -106,7 +106,7 @@ impl SkinState {
         self.workspace.hold(contacts);
     }
 
-    /// Returns the tangential springs of the patch that hold objects; the springs contain the scene numbers of the objects.
+    /// Returns the tangential springs of the patch that hold objects; each spring contains the number of its object in the scene.
     pub fn tangential_springs(&self) -> impl Iterator<Item = TangentialSpring> {
         self.friction
             .iter()
@@ -237,7 +237,7 @@ fn add_stops(
     }
 }
 
-/// Returns the frictionless force and torque of the taxels on the objects, and writes the force of the objects on each taxel to `force3`. A contact has one
+/// Returns the frictionless force and torque of the taxels on each object, and writes the object's force on each taxel to `force3`. A contact has one
 /// direction, but several spheres of free objects may touch one taxel; `loads` contains the force of each sphere.
 fn on_objects(
     contacts: &[TaxelContact],
@@ -263,7 +263,7 @@ fn on_objects(
     sum
 }
 
-/// Results that a step of a patch has to compute.
+/// Selection of the results that a time step of a patch computes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Detail {
     Deflections,
@@ -271,7 +271,7 @@ pub(super) enum Detail {
     Contacts,
 }
 
-/// Converts the force and torque of the taxels on an object into the opposite force and torque on the patch, without negative zeros.
+/// Returns the force and torque on the patch, opposite to those of the taxels on an object; negative zeros become positive.
 fn on_patch(on_object: Wrench) -> Wrench {
     Wrench::default() + -on_object
 }

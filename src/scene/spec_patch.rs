@@ -204,7 +204,7 @@ pub enum LayoutSpec {
 pub enum FileLayoutSpec {
     /// Path of the layout file, if its format needs nothing else.
     Path(#[schemars(with = "String")] FilePath),
-    /// Path of the layout file and further information that its format needs.
+    /// Path of the layout file, and the further information that its format needs.
     Parts(FileLayoutParts),
 }
 

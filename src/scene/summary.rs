@@ -18,7 +18,7 @@ pub struct PatchPeaks {
     pub n_grazing: usize,
     /// Largest friction force on the patch, newtons.
     pub shear: f64,
-    /// Largest number of taxels with sticking contacts in a frame.
+    /// Largest number of taxels in sticking contact in any frame.
     pub n_sticking: usize,
     /// Largest number of taxels with slipping contacts in a frame.
     pub n_slipping: usize,

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 /// Smallest positive number of a key; bounds below are shown as zero, which is excluded.
 const LEAST_POSITIVE: f64 = 1e-12;
 
-/// Adds the bounds of allowed numbers to the key at a path: to a number, to the numbers of a list, and to each value of an axis.
+/// Adds the bounds of allowed numbers to the schema of a key: to single numbers, list elements, and axis values.
 pub(super) fn bound(schema: &mut Value, path: &str, is_allowed: impl Fn(f64) -> bool) {
     let bounds = bounds(is_allowed);
     for key in at(schema, path) {
@@ -34,7 +34,7 @@ fn at<'s>(schema: &'s mut Value, path: &str) -> Vec<&'s mut Value> {
     found
 }
 
-/// Returns the tables that a value may be: itself, the entries of a list, or variants.
+/// Returns the tables that a value may have according to its schema: the value itself, list entries, or variants.
 fn tables(schema: &mut Value) -> Vec<&mut Value> {
     if schema["type"] == "array" {
         return tables(&mut schema["items"]);

@@ -130,7 +130,7 @@ fn link(heading: &str) -> String {
     format!("[`{heading}`](#{anchor})")
 }
 
-/// A kind of file.
+/// Kind of input file, such as a study or a scene.
 struct FileKind<'s> {
     schema: &'s Value,
     accepted_keys: fn(toml::Value) -> Vec<String>,

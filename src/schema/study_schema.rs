@@ -14,7 +14,7 @@ use serde_json::{Map, Value, json};
 pub(super) struct KindSchema {
     /// Name of the table that only this kind has.
     pub table: &'static str,
-    /// Description of the kind.
+    /// Description of the kind of study, in words.
     pub words: &'static str,
     /// Schema of a file of this kind, without conditions.
     pub schema: Value,
@@ -24,7 +24,7 @@ pub(super) struct KindSchema {
     pub keys: Vec<KeyAbout>,
 }
 
-/// Returns the schema of each kind, recognition first.
+/// Returns the schema of each kind of study, recognition first.
 pub(super) fn kinds() -> Vec<KindSchema> {
     let kinds = studies::kind_files(generator).into_iter().rev();
     let kinds = kinds.map(|mut kind| {

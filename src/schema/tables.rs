@@ -1,4 +1,4 @@
-//! The page `guide/tables.md`: all columns of all result tables.
+//! Generator of the page `guide/tables.md`, which lists all columns of all result tables.
 
 use super::generator;
 use super::tidy::plain;

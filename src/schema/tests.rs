@@ -18,7 +18,7 @@ fn files() -> Vec<(Value, Accepts)> {
     studies.chain([scene]).collect()
 }
 
-/// Calls `visit` with each table of a schema and with a file that has the single key `?` in this table.
+/// Calls `visit` for each table of a schema, together with an example file that contains the single key `?` in this table.
 fn each_table(
     schema: &Value,
     probe: &dyn Fn(toml::Value) -> toml::Value,

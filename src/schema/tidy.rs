@@ -1,4 +1,4 @@
-//! Changes of generated schemas, because TOML has no null and descriptions are plain text.
+//! Changes to generated schemas: TOML has no null, and descriptions are plain text.
 
 use serde_json::{Map, Value};
 

@@ -9,7 +9,7 @@ use rand::Rng;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 use std::collections::BTreeMap;
 
-/// Minimum number of trials for a bootstrap interval; the resamples of four trials are too few for a coverage of 95 %.
+/// Minimum number of trials for a bootstrap interval; four trials give too few distinct resamples for a coverage of 95 %.
 pub const FEWEST: usize = 5;
 
 /// Number of bootstrap resamples. For five trials, fewer distinct resamples exist; each of them is then used once and nothing is drawn.
@@ -130,7 +130,7 @@ fn means_of_blocks(scores: ArrayView2<f64>, rows: &[u32], columns: &[u32]) -> Ve
     resamples.map(mean).collect()
 }
 
-/// Returns the fraction of resampled means that is cut off at each end of the interval for `n` trials.
+/// Returns the fraction of the sorted resampled means that is excluded at each end of the confidence interval; `n` is the number of trials.
 fn tail(n: usize, confidence: f64) -> Result<f64> {
     let n = n as f64;
     let student = StudentsT::new(0.0, 1.0, n - 1.0)
@@ -239,7 +239,7 @@ mod tests {
         }
     }
 
-    /// Prints the coverages that the guide lists: `cargo test --release --lib print_the_table_of_the_guide -- --ignored --nocapture`
+    /// Prints the coverage of bootstrap intervals for the table in `guide/statistics.md`.
     #[test]
     #[ignore = "prints the table of guide/statistics.md"]
     fn print_the_table_of_the_guide() {

@@ -29,7 +29,7 @@ pub struct TrialSize {
     pub n_test: usize,
 }
 
-/// Tests the difference between the scores (accuracy or macro-F1) of two configurations in their common trials. Returns `None` for fewer than two trials.
+/// Tests whether the scores (accuracy or macro-F1) of two configurations differ, using the trials that both have. Returns `None` for fewer than two trials.
 ///
 /// The method is the corrected resampled t-test (Nadeau & Bengio, *Inference for the generalization error*, Machine Learning 52, 2003). With J trials and
 /// differences d_j of sample variance s²,
@@ -118,7 +118,7 @@ pub fn compare_crossed(
     estimate.test(a.len(), confidence).map(Some)
 }
 
-/// Size of a difference between two configurations, in standard deviations between trials, at which nearly all trials agree on the sign of the difference.
+/// Threshold of a difference between two configurations, in standard deviations over trials; above it, nearly all trials agree on the sign.
 const AGREED: f64 = 3.0;
 /// Maximum number of trials that [`trials_needed`] considers.
 const MAX_TRIALS: usize = 1000;

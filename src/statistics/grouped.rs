@@ -182,8 +182,8 @@ fn clustered(tests: &[GroupedTest]) -> Result<Clustered> {
     })
 }
 
-/// Returns the interval of an accuracy and the number of groups. Without grouped tests, the interval is Wilson's for `n_correct` of `n_rows` rows, and the
-/// number of groups is `None`. With grouped tests, [`interval_of_groups`] computes both.
+/// Returns the confidence interval of an accuracy, and the number of groups from which it was computed. Without grouped tests, the interval is Wilson's for
+/// `n_correct` of `n_rows` rows, and the number of groups is `None`. With grouped tests, [`interval_of_groups`] computes both.
 ///
 /// # Errors
 /// If there are no rows, more rows are correct than exist, or the confidence is outside 0..1.

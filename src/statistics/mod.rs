@@ -1,4 +1,4 @@
-//! Uncertainty of scores: confidence intervals, significance tests, and variance components.
+//! Statistics of scores: confidence intervals, significance tests, and variance components.
 
 pub mod bootstrap;
 pub mod comparison;

@@ -60,7 +60,7 @@ fn ties<T>(sorted: &[T], is_same: impl Fn(&T, &T) -> bool) -> f64 {
     runs.map(|n| 0.5 * n * (n - 1.0)).sum()
 }
 
-/// Sorts the values by merging, and returns the number of pairs of values that were in the wrong order.
+/// Sorts the values by merging, and returns the number of pairs of values that were not in ascending order.
 fn sort_counting(values: &mut [f64]) -> f64 {
     let middle = values.len() / 2;
     if middle == 0 {
@@ -189,7 +189,7 @@ mod tests {
         assert_expected("five", held, 0.64, of_share(0.64, N_DRAWS));
     }
 
-    /// Prints the coverages that the guide lists: `cargo test --release --lib print_the_table_of_the_guide -- --ignored --nocapture`
+    /// Prints the coverage of intervals for Kendall's rank correlation, for the table in `guide/statistics.md`.
     #[test]
     #[ignore = "prints the table of guide/statistics.md"]
     fn print_the_table_of_the_guide_of_orders() {

@@ -1,4 +1,4 @@
-//! Limitation of the memory that a run uses.
+//! Limit of the memory that a run may use.
 
 use crate::engine::work_items::scale::Scale;
 use crate::error::{Error, Result};

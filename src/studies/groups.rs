@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::table::{Columns, File, Table};
 use serde::Serialize;
 
-/// Groups elements that have equal keys; the groups are in the order in which their keys first occur.
+/// Groups elements with equal keys; the order of the groups is the order in which the keys first occur.
 pub(super) fn grouped<'a, T, K: PartialEq>(
     things: impl IntoIterator<Item = &'a T>,
     key: impl Fn(&T) -> K,

@@ -209,7 +209,7 @@ const REMOVED: [(&str, &str); 2] = [
     ),
 ];
 
-/// Returns an error if the text is a study of a kind that no longer exists.
+/// Returns an error if the text is a study file of a kind that no longer exists.
 fn check_removed(place: &str, text: &str) -> Result<()> {
     let table = toml_text::table(text).unwrap_or_default();
     match REMOVED.iter().find(|(key, _)| table.contains_key(*key)) {
@@ -222,8 +222,8 @@ fn check_removed(place: &str, text: &str) -> Result<()> {
     }
 }
 
-/// Returns the kind of study whose table the text contains; returns `None` if there is none. Also returns `None` for invalid TOML, which the reader of the
-/// study reports.
+/// Returns the kind of study to which a study file's text belongs; `None` if no table of the file identifies a kind. Also returns `None` for invalid TOML,
+/// which the reader of the study reports.
 fn find(text: &str) -> Option<&'static Entry> {
     let table = toml_text::table(text)?;
     let mut kinds = KINDS.iter();

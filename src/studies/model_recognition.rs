@@ -1,4 +1,4 @@
-//! Recognition with classifiers that are trained on touches of models and tested on touches of the exact objects.
+//! Recognition with classifiers that are trained on touches of approximate object models and tested on touches of the exact objects.
 //!
 //! Every object has the same number of touches. The first touches are for training, the others for testing.
 
@@ -10,7 +10,7 @@ use bubbletouch_svm::dataset::{Dataset, dataset};
 use ndarray::{Array1, ArrayView2, Axis, concatenate, s};
 use std::ops::Range;
 
-/// Returns an error that names `place` (the study file) if there are fewer than two objects.
+/// Returns an error that names `place` (the study file) if the study has fewer than two objects.
 pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
     match n_objects {
         0 | 1 => {
@@ -21,8 +21,7 @@ pub(super) fn check_apart(place: &str, n_objects: usize) -> Result<()> {
     }
 }
 
-/// Returns a data set with the selected touches of every object, labelled with the object's number. The measurements of each object have the shape (n_touches,
-/// m).
+/// Returns a data set with the selected touches of every object; the labels are object numbers. The measurements of each object have the shape (n_touches, m).
 pub(super) fn touches_of<'a>(
     objects: impl Iterator<Item = ArrayView2<'a, f64>>,
     touches: Range<usize>,

@@ -20,7 +20,7 @@ pub struct Source {
     pub objects: Option<PathBuf>,
     /// Random seed from the command line; `None` keeps the study's seed.
     pub seed: Option<u64>,
-    /// Folder in which packings (sphere models of meshes) are stored for later runs; `None` for no such cache.
+    /// Cache folder for packings (sphere models of meshes); `None` if packings are not cached.
     pub packings: Option<PathBuf>,
     /// Folder to which results are written. Temporary data that exceed the memory are also stored there.
     pub results: PathBuf,

@@ -16,7 +16,7 @@ use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Description of a kind of study; available before a study file is read.
+/// Description of a kind of study, which is available before any study file is read.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
     /// Name of the table that a study file has only if it is of this kind.
@@ -122,7 +122,7 @@ impl<R: Columns> AnyFile for File<R> {
 pub struct TableFiles {
     /// Table files that every study of the kind writes.
     pub always: &'static [&'static dyn AnyFile],
-    /// Table files that a study writes only if it has certain optional parts.
+    /// Table files that are written only if the study has certain optional parts.
     pub of_parts: &'static [&'static dyn AnyFile],
     /// Function that reads all tables of a folder, for tables whose columns depend on the study.
     pub read: Option<fn(&Path) -> Result<Vec<Table>>>,

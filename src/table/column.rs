@@ -186,7 +186,7 @@ impl Column {
         }
     }
 
-    /// Returns the display name of the column and a value as text, such as `noise 10 %` or `m = 64`.
+    /// Returns a value with the column's display name, such as `noise 10 %` or `m = 64`.
     pub fn phrase(&self, value: &Value) -> String {
         let is_symbol = self.words.chars().count() == 1;
         let between = if is_symbol { " = " } else { " " };

@@ -1,6 +1,6 @@
 //! Pareto front of points with a cost and a value.
 
-/// For each point (cost, value), returns whether the point is on the Pareto front, in O(n log n) time.
+/// Returns for each point (cost, value) whether it is on the Pareto front; the time is O(n log n).
 ///
 /// A point is on the front if no other point dominates it. Point p dominates q if p is at most as costly and at least as good, and better in one of both.
 /// `is_better(a, b)` returns whether value a is better than value b. A point with a NaN is never on the front.

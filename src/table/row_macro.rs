@@ -1,6 +1,6 @@
 //! Macro that defines a row type together with its columns.
 
-/// Defines a type of table rows: a struct in which a description of the column follows the type of each field.
+/// Defines a type of table rows: a struct in which the type of each field is followed by a description of the table column.
 ///
 /// The description has the form `=> Role "words" in "unit": Scale between [low, high] named NAMES, optional;`. All parts after the role may be
 /// left out. The default words are the field's name, and the default scale is `Words`. `NAMES` is a constant with the display names of codes, as

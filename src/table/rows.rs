@@ -1,4 +1,4 @@
-//! Selection, grouping and formatting of the rows of a table.
+//! Functions that select, group and format the rows of a table.
 
 use super::{Column, Data, Role, Scale, Shown, Table, Value};
 use std::collections::HashMap;

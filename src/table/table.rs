@@ -37,7 +37,7 @@ pub enum Data {
     Numbers(Vec<f64>),
     /// Column of words, stored as codes; the empty word for an absent value.
     Words {
-        /// Distinct words of the column, in the order in which they first occur.
+        /// Distinct texts in the column, in the order in which they first occur.
         levels: Vec<String>,
         /// For each row, the index of its word in `levels`.
         codes: Vec<u32>,
@@ -112,7 +112,7 @@ impl Data {
 }
 
 impl Table {
-    /// Returns the table with another note (the explanation for the reader).
+    /// Returns the table with a different note; the note explains the table to the reader.
     pub fn noted(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self

@@ -162,7 +162,7 @@ fn squares_about(mean: f64, values: &[f64]) -> f64 {
     squares.iter().sum::<f64>() + last.sum::<f64>()
 }
 
-/// Kernel with numeric values of all parameters.
+/// Kernel function whose parameters all have numeric values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum KernelFunction {
     Linear,
@@ -172,8 +172,8 @@ pub(crate) enum KernelFunction {
 }
 
 impl KernelFunction {
-    /// Returns an error if kernel values can overflow; `norm` is the largest squared norm of a row. No kernel value exceeds `K(x, x)` of the row x with the
-    /// largest norm, and no squared distance exceeds four times this norm.
+    /// Returns an error if kernel values can exceed the range of numbers; `norm` is the largest squared norm of a row. No kernel value exceeds `K(x, x)` of the
+    /// row x with the largest norm, and no squared distance exceeds four times this norm.
     fn check(&self, norm: f64) -> Result<()> {
         let largest = match *self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => 4.0 * norm,
@@ -203,8 +203,8 @@ impl KernelFunction {
         }
     }
 
-    /// Returns the centre that is subtracted from all rows. If a constant added to all features changes only the offset ρ, this is the mean of the rows,
-    /// otherwise the origin. Products of rows about the mean are small and lose fewer digits.
+    /// Returns the centre of the rows, which is subtracted from every row. If a constant added to all features changes only the offset ρ, this is the mean of
+    /// the rows, otherwise the origin. Products of rows about the mean are small and lose fewer digits.
     pub fn centre(&self, statistics: &RowStatistics) -> Array1<f64> {
         match self {
             Self::Linear | Self::Rbf { .. } | Self::Laplacian { .. } => statistics.mean.clone(),

@@ -271,7 +271,7 @@ fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize
     strata
 }
 
-/// Returns the number of test elements among `n`: `n · fraction` rounded, at least 1 and at most n − 1.
+/// Returns the number of test elements among `n` elements: `n · fraction`, rounded, at least 1 and at most n − 1.
 fn share(n: usize, fraction: f64) -> usize {
     ((n as f64 * fraction).round() as usize).clamp(1.min(n - 1), n - 1)
 }

@@ -68,7 +68,7 @@ impl<T: SolverScalar> Sorted<T> {
         Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory
     }
 
-    /// Returns whether screening (training on the rows near each margin) is faster than computing the inner products of all rows.
+    /// Returns whether screening (training on the rows near the decision boundaries) is faster than computing the inner products of all rows.
     fn is_worth_screening(&self, memory: usize) -> bool {
         let most = || NearMargin::most_bytes(self);
         self.kernel() == KernelFunction::Linear

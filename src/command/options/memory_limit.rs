@@ -13,7 +13,7 @@ pub struct MemoryLimit {
 }
 
 impl MemoryLimit {
-    /// Most bytes to take: what was asked for, or what the machine has, if it tells.
+    /// Returns the memory limit in bytes: the value of `--memory-gib`, or the machine's memory if the option is not given.
     pub fn bytes(&self) -> Result<Option<u64>> {
         match self.memory_gib {
             None => Ok(machine_memory()),

@@ -7,7 +7,7 @@ use bubbletouch::study::TouchesSpec;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// Threads, at most, where there are not more cores: each takes memory of its own, and none is faster than a core.
+/// Maximum number of threads on machines with fewer cores: further threads need memory and do not reduce the run time.
 const MAX_THREADS: usize = 1024;
 
 /// The study that a bare `bubbletouch` runs.
@@ -34,7 +34,7 @@ pub struct StudyArgs {
 }
 
 impl StudyArgs {
-    /// The folder that paths in the study are relative to: its file's.
+    /// Returns the folder of the study file, to which paths in the study are relative.
     pub fn folder(&self) -> PathBuf {
         self.study.parent().unwrap_or(Path::new("")).to_owned()
     }
@@ -46,7 +46,7 @@ impl StudyArgs {
             .ok_or_else(|| Error::input("study", self.study.display(), "a file with a name"))
     }
 
-    /// Where its results go, unless they are sent elsewhere.
+    /// Returns the default folder for the results of the study.
     pub fn default_results(&self) -> Result<PathBuf> {
         Ok(Path::new("results").join(self.name()?))
     }
@@ -63,7 +63,7 @@ impl StudyArgs {
         words
     }
 
-    /// Returns the command that makes the study's results again in the folder `out`, or in the default folder, as a shell takes it.
+    /// Returns the shell command that repeats the study and writes its results to the folder `out`, or to the default folder.
     pub fn command(&self, subcommand: &str, out: Option<&Path>) -> String {
         let mut words = vec!["bubbletouch".to_owned(), subcommand.to_owned()];
         words.extend(self.arguments());
@@ -94,7 +94,7 @@ impl StudyArgs {
         })
     }
 
-    /// A note on a study of any kind that mixes listed values of `[touches]` where an axis may be meant.
+    /// Returns a note if a study lists several values in `[touches]`, which are then mixed, and may have meant an axis.
     pub fn mixed_touches(&self) -> Result<Option<String>> {
         let study: Option<toml::Table> = self.text()?.parse().ok();
         let touches = study.and_then(|mut study| study.remove("touches"));

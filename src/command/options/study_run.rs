@@ -63,7 +63,7 @@ impl RunArgs {
     }
 }
 
-/// A study that is loaded, and the folder of its results.
+/// Study that is loaded, with the folder of its results.
 pub struct StudyRun<'a> {
     pub study: Box<dyn AnyStudy>,
     pub folder: PathBuf,

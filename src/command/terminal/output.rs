@@ -20,7 +20,7 @@ pub fn output_folder(folder: &Path) -> Result<()> {
     })
 }
 
-/// An error unless the name of a file to write, if one is asked for, has this ending and stands for no file of a folder of results or of data.
+/// Returns an error if a file name has another ending than required, or if the file belongs to a folder of results or of data.
 pub fn check_ending(path: Option<&Path>, ending: &str) -> Result<()> {
     path.map_or(Ok(()), check_single_output)?;
     let has_another = |path: &&Path| path.extension().is_none_or(|given| given != ending);
@@ -32,7 +32,7 @@ pub fn check_ending(path: Option<&Path>, ending: &str) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// Where packed meshes are kept from run to run: beside a folder of results.
+/// Returns the folder that stores packed meshes for later runs, next to a folder of results.
 pub fn packings_beside(folder: &Path) -> PathBuf {
     folder.parent().unwrap_or(Path::new("")).join("packings")
 }

@@ -12,13 +12,13 @@ pub fn say(line: impl Display) -> Result<()> {
     write_out(format!("{line}\n").as_bytes())
 }
 
-/// Writes to standard output as it is.
+/// Writes bytes to standard output without changes.
 pub fn write_out(content: &[u8]) -> Result<()> {
     let mut out = io::stdout().lock();
     written(out.write_all(content).and_then(|()| out.flush()))
 }
 
-/// What came of writing to standard output.
+/// Converts the result of a write to standard output; a closed pipe is not an error.
 pub fn written(result: io::Result<()>) -> Result<()> {
     match result {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {

@@ -87,7 +87,7 @@ impl Journal {
         Ok(identity.map(|identity| (identity, journal)))
     }
 
-    /// Decodes the identity of the study and the records from the bytes of a journal; the identity is `None` if no line is complete.
+    /// Decodes a journal: its study identity and its records. The identity is `None` if the journal contains no complete line.
     fn of_bytes(path: &Path, bytes: &[u8]) -> Result<(Option<Identity>, Self)> {
         let damaged = |(line, given): (usize, &str)| {
             let allowed = "a journal as it was written; --fresh starts over and keeps the old results beside the new";

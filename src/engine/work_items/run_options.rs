@@ -1,4 +1,4 @@
-//! Options of a run: which work items it computes, and where it stores their results.
+//! Options of a run: the work items to compute, and the place where their results are stored.
 
 use crate::engine::journal::journal_file::Journal;
 use crate::engine::progress::Progress;

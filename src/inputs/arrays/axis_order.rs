@@ -21,7 +21,7 @@ pub struct FrameAxes<'a> {
     pub order: Option<&'a str>,
     /// Numbers of rows and columns into which the axis `c` (all taxels in one axis) is divided.
     pub grid: Option<[usize; 2]>,
-    /// Number of recorded values per taxel: 1, or the number of force components.
+    /// Number of values that are recorded per taxel: 1, or the number of force components.
     pub n_values: usize,
     /// Name of the key or option that sets the order, for error messages.
     pub key: &'a str,
@@ -70,8 +70,8 @@ impl FrameShape {
         (order, shape)
     }
 
-    /// Arranges numbers that belong to single taxels (one per taxel), row by row: shape (rows · columns). The input has the taxel axes of a file of frames of
-    /// shape `frames`, or the shape rows × columns, or is a list.
+    /// Arranges an array with one number per taxel row by row, as a list of rows · columns numbers. The input has the taxel axes of a file of frames of shape
+    /// `frames`, or the shape rows × columns, or is a list.
     ///
     /// # Errors
     /// If the numbers do not fill a frame; the error contains the expected shape.
@@ -240,7 +240,7 @@ pub fn frame_shape(place: &str, shape: &[usize], axes: FrameAxes) -> Result<Fram
     }
 }
 
-/// Returns the letters of an axis order without separators, after checking that they are a valid order.
+/// Checks that a text is a valid order of array axes; returns its letters without separators.
 fn checked_order(order: &str, key: &str) -> Result<String> {
     let parts = [' ', ',', '×', '-', '*'];
     let letters: String = order

@@ -72,7 +72,7 @@ impl ElementType {
 
     /// Decodes all elements that the bytes contain and appends them to `elements`.
     pub fn decode(&self, bytes: &[u8], elements: &mut Elements) {
-        /// Decodes numbers of `N` bytes in little-endian order and appends them.
+        /// Decodes little-endian numbers of `N` bytes each and appends them to a list.
         fn numbers<const N: usize>(
             (bytes, is_big_endian): (&[u8], bool),
             numbers: &mut Vec<f64>,

@@ -93,7 +93,7 @@ fn vectors(array: &ArrayD<f64>) -> Vec<DVec3> {
     numbers.chunks(3).map(DVec3::from_slice).collect()
 }
 
-/// For each taxel, returns the position and the normal, given its pose.
+/// Returns the position and the normal of each taxel, given the poses of the taxels.
 fn from_poses(place: &str, poses: &ArrayD<f64>) -> Result<Vec<(DVec3, DVec3)>> {
     let numbers: Vec<f64> = poses.iter().copied().collect();
     let pose = |(row, m): (usize, &[f64])| {

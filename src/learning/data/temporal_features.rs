@@ -38,7 +38,7 @@ pub enum TemporalFeatures {
     Stacked(usize),
     /// Mean, standard deviation and largest absolute value of each of the m measurements over time: 3 m numbers.
     Moments,
-    /// Course of the touch over time: ten numbers that describe contact strength, duration and change.
+    /// Ten numbers that describe the touch over time: contact strength, duration and change.
     Course,
     /// Features of `Moments`, followed by the features of `Course`: 3 m + 10 numbers for m measurements per frame.
     Summarised,
@@ -89,7 +89,7 @@ impl TemporalFeatures {
     }
 }
 
-/// Returns the index of the frame with the number `part` when k frames are selected at even intervals.
+/// Returns the frame index of selected frame number `part` (from 0) if k of `n_frames` frames are selected at even intervals.
 fn evenly(part: usize, k: usize, n_frames: usize) -> usize {
     match k {
         1 => (n_frames - 1) / 2,

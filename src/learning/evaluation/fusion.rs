@@ -50,7 +50,7 @@ pub fn fuse_rows(labels: ArrayView1<usize>, k: usize, seed: &Seed) -> FusedRows 
     fused
 }
 
-/// For each group, adds the scores of its rows: (n_rows × n_scores) becomes (n_groups × n_scores).
+/// Adds the scores of the rows in each group: shape (n_rows, n_scores) becomes (n_groups, n_scores).
 pub fn fuse_scores(scores: ArrayView2<f64>, groups: &[Vec<usize>]) -> Array2<f64> {
     let mut sums = Array2::zeros((groups.len(), scores.ncols()));
     for (mut sum, group) in sums.outer_iter_mut().zip(groups) {

@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NextTouch {
-    /// Pose that is drawn at random.
+    /// Pose that is drawn at random from all poses.
     #[default]
     Random,
     /// Pose with the largest distance to the nearest previous touch.

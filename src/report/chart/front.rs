@@ -11,7 +11,7 @@ const MAX_NAMED: usize = 24;
 /// Pareto fronts of a chart: the points that no other point of their condition surpasses in both axes.
 pub(super) struct Front<'a> {
     view: &'a View<'a>,
-    /// Panel index of each Pareto front, and the points of the front along x.
+    /// Pareto fronts of the chart: the panel index of each front, and its points in ascending order of x.
     pub fronts: Vec<(usize, Vec<&'a Place>)>,
 }
 

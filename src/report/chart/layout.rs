@@ -82,7 +82,7 @@ impl Layout {
         }
     }
 
-    /// Returns the lower edge of the heading of the chart, pixels.
+    /// Returns the y coordinate of the lower edge of the chart's heading, pixels.
     pub fn bottom(&self) -> f64 {
         let panels = self.panels();
         panels.y + panels.height + self.labels.depth + 26.0

@@ -91,7 +91,7 @@ impl LegendEntry {
         }
     }
 
-    /// Creates a legend entry with a text and a mark, which is drawn in the style of the marks in the chart.
+    /// Creates a legend entry from its text and a function that draws its mark.
     pub(super) fn new(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         let mark: DrawMark = Box::new(mark);
         Self {

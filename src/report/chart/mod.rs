@@ -37,7 +37,7 @@ pub fn draw(spec: &ChartSpec, tables: &[Table]) -> Result<Drawing> {
     (spec.mark.about().draw)(&view)
 }
 
-/// Returns the positions of all drawn rows, as fractions of the width (from the left) and height (from below) of their panels.
+/// Returns the positions of all drawn rows, as fractions of the panel's width (from the left) and height (from below).
 ///
 /// # Errors
 /// If the specification names a table or a column that does not exist.

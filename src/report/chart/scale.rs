@@ -33,12 +33,12 @@ pub(super) struct Tick {
     pub at: f64,
     /// Text of the tick's label.
     pub label: String,
-    /// Whether the tick is at a round number, so that its label has priority over others if there is not enough space.
+    /// Whether the tick is at a round number; labels of such ticks have priority if space is short.
     pub is_round: bool,
 }
 
 impl Scale {
-    /// Creates a continuous scale that covers the given values of a column.
+    /// Creates a continuous scale that covers the given values of a column along an axis of the chart.
     pub fn new(column: &Column, values: &[f64], along: Along) -> Self {
         let is_swept = matches!(column.role, Role::Choice | Role::Condition | Role::Subject);
         let distinct = distinct(values);

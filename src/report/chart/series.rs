@@ -13,7 +13,7 @@ const MANY: usize = 400;
 /// Line height in the list of Pareto-front points below a chart, pixels.
 const LINE: f64 = 17.0;
 
-/// Draws a chart of series, which are lines or points.
+/// Draws a chart in which each series of data is a line or a set of points.
 pub(super) fn draw(view: &View) -> Drawing {
     let (columns, width, height) = match view.titles.len() {
         1 => (1, 660.0, 340.0),
@@ -187,7 +187,7 @@ impl Panel<'_> {
         self.frame.at(place.x, place.y)
     }
 
-    /// Returns the radius and colour of markers that are not on the Pareto front: paler if there is a front, smaller if there are many points.
+    /// Returns the radius and colour of markers that are not on the Pareto front: paler if a front is drawn, smaller if there are many points.
     fn behind(&self, colour: Rgb) -> (f64, Rgb) {
         let radius = match self.view.places.len() > MANY {
             true => 0.55 * MARKER_RADIUS,

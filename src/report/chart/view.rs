@@ -238,8 +238,8 @@ impl<'a> View<'a> {
         drawing.group(&data, draw);
     }
 
-    /// Returns the name of the confidence interval from the names of its two columns: their common text before a comma, or both names. Returns `None` if there
-    /// is no interval.
+    /// Returns the name of the confidence interval: the part before the comma that its two column names share, or both names. Returns `None` if there is no
+    /// interval.
     pub fn interval_words(&self) -> Option<String> {
         let words = |name: &str| Some(self.column(name).ok()?.column.words.as_ref());
         let [low, high] = self.column(&self.spec.y).ok()?.column.interval.as_ref()?;

@@ -247,7 +247,7 @@ fn outcome_words(file: &str, entries: &ColumnEntries) -> String {
     )
 }
 
-/// Returns a sentence about a cost column, such as `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`
+/// Returns a sentence about the differences in a cost column, such as `time to train: median 1.02 times that of the first run, 0.9 to 1.1 times.`
 fn cost_words(one: &ColumnDifferences) -> String {
     let mut ratios: Vec<f64> = one.rows.iter().map(|row| row.second / row.first).collect();
     let [middle, least, most] = [0.5, 0.0, 1.0].map(|q| short_number(quantile(&mut ratios, q)));
@@ -264,7 +264,7 @@ fn cost_words(one: &ColumnDifferences) -> String {
     format!("{words}: median {middle} times that of the first run, {least} to {most} times.{small}")
 }
 
-/// Returns sentences about a value column: how many settings are better and worse, and how many of these differences are significant.
+/// Returns sentences about the differences in a value column: the numbers of better and worse settings, and how many are significant.
 fn value_words(one: &ColumnDifferences) -> Vec<String> {
     let words = match one.column.role {
         Role::Value(Better::Neither) => ["larger", "smaller"],

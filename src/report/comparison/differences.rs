@@ -59,7 +59,7 @@ pub struct Difference {
     difference_low: Option<f64> => Note "95 % interval, lower end": Linear;
     /// Upper end of the 95 % confidence interval of the difference; empty if trials are not paired.
     difference_high: Option<f64> => Note "95 % interval, upper end": Linear;
-    /// Significance of the difference between the folders.
+    /// Statistical significance of the difference between the two folders.
     significance: Significance => Outcome "difference" named SIGNIFICANCE;
     /// Two-sided p-value of the hypothesis that there is no difference; empty if there are too few trials.
     p_value: Option<f64> => Note "p-value": Linear;

@@ -18,11 +18,11 @@ type Pair = (usize, usize);
 
 /// Result of comparing two versions of a table row by row.
 pub struct TableEntries {
-    /// File name of the table.
+    /// Name of the file that contains the table.
     pub file: &'static str,
     /// Number of rows that both versions contain.
     pub n_both: usize,
-    /// Number of rows that only the first version contains.
+    /// Number of rows that exist only in the first version.
     pub n_first_only: usize,
     /// Number of rows that only the second version contains.
     pub n_second_only: usize,
@@ -42,7 +42,7 @@ pub struct ColumnEntries {
     pub changes: Vec<(String, String, usize)>,
     /// Number of rows that have an entry in the first version only.
     pub n_first_only: usize,
-    /// Number of rows that have an entry in the second version only.
+    /// Number of rows that exist only in the second version.
     pub n_second_only: usize,
 }
 
@@ -104,7 +104,7 @@ fn configurations(tables: &[Table]) -> Configurations {
     known
 }
 
-/// Returns the settings of a row as text with units. An absent entry and an absent column are treated alike: the setting does not apply.
+/// Returns the settings of a table row as text with units. An absent entry and an absent column are treated alike: the setting does not apply.
 fn settings(table: &Table, row: usize, roles: &[Role], configurations: &Configurations) -> String {
     let columns = Setting::of_roles(table, roles);
     let said = columns.filter_map(|one| entry(one, row, configurations));

@@ -3,7 +3,7 @@
 use crate::report::pictures::drawing::escape;
 use crate::table::{Better, Column, Data, Role, Table};
 
-/// Number of first rows that the page shows of a table that is too large for it.
+/// Number of rows that the page shows of a table if the table is too large to be shown completely.
 const N_FIRST_ROWS: usize = 100;
 
 /// HTML of a table, with the number of rows that it contains.

@@ -49,7 +49,7 @@ impl Area {
         Self::new((x - 0.5 * width, y - 0.5 * height), (width, height))
     }
 
-    /// Returns the point at a fraction of the area's width (from the left) and height (from below).
+    /// Returns the point at a fraction of the area's width (from the left) and a fraction of its height (from below).
     pub fn at(&self, across: f64, up: f64) -> Point {
         (
             self.x + across * self.width,
@@ -346,7 +346,7 @@ fn visible(text: &str) -> String {
     text.replace(char::is_control, " ")
 }
 
-/// Rounds a position to a quarter of a pixel; the difference is not visible and keeps SVG files small.
+/// Rounds a coordinate to a quarter of a pixel, which makes SVG files smaller without visible differences.
 fn snap(position: f64) -> f64 {
     (position * 4.0).round() / 4.0
 }
@@ -355,7 +355,8 @@ fn colour([r, g, b]: Rgb) -> Color {
     Color::Rgb(r, g, b)
 }
 
-/// Returns the corners of a marker around a point. The shapes are: square, triangle up, diamond, triangle down, pentagon, hexagon, and a star with four points.
+/// Returns the corners of a marker with the given shape, centre and radius. The shapes are: square, triangle up, diamond, triangle down, pentagon, hexagon, and
+/// a star with four points.
 fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
     let (corners, turn, scale) = match shape {
         1 => (4, 45.0, 1.25),

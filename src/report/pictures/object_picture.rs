@@ -69,7 +69,7 @@ mod tests {
         contact_sheet(&[(name, &ball(radius))], 1, 200).unwrap()
     }
 
-    /// Counts the pixels that show an object. The object's colour has more blue than red; background and text are grey.
+    /// Returns the number of pixels that show an object. The object's colour has more blue than red; background and text are grey.
     fn n_painted(picture: &Picture) -> usize {
         let painted = |pixel: &&[u8]| i16::from(pixel[2]) > i16::from(pixel[0]) + 12;
         picture.rgb.chunks(3).filter(painted).count()

@@ -126,7 +126,7 @@ impl Cells {
     }
 }
 
-/// Returns the size of square cells of which `n_cells` fit into `room` pixels: a whole number of pixels, so that there are no gaps between cells.
+/// Returns the side length of square cells if `n_cells` must fit into `room` pixels: a whole number of pixels, which avoids gaps.
 pub(crate) fn whole_pixels(room: f64, n_cells: usize) -> f64 {
     (room / n_cells as f64).floor().max(1.0)
 }

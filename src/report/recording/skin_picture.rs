@@ -17,7 +17,7 @@ const NOTE: (f64, f64, f64) = (48.0, 18.0, 320.0);
 /// Number of image pixels for each drawing pixel along each side.
 const FINE: f64 = 2.0;
 
-/// Constant parts of all pictures of a patch: background, axes or scale bar, colour bar, and positions of the taxels.
+/// Parts that all pictures of a patch have in common: background, axes or scale bar, colour bar, and taxel positions.
 pub struct SkinPicture {
     background: Picture,
     cells: Cells,
@@ -27,7 +27,7 @@ pub struct SkinPicture {
 }
 
 impl SkinPicture {
-    /// Prepares pictures of a patch that all have one colour scale.
+    /// Prepares the drawing of several pictures of a patch with one common colour scale.
     ///
     /// A grid is drawn as a heat map with axes in millimetres. In any other layout, each taxel is drawn as a disc. A flat patch is seen from above, a cylinder
     /// is unrolled, and a part of a sphere is flattened about its middle. Any other patch is seen from the side to which its axes point, and from behind. The

@@ -44,7 +44,7 @@ pub(super) struct Truth {
     array: TaxelArray,
     /// Touches that reached the exact object, with the deflections of their taxels.
     pub readings: Vec<Reading>,
-    /// Number of touches that missed the object.
+    /// Number of touches in which the array misses the object.
     pub n_missed: usize,
     /// Number of touched taxels, summed over all touches of the exact object.
     pub n_touched: usize,

@@ -1,4 +1,4 @@
-//! Effect of model errors on recognition: classifiers are trained on models and tested on the exact meshes.
+//! Effect of model errors on recognition: classifiers are trained on touches of models and tested on touches of the exact meshes.
 //!
 //! All models of an object are touched in the same poses and to the same depth past their own first contact, as in other studies.
 
@@ -108,8 +108,8 @@ impl<'a> Sensor<'a> {
         measured.collect()
     }
 
-    /// Trains a classifier on models of one method and tolerance, and tests it on the meshes. The argument contains the measurements of all models of each
-    /// object; the result is a row with the accuracies.
+    /// Trains a classifier on touches of models of one method and tolerance, and tests it on touches of the exact meshes. The argument contains the
+    /// measurements of all models of each object; the result is a row with the accuracies.
     pub fn row(
         &self,
         objects: &[Vec<ModelMeasurements>],

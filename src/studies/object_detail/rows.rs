@@ -8,7 +8,7 @@ use crate::studies::object_detail::spec::DetailMethod;
 const METHODS: &[(&str, &str)] = &[("mesh", "exact mesh")];
 
 row! {
-/// Model of an object; each row of `object_detail.csv` and `timing.csv` begins with these columns.
+/// Model of an object, which is identified by the first columns of `object_detail.csv` and `timing.csv`.
 pub struct DetailConfiguration {
     /// Name of the object that is touched.
     object: String => Subject;
@@ -42,7 +42,7 @@ pub struct DetailScore {
     n_touches: usize => Note "touches": Linear;
     /// Number of touches that missed the mesh.
     n_missed: usize => Note "touches that met nothing": Linear;
-    /// Number of taxels that the mesh touches, summed over all touches.
+    /// Number of taxels that the mesh touches, summed over all touches with the mesh.
     n_taxels: usize => Note "touched taxels": Linear;
     /// Deflection error, mm: mean of |δ − δ*| over taxels that the mesh (δ*) or the model (δ) touches.
     error_mm: f64 => Value(Less) "deflection error" in "mm": Log;
@@ -74,7 +74,7 @@ row! {
 pub struct DetailSummary {
     /// Method that makes models from the meshes.
     method: DetailMethod => Choice "model" named METHODS;
-    /// Tolerance of the packing (spheres that fill the mesh), mm; empty for methods without tolerances.
+    /// Tolerance of the packing (spheres that fill the mesh), mm; empty for methods without a tolerance.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
     /// Number of objects over which the results are summarised.
     n_objects: usize => Note "objects": Linear;
@@ -106,7 +106,7 @@ pub struct DetailSummary {
     error_q3_mm: f64 => Note "quartiles of deflection error, upper" in "mm": Log;
     /// Largest mean deflection error (`error_mm`) of any object's model, mm.
     error_worst_mm: f64 => Value(Less) "deflection error of the worst object" in "mm": Log;
-    /// Lower quartile, over all objects, of `error_after_offset_mm`: the deflection error with the best constant offset of the patch, mm.
+    /// Lower quartile, over all objects, of `error_after_offset_mm`, the deflection error after the best constant offset of the patch, mm.
     error_after_offset_q1_mm: f64 => Note "quartiles of deflection error after offset, lower" in "mm": Log;
     /// Median, over all objects, of `error_after_offset_mm`: the deflection error with the best constant offset of the patch, mm.
     error_after_offset_median_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
@@ -128,7 +128,7 @@ row! {
 pub struct DetailRecognition {
     /// Method that makes the training models from the meshes.
     method: DetailMethod => Choice "learned from" named METHODS;
-    /// Tolerance of the packing (spheres that fill the mesh), mm; empty for methods without tolerances.
+    /// Tolerance of the packing (spheres that fill the mesh), mm; empty for methods without a tolerance.
     tolerance_mm: Option<f64> => Choice "packed within" in "mm": Log;
     /// Kind of classifier, for example a linear SVM.
     classifier: ClassifierKind => Choice named ClassifierKind::NAMES;
@@ -138,7 +138,7 @@ pub struct DetailRecognition {
     n_training: usize => Note "training touches": Linear;
     /// Number of rows with which the classifier is tested, summed over all objects.
     n_test: usize => Note "test touches": Linear;
-    /// Number of measurements of a touch, from which the classifier recognises the object.
+    /// Number of measurements per touch from which the classifier recognises the object.
     n_measurements: usize => Note "measurements": Linear;
     /// Median, over all objects, of `error_own_contact_mm`, mm: the deflection error of the training models. Training touches are also pressed past each
     /// model's own first contact.
@@ -155,13 +155,13 @@ pub struct DetailRecognition {
     accuracy_on_itself_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % Wilson interval of `accuracy_on_itself`, 0 to 1.
     accuracy_on_itself_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of the classifier's optimisation problems that stopped at the solver's maximum number of iterations.
+    /// Number of the classifier's optimisation problems that stopped at the maximum number of iterations.
     n_capped: usize => Note "fits stopped at the iteration cap": Linear;
 } }
 
 row! {
 /// Computing time per touch for a method and tolerance. A row of `object_detail_cost.csv` is a [`DetailSummary`] followed by a `LevelTime`.
 pub struct LevelTime {
-    /// Computing time per touch of a model on one thread, median over objects, µs.
+    /// Computing time of a touch of the model on one thread, median over objects, µs.
     us_per_touch_median: f64 => Cost "time of a touch, one thread" in "µs": Log;
 } }

@@ -29,7 +29,7 @@ pub struct ObjectDetailStudy {
     pub plan: ObjectDetailPlan,
     /// Meshes of the study, one per object.
     pub meshes: Vec<NamedMesh>,
-    /// Folder in which packings (sphere models of meshes) are stored for later runs; `None` for no such cache.
+    /// Cache folder for packings (sphere models of meshes); `None` if packings are not cached.
     pub packings: Option<PathBuf>,
 }
 

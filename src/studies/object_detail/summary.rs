@@ -1,4 +1,4 @@
-//! Summary over all objects, by method and tolerance.
+//! Summary of the results over all objects, for each method and tolerance.
 
 use crate::quantile::quantile;
 use crate::studies::grouped;
@@ -14,7 +14,7 @@ fn level(configuration: &DetailConfiguration) -> Level {
     (configuration.method, configuration.tolerance_mm)
 }
 
-/// For each method and tolerance, returns one row that summarises all objects, in the order of first occurrence.
+/// Returns one row for each method and tolerance, which summarises all objects, in the order of first occurrence.
 pub(super) fn summary(rows: &[Row]) -> Vec<DetailSummary> {
     let levels = grouped(rows, |(configuration, _)| level(configuration)).into_iter();
     levels

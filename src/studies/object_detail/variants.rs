@@ -74,7 +74,7 @@ pub(super) fn variants(
     Ok(found)
 }
 
-/// Returns all pairs of method and tolerance of a study: the exact mesh, then methods without tolerances, then all other methods by tolerance.
+/// Returns all pairs of method and tolerance: the exact mesh first, then methods without tolerances, then the other methods by tolerance.
 pub(super) fn levels(plan: &ObjectDetailPlan) -> Vec<Level> {
     let wanted = &plan.spec.object_detail;
     let is_wanted = |method: &DetailMethod| wanted.methods.contains(method);

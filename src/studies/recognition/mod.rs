@@ -1,4 +1,4 @@
-//! Recognition studies: studies that recognise objects by touch.
+//! Recognition studies, in which classifiers recognise objects from touches.
 //!
 //! Data flow: each stage is a folder, and a stage imports only from stages above it in this table.
 //!

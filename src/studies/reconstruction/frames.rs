@@ -1,4 +1,4 @@
-//! Picture of a few test frames: clean, with noise, and as reconstructed by some configurations.
+//! Picture of a few test frames: without noise, with noise, and reconstructed by several configurations.
 
 use crate::engine::progress::Silent;
 use crate::error::Result;
@@ -12,7 +12,7 @@ use crate::table::Table;
 use ndarray::Array2;
 
 impl ReconstructionStudy {
-    /// Returns the picture of test frames at the largest noise level; returns an empty list if there are no results.
+    /// Returns a picture of test frames at the largest noise level, or an empty list if the study has no results.
     pub(super) fn sample_frames(&self, tables: &[Table]) -> Result<Vec<NamedPicture>> {
         let Some(configurations) = tables
             .first()

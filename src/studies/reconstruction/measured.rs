@@ -68,7 +68,7 @@ pub(super) fn measure_cells(
     Ok(())
 }
 
-/// Reconstructs all test frames with a configuration; returns the reconstruction errors and the computing times.
+/// Reconstructs all test frames with one configuration; returns the reconstruction errors and the computing times.
 fn reconstruct(
     (plan, touches): (&ReconstructionPlan, &Touches),
     configuration: &ReconstructionConfiguration,

@@ -4,7 +4,7 @@ use crate::row;
 use crate::sensing::{Basis, Ensemble, Solver};
 use crate::signal::NoiseUnit;
 
-/// Display names of the ensembles (random measurement matrices), by the name in the table.
+/// Display names of the ensembles (random measurement matrices), each preceded by the name in result tables.
 const ENSEMBLES: &[(&str, &str)] = &[("sbhe", "SBHE"), ("gaussian", "Gaussian")];
 const DICTIONARIES: &[(&str, &str)] = &[
     ("dct", "DCT"),
@@ -79,7 +79,7 @@ pub struct ReconstructionScore {
     psnr_db: f64 => Value(More) "peak SNR" in "dB": Linear;
     /// Number of non-zero coefficients of a reconstructed frame, averaged over frames.
     atoms_used: f64 => Note "atoms used": Linear;
-    /// Number of frames for which the solver stopped early, at its limit of atoms or steps.
+    /// Number of frames for which the solver stopped at its maximum number of atoms or steps.
     n_capped: usize => Note "capped frames": Linear;
 } }
 
@@ -88,7 +88,7 @@ row! {
 pub struct ReconstructionTime {
     /// Time to prepare the solver, s, without the time to multiply the measurement matrix by the dictionary.
     prepare_s: f64 => Cost "time to prepare" in "s": Log;
-    /// Reconstruction time per frame on one core, µs; frames are reconstructed in blocks.
+    /// Reconstruction time per frame on one core, µs, for frames that are reconstructed in blocks.
     us_per_frame: f64 => Cost "time of a frame" in "us": Log;
     /// Number of frames reconstructed per second on one core.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
@@ -99,7 +99,7 @@ row! {
 pub struct ReconstructionPareto {
     /// Relative reconstruction error, dimensionless, equal to the column `error` of `reconstruction.csv`.
     error: f64 => Value(Less): Log;
-    /// Reconstruction time per frame on one core, µs, equal to the column `us_per_frame` of `timing.csv`.
+    /// Reconstruction time per frame on one core, µs; the value of the column `us_per_frame` in `timing.csv`.
     us_per_frame: f64 => Cost "time of a frame on one core" in "us": Log;
     /// Number of frames reconstructed per second on one core, equal to the column `frames_per_s_per_core` of `timing.csv`.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
@@ -135,7 +135,7 @@ pub struct EnsembleStatistics {
     sparsity: usize => Condition: Linear;
     /// Number of randomly drawn sets of atoms (supports) of this size.
     n_subsets: usize => Note "supports drawn": Linear;
-    /// Smallest σ²_min over all drawn sets of atoms (supports). Here σ_min is the smallest singular value of the matrix of a set's measured atoms.
+    /// Smallest value of σ²_min over all drawn sets of atoms (supports). Here σ_min is the smallest singular value of the matrix of a set's measured atoms.
     low_min: f64 => Value(More) "least σ²": Linear;
     /// Median of σ²_min over all drawn sets of atoms (supports). Here σ_min is the smallest singular value of the matrix of a set's measured atoms.
     low_median: f64 => Value(More) "median of the least σ²": Linear;

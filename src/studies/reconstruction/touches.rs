@@ -42,7 +42,7 @@ pub(super) struct Noisy {
     /// Noise standard deviation σ of a taxel, in the unit of the frame.
     pub std: f64,
     pub frames: Array2<f64>,
-    /// Squared norm ‖y − x‖² of the noise in each test frame, where y is the noisy and x the clean frame.
+    /// Squared norm ‖y − x‖² of the noise in each test frame: y is the noisy frame, x the frame without noise.
     pub errors: Vec<f64>,
 }
 

@@ -87,7 +87,7 @@ pub(super) fn measure(
 /// Factor between the contact stiffness that is used and the one that just meets the tolerance. Penetration reduces the deflection of every taxel.
 const SAFETY: f64 = 4.0;
 
-/// Returns two contact stiffnesses to try, N/m: the lowest that meets the tolerance, and the highest with which the time step is stable.
+/// Returns two contact stiffnesses to test, N/m: the lowest that meets the tolerance, and the highest for which the time step is stable.
 fn contact_stiffnesses(
     configuration: &StabilityConfiguration,
     scene: &ConfigurationScene,
@@ -185,8 +185,7 @@ fn integrator(
     }
 }
 
-/// With the quasi-static method, solves the equilibrium of one free ball, or of several balls that are stacked in a tube. The balls may rotate and move
-/// sideways.
+/// Computes the equilibrium of one free ball, or of several balls stacked in a tube, by the quasi-static method. The balls may rotate and move sideways.
 fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<Answer> {
     let cradle = &scene.cradle;
     let spheres = cradle.ball.spheres().expect("a ball is a sphere");

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Checked keys of a stability study, with its configurations.
 #[derive(Clone, Debug)]
 pub struct StabilityPlan {
-    /// Specification of the study: its keys with the values and units of the study file.
+    /// Specification of the study, with the keys, values and units of the study file.
     pub spec: StabilityStudySpec,
     /// Configurations, ordered by part, each with its taxel parameters without damper. Methods that this build does not contain are omitted.
     pub configurations: Vec<(StabilityConfiguration, Taxel)>,

@@ -104,7 +104,7 @@ pub struct StabilitySummary {
     n_missed_contact: usize => Value(Less) "missed contact": Linear;
     /// Number of configurations in which the simulated energy grew beyond its limit.
     n_energy_growth: usize => Value(Less) "energy growth": Linear;
-    /// Number of configurations in which a number of the simulation became infinite or NaN.
+    /// Number of configurations in which the simulation produced infinite or NaN values.
     n_not_finite: usize => Value(Less) "not finite": Linear;
     /// Largest `force_imbalance` of the configurations that did not fail; empty if all failed.
     worst_force_imbalance: Option<f64> => Value(Less): Log;

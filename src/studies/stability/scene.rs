@@ -20,7 +20,7 @@ const APPROACH: f64 = 2e-3;
 const LEAST_HOLD: f64 = 0.2;
 /// Exponent of the decay that ends a hold or a run: its slowest motion has then decayed by the factor e^−10 = 5e-5.
 const DECAY: f64 = 10.0;
-/// Minimum number of time steps for which a ball with imposed motion rests at its deepest point.
+/// Minimum number of time steps for which a ball with imposed motion stays at its deepest point.
 const LEAST_HOLD_STEPS: f64 = 5.0;
 /// Travel of the ball within which taxels may be touched, as a multiple of the stroke. The ball reaches all taxels within 1.25 strokes. If the value is much
 /// larger, the ball could be behind the substrate.
@@ -44,7 +44,7 @@ pub(super) struct ConfigurationScene {
     pub taxel: Taxel,
     /// Motion of the ball: an imposed motion, or free motion under gravity.
     pub drive: Drive,
-    /// Exact result at the time of evaluation: the travel of the ball and the deflections.
+    /// Exact solution at the time of evaluation: the travel of the ball and the deflections.
     pub truth: Rest,
     /// Exact total force Σ f at the time of evaluation, newtons.
     pub force: f64,

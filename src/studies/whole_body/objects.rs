@@ -1,4 +1,4 @@
-//! Sphere models of the objects that touch a body: objects of scenes, built-in objects, and squares of spheres (cushions) for scaling series.
+//! Sphere models of the objects that touch a robot: scene objects, built-in objects, and square cushions of spheres for scaling series.
 
 use crate::error::Result;
 use crate::geometry::Pose;

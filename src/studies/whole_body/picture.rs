@@ -34,7 +34,7 @@ const TOUCHED: [u8; 3] = [0xd5, 0x5e, 0x00];
 /// Radius of a drawn point of the skin, metres; neighbouring points overlap. Touched taxels are drawn slightly above the skin.
 const SKIN_RADIUS: f64 = 3.4e-3;
 const TOUCHED_RADIUS: f64 = 3.8e-3;
-/// Azimuth of the viewing direction to the right of the robot's front, radians.
+/// Azimuth of the camera, measured from the robot's front to the right, radians.
 const AZIMUTH: f64 = 0.7;
 /// Elevation of the viewing direction above the horizontal plane, radians.
 const ELEVATION: f64 = 0.3;

@@ -259,7 +259,7 @@ fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot)
     })
 }
 
-/// Returns the direction of the approach as a unit vector; an error names the `key` if the vector has no direction.
+/// Returns the direction of the approach as a unit vector; if the vector has length 0, the error names the `key`.
 fn direction(reader: &Reader, key: &str, from: [f64; 3]) -> Result<DVec3> {
     let direction = reader.vector(key, from, 1.0)?.try_normalize();
     let zero = || {

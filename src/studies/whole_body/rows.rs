@@ -37,13 +37,13 @@ row! {
 pub struct BodyCount {
     /// Number of simulated steps of the case.
     n_steps: usize => Note "steps": Linear;
-    /// Number of deflected taxels in a step, averaged over steps.
+    /// Number of deflected taxels per step, averaged over all steps.
     touched_mean: f64 => Value(Neither) "touched taxels": Log;
     /// Smallest number of deflected taxels in any step.
     touched_min: usize => Note "fewest touched": Linear;
     /// Largest number of deflected taxels in any step.
     touched_max: usize => Note "most touched": Linear;
-    /// Number of saturated taxels, averaged over steps. A saturated taxel has reached its stroke, and the object would push it further.
+    /// Number of saturated taxels per step, averaged over all steps. A saturated taxel has reached its stroke, and the object would push it further.
     saturated_mean: f64 => Value(Neither) "saturated taxels": Linear;
     /// Number of patches near the object, for which contact is searched, averaged over steps.
     patches_visited_mean: f64 => Value(Neither) "patches visited": Linear;
@@ -85,7 +85,7 @@ pub struct BodyRecognition {
     entries_per_taxel: f64 => Cost "entries of a taxel": Log;
     /// Fraction of the taxels whose readings enter at least one measurement, 0 to 1.
     read_fraction: f64 => Note "share of the taxels read": Share;
-    /// Memory of the measurement matrix Φ, which is stored by columns, divided by the number of taxels, bytes.
+    /// Memory of the measurement matrix Φ (stored by columns) divided by the number of taxels, bytes.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Log;
     /// Number of objects that the classifier distinguishes.
     n_objects: usize => Condition "objects": Linear;
@@ -133,7 +133,7 @@ row! {
 pub struct BodyTouch {
     /// Number of deflected taxels in a step, averaged over steps and rounded to two digits.
     touched: f64 => Condition "touched taxels, about": Log;
-    /// Number of deflected taxels in a step, averaged over steps.
+    /// Number of deflected taxels per step, averaged over all steps.
     touched_mean: f64 => Note "touched taxels": Log;
 } }
 

@@ -115,7 +115,7 @@ pub struct BodyRecognitionSpec {
     /// Maximum random rotation of an object about the link's z axis, degrees, at least 0. Default: 0.
     #[serde(default)]
     pub yaw_deg: f64,
-    /// Lower and upper bound of the random distance that an object travels past first contact, mm.
+    /// Bounds of the random press depth (travel of an object past first contact), mm: lower and upper.
     pub depth_mm: [f64; 2],
     /// Number of training touches per object, at least 1.
     pub training_touches: usize,
@@ -143,7 +143,7 @@ pub struct LaddersSpec {
 }
 
 impl BodyRecognitionSpec {
-    /// Returns the number of touches per object for training and testing together.
+    /// Returns the number of touches per object, which is the sum of its training and test touches.
     pub fn of_each(&self) -> usize {
         self.training_touches + self.test_touches
     }

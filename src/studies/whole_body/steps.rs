@@ -37,8 +37,8 @@ struct SensedStep {
 }
 
 impl Drive<'_> {
-    /// Simulates and times the steps along the path after some warm-up steps. If a step may use several threads, the path is simulated a second time on one
-    /// thread.
+    /// Simulates the steps along a path and measures their times, after some untimed steps. If a step may use several threads, the path is simulated a second
+    /// time on one thread.
     pub fn run(
         &mut self,
         plan: &WholeBodyPlan,

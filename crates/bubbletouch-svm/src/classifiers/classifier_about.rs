@@ -25,7 +25,7 @@ pub struct ClassifierAbout {
     pub train: Train,
 }
 
-/// Type of the functions that train a classifier on scaled rows with a given penalty C and random seed, without a kernel matrix.
+/// Type of functions that train a classifier without a kernel matrix, given scaled rows, a penalty C and a random seed.
 pub type Train = fn(&Classifier, &Dataset, f64, &dyn Streams) -> Result<Arc<dyn ClassModel>>;
 
 impl ClassifierAbout {

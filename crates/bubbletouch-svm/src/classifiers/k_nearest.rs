@@ -94,7 +94,7 @@ impl KNearest {
         Ok(neighbours)
     }
 
-    /// Returns the indices of the training rows nearest to one row, given the inner products of this row with all training rows.
+    /// Returns the indices of the nearest training rows of one row, given its inner products with all training rows.
     fn nearest(&self, row: ArrayView1<f64>, products: ArrayView1<f64>) -> Vec<usize> {
         let norm = row.dot(&row);
         let rough = |other: usize| norm + self.squared_norms[other] - 2.0 * products[other];

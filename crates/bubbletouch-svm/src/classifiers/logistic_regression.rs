@@ -17,7 +17,7 @@ use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
 use crate::{Error, Result};
 
-/// Default maximum number of L-BFGS iterations: ten times scikit-learn's default.
+/// Default maximum number of L-BFGS iterations, which is ten times the default of scikit-learn.
 pub const MAX_ITERATIONS: usize = 1000;
 
 /// Parameters of a logistic regression.
@@ -103,7 +103,7 @@ impl Logistic {
         self.n_iterations
     }
 
-    /// Returns the log-probability `ln p(k | x)` of each class k for each row x of features (n_rows × n_classes).
+    /// Returns `ln p(k | x)`, the log-probability of each class k for each row x of features, shape (n_rows, n_classes).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.

@@ -239,7 +239,7 @@ mod tests {
     use super::*;
     use ndarray::{Array2, array};
 
-    /// Grows a tree on all rows that considers every feature in each node.
+    /// Grows a decision tree on all rows; every feature is a candidate for the split of each node.
     fn grow(features: &Array2<f64>, label: &[usize], max_depth: Option<usize>) -> Tree {
         let ranked = Ranked::new(features.view());
         let growth = Growth {

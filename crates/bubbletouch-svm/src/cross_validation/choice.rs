@@ -125,7 +125,7 @@ where
 }
 
 impl Chosen {
-    /// Creates the result of the choice; the first of the most accurate candidates is the best.
+    /// Creates the result of the parameter choice; if several candidates have the highest accuracy, the first is selected.
     fn new(tried: Vec<Tried>, n_capped: usize) -> Self {
         let better = |best: Tried, &tried: &Tried| {
             if tried.accuracy > best.accuracy {

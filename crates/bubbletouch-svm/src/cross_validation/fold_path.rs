@@ -80,7 +80,7 @@ impl FoldPath {
         }
     }
 
-    /// Returns the starting point of a fold: the coefficients β of the previous fold, with multipliers of removed rows moved to added rows, and their gradient.
+    /// Returns the starting point of a fold: the previous fold's coefficients β, with the multipliers of removed rows moved to added rows, and the gradient.
     fn moved<T: SolverScalar>(
         &self,
         number: usize,

@@ -27,7 +27,7 @@ const CLASSES_AT_ONCE: usize = 8;
 
 /// Data of a cross-validated grid search over kernels and C: training rows, folds and multi-class strategy.
 pub(crate) struct Grid<'a, T> {
-    /// Training rows, sorted by class.
+    /// Training rows, sorted by class label.
     pub sorted: &'a Sorted<T>,
     /// Folds with the original row numbers; a row that a fold repeats counts once.
     pub folds: &'a [Split],

@@ -17,7 +17,7 @@ use crate::predict::voting::VoteCounter;
 /// Number of validation rows that are classified by votes at one time, which limits the memory of their kernel values.
 const ROWS_AT_ONCE: usize = 512;
 
-/// Counter of the correctly classified validation rows of one fold, which receives each binary problem after it is solved.
+/// Counter of correctly classified validation rows of one fold, updated after each binary problem is solved.
 pub(crate) struct ValidationScorer<T> {
     multiclass: Multiclass,
     /// All binary problems as pairs (positive class, negative class), in the order of the multi-class strategy.
@@ -133,8 +133,8 @@ impl<T: Scalar> ValidationScorer<T> {
         n_correct
     }
 
-    /// Returns how many of the given rows are classified correctly: their own class wins all pairs or wins the vote. The argument `values` contains the kernel
-    /// values of the rows.
+    /// Returns the number of given rows that are classified correctly: their class wins all its pairs or wins the vote. The argument `values` contains the
+    /// kernel values of the rows.
     fn n_elected(&self, number: usize, some: &[usize], values: ArrayView2<T>) -> usize {
         let is_open = |place: &usize| !self.is_pairs() || self.is_beaten[[some[*place], number]];
         let open: Vec<usize> = (0..some.len()).filter(is_open).collect();

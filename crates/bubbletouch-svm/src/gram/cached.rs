@@ -1,4 +1,4 @@
-//! Gram matrix that exceeds the memory limit.
+//! Gram matrix that is computed in parts, because it exceeds the memory limit.
 
 use ndarray::{Array2, Axis};
 

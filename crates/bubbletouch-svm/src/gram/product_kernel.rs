@@ -13,7 +13,7 @@ use crate::linalg::scalar::Scalar;
 /// Kernel values that are computed from stored inner products (or L1 distances) of all rows.
 pub(crate) struct ProductKernel<'a, T> {
     points: &'a CenteredRows<T>,
-    /// For each class, the range of its rows.
+    /// Range of row indices of each class.
     ranges: &'a [Range<usize>],
     /// Pairwise products or L1 distances of all rows, n × n.
     pairwise: ArrayView2<'a, T>,

@@ -82,7 +82,7 @@ fn take_product<const N: usize>(own: &mut [Lanes; N], factors: &[f64; N], row: &
     }
 }
 
-/// Solves the triangular system `D Lᵀ x = side` in place, block by block from the end; the contributions of later blocks are subtracted first.
+/// Solves the triangular system `D Lᵀ x = side` in place, block by block from the last to the first.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute_back(rows: &[Lanes], width: usize, inverse: &[f64], side: &mut [f64]) {
     let n_blocks = inverse.len().div_ceil(BLOCK);

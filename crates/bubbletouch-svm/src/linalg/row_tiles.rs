@@ -71,7 +71,7 @@ fn by_tiles<'r, const N: usize, const M: usize>(
     }
 }
 
-/// Writes the inner products of a tile for the first block of features; for later blocks, adds them.
+/// Writes the inner products of a tile to `to` for the first block of features; adds them for later blocks.
 #[cfg(target_arch = "x86_64")]
 fn put(to: &mut [f32], products: &[f32], is_first: bool) {
     for (to, product) in to.iter_mut().zip(products) {
@@ -103,7 +103,7 @@ mod avx512 {
         }
     }
 
-    /// Returns the inner products of one row with N others, bitwise equal to the inner products computed by [`tile`].
+    /// Returns the inner products of one row with N other rows, bitwise equal to the results of [`tile`].
     #[target_feature(enable = "avx512f")]
     fn row([left]: [&[f32]; 1], right: [&[f32]; N]) -> [f32; N] {
         let n = left.len();

@@ -53,8 +53,8 @@ impl Scalar for f32 {
     }
 }
 
-/// Computes `exp(−γ d)` by range reduction and the Cephes polynomial of `expf` (Moshier 1989). The error is at most 2 units in the last place; results below
-/// the smallest normal number are 0. The code has no branches, so that it is vectorised.
+/// Replaces each distance d by `exp(−γ d)`, computed by range reduction and the polynomial of `expf` in the Cephes library (Moshier 1989). The error is at most
+/// 2 units in the last place; results below the smallest normal number are 0. The code has no branches, so that it is vectorised.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn exponentials_f32(distances: &mut [f32], gamma: f32) {
     /// Rounding constant 1.5 · 2²³: adding it to a number rounds the number to an integer, which is then in the low bits of the sum.

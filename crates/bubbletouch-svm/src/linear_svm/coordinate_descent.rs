@@ -16,7 +16,7 @@ use crate::{Error, Result};
 /// value, the padding grows without benefit.
 const LANES: usize = 8;
 
-/// Limit below which changes of multipliers, and gradients, are treated as rounding errors.
+/// Limit below which multiplier changes and gradients are treated as rounding errors.
 pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Multipliers of a solved binary problem, and the final state of the solver.

@@ -15,7 +15,7 @@ pub(crate) struct ClassWeights<T> {
     pub vectors: Range<usize>,
     /// Numbers of the binary problems that contain the class, ascending; for one-vs-one, in the order of the other classes.
     pub problems: Vec<usize>,
-    /// Coefficients (label times multiplier) of the support vectors in each problem, problems.len() × vectors.len().
+    /// Coefficients (label times multiplier) of the support vectors in each binary problem, shape (number of problems, number of vectors).
     pub coefficients: Array2<T>,
 }
 
@@ -60,7 +60,7 @@ impl<V: Scalar> ClassWeights<V> {
         weights
     }
 
-    /// Sets the coefficients of a class in the binary problem with the given number; does nothing if the problem does not contain the class.
+    /// Sets the coefficients of the class in one binary problem, given by its number; does nothing if the class is not in the problem.
     pub fn set(&mut self, problem: usize, coefficients: &[f64]) {
         if let Ok(place) = self.problems.binary_search(&problem) {
             let own = self.coefficients.row_mut(place);

@@ -27,8 +27,7 @@ pub(crate) struct Pairs<T> {
     n_classes: usize,
     /// Support vectors and their coefficients in all decision functions, one pair of classes after another.
     terms: Vec<(u32, T)>,
-    /// For each pair of classes, the end of its range in `terms` and the offset ρ of its decision function. The order of the pairs is (0, 1), (0, 2), …, (1,
-    /// 2), ….
+    /// End index of each pair's terms in `terms`, and the offset ρ of the pair's decision function. The order of the pairs is (0, 1), (0, 2), …, (1, 2), ….
     ends: Vec<(usize, f64)>,
 }
 
@@ -123,7 +122,7 @@ trait Decides<T> {
 
 /// Interface to the kernel values between one row and all support vectors.
 trait KernelValues<T> {
-    /// Returns the kernel values of all support vectors; only the values of the support vectors in `terms` must be valid.
+    /// Returns the kernel values of all support vectors; only the values of support vectors listed in `terms` need to be valid.
     fn with(&mut self, terms: &[(u32, T)]) -> &[T];
 }
 

@@ -24,7 +24,7 @@ const BLOCK_ROWS: usize = 512;
 pub(crate) struct DecisionFunctions<T> {
     /// Centre that is subtracted from support vectors and from all rows to be classified (m values).
     centre: Array1<f64>,
-    /// Offset ρ of each decision function; for a linear kernel, ρ for rows minus the centre.
+    /// Offset ρ of each decision function; for a linear kernel, the offset is valid for rows minus the centre.
     rho: Array1<f64>,
     sums: Sums<T>,
 }
@@ -177,7 +177,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         Array2::zeros((BLOCK_ROWS.min(n_rows), n_vectors))
     }
 
-    /// Returns the weighted sums of kernel values of each problem for some rows, n_problems × n_rows; the sums of a problem are contiguous.
+    /// Returns the sum of weighted kernel values for each problem and row, shape (n_problems, n_rows), stored problem by problem.
     fn sums_of(&self, points: &CenteredRows<T>, room: &mut Array2<T>) -> Array2<T> {
         match &self.sums {
             Sums::Hyperplanes(normals) => {

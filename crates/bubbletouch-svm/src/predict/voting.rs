@@ -108,8 +108,8 @@ impl VoteCounter {
         }
     }
 
-    /// For each row, returns the position of the predicted class, given weighted sums (n_problems × n_rows) and the offset ρ of each problem. Problems with an
-    /// excluded class are ignored.
+    /// Returns the position of the predicted class for each row, from the weighted sums (n_problems × n_rows) and offsets ρ of the binary problems. Problems
+    /// with an excluded class are ignored.
     pub fn elect<T: Scalar>(
         sums: &Array2<T>,
         rho: ArrayView1<f64>,

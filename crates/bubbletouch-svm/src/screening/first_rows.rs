@@ -1,4 +1,4 @@
-//! Selection of the first rows on which pairs of classes are solved, for screening (`near_margin`).
+//! Selection of the first rows on which screening (`near_margin`) trains each pair of classes.
 //!
 //! The rows are selected in a low-dimensional subspace spanned by some of the rows. The pairs are solved there by a few rounds of screening with a rough
 //! tolerance. The first round starts with the rows that are nearest to the other class along the line between the class means.
@@ -60,7 +60,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         NearMargin::new(&self.all, pairs, &rows)
     }
 
-    /// For a pair of classes, returns the rows of each class that are nearest to the other class along the line between the class means.
+    /// Returns the rows of two classes that are nearest to the other class, measured along the line between the class means.
     fn near_means(&self, (a, b): (usize, usize), ranked: &mut Ranked) -> Sides {
         let along: [Vec<T>; 2] = [a, b].map(|own| {
             let rows = self.few.sorted.ranges()[own].clone();

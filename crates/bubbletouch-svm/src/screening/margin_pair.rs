@@ -1,4 +1,4 @@
-//! Pair of classes that is solved on its active rows only.
+//! Binary problem of two classes, solved on a subset of rows (the active rows).
 
 use ndarray::Array2;
 
@@ -212,8 +212,8 @@ impl<T: SolverScalar> MarginPair<T> {
         rows.map(|((side, row), &beta)| (side, row, beta))
     }
 
-    /// Returns the rows to activate: those with the largest violations of the optimality conditions, or all others if most rows are active already. Returns
-    /// `None` if no row violates the conditions. `products` contains the inner product of each row with the hyperplane normal.
+    /// Returns the rows to add to the active rows: those that violate the optimality conditions most, or all others if most rows are active. Returns `None` if
+    /// no row violates the conditions. `products` contains the inner product of each row with the hyperplane normal.
     ///
     /// An inactive row violates the conditions if it lies more than half the tolerance beyond the middle of the interval allowed by the active rows.
     pub fn joining(

@@ -38,7 +38,7 @@ pub(crate) struct Classes<'a, T> {
 }
 
 impl<'a, T: SolverScalar> Classes<'a, T> {
-    /// Computes the inner products between the rows of each class.
+    /// Computes the inner products between all rows of each class.
     pub fn new(sorted: &'a Sorted<T>) -> Self {
         let within = |range: &Range<usize>| {
             let own = sorted.points().range(range.clone());
@@ -73,7 +73,7 @@ pub(crate) struct NearMargin<'c, 'a, T> {
 /// Result of a round for one pair: the normal of the hyperplane, and the inner product of the normal with each row of both classes.
 type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
 
-/// Results of one screening round for several pairs of classes, one pair after another.
+/// Results of one screening round for several pairs of classes.
 #[derive(Default)]
 struct Round<T> {
     /// Normals of the hyperplanes of all pairs in the round.
@@ -85,7 +85,7 @@ struct Round<T> {
 }
 
 impl<T> Round<T> {
-    /// For the pair with this number in the round, returns the inner products of its hyperplane normal with all rows of both classes.
+    /// Returns the inner products of a pair's normal vector with all rows of its two classes; `number` is the index of the pair.
     fn products(&self, number: usize) -> [&[T]; 2] {
         let places = self.places[number].each_ref();
         places.map(|place| &self.products[place.clone()])

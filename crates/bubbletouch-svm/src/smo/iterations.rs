@@ -1,4 +1,4 @@
-//! Loop of pairwise steps until the optimality conditions hold or few variables can still move.
+//! Loop of pairwise steps, which ends if the optimality conditions hold or if few variables can still move.
 
 use super::passes::{Down, select_down, select_up, step_along};
 use super::variables::Variables;
@@ -34,7 +34,7 @@ impl Search {
 pub(crate) enum Stop {
     /// The tolerance or the iteration cap was reached.
     Done,
-    /// Only the given variables can still move, so the solver should continue on their submatrix.
+    /// The solver should continue with the given variables only, because no other variable can move.
     Shrink(Vec<usize>),
 }
 

@@ -79,7 +79,7 @@ pub(super) fn select_up<T: Scalar>(f: &[T], up: &[T]) -> Option<usize> {
     }
 }
 
-/// Makes a step of the variables i and j: subtracts `step (row_i − row_j)` from the gradient f, and returns the next variable to increase.
+/// Moves the variables i and j: subtracts `step (row_i − row_j)` from the gradient f, and returns the next variable to increase.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn step_along<T: Scalar>(
     f: &mut [T],
@@ -104,8 +104,8 @@ pub(crate) struct Down<T> {
     pub violation: T,
 }
 
-/// Returns the variable to decrease when variable i, with the gradient `highest`, increases. The mark `low` is 0 for variables that can decrease and −∞ for
-/// others. Inverse curvatures of the pairs with i are in `inverses`; `gains` is scratch memory.
+/// Selects the variable to decrease in a pairwise step that increases variable i, whose gradient is `highest`. The mark `low` is 0 for variables that can
+/// decrease and −∞ for others. Inverse curvatures of the pairs with i are in `inverses`; `gains` is scratch memory.
 #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
 pub(crate) fn select_down<T: Scalar>(
     (f, low): (&[T], &[T]),
@@ -136,7 +136,7 @@ pub(crate) fn select_down<T: Scalar>(
     }
 }
 
-/// Returns the violation of the optimality conditions: `highest` minus the smallest gradient f of a variable that can decrease, at least 0.
+/// Returns the violation of the optimality conditions: `highest` minus the smallest gradient f among variables that can decrease; at least 0.
 #[inline(always)]
 fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
     let mut lanes = [T::zero(); LANES];

@@ -19,7 +19,7 @@ pub(crate) struct Smo<'a, G> {
     pub(super) f: Vec<f64>,
     /// Penalty C for which the coefficients β were computed; 0 before the first solution.
     pub(super) c: f64,
-    /// Whether the gradient f was computed in f64 from the coefficients β, not only updated.
+    /// Whether the gradient f was recomputed in f64 from the coefficients β; otherwise it was updated step by step.
     pub(super) is_summed: bool,
     /// Maximum number of iterations of the solver.
     pub(super) max_iterations: u64,
@@ -87,7 +87,7 @@ impl<'a, G> Smo<'a, G> {
         self.is_summed = true;
     }
 
-    /// Updates the gradient f after the coefficients β have changed; `before` contains the previous coefficients.
+    /// Updates the gradient f after a change of the coefficients β, given the previous coefficients `before`.
     pub(super) fn follow<T: SolverScalar>(&mut self, before: Vec<f64>)
     where
         G: Gram<T>,
@@ -99,7 +99,7 @@ impl<'a, G> Smo<'a, G> {
         self.gram.take_times(&change, &mut self.f);
     }
 
-    /// Returns the dual objective `Σ y β − ½ β K β`, where y are the labels, β the coefficients and K the Gram matrix.
+    /// Returns the dual objective `Σ y β − ½ β K β`, with labels y, coefficients β and Gram matrix K.
     pub(super) fn objective(&self) -> f64 {
         let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
         linear - 0.5 * quadratic

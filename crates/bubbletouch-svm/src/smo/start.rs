@@ -56,7 +56,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Replaces the coefficients β and the gradient f by the given start if the start has a higher objective.
+    /// Replaces the coefficients β and the gradient f by another start (β, f) if the other start has a higher objective.
     pub(super) fn prefer(&mut self, other: (Vec<f64>, Vec<f64>)) {
         let objective = self.objective();
         let own = (

@@ -19,7 +19,7 @@ fn mark<T: Scalar>(can_move: bool) -> T {
     }
 }
 
-/// For every variable, marks whether its coefficient β can increase (`up`) and whether it can decrease (`low`): 0 if it can, otherwise −∞.
+/// Sets the marks of every variable: `up` is 0 if its coefficient β can increase, `low` is 0 if it can decrease; otherwise −∞.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
     let n = beta.len();
@@ -51,7 +51,7 @@ pub(crate) struct Variables<T> {
     pub up: Vec<T>,
     /// Mark of each variable: 0 if its coefficient can decrease, otherwise −∞.
     pub low: Vec<T>,
-    /// Scratch memory for the search of the variable to decrease.
+    /// Temporary values for the selection of the variable to decrease.
     pub gains: Vec<T>,
 }
 

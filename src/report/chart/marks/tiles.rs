@@ -20,7 +20,7 @@ const SIGN: u32 = 11;
 /// Number of rows or columns of tiles above which tiles are small.
 const MANY: usize = 20;
 
-/// Appearance of the tiles: how values are converted to colours and texts.
+/// Appearance of the tiles of a chart: rules that convert values to colours and texts.
 struct Look<'a> {
     fill: Setting<'a>,
     sign: Option<Setting<'a>>,
@@ -147,7 +147,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// Returns the first letters of an outcome's name (one to three) that distinguish it from all previous outcomes.
+    /// Returns the shortest prefix (one to three letters) of an outcome's name that no previous outcome has.
     fn letter(&self, outcome: &str) -> String {
         let Data::Words { levels, .. } = self.fill.data else {
             return String::new();

@@ -27,8 +27,7 @@ pub fn answers(tables: &[Table]) -> Vec<String> {
     sentences
 }
 
-/// Returns the text for the terminal at the end of a run: configurations, findings, comparison with published accuracies, and the most frequent confusions of
-/// objects.
+/// Returns the text that the terminal shows after a run: configurations, findings, published accuracies, and the most frequent confusions of objects.
 pub fn words(tables: &[Table], width: usize) -> String {
     let shown = [
         CONFIGURATIONS,
@@ -59,8 +58,8 @@ fn missed(tables: &[Table]) -> Option<String> {
     (count > 0.0).then(|| format!("{count} of {of} {MISSED_TOUCHES} ({share} %): {meaning}."))
 }
 
-/// For each condition (settings of the world, such as noise), returns sentences on the best configuration. If there are many conditions, only the first ones
-/// have sentences.
+/// Returns sentences on the best configuration for each condition, which is a combination of external settings such as noise. If there are many conditions,
+/// only the first ones have sentences.
 fn bests(configurations: &Table) -> Option<Vec<String>> {
     let (accuracy, _) = configurations.column("accuracy")?;
     let (measurements, _) = configurations.column("measurements_per_decision")?;

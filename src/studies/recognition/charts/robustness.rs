@@ -27,7 +27,7 @@ pub(super) const ROBUSTNESS: File<Robustness> = File::new(
 .summary();
 
 row! {
-/// Robustness of a design (all settings except one condition) to that condition: a row of `robustness.csv`.
+/// Robustness of a design to one condition: a row of `robustness.csv`; the design consists of all settings except the condition.
 pub struct Robustness {
     /// Number of the most accurate configuration of the design among all values of the condition; the number refers to a row of `summary.csv`.
     configuration: usize => Subject: Linear;
@@ -51,7 +51,7 @@ pub struct Robustness {
     half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
     /// Lower end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it lies beyond the last value of the condition.
     half_accuracy_at_low: Option<f64> => Note "95 % interval of the place, lower end": Linear;
-    /// Upper end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it lies beyond the last value of the condition.
+    /// Upper end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it exceeds the last value of the condition.
     half_accuracy_at_high: Option<f64> => Note "95 % interval of the place, upper end": Linear;
     /// Last value of the condition in the direction of `direction`, in the unit of the condition.
     end: f64 => Note "last value": Linear;
@@ -77,7 +77,7 @@ pub enum HalfStatus {
     Found,
     /// The accuracy stays above half-way to chance up to the last swept value.
     BeyondTheLastValue,
-    /// The highest accuracy over all swept values is not above chance.
+    /// The highest accuracy over all values of the condition is not above chance.
     AllAtChance,
 }
 
@@ -92,10 +92,10 @@ const MIN_VALUES: usize = 3;
 /// the axis. With a smaller value, zero and the smallest positive value are hardly distinguishable.
 const ZERO_DECADES: f64 = 0.5;
 
-/// Ratio of a condition's largest to its smallest positive value above which its axis is logarithmic, as in charts.
+/// Ratio of the largest to the smallest positive value of a condition above which its chart axis is logarithmic.
 const LOG_RATIO: f64 = 16.0;
 
-/// Mean accuracies of a design, one for each value of a condition, in ascending order of the values.
+/// Mean accuracy of a design at each value of a condition, in ascending order of the values.
 struct Curve {
     values: Vec<f64>,
     accuracy: Vec<f64>,
@@ -152,8 +152,8 @@ impl Curve {
         }
     }
 
-    /// Returns the condition's value at which half of the accuracy above chance is lost, and both ends of its interval. A result is `None` if it lies beyond
-    /// the last value of the condition.
+    /// Returns the value of the condition at which half of the accuracy above chance is lost, and the two ends of its interval. A result is `None` if it lies
+    /// beyond the last value of the condition.
     fn half(&self, direction: Direction, seed: &Seed) -> [Option<f64>; 3] {
         let places: Vec<f64> = self.values.iter().map(|&value| self.place(value)).collect();
         let outwards = self.outwards(direction);
@@ -208,7 +208,7 @@ fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
     (Z * Z / a).max(1.0)
 }
 
-/// Returns the table of robustness; `summary` has one row per configuration. Returns `None` if no numeric condition has enough values.
+/// Returns the robustness table, computed from `summary`, which has one row per configuration. Returns `None` if no numeric condition has enough values.
 ///
 /// # Errors
 /// If an accuracy of the summary is not between 0 and 1, or a row cannot be written to a file.
@@ -352,7 +352,7 @@ impl ObjectCounts {
         self.own(configuration).unwrap_or(self.of_all).max(1)
     }
 
-    /// Returns the number of objects that a configuration distinguishes, or `None` if its confusion matrix is not stored.
+    /// Returns the number of objects that a configuration recognises, or `None` if its confusion matrix is not stored.
     pub(super) fn own(&self, configuration: f64) -> Option<usize> {
         self.of_cells.get(&configuration.to_bits()).copied()
     }

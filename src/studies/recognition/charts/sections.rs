@@ -1,4 +1,4 @@
-//! Page sections that only recognition studies have: sample touches, settings, and how often each limit of the model was reached.
+//! Page sections that only recognition studies have: sample touches, settings, and the limits that were reached.
 
 use crate::error::Result;
 use crate::report::csv_tables::LIMITS_FILE;
@@ -10,7 +10,7 @@ use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::CONFIGURATIONS;
 use crate::table::{Table, short_number};
 
-/// Returns the page sections for sample touches, settings, and how often each limit was reached.
+/// Returns the page sections about sample touches, settings, and the number of times that each limit of the simulation or training was reached.
 ///
 /// # Errors
 /// If a sample touch cannot be drawn.

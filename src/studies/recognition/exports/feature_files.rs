@@ -64,7 +64,7 @@ struct ObjectRow<'a> {
     object: &'a str,
 }
 
-/// Content of the file `configuration.toml`: the settings of the configuration and the trial.
+/// Content of the file `configuration.toml`: the trial number and the settings of the configuration.
 #[derive(Serialize)]
 struct Settings<'a> {
     question: &'a str,

@@ -172,7 +172,7 @@ struct FrameFiles {
     shear: Option<NpyFile>,
     /// Number of values that a frame has.
     n_values: usize,
-    /// Number of values of a frame that are written to `frames`; the others are written to `shear`.
+    /// Number of values of a frame that are written to the array `frames`; the remaining values are written to `shear`.
     n_first: usize,
 }
 

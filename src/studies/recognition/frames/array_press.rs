@@ -65,7 +65,7 @@ impl ArrayPress<'_> {
         approach.press_and_slide(&self.object, &[pose], motion, friction.as_mut(), press)
     }
 
-    /// Returns the object's pose at the end of a touch that starts at `pose`, in the patch frame.
+    /// Returns the pose of the object, in the patch frame, at the end of a touch that starts at `pose`.
     pub fn end(&self, mut pose: Pose, contact: Option<Contact>) -> Pose {
         if let Some(contact) = contact {
             pose.translation -= self.array.slide().extend(contact.travel);

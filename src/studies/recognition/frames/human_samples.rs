@@ -13,7 +13,7 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use ndarray::Array2;
 use rayon::prelude::*;
 
-/// Number of frames that a film strip shows; a strip is one row of the picture.
+/// Number of frames in a film strip; a film strip is one row of the picture.
 const N_FRAMES: usize = 4;
 
 /// Number of touches of each kind that are compared for the picture, which shows the one with the largest force. If only one touch were considered, a flat hand

@@ -18,7 +18,7 @@ fn block(n_frames: usize) -> usize {
     (BLOCK / n_frames.max(1)).max(1)
 }
 
-/// Returns the number of touches that are simulated before their frames are stored, if each touch has `n_frames` frames.
+/// Returns the number of touches to simulate before their frames are stored; `n_frames` is the number of frames per touch.
 fn made_at_once(n_frames: usize) -> usize {
     block(n_frames) * BLOCKS_A_THREAD * rayon::current_num_threads()
 }

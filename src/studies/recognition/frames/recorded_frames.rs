@@ -70,7 +70,7 @@ pub struct RecordedFrames {
     depths: Option<Vec<f64>>,
 }
 
-/// Frames that one file contains, with the shape of a frame.
+/// Frames that one file contains, and the shape of each frame.
 struct FramesOfFile {
     shape: FrameShape,
     readings: Array2<f64>,
@@ -179,7 +179,7 @@ impl RecordedFrames {
         values.collect()
     }
 
-    /// For each taxel that is not masked, returns two readings along its axis: in the touch, and untouched.
+    /// Returns two readings along the axis for each unmasked taxel: during the touch and without touch.
     fn pushes(&self, touch: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
         let frames = (0..self.n_frames).flat_map(move |frame| {
             let readings = self.frame(touch, frame).into_iter().zip(&self.is_masked);
@@ -303,7 +303,7 @@ impl RecordedSpec {
         Ok((names, streams, counts))
     }
 
-    /// Returns the group of every touch; the separate test set comes last. Returns `None` if the recording defines no groups.
+    /// Returns the group of every touch; the touches of the separate test set come last. Returns `None` if the recording defines no groups.
     fn group_keys(&self, [n_train, n_test]: [usize; 2]) -> Result<Option<Vec<usize>>> {
         let read = |name: &str, n: usize| -> Result<Option<Vec<KeyValue>>> {
             match self.file_of(name) {
@@ -405,9 +405,9 @@ impl RecordedSpec {
         Ok(zeros)
     }
 
-    /// Returns the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. A taxel counts as saturated above the given full
-    /// scale, or above a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because equal depths may
-    /// cause it.
+    /// Returns two readings: the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. A taxel counts as saturated above
+    /// the given full scale, or above a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because
+    /// equal depths may cause it.
     fn full_scale_of(
         &self,
         files: &[&FramesOfFile],

@@ -185,7 +185,7 @@ fn loudest_group<'a>(plan: &Plan, groups: &'a [MeasurementGroup]) -> Option<&'a 
     })
 }
 
-/// Returns the labels of the classes that a sample picture shows: those that the study lists, or four that are spread over the list of all classes.
+/// Returns the class labels that the sample picture shows: the classes listed in the study, or four classes spread over all classes.
 ///
 /// # Errors
 /// If [`named_samples`] fails.

@@ -19,8 +19,8 @@ use glam::DVec3;
 /// Edge lengths of the box with which the shear error is measured, metres; similar to the objects of the built-in sets.
 const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
 
-/// Statistics of the shear error under a flat face that is modelled by packed spheres. The shear error of a taxel is its shear reading along x minus the
-/// reading on an exactly flat face, newtons.
+/// Statistics of the error in shear forces that occurs where packed spheres approximate a flat face. The shear error of a taxel is its shear reading along x
+/// minus the reading on an exactly flat face, newtons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShearRipple {
     /// Mean shear error over the taxels under the face, newtons.

@@ -1,4 +1,4 @@
-//! Interface of a set of touches: pressed objects, human touches, or recorded frames.
+//! Common interface of sets of touches: pressed objects, human touches, or recorded frames.
 
 use crate::engine::progress::Progress;
 use crate::error::Result;
@@ -48,7 +48,7 @@ pub trait TouchSet: Sync {
         None
     }
 
-    /// Returns the side (training or test) of every touch, which holds in all trials; returns `None` if the data define no test set.
+    /// Returns the side (training or test) of every touch if the data define a test set, otherwise `None`; the sides are equal in all trials.
     fn given_sides(&self) -> Option<&[Side]> {
         None
     }

@@ -78,8 +78,8 @@ impl Measurements {
         rows
     }
 
-    /// Returns the numbers of the tilted copies of the given training touches; copies are numbered after all readings. The first copy of each touch comes
-    /// first, followed by the second copy of each.
+    /// Returns the numbers of the tilted copies of the given training touches; the numbers of copies follow the numbers of all readings. The first copy of each
+    /// touch comes first, followed by the second copy of each.
     pub fn copies(&self, inputs: &RowInputs, train: &[usize]) -> Vec<usize> {
         let Some(copies) = &self.copies else {
             return Vec::new();
@@ -259,7 +259,7 @@ fn sensed_by(
 /// %.
 pub const UNTOUCHED: usize = 256;
 
-/// Reads the skin of the training touches while nothing touches it; returns one reading per row, shape (readings, n_taxels).
+/// Returns readings of the untouched skin that the training touches use, shape (n_readings, n_taxels).
 fn untouched(whole: Reading, trial: usize, seed: u64) -> Array2<f64> {
     let seed = Seed::new(seed).named("untouched").numbered(trial as u64);
     let mut readings = Array2::zeros((UNTOUCHED, whole.projection.n_taxels()));

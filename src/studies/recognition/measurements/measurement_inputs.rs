@@ -34,7 +34,7 @@ pub struct MeasurementInputs<'a> {
     pub signal: SignalInputs,
     /// Skin that the test touches use: the training skin or another one.
     pub test_sensor: TestSensor,
-    /// Inputs of the test touches that differ from the training touches; `None` unless the study has the table `[test]`.
+    /// Inputs of the test touches, where they differ from the training touches; `None` if the study has no table `[test]`.
     pub test: Option<TestInputs<'a>>,
     /// Ensemble from which the measurement matrix is drawn.
     pub ensemble: Ensemble,
@@ -74,7 +74,7 @@ pub struct MeasuredTrial<'a> {
 pub struct SignalInputs {
     /// Steps of the signal chain, in the order in which they are applied.
     pub steps: Vec<StepSpec>,
-    /// Unit of the noise standard deviation; full scale if there is no noise.
+    /// Unit of the noise standard deviation; if there is no noise, the unit is the full scale.
     pub noise_unit: NoiseUnit,
     /// Strengths of the signal steps: noise, smoothing and sensor errors.
     pub condition: Condition,

@@ -11,7 +11,7 @@ use crate::studies::recognition::spec::study::StudySpec;
 use crate::world::{Layout, Patch, Taxels};
 
 impl HumanTouchSpec {
-    /// Returns the distance from the axis of the arm to the outside of the skin, metres.
+    /// Returns the distance from the axis of the arm to the outer surface of the skin, metres.
     pub fn surface(&self) -> f64 {
         self.arm_radius_mm * MM
     }

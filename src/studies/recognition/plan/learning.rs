@@ -362,7 +362,7 @@ impl RecognitionSpec {
         self.cv_folds.unwrap_or(5)
     }
 
-    /// Returns the rule that forms groups of touches which a split does not divide; the rule includes the distances below which drawn poses are neighbours.
+    /// Returns the rule that forms groups of touches; all touches of a group are on one side of a split (training or test).
     pub fn kept_together(&self) -> Option<KeepTogether> {
         Some(KeepTogether {
             kind: self.group_by.or(self.split.group())?,

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// Rule that forms groups of touches; a split into training and test touches does not divide a group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepTogether {
-    /// Pose parameters whose values define a group.
+    /// Rule that lists the pose parameters whose values define a group.
     pub kind: GroupSpec,
     /// Distance below which two drawn offsets or depths are neighbours, metres, positive.
     pub metres: Option<f64>,
@@ -88,7 +88,7 @@ impl KeepTogether {
         axes.map(|&axis| Ok((axis, self.distance(axis)?))).collect()
     }
 
-    /// For each grouping parameter whose values are listed in the study, returns the index of the touch's value.
+    /// Returns, for each grouping parameter with a list of values in the study, the index of the touch's value in the list.
     fn listed(&self, touch: &Touch) -> Vec<usize> {
         let axes = self.kind.axes().iter();
         let indices = axes.map(|&axis| touch.indices[axis as usize]);
@@ -96,7 +96,8 @@ impl KeepTogether {
     }
 }
 
-/// Connects touches that are neighbours. For each touch, returns the first touch of its connected component.
+/// Returns the group number of each touch; touches with neighbouring poses belong to the same group. For each touch, returns the first touch of its connected
+/// component.
 fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)]) -> Vec<usize> {
     let mut first: Vec<usize> = (0..touches.len()).collect();
     let Some(&(along, distance)) = drawn.first() else {

@@ -31,7 +31,7 @@ pub fn as_written(value: f64) -> f64 {
 /// Checked study: its specification, and its values in SI units.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Specification of the study: its keys with the values and units of the study file.
+    /// Specification of the study, with the keys, values and units of the study file.
     pub spec: StudySpec,
     /// Arrays of taxels, one for each combination of pitch and size.
     pub arrays: Vec<TaxelArray>,
@@ -127,8 +127,8 @@ impl Plan {
         Ok(plan)
     }
 
-    /// For each combination of the values in the table `[axes]`, returns one plan; if there are no axes, returns a single plan. Each plan contains the
-    /// specification of the whole study.
+    /// Returns one plan for each combination of values in the table `[axes]`, or a single plan if there are no axes. Each plan contains the specification of
+    /// the whole study.
     ///
     /// # Errors
     /// If a key is out of its range for some combination; the error names the axis.

@@ -236,7 +236,7 @@ impl TaxelArray {
     }
 }
 
-/// Writes all inputs of the array's frames; the patch is omitted because it is derived from the other fields.
+/// Writes all inputs that determine the frames of the array; the patch is omitted because it is derived from them.
 impl fmt::Debug for TaxelArray {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self {

@@ -21,7 +21,7 @@ use crate::studies::recognition::spec::study::StudySpec;
 use std::sync::Arc;
 use toml::{Table, Value};
 
-/// Tables whose keys `[test]` may contain in a study that places objects.
+/// Names of the tables whose keys may also occur in `[test]`, in a study that places objects.
 pub(crate) const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
 const TABLES_OF_OTHERS: &[&str] = &["signal"];
 
@@ -95,7 +95,7 @@ impl Check<'_> {
         Ok(Some(Arc::new(tested)))
     }
 
-    /// Returns `error` with the key as it is written in `[test]`, if the error concerns a key of that table.
+    /// Changes the key in an error to its name in `[test]`, if the error concerns a key of that table.
     fn under_test(&self, error: Error, test: &Table) -> Error {
         let Error::Input {
             place,

@@ -4,8 +4,8 @@ use crate::error::Result;
 use crate::inputs::check::Check;
 use crate::studies::recognition::spec::study::StudySpec;
 
-/// Each trial t has split t and projection (measurement matrix) t. With P = `projections_per_split`, trial t has split t / P and projection t mod P, so that
-/// each split is combined with P projections. All other random numbers are drawn anew in each trial.
+/// Methods that assign a split t and a projection (measurement matrix) t to each trial t. With P = `projections_per_split`, trial t has split t / P and
+/// projection t mod P, so that each split is combined with P projections. All other random numbers are drawn anew in each trial.
 impl StudySpec {
     /// Returns the number of the split into training and test touches that a trial uses.
     pub fn split_of(&self, trial: usize) -> usize {

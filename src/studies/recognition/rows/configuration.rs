@@ -79,13 +79,13 @@ pub struct Configuration {
     smoothing_mm: f64 => always of "signal.smoothing_mm";
     /// Strength of each sensor error, such as the gain error. The study has one column for each strength that it sets.
     strengths: Strengths => each_strength;
-    /// Skin that the test touches use: the training skin or another one. The column is present only if the study has the key.
+    /// Skin on which the test touches are simulated: the training skin or another one. The column is present only if the study has the key.
     test_sensor: Option<TestSensor> => if_given of "signal.test_sensor";
     /// Ensemble from which the measurement matrix is drawn, such as `gaussian`.
     ensemble: Ensemble => always of "sensing.ensemble";
     /// Number m of measurements per frame.
     measurements: usize => always of "sensing.measurements";
-    /// Compression ratio n / m: number n of values of a frame, divided by the number m of measurements.
+    /// Compression ratio n / m, where n is the number of values of a frame and m the number of measurements.
     ratio: f64 => always of "sensing.ratio";
     /// Number F of frames per touch. If the frames are concatenated, a touch has F times the features of a frame.
     frames: usize => always of "touches.frames";
@@ -107,8 +107,8 @@ pub struct Configuration {
     train_touches: usize => always of "recognition.train_touches";
     /// Fraction of the training touches that are labelled as another object, 0 to 1. The column is present only if the study has the key.
     mislabelled_fraction: Option<f64> => if_given of "recognition.mislabelled_fraction";
-    /// Number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The column is present only if
-    /// the study has the key.
+    /// Number of training touches of the most frequent object divided by that of the least frequent object, at least 1. The column is present only if the study
+    /// has the key.
     class_imbalance: Option<f64> => if_given of "recognition.class_imbalance";
     /// Number of test touches of an object that are combined into one decision. The scores of the combined touches are added.
     touches_per_decision: usize => always of "recognition.touches_per_decision";

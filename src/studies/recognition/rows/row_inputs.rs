@@ -1,4 +1,4 @@
-//! Inputs that determine the feature rows of a configuration.
+//! Inputs that determine the feature rows of a configuration: one row of features per touch.
 
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
@@ -13,7 +13,7 @@ pub struct RowInputs {
     pub measurements: usize,
     /// Number F of frames per touch.
     pub frames: usize,
-    /// Way in which the frames of a touch are combined into features; `None` if the frames are concatenated.
+    /// Method that combines the frames of a touch into features; `None` if the frames are concatenated.
     pub temporal_features: Option<TemporalFeatures>,
     /// Features that are computed from the measurements of a frame.
     pub features: Features,

@@ -48,7 +48,7 @@ pub struct TrialScore {
     c_used: Option<f64> => Note "C used": Log;
     /// Parameter γ that the classifier's kernel used: given, scaled or chosen. Empty if the classifier has no γ.
     gamma_used: Option<f64> => Note "γ used": Log;
-    /// Number of the classifier's optimisation problems that stopped at the solver's maximum number of iterations.
+    /// Number of the classifier's optimisation problems that stopped at the maximum number of iterations.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
@@ -107,7 +107,7 @@ pub struct ConfigurationScore {
 } }
 
 row! {
-/// Number of test rows of one object that were recognised as a certain object, over all trials of a configuration: a row of `confusion.csv`. Zero counts are
+/// Number of test rows of one object that were recognised as one object, summed over all trials of a configuration: a row of `confusion.csv`. Zero counts are
 /// omitted.
 pub struct Confusion {
     /// Number of the configuration, as in `summary.csv`.
@@ -176,7 +176,7 @@ pub struct Published {
 } }
 
 row! {
-/// Comparison of a configuration with the best configuration of its condition, paired over trials: a row of `comparison.csv`.
+/// Comparison of a configuration with the best configuration under the same condition, paired by trial: a row of `comparison.csv`.
 pub struct Comparison {
     /// Number of the configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
@@ -195,7 +195,7 @@ pub struct Comparison {
     /// `p_value` after Holm's correction for the number of comparisons: all configurations except the best ones. Empty for the best ones.
     #[serde(default)]
     p_holm: Option<f64> => Value(Neither) "p-value, Holm": Linear;
-    /// Reason why the row has a p-value, or the reason why it has none.
+    /// Reason why the row has a p-value or has none.
     #[serde(default)]
     p_status: PStatus => Outcome "test";
     /// Minimum number of trials with which the row has a p-value; with `projections_per_split`, the minimum number of splits. Empty if no number suffices,
@@ -233,7 +233,7 @@ pub struct Pareto {
     predict_us_per_decision: f64 => Cost "time of a decision" in "µs": Log;
     /// Whether the configuration is on the Pareto front of accuracy against `fit_s`: no other one dominates it in these two values.
     on_training_front: bool => Note;
-    /// Whether the configuration is on the Pareto front of accuracy against `predict_us_per_decision`: no other one dominates it in these two values.
+    /// Whether the configuration is on the Pareto front of accuracy against `predict_us_per_decision`.
     on_prediction_front: bool => Note;
 } }
 
@@ -306,7 +306,7 @@ pub enum Source {
     Split,
     /// Random projection (measurement matrix) of the trial.
     Projection,
-    /// Noise and all other random draws of a trial, and the interaction of split and projection.
+    /// All random draws of a trial other than its split and projection, such as noise, and the interaction of split and projection.
     Rest,
 }
 
@@ -327,7 +327,7 @@ pub struct Variance {
     estimate: f64 => Note "variance": Linear;
     /// Standard deviation of the accuracy due to this source alone: the square root of `estimate`, or 0 if the estimate is negative.
     accuracy_std: f64 => Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
-    /// Lower end of the 95 % interval of `accuracy_std`, by the method of modified large samples; for `rest`, by the χ² distribution.
+    /// Lower end of the 95 % interval of `accuracy_std`, computed by modified large samples; for `rest`, from the χ² distribution.
     accuracy_std_low: f64 => Note "standard deviation, lower end": Linear;
     /// Upper end of the 95 % interval of `accuracy_std`, by the method of modified large samples; for `rest`, by the χ² distribution.
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;

@@ -85,7 +85,7 @@ pub(super) fn with_parameters(schema: &mut Schema) {
     }
 }
 
-/// Reader of the table `[recognition]`: it stores declared parameters, and leaves all other keys to the fields of the specification.
+/// Reader of the table `[recognition]`: the parameters of classifiers are stored, and all other keys are passed on to the fields of the specification.
 pub(super) struct OtherKeys<'a, M> {
     pub map: M,
     pub parameters: &'a mut ClassifierParameters,

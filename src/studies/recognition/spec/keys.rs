@@ -20,7 +20,7 @@ use bubbletouch_sim::features::Features;
 use serde::Serialize;
 use std::sync::LazyLock;
 
-/// Maximum number of trials of a study; the splits of all trials are in memory before the first trial runs.
+/// Maximum number of trials of a study, because the splits of all trials are kept in memory.
 const MAX_TRIALS: usize = 100_000;
 /// Maximum number of tilted copies of a training touch; further copies do not improve a classifier.
 const MAX_COPIES: usize = 1000;
@@ -183,7 +183,7 @@ fn parameter_keys() -> Vec<KeyAbout> {
     declared().map(about).collect()
 }
 
-/// Returns the index after the last key that begins with `prefix`.
+/// Returns the index after the last key whose name begins with `prefix`.
 fn place_after(prefix: &str) -> usize {
     let place = KEYS.iter().rposition(|key| key.path.starts_with(prefix));
     place.map_or(0, |place| place + 1)
@@ -214,7 +214,7 @@ pub(crate) fn key(path: &str) -> &'static KeyAbout {
 }
 
 impl Check<'_> {
-    /// Checks the keys of a table that recognition studies have; returns the keys that the table contains.
+    /// Checks the keys of a table of a recognition study; returns the keys that the table contains.
     pub fn table(&self, name: &str, table: &impl Serialize) -> Result<toml::Table> {
         self.keys(name, table, recognition_keys())
     }

@@ -38,8 +38,8 @@ pub struct RecordedSpec {
     /// File of the group of every touch, shape (n,), such as its grasp or day. A split never divides a group.
     #[serde(default, deserialize_with = "optional_file_path")]
     pub groups: Option<PathBuf>,
-    /// Letters of the axes of the frames, one per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels. The axis `c` contains
-    /// the values of a taxel if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
+    /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels. The axis
+    /// `c` contains the values of a taxel if the frames have rows and columns, otherwise the taxels. Default: `n y x`, `n t y x` or `n c`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order: Option<String>,
     /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
@@ -203,7 +203,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Returns mutable references to all paths that are given, so that they can be made relative to another folder.
+    /// Returns mutable references to all paths in the table, so that a caller can change them to another folder.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let labels = Some(&mut self.labels).filter(|path| !is_empty(path));
         let zero = match &mut self.zero {

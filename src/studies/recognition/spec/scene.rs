@@ -37,7 +37,7 @@ pub struct SkinSpec {
     /// Stiffness k of a taxel along its axis, N/m, positive. Default: 100.
     #[serde(default = "number::<100>")]
     pub stiffness_n_per_m: f64,
-    /// Damping coefficient c of a taxel along its axis, N·s/m, at least 0. Default: 0.
+    /// Damping coefficient c of a taxel along its axis, N·s/m, c ≥ 0. Default: 0.
     #[serde(default)]
     pub damping_n_s_per_m: f64,
 }

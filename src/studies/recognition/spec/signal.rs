@@ -45,7 +45,7 @@ pub struct SignalAxes(BTreeMap<usize, SignalAxis>);
 /// Axis of the signal: its key, the step to which it belongs, and its values.
 pub type SignalAxis = (&'static str, StepSpec, Axis<f64>);
 
-/// Returns all axes that `[signal]` may contain, in the order in which conditions iterate over them.
+/// Returns all axes that `[signal]` may contain, in the order in which they are swept.
 fn all_axes() -> impl Iterator<Item = (&'static str, StepSpec)> {
     let errors = all_strengths().map(|(error, strength)| (strength.key, StepSpec::Error(error)));
     NOISES
@@ -82,7 +82,7 @@ impl Serialize for SignalAxes {
     }
 }
 
-/// Step of the signal chain, which converts simulated frames to sensor signals.
+/// Step of the signal chain, which converts simulated frames to sensor readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum StepSpec {
@@ -160,7 +160,7 @@ impl<'de> Deserialize<'de> for Key {
     }
 }
 
-/// The implementation is not derived, because each sensor error defines its own keys.
+/// Deserialises the table `[signal]`; the code is not derived, because each sensor error defines its own keys.
 impl<'de> Deserialize<'de> for SignalSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(SpecVisitor)

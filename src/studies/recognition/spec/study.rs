@@ -209,7 +209,7 @@ pub struct ReportSpec {
     pub published: Vec<PublishedSpec>,
 }
 
-/// Configurations whose confusion matrix is written to `confusion.csv`.
+/// Selection of the configurations whose confusion matrices are written to `confusion.csv`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ConfusionMatrices {
@@ -228,7 +228,7 @@ pub struct PublishedSpec {
     pub claim: String,
     /// Published fraction of correctly recognised test touches, 0 to 1.
     pub accuracy: f64,
-    /// Publication that makes the claim.
+    /// Publication that contains the claim.
     pub source: String,
     /// Further keys, which select the configurations to compare with. Each key is the name of a column of [`Configuration`] with its value (`noise` is short
     /// for `noise_std`).

@@ -131,7 +131,7 @@ pub fn touch_content(plan: &Plan) -> String {
     TouchInputs::new(plan).key()
 }
 
-/// Memory of a touch, bytes: its pose, its label and its reading parameters.
+/// Memory that a touch occupies, bytes: its pose, its label and its reading parameters.
 const TOUCH_BYTES: f64 = 400.0;
 
 /// Memory of the position that a touch has in the split of a trial, bytes.

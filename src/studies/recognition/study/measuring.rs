@@ -63,7 +63,7 @@ impl RecognitionStudy {
         self.parts().len() > 1
     }
 
-    /// Returns those sets of touches that pending work items need, each with the measurements to compute from it.
+    /// Returns the sets of touches that pending work items need, each with the measurements to compute from its frames.
     fn jobs_left(&self, left: &PendingItems<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
         let touches = 0..self.touch_sets.len();
         let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));
@@ -139,8 +139,8 @@ impl RecognitionStudy {
         Ok(())
     }
 
-    /// Simulates a set of touches for the given jobs. The first call for a set also finishes its work item. Returns `None` if the touches cannot be simulated;
-    /// the jobs are then recorded as failed.
+    /// Simulates a set of touches and computes the measurements of the given jobs. The first call for a set also finishes its work item. Returns `None` if the
+    /// touches cannot be simulated; the jobs are then recorded as failed.
     fn make(
         &self,
         left: &PendingItems<RecognitionRows>,

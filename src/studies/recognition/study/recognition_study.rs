@@ -46,11 +46,11 @@ pub struct RecognitionStudy {
     pub(crate) families: Vec<Family>,
 }
 
-/// Set of touches to simulate: on one array, with a fixed number of frames per touch.
+/// Set of touches to simulate on one array, with a fixed number of frames per touch.
 pub(crate) struct Touches {
     /// Index of the first group of configurations that reads these touches.
     pub group: usize,
-    /// Whether the group `group` reads these touches only for testing.
+    /// Whether the touches serve only as test touches of the group `group`.
     is_tested: bool,
     /// Hash of all inputs that determine the touches, except the files of objects.
     pub content: String,
@@ -70,7 +70,7 @@ pub(crate) struct PlacedGroup {
     pub measured_as: usize,
 }
 
-/// Family of configurations: its group, and the range of its configurations within the group.
+/// Family of configurations: its group, and the index range of its configurations in the group.
 pub(crate) struct Family {
     pub group: usize,
     pub configurations: Range<usize>,
@@ -278,7 +278,7 @@ impl RecognitionStudy {
         (part, &group.configurations[configurations.clone()])
     }
 
-    /// Returns the number of the work item for a family of configurations in a trial.
+    /// Returns the number of the work item that computes a family of configurations in a trial.
     pub(crate) fn family_item(&self, trial: usize, family: usize) -> usize {
         trial * self.families.len() + family
     }
@@ -342,7 +342,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Returns an error if the test touches do not correspond one-to-one to the training touches.
+/// Returns an error if test touches and training touches do not correspond one-to-one.
 fn check_counterparts(touched: &dyn TouchSet, tested: &dyn TouchSet) -> Result<()> {
     let (learned, shown) = (touched.classes(), tested.classes());
     if learned == shown {

@@ -22,7 +22,7 @@ pub struct TouchRow {
     /// Index of the set of touches in the list of the current study.
     #[serde(skip)]
     pub on: usize,
-    /// Whether the row describes the simulation of the touches; otherwise it describes their measurement.
+    /// Whether the row describes the simulation of touches; otherwise it describes the computation of measurements.
     pub is_made: bool,
     /// Number of touches that were simulated or measured.
     pub n_touches: usize,

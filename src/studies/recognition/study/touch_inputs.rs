@@ -34,8 +34,8 @@ impl<'a> TouchInputs<'a> {
         format!("{self:?}")
     }
 
-    /// Returns a text that identifies the touches. The text does not contain the pitch and size of the arrays, because they only affect which objects are
-    /// rejected or noted. An axis of arrays may therefore be extended.
+    /// Returns a text that identifies the set of touches. The text does not contain the pitch and size of the arrays, because they only affect which objects
+    /// are rejected or noted. An axis of arrays may therefore be extended.
     pub fn content(&self) -> String {
         let objects = ObjectsSpec {
             pitch: None,

@@ -1,4 +1,4 @@
-//! Numbers of frames on which learned ensembles and image features are fitted.
+//! Numbers of training frames to which learned ensembles and image features are fitted.
 
 /// Returns the maximum number of training touches to which ensembles and image estimators are fitted, if each touch has `n_frames` frames.
 pub(crate) fn learned_touches(n_frames: usize) -> usize {

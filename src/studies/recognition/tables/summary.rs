@@ -172,7 +172,7 @@ fn against(trials: &[Row], best: &[Row]) -> Result<Comparison> {
     })
 }
 
-/// Maximum number of pairs of objects in the table of the most frequent confusions.
+/// Maximum number of object pairs in the table of the most frequent confusions.
 const MAX_CONFUSED: usize = 15;
 
 /// Returns the pairs of objects that a configuration confuses most often. The pairs are ordered by the fraction of the touched object's test rows; pairs with

@@ -151,7 +151,7 @@ impl TrialInputs<'_> {
 }
 
 impl<'a> FamilyInputs<'a> {
-    /// Returns the inputs of a family, given as a list of at least one configuration.
+    /// Returns the training inputs of a family, which is given as a list of at least one configuration.
     pub fn new(plan: &Plan, sweep: &'a Sweep, family: &[Configuration]) -> Self {
         let recognition = &plan.spec.recognition;
         let decisions = family.iter().map(|configuration| Decision {
@@ -179,7 +179,7 @@ impl<'a> FamilyInputs<'a> {
         }
     }
 
-    /// Returns the settings in groups of equal C; each group shares one trained classifier.
+    /// Returns groups of settings with equal penalty C; all settings of a group use one trained classifier.
     pub fn fits(&self) -> impl Iterator<Item = &[Decision]> {
         self.decisions.chunk_by(|a, b| a.c == b.c)
     }
@@ -230,8 +230,8 @@ impl TrainingInputs {
     }
 }
 
-/// Returns the name of a family of configurations, which contains a hash of its inputs; different inputs give different names. The measurements in the hash are
-/// those that the family alone would need.
+/// Returns the name of a family of configurations; the name contains a hash of the family's inputs. The measurements in the hash are those that the family
+/// alone would need.
 pub fn family_name(
     plan: &Plan,
     (group, touches): (&MeasurementGroup, &str),
@@ -271,7 +271,7 @@ impl Sweep {
     }
 }
 
-/// Returns the maximum size of the kernel values that a solver keeps in memory, converted from GiB to bytes; the default is 2 GiB.
+/// Returns the maximum memory for the kernel values of a solver, bytes; the default of `gib` is 2 GiB.
 pub fn solver_memory(gib: Option<f64>) -> usize {
     gib.map_or(DEFAULT_MEMORY_BYTES, |gib| (gib * GIB) as usize)
 }

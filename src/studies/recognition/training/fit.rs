@@ -18,7 +18,7 @@ use std::time::Instant;
 pub struct Training<'a> {
     /// Classifier, with the candidates from which its C and γ are chosen.
     pub inputs: &'a TrainingInputs,
-    /// Training rows in drawing order, alternating between objects: first readings, then further readings, then tilted copies.
+    /// Training rows in drawing order with alternating objects: first readings, then further readings, then tilted copies.
     pub data: Dataset,
     /// Number of training rows that are first readings of touches; C and γ are chosen on these rows only.
     pub n_first: usize,
@@ -192,7 +192,7 @@ impl Training<'_> {
     }
 }
 
-/// Returns the kernel parameter γ as a number; returns `None` if the kernel computes γ itself or has no γ.
+/// Returns the kernel parameter γ as a number; `None` if γ is derived from the data or the kernel has no γ.
 fn number(gamma: Gamma) -> Option<f64> {
     match gamma {
         Gamma::Value(gamma) => Some(gamma),

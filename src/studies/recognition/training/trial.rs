@@ -199,7 +199,7 @@ impl Trial<'_> {
     }
 }
 
-/// Returns the training rows (all readings of the training touches, then their tilted copies) and the labels of all rows.
+/// Returns the training rows and their labels: all readings of the training touches, then their tilted copies.
 pub(crate) fn learned_rows(
     measurements: &Measurements,
     inputs: &RowInputs,

@@ -10,7 +10,7 @@ use crate::linalg::scalar::Scalar;
 
 /// Ridge δ (constant added to the diagonal) as a fraction of the largest diagonal kernel value; δ exceeds the rounding error of f32 kernel values.
 const RIDGE: f64 = 1e-5;
-/// Number of variables that can be added to the factors before the matrix is factorised again.
+/// Number of variables that can be added to the factors before the next complete factorisation of the matrix.
 const JOINING: usize = 64;
 
 /// Factors of the kernel matrix of the free variables (multipliers between 0 and C).
@@ -18,7 +18,7 @@ const JOINING: usize = 64;
 pub(crate) struct FreeFactor {
     /// Variable at each position of the factors; `None` if the variable was removed from the equations.
     places: Vec<Option<usize>>,
-    /// Number of blocks of values per row, which limits the number of positions.
+    /// Number of blocks of values in each row; this number limits the number of variables.
     width: usize,
     /// Rows of the factor `D Lᵀ`, one per position. Entries are 0 up to the diagonal, beyond the last position, and for removed variables.
     rows: Vec<Lanes>,

@@ -14,7 +14,7 @@ use crate::linalg::scalar::Scalar;
 use crate::smo::reached::violation;
 use crate::smo::variables::bounds;
 
-/// Maximum number of free variables (multipliers between 0 and C) in the equations; further variables are added later.
+/// Maximum number of free variables (multipliers between 0 and C) in the system of equations; others are added later.
 const MAX_FREE: usize = 384;
 /// Maximum number of variables at bounds that become free in one step.
 const MAX_ENTERING: usize = 8;
@@ -65,7 +65,7 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
 struct ActiveSet<'a> {
     labels: &'a [f64],
     beta: &'a mut [f64],
-    /// Gradient `y − Kβ` of the dual objective before the last changes of β, where y are the labels and K is the Gram matrix.
+    /// Gradient `y − Kβ` of the dual objective before the latest changes of β; y are the labels and K is the Gram matrix.
     f: &'a mut [f64],
     /// Changes of the coefficients β since the gradient f was last updated.
     changes: Vec<f64>,
