@@ -78,6 +78,7 @@ impl TrainedClassifier {
     /// | SVM | decision value of each binary problem, or of each class |
     /// | logistic regression | `ln p(k given x) − ln p(k)`; `labels_of_scores` adds the prior once |
     /// | naive Bayes | `ln p(x given k)`; `labels_of_scores` adds the prior once |
+    /// | linfa-svm | `ln p` of the probability that the SVM of class k gives |
     /// | k nearest neighbours, tree, forest | `ln((v_k + 1) / (Σ v + n_classes))`, where v are the votes or the rows of the leaf; finite without votes |
     ///
     /// # Errors
