@@ -558,7 +558,7 @@ mod tests {
         ])
     }
 
-    fn asked(value: &str, cost: &str) -> AdviceQuery {
+    fn query(value: &str, cost: &str) -> AdviceQuery {
         AdviceQuery {
             value: Some(value.to_owned()),
             cost: Some(cost.to_owned()),
@@ -598,23 +598,23 @@ mod tests {
     #[test]
     fn the_cheapest_that_is_good_enough_is_advised_with_the_certain_one_and_the_next() {
         let some = |name: &str| Some(name.to_owned());
-        let accurate = asked("accuracy", "time");
+        let accurate = query("accuracy", "time");
         let found = advised(&accurate, Requirement::Value(0.9)).unwrap();
         assert_eq!(found, [some("middle"), some("certain"), some("best")]);
         let found = advised(&accurate, Requirement::Value(0.95)).unwrap();
         assert_eq!(found, [some("best"), None, None]);
         // For an error, smaller values are better.
-        let found = advised(&asked("error", "time"), Requirement::Value(0.1)).unwrap();
+        let found = advised(&query("error", "time"), Requirement::Value(0.1)).unwrap();
         assert_eq!(found, [some("middle"), None, some("best")]);
     }
 
     #[test]
     fn another_cost_is_another_answer_and_one_that_nobody_knows_is_refused() {
         let wish = Requirement::Value(0.65);
-        assert_eq!(choice(&asked("accuracy", "time"), wish), "middle");
-        assert_eq!(choice(&asked("accuracy", "taxels"), wish), "best");
+        assert_eq!(choice(&query("accuracy", "time"), wish), "middle");
+        assert_eq!(choice(&query("accuracy", "taxels"), wish), "best");
         let tables = settings();
-        let unknown = Candidates::new(&tables, &asked("accuracy", "weight")).unwrap();
+        let unknown = Candidates::new(&tables, &query("accuracy", "weight")).unwrap();
         assert!(unknown.by_condition().is_empty());
         for (value, cost, said) in [
             (
@@ -624,7 +624,7 @@ mod tests {
             ),
             ("speed", "time", "--value: speed; one of accuracy, error"),
         ] {
-            let error = advised(&asked(value, cost), wish).unwrap_err().to_string();
+            let error = advised(&query(value, cost), wish).unwrap_err().to_string();
             assert!(error.contains(said), "{error}");
         }
     }
@@ -665,7 +665,7 @@ mod tests {
     #[test]
     fn a_wish_that_nothing_fulfils_is_an_error_that_names_the_nearest() {
         let text = |value: &str, wish| {
-            let error = advised(&asked(value, "time"), wish).unwrap_err();
+            let error = advised(&query(value, "time"), wish).unwrap_err();
             error.to_string()
         };
         let dear = text("accuracy", Requirement::Value(0.99));
