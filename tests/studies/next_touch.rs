@@ -119,7 +119,7 @@ fn n_correct_by_hand(
         places.iter().map(|&place| set.split.test[place]).collect()
     };
     let seed = Seed::new(2018)
-        .named("touches_per_decision")
+        .named("fused_touches")
         .numbered(trial as u64);
     let fused = fuse_rows(
         test.targets.view(),
