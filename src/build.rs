@@ -1,4 +1,4 @@
-//! Build script: determines a hash of the sources, their commit, and the compiler, for the manifests of studies.
+//! Build script that determines the hash of the sources, their commit and the compiler, which are written to manifests.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Short paths to the types of recognition studies. The code of the types is in the modules `engine`, `inputs` and `studies`.
+//! Re-exports of the types of recognition studies under short paths. The code of the types is in the modules `engine`, `inputs` and `studies`.
 
 pub use crate::engine::axis::Axis;
 pub use crate::engine::shard::Shard;

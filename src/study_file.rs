@@ -1,4 +1,4 @@
-//! Macros for types that are read from study files.
+//! Macros that implement reading for types of study files.
 
 /// Implements `parse` for a type that is read from the text of a TOML file.
 macro_rules! toml_file {

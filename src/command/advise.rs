@@ -1,4 +1,4 @@
-//! `bubbletouch advise`: which setting to take.
+//! `bubbletouch advise`: recommends a setting that meets a requirement.
 
 use crate::command::terminal::streams::say;
 use bubbletouch::report::advice::{Advice, AdviceQuery, Candidates, Requirement};
@@ -126,7 +126,7 @@ struct WishArgs {
     max_training_s: Option<f64>,
 }
 
-/// Refuses an option by a name that it has no more.
+/// Returns an error for an option that was renamed.
 fn renamed(_: &str) -> std::result::Result<f64, String> {
     Err(
         "it is called --budget, in the unit of --cost (microseconds per decision by default)"

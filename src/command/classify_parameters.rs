@@ -1,11 +1,11 @@
-//! Options of `bubbletouch classify` for the parameters that classifiers declare: `--n-trees`, `--gamma`.
+//! Command-line options of `bubbletouch classify` for the parameters that classifiers declare, such as `--n-trees` and `--gamma`.
 
 use bubbletouch::Result;
 use bubbletouch::recognition::classifiers::classifier::Classifier;
 use bubbletouch::recognition::classifiers::parameters::{DefaultValue, Parameter, declared};
 use std::sync::LazyLock;
 
-/// Values of the given options, in the order of the declarations.
+/// Values of the command-line options that are given, in the order of their declaration.
 pub struct ParameterOptions(Vec<(&'static Parameter, GivenValue)>);
 
 /// Value of an option: a number, or the classifier's own rule.

@@ -1,4 +1,4 @@
-//! `bubbletouch features`: what one configuration of a study learns from.
+//! `bubbletouch features`: writes the feature rows with which a configuration of a study is trained and tested.
 
 use crate::command::options::study_args::StudyArgs;
 use crate::command::terminal::output::output_folder;

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 
 /// Pixels along a side of one object's picture.
 const PICTURE: usize = 640;
-/// Pixels along a side of one object on a sheet of many.
+/// Side length of an object's picture in an overview of many objects, pixels.
 const TILE: usize = 240;
 /// Objects in a row of a sheet.
 const COLUMNS: usize = 6;

@@ -13,7 +13,8 @@ use std::path::PathBuf;
 const MM: f64 = 1e-3;
 /// Points of a mesh at which the error is measured.
 const N_POINTS: usize = 100_000;
-/// Points of the box around a solid at which it is measured, at most, about. Larger: gigabytes at tolerances of a micrometre.
+/// Approximate maximum number of points of the box around a solid at which the distance to its surface is measured. Larger: gigabytes at tolerances of a
+/// micrometre.
 const MAX_POINTS: f64 = 1e6;
 
 /// Pack an object with few spheres to a surface error

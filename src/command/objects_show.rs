@@ -1,4 +1,4 @@
-//! `bubbletouch objects show`: an object, the spheres that stand for it, and the error between them, side by side.
+//! `bubbletouch objects show`: draws an object, its spheres, and the error between them in three panels.
 
 use super::objects_pack::renamed;
 use crate::command::options::unused::check_used;

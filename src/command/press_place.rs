@@ -1,4 +1,4 @@
-//! Where an object lies under the patch that `bubbletouch press` presses on it.
+//! Pose of an object below the patch that `bubbletouch press` presses on the object.
 
 use bubbletouch::objects::Model;
 use bubbletouch::world::{RestPose, RestPoses, Touch};
@@ -47,7 +47,7 @@ impl Place {
         }
     }
 
-    /// How it lies; the error names a stable pose that the object has not.
+    /// Returns the stable pose in which the object lies; returns an error if the object does not have the requested pose.
     pub fn rest(&self, model: &Model) -> Result<RestPose> {
         let Some(number) = self.rest else {
             return Ok(RestPoses::AsModelled.poses(model).swap_remove(0));

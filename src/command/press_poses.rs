@@ -59,7 +59,7 @@ struct Row {
     qz: f64,
 }
 
-/// What is said of a pose.
+/// Values that are printed about a pose.
 #[derive(Serialize)]
 struct Reading {
     /// How far the patch travelled, mm.

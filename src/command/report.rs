@@ -1,4 +1,4 @@
-//! `bubbletouch report`: the charts and the page of a folder of results again, from its tables.
+//! `bubbletouch report`: redraws the charts and the page of a result folder from its tables.
 
 use super::classify::word;
 use crate::command::options::results_folder::{checked_manifest, load_study};

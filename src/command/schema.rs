@@ -15,7 +15,7 @@ pub struct Args {
     file: SchemaOf,
 }
 
-/// Kind of file that a schema describes.
+/// Kind of file for which a schema is written.
 #[derive(Clone, Copy, ValueEnum)]
 enum SchemaOf {
     /// Study files of all kinds

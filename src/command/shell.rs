@@ -38,7 +38,7 @@ pub fn completions(args: &CompletionArgs, mut command: Command) -> Result<()> {
     write_out(&script)
 }
 
-/// Writes the pages of all commands into a folder; the error names a page of that name that is of another program.
+/// Writes the manual pages of all commands into a folder; returns an error if a file of another program would be replaced.
 fn write_pages(folder: &Path, command: Command) -> Result<()> {
     let failed = |error| Error::io(folder, "write", error);
     let made = tempfile::tempdir().map_err(failed)?;

@@ -1,4 +1,4 @@
-//! `bubbletouch simulate`: a scene from its file to its folder of results.
+//! `bubbletouch simulate`: simulates a scene file and writes its folder of results.
 
 use crate::command::terminal::output::output_folder;
 use crate::command::terminal::streams::{note, say, write_out};

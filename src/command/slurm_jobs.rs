@@ -23,7 +23,7 @@ pub fn submit(name: &str, options: &[String], line: &str, results: &Path) -> Res
     Ok(number.trim().to_owned())
 }
 
-/// The shards whose jobs of this name wait or run.
+/// Returns the shards whose cluster jobs with this name are waiting or running.
 pub fn queued_shards(name: &str) -> Result<Vec<usize>> {
     let mut squeue = Command::new("squeue");
     // One line for each job of an array: its number in the array.
@@ -33,7 +33,7 @@ pub fn queued_shards(name: &str) -> Result<Vec<usize>> {
     Ok(numbers.flatten().collect())
 }
 
-/// What a command of Slurm says; the error says what it said instead.
+/// Runs a command of Slurm and returns its output; the error contains the message of the command.
 fn answer(command: &mut Command) -> Result<String> {
     let name = command.get_program().to_string_lossy().into_owned();
     let output = command.output().map_err(|error| match error.kind() {

@@ -195,7 +195,7 @@ fn folder_parts(set: &DataSet) -> Vec<String> {
         .collect()
 }
 
-/// Adds a number to names of folders that several sets have: arrays of the same shape and pitch may differ in what a name does not tell.
+/// Appends a number to folder names that several sets of touches share.
 fn number_equal_names(sets: &mut [DataSet]) {
     let names: Vec<String> = sets.iter().map(|set| set.folder.clone()).collect();
     for (place, set) in sets.iter_mut().enumerate() {

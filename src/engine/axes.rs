@@ -1,4 +1,4 @@
-//! Table `[axes]` of a study: keys with the values that they take, in all combinations.
+//! Table `[axes]` of a study: keys with lists of values, from which all combinations are formed.
 //!
 //! ```toml
 //! [axes]
@@ -31,7 +31,7 @@ use toml::de::{DeTable, DeValue};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CombineSpec {
-    /// All combinations of the values of all axes.
+    /// All combinations of the values of the axes are computed.
     #[default]
     All,
     /// A base configuration, and variants of it in which a single axis takes another of its values. The base has the first value of each axis; for `[axes]`, it
@@ -44,7 +44,7 @@ pub enum CombineSpec {
 pub struct StudyAxes {
     /// Axes in the order in which they are written in the study file.
     pub axes: Vec<StudyAxis>,
-    /// Rule that determines which combinations of the axes' values become configurations.
+    /// Rule that selects the combinations of axis values that become configurations.
     pub combine: CombineSpec,
 }
 
@@ -55,7 +55,7 @@ pub struct StudyAxis {
     pub key: String,
     /// Description of the varied key, or of the first key if several are varied together. For keys of test touches, the description of the key without `test.`.
     pub about: Option<&'static KeyAbout>,
-    /// Whether result tables already have a column for the values of this key.
+    /// Whether result tables already contain a column with the values of this key.
     pub has_column: bool,
     /// Distinct values of the axis, at least one.
     pub values: Vec<toml::Value>,
@@ -68,12 +68,12 @@ pub struct StudyAxis {
 pub struct AxisValues {
     /// Number of the combination of values, from 0.
     pub number: usize,
-    /// Value on each axis that has no column of its own in result tables.
+    /// Value of each axis that has no separate column in result tables.
     pub values: Arc<[AxisValue]>,
 }
 
 impl AxisValues {
-    /// Creates the axis values of combination `number`. The columns of those axes that result tables do not have yet are `columns`.
+    /// Creates the axis values of the combination with this number. The columns of those axes that result tables do not have yet are `columns`.
     pub fn new(
         number: usize,
         (axes, columns): (&StudyAxes, &[Column]),
@@ -300,7 +300,7 @@ impl StudyAxis {
         axis
     }
 
-    /// Returns an error about the axis, whose place consists of file, line and key.
+    /// Returns an error about an axis, with file, line and key of the axis.
     fn error(&self, place: &str, given: impl ToString, allowed: impl ToString) -> Error {
         let line = self.line.map_or(String::new(), |line| format!(":{line}"));
         let place = format!("{place}{line}, axes.{:?}", self.key);
@@ -339,7 +339,7 @@ impl StudyAxis {
         Err(self.error(place, given, allowed))
     }
 
-    /// Returns the paths of all keys that take the values of this axis: more than one if the axis key lists several names in braces.
+    /// Returns the paths of all keys that the axis sets: several if the axis key lists several names in braces.
     pub fn keys(&self) -> Vec<String> {
         let parts = self.key.split_once('{').and_then(|(start, rest)| {
             let (names, end) = rest.split_once('}')?;
@@ -399,7 +399,7 @@ impl StudyAxis {
         column.named(about.names.unwrap_or_default()).optional()
     }
 
-    /// Returns the value that a study has at the key of this axis. Returns `None` if the study has no value there, or a value of another type.
+    /// Returns the value of this axis's key in a study. Returns `None` if the study has no value there, or a value of another type.
     fn own(&self, study: &toml::Table) -> Option<toml::Value> {
         let own = value_at(study, self.keys().first()?)?;
         let is_number = self.values.iter().all(|value| number(value).is_some());
@@ -542,8 +542,8 @@ impl StudyAxes {
         all.collect()
     }
 
-    /// Returns the error for a combination of axis values that the check of a study rejects. The error names the axes whose keys the message `said` mentions,
-    /// or all axes.
+    /// Returns the error about a combination of axis values that the study's checks reject. The error names the axes whose keys the message `said` mentions, or
+    /// all axes.
     pub fn refused(&self, place: &str, values: &[Option<toml::Value>], said: &str) -> Error {
         let all = || {
             let axes = self.axes.iter().zip(values);

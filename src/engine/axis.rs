@@ -83,7 +83,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
     }
 }
 
-/// Returns a swept key with the single value 1.
+/// Returns an axis that has the single value 1; used as the default of keys that a study can sweep.
 pub(crate) fn one_value() -> Axis<usize> {
     Axis::One(1)
 }

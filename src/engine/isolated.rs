@@ -1,4 +1,4 @@
-//! Isolation of a work item, so that its error or panic does not end the run.
+//! Execution of a single work item, such that an error or panic does not end the run.
 
 use crate::error::Result;
 use std::panic::{AssertUnwindSafe, catch_unwind};

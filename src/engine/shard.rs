@@ -24,7 +24,7 @@ impl Shard {
         self.index
     }
 
-    /// Returns whether this shard computes a work item, given the number of its group and its number among all items.
+    /// Returns whether this shard computes a work item, given its group (index, number of groups) and its index `piece`.
     ///
     /// Items of a group share preparatory work. If there are at least as many groups as shards, each group is therefore assigned to a single shard.
     pub fn takes(&self, (group, n_groups): (usize, usize), piece: usize) -> bool {

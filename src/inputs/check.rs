@@ -113,7 +113,7 @@ impl Check<'_> {
         Err(Error::input(self.place, given, allowed))
     }
 
-    /// Checks that `bytes` bytes fit into the memory of the machine; `what` describes the data in the error.
+    /// Checks that `bytes` bytes fit into the memory of the machine; the error message describes the data by `what`.
     pub fn memory(&self, key: &str, given: impl ToString, bytes: f64, what: &str) -> Result<()> {
         check_memory(bytes, machine_memory(), what)
             .map_err(|allowed| self.error(key, given, allowed))

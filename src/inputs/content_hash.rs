@@ -70,7 +70,7 @@ pub fn bytes_of_numbers(numbers: impl IntoIterator<Item = f64>) -> Vec<u8> {
     numbers.into_iter().flat_map(f64::to_le_bytes).collect()
 }
 
-/// Converts the vertices (metres) and triangles of a mesh to bytes.
+/// Converts the vertices (metres) and triangles of a mesh to bytes, from which a hash is computed.
 pub fn bytes_of_mesh(mesh: &TriangleMesh) -> Vec<u8> {
     let vertices = mesh.vertices();
     let mut bytes = (vertices.len() as u64).to_le_bytes().to_vec();

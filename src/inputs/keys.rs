@@ -38,7 +38,7 @@ pub enum AxisPlace {
     Never,
 }
 
-/// Compares two keys by their paths: equal paths mean equal keys.
+/// Two keys are equal if their paths are equal.
 impl PartialEq for KeyAbout {
     fn eq(&self, other: &Self) -> bool {
         self.path == other.path

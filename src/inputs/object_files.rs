@@ -70,7 +70,7 @@ pub fn load_catalogue(path: &Path) -> Result<Catalogue> {
     Catalogue::parse(&place, &place, &text)
 }
 
-/// For each object, returns the SHA-256 hash of its source (the mesh file or the parts of the solid), by object name.
+/// Returns the SHA-256 hash of each object's source (mesh file or parts of the solid), by object name.
 ///
 /// # Errors
 /// Returns the errors of [`load_objects`].

@@ -59,7 +59,7 @@ pub enum ModelSpec {
 }
 
 impl ModelSpec {
-    /// Returns the default maximum distance between spheres and surface, mm: 0.25, or for a packed mesh a tenth of the pitch (mm).
+    /// Returns the default maximum distance between spheres and surface, mm: 0.25, or a tenth of the pitch (mm) for a packed mesh.
     pub fn default_surface_error_mm(self, pitch_mm: f64) -> f64 {
         match self {
             Self::Packed => 0.1 * pitch_mm,

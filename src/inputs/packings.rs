@@ -1,4 +1,5 @@
-//! Packed meshes (spheres within a tolerance), cached in a folder beside the results. Each is a CSV file, named after the hash of its inputs.
+//! Packings (spheres that represent meshes within a tolerance), stored in a cache folder next to the results. Each is a CSV file, named after the hash of its
+//! inputs.
 //!
 //! The last line of a file is a seal of 80 bytes: `# bubbletouch <method>, crc32 <of all bytes before the line>`. If a file is truncated, changed or of another
 //! version, the mesh is packed again, and a note is printed on standard error.

@@ -1,4 +1,4 @@
-//! Allowed numbers of a key.
+//! Ranges of the numbers that keys allow.
 
 use crate::inputs::units::MAX_SIDE;
 use crate::world::MAX_TOUCHES;
@@ -44,7 +44,7 @@ pub enum Range {
     Declared(&'static Parameter),
     /// Numbers for which a function returns true, with a description in words.
     Of(fn(f64) -> bool, &'static str),
-    /// Texts and truth values. A list of them contains each value once.
+    /// Any text or truth value is allowed. A list of them contains each value once.
     Any,
     /// Values that the reader of the key checks: texts, files, vectors and tables.
     Unchecked,
@@ -88,8 +88,8 @@ impl Range {
         words.into()
     }
 
-    /// Returns the least and the largest allowed number; infinite if there is no bound. Returns `None` for [`Of`](Self::Of) and for values other than numbers.
-    /// The bounds of [`Part`](Self::Part) are not allowed themselves.
+    /// Returns the smallest and the largest allowed number, which are infinite without a bound. Returns `None` for [`Of`](Self::Of) and for values other than
+    /// numbers. The bounds of [`Part`](Self::Part) are not allowed themselves.
     pub fn bounds(self) -> Option<[f64; 2]> {
         Some(match self {
             Self::Positive => [MIN_POSITIVE, f64::INFINITY],
@@ -106,10 +106,10 @@ impl Range {
     }
 }
 
-/// Maximum value of keys that count something, such as touches. Larger counts exceed memory or take too long.
+/// Maximum value of keys that are counts, such as numbers of touches. Larger counts exceed memory or take too long.
 pub const MAX_COUNTED: usize = 100_000_000;
 
-/// Numbers that a count allows: 1 to the largest count.
+/// Range of counts: 1 to the largest allowed count.
 pub const COUNT: Range = Range::Count(1, MAX_COUNTED);
 
 /// Allowed number of taxels along one side of an array.

@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
-/// JSON schema of an enum that is deserialised from the name of a variant.
+/// JSON schema of an enum whose file format is the name of a variant.
 pub struct Names<T>(PhantomData<T>);
 
 impl<T: DeserializeOwned> JsonSchema for Names<T> {
@@ -55,8 +55,8 @@ impl serde::de::Error for Expected {
     }
 }
 
-/// Returns the keys that the reader of `T` accepts in the innermost table of `probe`, in the order of their declaration. This table contains the single key
-/// `?`. Returns no keys if the table accepts any key.
+/// Returns the keys that `T` accepts in the innermost table of `probe`, in the order of their declaration. This table contains the single key `?`. Returns no
+/// keys if the table accepts any key.
 pub fn accepted_keys<T: DeserializeOwned>(probe: toml::Value) -> Vec<String> {
     let error = T::deserialize(probe).err();
     let message = error.as_ref().map_or("", toml::de::Error::message);
@@ -68,7 +68,7 @@ pub fn accepted_keys<T: DeserializeOwned>(probe: toml::Value) -> Vec<String> {
     names.map(str::to_owned).collect()
 }
 
-/// JSON schema of [`Features`]: one name, or several names of image features joined by `+`.
+/// JSON schema of [`Features`]: a single name, or several names of image features joined by `+`.
 pub struct FeatureNames;
 
 impl JsonSchema for FeatureNames {

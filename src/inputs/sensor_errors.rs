@@ -13,10 +13,10 @@ use std::sync::LazyLock;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TestSensor {
-    /// Skin of the training touches, whose individual errors a classifier may learn.
+    /// The test touches use the skin of the training touches, whose individual errors a classifier may learn.
     #[default]
     SameSkin,
-    /// Another skin of the same type in each trial: gains, drift and faults are drawn again.
+    /// Each trial uses another skin of the same type for testing: gains, drift and faults are drawn again.
     AnotherSkin,
 }
 
@@ -30,7 +30,7 @@ const N_STRENGTHS: usize = {
     n
 };
 
-/// Iterates over the strengths (parameters) of all sensor errors, in the order of table columns: errors of the material first, of the electronics last.
+/// Returns the strengths (parameters) of all sensor errors in the order of table columns, from the material to the electronics.
 pub fn all_strengths() -> impl Iterator<Item = (SensorError, &'static Strength)> {
     let errors = SENSOR_ERRORS.iter();
     errors.flat_map(|error| {
@@ -99,18 +99,18 @@ impl Strengths {
         self
     }
 
-    /// Iterates over the sensor-error strengths that the study sets.
+    /// Returns the strengths of sensor errors that the study sets.
     pub fn given(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
         let all = all_strengths().zip(self.0);
         all.filter_map(|((error, strength), value)| Some((error, strength, value?)))
     }
 
-    /// Iterates over the sensor-error strengths that are not zero.
+    /// Returns the strengths of sensor errors that are not zero.
     pub fn present(&self) -> impl Iterator<Item = (SensorError, &'static Strength, f64)> {
         self.given().filter(|(_, _, value)| *value != 0.0)
     }
 
-    /// Returns the step of the signal chain that applies a sensor error with these strengths.
+    /// Returns the signal step that applies a sensor error with these strengths.
     pub(crate) fn step(&self, error: SensorError, skin: &Seed) -> SignalStep {
         let mut strengths = [0.0; MAX_STRENGTHS];
         for (to, strength) in strengths.iter_mut().zip(error.about().strengths) {

@@ -51,18 +51,18 @@ pub struct AdviceQuery {
     pub cost: Option<String>,
     /// Fixed conditions, each as text of the form `noise=0.05`.
     pub given: Vec<String>,
-    /// Upper bounds of cost columns, as pairs (column name, bound); rows above a bound are omitted.
+    /// Upper bounds of cost columns, as pairs (column name, bound); choices above a bound are omitted.
     pub limits: Vec<(String, f64)>,
 }
 
-/// Requirement of the user: a bound on the value or on the cost.
+/// Requirement of the user: a bound on the value or on a cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Requirement {
-    /// Minimum quality: selects the cheapest choice whose value is at least this good.
+    /// Minimum of the value: the cheapest choice that reaches at least this value is selected.
     Value(f64),
     /// Maximum cost, positive: selects the choice with the best value within this budget.
     Budget(f64),
-    /// No bound: selects the choice with the best value at any cost.
+    /// No requirement: the choice with the best value is selected at any cost.
     Best,
 }
 
@@ -102,7 +102,7 @@ pub struct Candidates<'a> {
 }
 
 impl<'a> Candidates<'a> {
-    /// Returns the candidates of the first table that has choices and the requested value and cost columns.
+    /// Returns the candidates from the first table that contains choices and the requested value and cost columns.
     ///
     /// # Errors
     /// If no table has these columns, or a condition or a cost limit is not valid for the table.
@@ -399,7 +399,7 @@ impl ColumnSelector {
         found.into_iter().map(|one| one.column).collect()
     }
 
-    /// Removes the tables that lack the requested column. Without a request, the default column is required if any table has it. Returns the required name.
+    /// Removes the tables that lack a requested column. Without a request, the default column is required if any table has it. Returns the required name.
     fn narrow<'n>(
         &self,
         tables: &mut Vec<&Table>,
@@ -566,7 +566,7 @@ mod tests {
         }
     }
 
-    /// Returns the design names of the advised choice, the certain choice and the next better choice.
+    /// Returns the names of three designs: the advised choice, the certain choice and the next better choice.
     fn advised(asked: &AdviceQuery, wish: Requirement) -> Result<[Option<String>; 3]> {
         let tables = settings();
         let offers = Candidates::new(&tables, asked)?;

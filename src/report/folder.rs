@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Name and content of a file that is written to a folder.
 pub type NamedFile = (String, Vec<u8>);
 
-/// Returns one CSV file for each table, with its name and content.
+/// Returns the name and content of one CSV file for each table.
 pub fn table_files(tables: &[Table]) -> Vec<NamedFile> {
     // A table that is derived from others has no file.
     let files = tables.iter().filter(|table| !table.csv.is_empty());

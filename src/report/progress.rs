@@ -286,7 +286,7 @@ impl<W: Write> State<W> {
         self.write(&event);
     }
 
-    /// Writes the line that ends a stage.
+    /// Writes the line that reports the end of a stage.
     fn end_stage(&mut self) {
         if self.form == Form::Json {
             self.write_progress();

@@ -1,4 +1,4 @@
-//! Elapsed and remaining time of a run, from the number of its finished work items.
+//! Estimation of the elapsed and remaining time of a run from its number of finished work items.
 
 use std::time::Instant;
 

@@ -26,7 +26,7 @@ struct WrenchRow<'a> {
     cop_x_m: Option<f64>,
     cop_y_m: Option<f64>,
     cop_z_m: Option<f64>,
-    /// Number of taxels with sticking contacts; empty for a patch without friction.
+    /// Number of taxels in sticking contact; empty for a patch without friction.
     n_sticking: Option<usize>,
     n_slipping: Option<usize>,
 }

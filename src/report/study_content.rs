@@ -15,7 +15,7 @@ pub struct NamedPicture {
     pub size: (usize, usize),
 }
 
-/// Results of a study, from which reports are made.
+/// Results of a study from which reports are written.
 #[derive(Clone, Copy)]
 pub struct Found<'a> {
     /// All tables of the study.

@@ -79,7 +79,7 @@ pub(super) fn page_of(about: &StudyAbout, found: &Found) -> Result<String> {
     Ok(study_page(about, found, &beside))
 }
 
-/// Returns the terminal summary of a run, wrapped at about `width` characters: the first table, the answers, and the other tables.
+/// Returns the text that the terminal shows after a run: the first table, the answers, and the other tables, at about `width` characters per line.
 pub fn words_of(tables: &[&Table], answers: &[String], width: usize) -> String {
     let first = tables.first();
     let mut words = first.map_or_else(String::new, |table| table_text(table, width) + "\n");

@@ -169,7 +169,7 @@ impl<'a> Swept<'a> {
         of_role.copied().collect()
     }
 
-    /// Iterates over the varying settings: independent ones first, then dependent ones.
+    /// Returns the varying settings: first independent settings, then those determined by others.
     pub fn varying(&self) -> impl Iterator<Item = &Setting<'a>> {
         self.free.iter().chain(&self.following)
     }
@@ -185,8 +185,8 @@ impl<'a> Swept<'a> {
         main.or(words).or(self.free.first()).copied()
     }
 
-    /// Returns the conditions of a row as text. If at most one condition differs at a time, only this condition is stated. The text is empty if there is one
-    /// condition.
+    /// Returns the values of the conditions in a row as text. If at most one condition differs at a time, only this condition is stated. The text is empty if
+    /// there is one condition.
     pub fn condition_words(&self, row: usize) -> String {
         let conditions = self.of_role(Role::Condition);
         let is_absent = |setting: &Setting| {
@@ -202,7 +202,7 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// Returns the varying choices of a row as text.
+    /// Returns the values of the varying choices in a row as text.
     pub fn choice_words(&self, row: usize) -> String {
         // Choices that do not apply to the row are omitted.
         let applies =

@@ -19,7 +19,7 @@ const COLUMN_GAP: usize = 3;
 /// Number of colours that a terminal or another output supports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// No colours: the output is a pipe or a file, `TERM=dumb`, or `NO_COLOR` is set.
+    /// No colours, because the output is a pipe or a file, `TERM=dumb`, or `NO_COLOR` is set.
     Plain,
     /// 256 colours of xterm.
     Colours256,
@@ -75,7 +75,7 @@ impl Ink {
 /// Column of a table on the terminal, converted to text.
 struct TextColumn {
     head: String,
-    /// Text of the column in each line of the table.
+    /// Text of the column in each row of the table.
     said: Vec<String>,
     is_number: bool,
 }
@@ -141,7 +141,7 @@ fn is_telling(table: &Table, setting: &Setting) -> bool {
     }
 }
 
-/// Returns the first `n_lines` lines of as many columns as fit into `width`, and the number of these columns.
+/// Returns the first `n_lines` lines of the columns that fit into `width`, and the number of these columns.
 fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (String, usize) {
     let mut used = 0;
     let fits = |column: &TextColumn| {
@@ -212,8 +212,8 @@ fn constants(table: &Table, width: usize) -> String {
     }
 }
 
-/// Returns a pivot table for a table with more rows than a terminal shows: one setting along the columns, the others along the rows. Returns `None` if the
-/// settings do not distinguish all rows.
+/// Returns a pivot table if a table has too many rows for the terminal: one setting in the columns, all others in the rows. Returns `None` if the settings do
+/// not distinguish all rows.
 fn pivot_text(table: &Table, width: usize) -> Option<String> {
     let rows: Vec<usize> = (0..table.n_rows).collect();
     let swept = Swept::new(table, &rows);

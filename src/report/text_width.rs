@@ -42,7 +42,7 @@ pub(super) fn break_lines(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String
     lines
 }
 
-/// Returns the text if it fits into `width`; otherwise its longest prefix that fits together with an ellipsis.
+/// Returns the text, shortened with an ellipsis if it does not fit into `width`.
 pub fn shorten(text: &str, size: f64, width: f64) -> String {
     if text_width(text, size) <= width {
         return text.to_owned();

@@ -1,4 +1,4 @@
-//! State of a scene at one time, and the receivers of such frames.
+//! State of a scene at one time (frame), and interfaces of objects that receive frames.
 
 use crate::contact::Wrench;
 use crate::contact::equilibrium::{Equilibrium, Touch};
@@ -55,7 +55,7 @@ pub struct PatchReading {
 pub struct FrictionReading {
     /// Friction force on the patch, newtons, patch frame; this force is included in the wrench of the patch.
     pub shear: DVec3,
-    /// Number of taxels whose contacts stick, that is, do not slide.
+    /// Number of taxels in sticking contact, that is, without sliding.
     pub n_sticking: usize,
     /// Number of taxels whose contacts slipped during the last step.
     pub n_slipping: usize,
@@ -87,7 +87,7 @@ pub enum PoseControl {
         /// Target of the patch's total spring force, newtons.
         wanted: f64,
     },
-    /// The object is free and in equilibrium.
+    /// The object moves freely and is in equilibrium.
     AtRest,
     /// The object is free but not in equilibrium, because the solver reached its iteration limit.
     NotConverged,

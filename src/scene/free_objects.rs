@@ -35,7 +35,7 @@ struct Free {
     mass: f64,
     center_of_mass: glam::DVec3,
     reading: ObjectReading,
-    /// Whether the object was placed by the program and has not reached an equilibrium since.
+    /// Whether a program has set the pose of the object and the object has not reached an equilibrium since then.
     is_put: bool,
 }
 
@@ -151,7 +151,7 @@ impl FreeObjects {
         loads.filter(move |load| load.skin == patch)
     }
 
-    /// Returns the tangential springs that hold free objects on a patch with friction, in taxel order; the springs contain the scene numbers of the objects.
+    /// Returns the tangential springs by which a patch with friction holds free objects, in taxel order, with the scene numbers of the objects.
     pub fn tips_on(&self, patch: usize) -> Vec<TangentialSpringState> {
         let tips = self.balancer.tangential_springs().iter();
         let own = tips

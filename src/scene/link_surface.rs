@@ -12,13 +12,13 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
-/// Maximum distance between a facet's middle and the round shape that it replaces, relative to the taxel pitch. With a larger value, taxels lie deeper; with a
+/// Maximum distance between a facet and the round shape that it approximates, relative to the taxel pitch. With a larger value, taxels lie deeper; with a
 /// smaller value, more triangles are needed.
 const SAGITTA: f64 = 0.02;
 /// Minimum and maximum number of facets that approximate a circle of a round shape. More facets would need memory without moving taxels noticeably.
 const N_FACETS: [f64; 2] = [16.0, 720.0];
 
-/// Selection of the shapes of a robot link that form a surface.
+/// Shapes of a robot link that are selected as a surface.
 pub(super) struct LinkSurface<'a> {
     /// Name of the robot link.
     pub link: &'a str,
@@ -142,7 +142,7 @@ fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
     found.find(|path| path.is_file())
 }
 
-/// Returns the facets of a box, cylinder, ball or other shape that is not a mesh, in the frame of the shape.
+/// Returns the facets of a primitive shape (such as a box, cylinder or ball) in the frame of the shape.
 fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
     let (vertices, triangles) = match *geometry {
         LinkGeometry::Box { size } => return TriangleMesh::cuboid("shape", size),

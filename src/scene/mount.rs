@@ -108,7 +108,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Returns the index of a robot and the index of its link with the given name; without a link name, the index of the base link.
+    /// Returns the index of a robot and of its link with the given name; if no name is given, the base link.
     pub fn link(
         &self,
         key: &str,

@@ -13,7 +13,7 @@ use crate::objects::{Model, Sphere};
 /// smaller value, objects of coarse spheres are rejected.
 const MAX_SHARE: f64 = 0.5;
 
-/// Object of a scene at its initial pose, with its spheres in the object frame.
+/// Object at its initial pose in the scene, with its spheres in the object frame.
 struct Start<'a> {
     object: &'a PlannedObject,
     spheres: &'a [Sphere],

@@ -1,4 +1,4 @@
-//! Executable scene: the keys of a [`SceneSpec`], checked and converted to SI units, with all files read.
+//! Executable scene: the content of a [`SceneSpec`], checked and converted to SI units, with all files read.
 
 use super::overlap::check_starts;
 use super::plan_object::{Movement, PlannedObject};
@@ -34,7 +34,7 @@ pub struct ScenePlan {
     pub output_rate: f64,
     /// Number of frames, at least one. The time of frame k is k / output_rate seconds.
     pub n_frames: usize,
-    /// Number of frames before the scene was shortened by [`cut`](Self::cut). The drift of the sensors depends on this duration.
+    /// Number of frames of the full scene, before [`cut`](Self::cut) shortened it. The drift of the sensors depends on this duration.
     pub n_frames_uncut: usize,
     /// Number of equal time steps between two frames, for scenes that need such steps.
     pub n_substeps: usize,
@@ -75,7 +75,7 @@ impl ScenePlan {
         Self::with_models(place, folder, spec, &BTreeMap::new())
     }
 
-    /// Checks a scene with some objects given in memory, by their names in the scene. For these objects, the scene must not have `object`, `spheres` or `mesh`.
+    /// Checks a scene in which some objects, given by name, are passed in memory. For these objects, the scene must not have `object`, `spheres` or `mesh`.
     ///
     /// # Errors
     /// If a key is invalid, a file cannot be read, or the scene has no object with the name of a model.
@@ -208,7 +208,7 @@ impl ScenePlan {
     }
 }
 
-/// Number of frames of a scene, and number of steps between two frames.
+/// Number of frames of a scene, and number of time steps between two frames.
 struct Clock {
     n_frames: usize,
     n_substeps: usize,
@@ -319,7 +319,7 @@ fn check_presses(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
-/// Returns the time at which the last imposed motion and the last change of a target force end, seconds.
+/// Returns the time at which all imposed motions and all changes of target forces have ended, seconds.
 fn end(robots: &[PlannedRobot], objects: &[PlannedObject]) -> f64 {
     let objects = objects.iter().map(|object| {
         let press = object.press.as_ref().map_or(0.0, PlannedPress::end);

@@ -17,7 +17,7 @@ use crate::world::Motion;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Object of a scene after its keys were checked, as input of a simulation.
+/// Object of a scene, checked and ready for simulation.
 #[derive(Clone, Debug)]
 pub struct PlannedObject {
     /// Name of the object in the scene.
@@ -306,7 +306,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns a ball that contains the model and is centred in the middle of its bounding box: centre and radius.
+/// Returns a bounding ball of the model (centre and radius), whose centre is the centre of the model's bounding box.
 fn ball(model: &Model) -> (DVec3, f64) {
     let bounds = model.bounds();
     let center = bounds.center();

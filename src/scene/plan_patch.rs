@@ -181,7 +181,7 @@ impl Reader<'_> {
         self.under(key, layout)
     }
 
-    /// For a layout file or a robot's tactile sensor, returns the taxels and their radii in mm; `None` for other layouts. A patch with the taxels of a sensor
+    /// Returns the taxels of a layout file or of a robot's tactile sensor, and their radii in mm; `None` for other layouts. A patch with the taxels of a sensor
     /// is mounted on the link of the sensor.
     fn listed_taxels(
         &self,
@@ -264,7 +264,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the part of a surface that carries taxels. The surface is a mesh file, or a robot link if `mesh` is `None`.
+    /// Returns the part of a surface on which taxels are placed. The surface is a mesh file, or a robot link if `mesh` is `None`.
     fn region(&self, key: &str, spec: &RegionSpec, mesh: Option<&Path>) -> Result<DrapeRegion> {
         let refuse = |given: &str, allowed: &str| Err(self.check.error(key, given, allowed));
         if spec.shapes.is_some() && spec.link.is_none() {

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub struct PlannedRobot {
     /// Name of the robot in the scene.
     pub name: String,
-    /// Links and joints of the robot.
+    /// Links and joints of the robot, read from its file.
     pub robot: Robot,
     /// Folder of the URDF file. Mesh files of the links are relative to this folder.
     pub folder: Option<PathBuf>,
@@ -148,7 +148,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the reason in words why the scene cannot move a joint.
+/// Returns the reason, as text, why the scene cannot move a joint.
 fn stays(joint: &Joint, robot: &Robot) -> String {
     match joint.mimic {
         Some(mimic) => format!("mimics `{}`", robot.joints()[mimic.joint].name),

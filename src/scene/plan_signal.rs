@@ -21,7 +21,7 @@ const SMOOTHING: &str = "smoothing_mm";
 #[derive(Clone, Debug)]
 pub struct PlannedSignal {
     chain: Chain,
-    /// Physical quantity with which the chain starts: deflection or force.
+    /// Physical quantity that enters the signal chain: deflection or force.
     begins: Quantity,
 }
 

@@ -20,7 +20,7 @@ const FRICTION: &str = "friction";
 const SHEAR: &str = "shear_stiffness_n_per_m";
 const NAMES: [&str; 6] = [RADIUS, STROKE, STIFF, DAMPING, FRICTION, SHEAR];
 
-/// Source of the taxel properties of one patch: its keys in the scene file and its CSV file.
+/// Source of the taxel properties of a patch: its keys in the scene file, and its CSV file.
 struct Lookup<'a> {
     reader: &'a Reader<'a>,
     /// Key of the patch in the scene file.
@@ -111,7 +111,7 @@ impl Lookup<'_> {
         })
     }
 
-    /// Returns a taxel property from the scene file or from the CSV file; each number is checked.
+    /// Returns a property of each taxel, read from the scene file or from the CSV file, after a check of each number.
     fn find(
         &self,
         name: &'static str,

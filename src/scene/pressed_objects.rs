@@ -6,7 +6,7 @@ use super::skin_state::{PlacedObjects, SkinState};
 use crate::contact::{HeldForce, MovedObject, TaxelContact, Workspace};
 use crate::geometry::Pose;
 
-/// All pressed objects of a scene (objects that control the force on a patch).
+/// All pressed objects of a scene, whose motion is controlled by the force on a patch.
 #[derive(Clone, Debug)]
 pub(super) struct PressedObjects {
     all: Vec<Pressed>,
@@ -27,7 +27,7 @@ struct Pressed {
 }
 
 impl PressedObjects {
-    /// Creates the pressed objects of a scene, which have not moved yet.
+    /// Creates the pressed objects of a scene at zero displacement.
     pub fn new(plan: &ScenePlan) -> Self {
         let objects = plan.objects.iter().enumerate();
         let pressed = objects.filter(|(_, planned)| planned.press.is_some());
@@ -44,8 +44,8 @@ impl PressedObjects {
         }
     }
 
-    /// Moves each pressed object towards its target force, starting from the pose of its imposed motion. The time since the last call is `dt`, seconds;
-    /// infinite at the start.
+    /// Moves each pressed object from the pose of its imposed motion until its target force is reached. The time since the last call is `dt`, seconds; infinite
+    /// at the start.
     pub fn push(
         &mut self,
         plan: &ScenePlan,

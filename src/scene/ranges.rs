@@ -4,7 +4,7 @@
 
 use crate::inputs::range::{not_negative, positive};
 
-/// Function that returns whether a key allows a number.
+/// Type of functions that return whether a key allows a number.
 type Allowed = fn(f64) -> bool;
 
 const COUNT: Allowed = |number| number >= 1.0;
@@ -58,7 +58,7 @@ mod tests {
     use crate::scene::{ScenePlan, SceneSpec};
     use toml::Value;
 
-    /// Test scenes that together contain all keys with a range; their numbers are allowed.
+    /// Test scenes that together contain every key with an allowed range; all their numbers are allowed.
     const SCENES: [&str; 3] = [
         r#"title = "a"
 dt_ms = 1.0

@@ -34,7 +34,7 @@ impl Reader<'_> {
         result.map_err(|error| error.under(format!("{}, key {key}: ", self.check.place)))
     }
 
-    /// Returns the position of `name` in the list of names that `key` allows; if the name is missing, returns an error.
+    /// Returns the position of `name` in the list of names that the key allows, or an error if the list does not contain `name`.
     pub fn known<'n>(
         &self,
         key: &str,

@@ -1,4 +1,4 @@
-//! Time loop of a scene, which passes on each frame as soon as it is computed. The module `by_hand` contains manual steps.
+//! Time loop of a scene, in which every frame is passed to a receiver immediately after its computation. The module `by_hand` contains manual steps.
 
 use super::frame::{Frame, FrameSink, FrictionReading, ObjectReading, PatchReading, PoseControl};
 use super::free_objects::FreeObjects;
@@ -31,7 +31,7 @@ pub struct Simulation<'p> {
     pub(super) robots: Vec<RobotState>,
     skins: Vec<SkinState>,
     objects: PlacedObjects,
-    /// For each imposed object whose pose was set by the program, this pose, `world_from_object`; `None` for objects that follow their motions.
+    /// For each imposed object, the pose `world_from_object` that a program set; `None` for objects that follow their motions.
     pub(super) put: Vec<Option<Pose>>,
     pressed: PressedObjects,
     pub(super) free: FreeObjects,

@@ -15,7 +15,7 @@ use glam::DVec3;
 /// Poses and bounding balls of all objects of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct PlacedObjects {
-    /// Pose of each object, `world_from_object`; for escaped objects, a pose far from all skin.
+    /// Pose of each object, `world_from_object`; escaped objects are placed far from all patches.
     pub poses: Vec<Pose>,
     /// Bounding ball of each object (centre, radius), object frame, metres.
     pub balls: Vec<(DVec3, f64)>,
@@ -113,8 +113,7 @@ impl SkinState {
             .flat_map(FrictionState::tangential_springs)
     }
 
-    /// Attaches tangential springs to the contacts of the object with the number `object`, as if the object had just been placed. In `only`, all other objects
-    /// are out of reach.
+    /// Attaches tangential springs to the contacts of the object number `object`, which has just been placed. In `only`, all other objects are out of reach.
     pub fn put(
         &mut self,
         patch: &PlannedPatch,
@@ -216,7 +215,7 @@ impl SkinState {
     }
 }
 
-/// Adds the forces with which stops (taxels at their stroke) carry free objects to the reading of a patch.
+/// Adds to the reading of a patch the forces with which saturated taxels (at their stroke) support free objects.
 fn add_stops(
     patch: &PlannedPatch,
     contacts: &[TaxelContact],

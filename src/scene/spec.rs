@@ -79,7 +79,7 @@ pub struct RobotSpec {
     /// Imposed motion of the robot's base. Default: no motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSpec>,
-    /// Joint positions over time. A joint that is not listed stays at 0, or at the nearest limit.
+    /// Joint positions of the robot over time. A joint that is not listed stays at 0, or at the nearest limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
 }

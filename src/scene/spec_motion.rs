@@ -103,7 +103,8 @@ pub struct JointsSpec {
     /// Times of the way-points since the start of the scene, s.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
-    /// Positions of each moved joint, one number per time. A key is the joint's name with its unit, such as `elbow_deg`, `elbow_rad`, `slide_mm` or `slide_m`.
+    /// Positions of each moved joint, one number for each time. A key is the joint's name with its unit, such as `elbow_deg`, `elbow_rad`, `slide_mm` or
+    /// `slide_m`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub positions: BTreeMap<String, Vec<f64>>,
 }

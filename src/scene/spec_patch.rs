@@ -178,7 +178,7 @@ pub enum LayoutSpec {
     },
     /// Taxels listed in a file: `layout = { file = "palm.csv" }`; see [`layout_file`](crate::inputs::layout_file) for the formats.
     File(FileLayoutSpec),
-    /// Taxels of a tactile sensor, given by its name in the file of the patch's robot.
+    /// Taxels of a tactile sensor, which is given by its name in the robot's file.
     Sensor(String),
     /// Taxels on the outer surface of a triangle mesh, or of a link of the patch's robot.
     Draped {
@@ -208,7 +208,7 @@ pub enum FileLayoutSpec {
     Parts(FileLayoutParts),
 }
 
-/// Layout file and further information that its format needs.
+/// Layout file, and the further information that its format needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FileLayoutParts {
@@ -228,8 +228,8 @@ pub struct FileLayoutParts {
     pub sensor: Option<String>,
 }
 
-/// Part of a surface, such as `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`. A point belongs to the region
-/// if it satisfies all given keys.
+/// Part of a surface on which taxels are placed, such as `region = { group = "fingertip", box_min_mm = [0.0, 0.0, 0.0], box_max_mm = [20.0, 20.0, 10.0] }`. A
+/// point belongs to the region if it satisfies all given keys.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RegionSpec {
@@ -239,7 +239,7 @@ pub struct RegionSpec {
     /// Largest coordinates of the box in the mesh frame, mm, together with `box_min_mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub box_max_mm: Option<[f64; 3]>,
-    /// Normal of a plane that bounds the region, of any length; the region is on the side to which the normal points.
+    /// Normal of a plane that bounds the region; its length is arbitrary, and it points to the side of the region.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plane_normal: Option<[f64; 3]>,
     /// Point of the plane, mm, together with `plane_normal`. Default: the origin of the mesh.

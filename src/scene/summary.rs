@@ -1,4 +1,4 @@
-//! Summary of a simulation: largest values over all frames.
+//! Summary of a simulation: the largest values over all frames.
 
 use super::frame::{Frame, FrameSink, PoseControl};
 use crate::error::Result;
@@ -33,7 +33,7 @@ pub struct ObjectSummary {
     pub n_unsettled: usize,
     /// Largest residual of force and torque of a free object over all frames, relative to its weight; 0 for other objects.
     pub imbalance: f64,
-    /// Number of frames in which the force on a pressed object differed from its target.
+    /// Number of frames in which the force on a pressed object differs from its target.
     pub n_off: usize,
 }
 

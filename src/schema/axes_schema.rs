@@ -49,7 +49,7 @@ fn reference(pointer: &str) -> Value {
     json!({ "$ref": pointer })
 }
 
-/// Returns the table `[axes]`. A key is a path in quotes, or a table with the last parts of paths.
+/// Returns the schema of the table `[axes]`. A key is a path in quotes, or a table with the last parts of paths.
 fn axes_table(schema: &Value) -> Value {
     let mut axes = Map::new();
     for (name, of_key) in properties(schema) {
@@ -95,7 +95,7 @@ impl<'s> Key<'s> {
         }
     }
 
-    /// Adds the paths of the key and of all keys below it, each with the schema of a list of its values.
+    /// Adds the paths of a key and of all its subkeys; the schema of each path is a list of its values.
     fn add_paths(&self, path: &str, axes: &mut Map<String, Value>) {
         axes.extend(self.list().map(|list| (path.to_owned(), list)));
         for (name, inner) in self.inner() {

@@ -36,7 +36,7 @@ pub fn scene_schema() -> Value {
     schema
 }
 
-/// Returns a schema generator that writes each type in place, without references.
+/// Returns a schema generator that writes all types inline, without references.
 fn generator() -> SchemaGenerator {
     let settings = SchemaSettings::draft2020_12();
     settings

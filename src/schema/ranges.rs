@@ -1,4 +1,4 @@
-//! Bounds of numbers in a schema.
+//! Bounds of numbers in generated JSON schemas.
 
 use serde_json::{Map, Value};
 
@@ -139,7 +139,7 @@ fn last_allowed(allowed: f64, refused: f64, is_allowed: impl Fn(f64) -> bool) ->
 /// Largest number up to which all whole numbers are exact.
 const MAX_WHOLE: f64 = 9_007_199_254_740_992.0;
 
-/// Returns the last number that is inside, on the way from a number inside to one outside.
+/// Returns the last integer for which `is_inside` is true between `inside` (true) and `outside` (false), by bisection.
 fn bisect(mut inside: i128, mut outside: i128, is_inside: impl Fn(i128) -> bool) -> i128 {
     while (outside - inside).abs() > 1 {
         let middle = inside + (outside - inside) / 2;

@@ -9,7 +9,7 @@ use crate::scene::SceneSpec;
 use crate::table::short_number;
 use serde_json::Value;
 
-/// Introduction of the page.
+/// Introduction of the page `guide/tables.md`.
 const START: &str = "\
 # Reference of keys
 
@@ -58,7 +58,7 @@ Each key is the path of another key, with a list of its values: `\"touches.depth
 `combine` is `\"all\"` (default: all combinations) or `\"one_at_a_time\"` (the values of the tables, then each axis alone).
 ";
 
-/// Introduction of the scene files.
+/// Introduction to the section of `guide/reference.md` about scene files.
 const SCENES: &str = "
 ## Scene files
 
@@ -93,7 +93,7 @@ pub fn reference_page() -> String {
     page
 }
 
-/// Returns the heading of a kind, its description, and links to the tables that are described before.
+/// Returns the heading and description of a kind of study, and links to tables that earlier sections describe.
 fn words_of_kind(kind: &KindSchema, first: &KindSchema) -> String {
     let is_shared = |name: &str, schema: &Value| {
         kind.table != first.table
@@ -145,7 +145,7 @@ struct Step {
     is_list: bool,
 }
 
-/// A table of a file.
+/// Table of keys in a study or scene file.
 #[derive(Clone)]
 struct Table<'s> {
     path: Vec<Step>,
@@ -166,7 +166,7 @@ impl FileKind<'_> {
         self.write_table(&table, written, page);
     }
 
-    /// Writes the section of a table and of all tables below it that have no section yet.
+    /// Writes the section about a table, followed by its subtables that have no section yet.
     fn write_table(&self, table: &Table, written: &mut Written, page: &mut String) {
         if !table.path.is_empty() {
             page.push_str(&format!(
@@ -229,7 +229,7 @@ impl FileKind<'_> {
         }
     }
 
-    /// Returns links to the sections of tables.
+    /// Returns links to the sections of the given tables.
     fn links(&self, tables: &[Table], written: &Written) -> String {
         let links = tables.iter().map(|table| {
             let known = written
@@ -272,7 +272,7 @@ impl<'s> Table<'s> {
         keys.iter().find(|key| key.path == path)
     }
 
-    /// Returns a file that contains the unknown key `?` in this table and nothing else.
+    /// Returns a file that contains only this table with the unknown key `?`.
     fn probe(&self) -> toml::Value {
         let table = |name: &str, value| {
             toml::Value::Table([(name.to_owned(), value)].into_iter().collect())
@@ -321,7 +321,7 @@ impl<'s> Table<'s> {
     }
 }
 
-/// Returns a schema without the texts that depend on its place.
+/// Returns a schema without the texts that depend on its position in the document.
 fn bare(schema: &Value) -> Value {
     let mut bare = schema.clone();
     if let Some(keywords) = bare.as_object_mut() {
@@ -332,7 +332,7 @@ fn bare(schema: &Value) -> Value {
     bare
 }
 
-/// Describes the values of a key: `number`, or its names.
+/// Describes the values that a key may have: `number`, or a list of names.
 fn values(schema: &Value) -> String {
     if let Some(title) = schema["title"].as_str() {
         return title.to_owned();
@@ -389,7 +389,7 @@ fn list_words(schema: &Value) -> String {
     }
 }
 
-/// Describes the range of the numbers of a key.
+/// Describes the range of numbers that a key allows.
 fn range(schema: &Value) -> String {
     let choices = ["anyOf", "oneOf"].map(|choice| schema[choice].as_array());
     let choices = choices.into_iter().flatten().flatten();
@@ -413,7 +413,7 @@ fn range(schema: &Value) -> String {
     }
 }
 
-/// Returns the default of a key, as it is written in a file.
+/// Returns the default value of a key, as it is written in a file.
 fn default(schema: &Value) -> String {
     match &schema["default"] {
         Value::Null | Value::Object(_) => String::new(),
@@ -456,7 +456,7 @@ fn meaning(schema: &Value) -> String {
     words.replace("\n\n", " ").replace('|', "\\|")
 }
 
-/// Returns a list of the meanings of the names that a key may have.
+/// Returns a list of the names that a key may have as value, each with its meaning.
 fn meanings_of_values(name: &str, schema: &Value) -> String {
     let one = if is_axis(schema) {
         &schema["anyOf"][0]

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 
 /// Kind of study with the schema of its files.
 pub(super) struct KindSchema {
-    /// Name of the table that only this kind has.
+    /// Name of the table that only study files of this kind contain.
     pub table: &'static str,
     /// Description of the kind of study, in words.
     pub words: &'static str,

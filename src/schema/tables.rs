@@ -6,7 +6,7 @@ use crate::report::comparison::differences::Difference;
 use crate::studies::{failures_about, kind_files};
 use crate::table::{Better, Column, Columns, FileAbout, Role};
 
-/// Introduction of the page.
+/// Introduction of the page `guide/tables.md`.
 const START: &str = "\
 # Result tables
 

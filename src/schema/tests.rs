@@ -1,4 +1,4 @@
-//! The schemas and pages follow the readers of files.
+//! Tests that schemas and generated pages agree with the code that reads files.
 
 use super::study_schema::{kinds, properties};
 use super::*;

@@ -73,7 +73,7 @@ pub(super) fn plain(words: &str) -> String {
     plain.replace("\\[", "[").replace("\\]", "]")
 }
 
-/// Splits a text that begins with a link to an item into the words of the link and the rest. A link is [`Type`] or [words](path).
+/// Splits a text that begins with a documentation link into the words of the link and the rest of the text. A link is [`Type`] or [words](path).
 fn link_of(text: &str) -> Option<(&str, &str)> {
     let end = text.find(']')?;
     let (words, after) = (&text[1..end], &text[end + 1..]);

@@ -180,7 +180,7 @@ mod tests {
         assert_expected("high", found.high, mean + half, of_quantile);
     }
 
-    /// Returns the fraction of bootstrap intervals that contain the expectation of the scores drawn by `draw`.
+    /// Returns the fraction of bootstrap intervals that contain the expectation of the scores that `draw` draws.
     fn coverage(
         n_draws: usize,
         expected: f64,

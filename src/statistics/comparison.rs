@@ -1,4 +1,4 @@
-//! Paired comparison of two configurations of a study over trials.
+//! Comparison of two configurations of a study, paired by trial.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -123,8 +123,8 @@ const AGREED: f64 = 3.0;
 /// Maximum number of trials that [`trials_needed`] considers.
 const MAX_TRIALS: usize = 1000;
 
-/// Returns the smallest number of trials (for crossed trials: of splits) that can give a significant result. With J trials, [`compare`] finds a difference of
-/// three standard deviations between trials significant. Practically all trials agree on the sign of such a difference. The condition is
+/// Returns the smallest number of trials that can give a significant result; for crossed trials, the smallest number of splits. With J trials, [`compare`]
+/// finds a difference of three standard deviations between trials significant. Practically all trials agree on the sign of such a difference. The condition is
 ///
 /// `t(J − 1) · sqrt(1/J + n_test/n_train) ≤ 3`
 ///
@@ -153,7 +153,7 @@ pub fn trials_needed(sizes: &[TrialSize], confidence: f64) -> Result<Option<usiz
     Ok(Some(MAX_TRIALS))
 }
 
-/// Returns the mean ratio of test rows to training rows over the trials, which corrects the variance for trials that share touches.
+/// Returns the ratio of test rows to training rows, averaged over trials; the ratio corrects the variance for shared touches.
 fn overlap(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| size.n_test as f64 / size.n_train as f64)
 }

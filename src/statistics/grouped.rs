@@ -71,11 +71,11 @@ pub struct GroupedTest<'a> {
     pub n_rows: usize,
     /// Number of correctly recognised test rows.
     pub n_correct: usize,
-    /// Counts of each group in the test; each group appears once.
+    /// Counts of rows in the test for each group; each group occurs once.
     pub groups: &'a [GroupCount],
 }
 
-/// For each group, counts its rows and its correct rows; returns the counts in ascending order of the group number.
+/// Counts the rows and the correctly classified rows of each group; returns the counts in ascending order of group numbers.
 pub fn count_groups(rows: impl IntoIterator<Item = (usize, bool)>) -> Vec<GroupCount> {
     let mut counts = BTreeMap::new();
     for (group, is_correct) in rows {
@@ -122,7 +122,7 @@ struct Clustered {
     share: f64,
     /// Effective number of rows: the number of independent rows that would give the accuracy an equal variance.
     n_rows: f64,
-    /// Number of different groups in all tests.
+    /// Number of distinct groups in all tests.
     n_groups: usize,
 }
 

@@ -158,7 +158,7 @@ mod tests {
         assert_eq!(kendall_interval(&[], 0.95), None);
     }
 
-    /// Returns the fraction of intervals that contain the true rank correlation τ = 2/π asin ρ, for normal numbers with correlation ρ.
+    /// Returns the fraction of confidence intervals that contain the true rank correlation τ = 2/π asin ρ of normal pairs with correlation ρ.
     fn coverage(n_draws: usize, n: usize, correlation: f64) -> f64 {
         let mut rng = Seed::new(7).rng();
         let tau = correlation.asin() * std::f64::consts::FRAC_2_PI;

@@ -31,7 +31,7 @@ impl Repeat {
     }
 }
 
-/// Averages the scores of trials whose split and projection, returned by `place`, are equal. A repeated split contains no new information, so it counts as one
+/// Averages the scores of trials with equal split and projection, which `place` returns. A repeated split contains no new information, so it counts as one
 /// trial.
 fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) -> Vec<Repeat> {
     let mut known: HashMap<_, usize> = HashMap::new();
@@ -88,7 +88,7 @@ pub struct Paired {
     theirs: Vec<Repeat>,
     /// Sizes of the trials of the first configuration that are paired, or of all its trials if none is paired; `None` if a size is unknown.
     sizes: Option<Vec<TrialSize>>,
-    /// Whether several trials of a configuration have the same split.
+    /// Whether several trials of a configuration use the same split.
     has_repeats: bool,
 }
 
@@ -130,7 +130,7 @@ impl Paired {
         self.ours.len()
     }
 
-    /// Returns the mean scores of the first and the second configuration over the paired trials; NaN if there are no pairs.
+    /// Returns the mean scores of the first and the second configuration over their common trials; NaN if there are none.
     pub fn means(&self) -> (f64, f64) {
         let mean =
             |trials: &[Repeat]| trials.iter().map(|t| t.score).sum::<f64>() / trials.len() as f64;

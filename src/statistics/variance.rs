@@ -11,7 +11,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 pub struct Component {
     /// Number of random levels of the source (splits or projections); for the residual, the number of scores.
     pub n_levels: usize,
-    /// Degrees of freedom of the source's mean square.
+    /// Degrees of freedom of the mean square of the source.
     pub degrees_of_freedom: usize,
     /// Mean square of the source in the analysis of variance.
     pub mean_square: f64,
@@ -30,7 +30,7 @@ impl Component {
     }
 }
 
-/// Variance components of scores when every split is combined once with every projection.
+/// Variance components of scores from trials in which every split is combined once with every projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Components {
     /// Variance component of the matrix rows (splits).
@@ -71,7 +71,7 @@ pub fn components(scores: ArrayView2<f64>, confidence: f64) -> Result<Components
 }
 
 impl MeanSquares {
-    /// Returns the variance component of one effect, given its mean square, the number of its levels and the number `n_each` of scores per level.
+    /// Returns the variance component of one effect from its mean square, its number of levels, and the number `n_each` of scores per level.
     fn effect(
         &self,
         mean_square: f64,

@@ -25,7 +25,7 @@ pub trait AnyStudy: Send {
     /// If the study does not fit into the memory limit.
     fn plan(&self) -> Result<String>;
 
-    /// For one part of a divided study, returns the number of work items that have no result in the journal (the file of finished work items).
+    /// Returns the number of work items in `part` that have no result in the journal.
     fn n_pending(&self, part: Part, journal: &Journal) -> usize;
 
     /// For one part of a divided study, returns the number of work items that have no successful result in the journal (the file of finished work items).

@@ -25,7 +25,7 @@ pub fn threads_within(scale: &Scale, ceiling: Option<u64>) -> Result<usize> {
     })
 }
 
-/// Runs `work` on as many threads as the memory limit allows. The result does not depend on the number of threads.
+/// Runs `work` on the number of threads that the memory limit allows. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// If [`threads_within`] or `work` fails.

@@ -1,4 +1,4 @@
-//! Grouping of rows by a key.
+//! Functions that group rows by a key.
 
 use crate::error::Result;
 use crate::table::{Columns, File, Table};

@@ -1,4 +1,4 @@
-//! Loaded study of any kind as a type-erased study.
+//! Conversion of a loaded study of any kind to a type-erased study.
 
 use crate::engine::journal::identity::{Identity, SameStudy};
 use crate::engine::journal::journal_file::Journal;
@@ -68,7 +68,7 @@ impl<K: Study> Loaded<K> {
         })
     }
 
-    /// Returns the number of work items that a run computes, including items that failed before if `retries` is set.
+    /// Returns the number of work items that a run computes; failed items are included if `retries` is set.
     fn n_to_run(&self, part: Part, journal: &Journal, retries: bool) -> usize {
         let options = RunOptions {
             journal,

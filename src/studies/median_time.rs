@@ -3,7 +3,7 @@
 use crate::quantile::quantile;
 use std::time::Instant;
 
-/// Calls `act` for each of `things` in sequence and returns the median wall-clock time of a call, seconds; returns 0 if there are no things.
+/// Calls `act` for each of `things` in sequence; returns the median wall-clock time of a call, seconds, or 0 without any call.
 pub(super) fn median_s<T>(things: impl IntoIterator<Item = T>, mut act: impl FnMut(T)) -> f64 {
     let seconds = things.into_iter().map(|thing| {
         let start = Instant::now();

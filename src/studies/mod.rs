@@ -153,7 +153,7 @@ pub fn load_recognition_study(source: &Source) -> Result<recognition::study::Rec
     recognition::study::load_study(source)
 }
 
-/// Returns an error if the study is not a recognition study.
+/// Returns an error if the study is of another kind than recognition.
 fn check_recognition(source: &Source) -> Result<()> {
     match about(&source.text) {
         Some(about) if about.table != RECOGNITION.about.table => {

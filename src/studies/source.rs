@@ -69,7 +69,7 @@ impl Source {
         }
     }
 
-    /// Replaces the folder of recorded frames in a study if a command-line option gives another folder.
+    /// Replaces the folder of the recorded frames if a command-line option gives another folder.
     pub fn replace_recorded(&self, recorded: &mut RecordedSpec) {
         let Some(folder) = &self.objects else {
             return;

@@ -27,17 +27,17 @@ pub struct About {
     pub resumes: Resumes,
 }
 
-/// Rule that decides which studies of a kind may resume each other's runs.
+/// Rule that determines which studies of a kind may continue a run that another study began.
 #[derive(Clone, Copy, Debug)]
 pub enum Resumes {
-    /// Two studies may resume each other's runs if they differ only in these keys and in keys of the tables below them. Keys in this list are texts, or select
-    /// work items without changing their results.
+    /// Two studies may resume each other's runs if they differ only in these keys or in keys of their subtables. Keys in this list are texts, or select work
+    /// items without changing their results.
     ButFor(&'static [&'static str]),
     /// Two studies may resume each other's runs if they have work items in common. The name of a work item is derived from all inputs of the item.
     SharedWork,
 }
 
-/// Facts about a study: the content of its file and of the files that it refers to.
+/// Content of the study file and of the files to which it refers.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
     /// Study as TOML, with all defaults written out.
@@ -46,7 +46,7 @@ pub struct Facts {
     pub question: String,
     /// Answer that the author expected before the first run; may be empty.
     pub expected: String,
-    /// Seed of all random numbers; 0 if nothing is random.
+    /// Seed of all random numbers; 0 if the study uses no random numbers.
     pub seed: u64,
     /// SHA-256 hashes of all content outside the study file, such as meshes: by name, the hash of each file or object.
     pub content: BTreeMap<String, String>,
@@ -78,7 +78,7 @@ impl Facts {
     }
 }
 
-/// Table file whose type of rows is erased, so that files of different tables can be in one list.
+/// Table file without a static row type, so that files of different tables can be in one list.
 pub trait AnyFile: Sync {
     /// Returns the file name of the table.
     fn name(&self) -> &'static str;
@@ -163,7 +163,7 @@ impl TableFiles {
 pub struct Findings {
     /// Charts of the results, the most important one first.
     pub charts: Vec<ChartSpec>,
-    /// Answers in sentences, shown at the top of the page and at the end of the run.
+    /// Answers as sentences, shown at the top of the page and at the end of the run.
     pub answers: Vec<String>,
 }
 
@@ -227,10 +227,10 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// If a file that the tables need cannot be read.
     fn tables(&self, rows: Self::Rows) -> Result<Vec<Table>>;
 
-    /// Returns the charts and answers for the result tables.
+    /// Returns the charts and answers that are computed from the result tables.
     fn findings(&self, tables: &[Table]) -> Findings;
 
-    /// Returns pictures other than charts, and additional sections for the page of the results.
+    /// Returns further pictures and sections for the page of the results.
     ///
     /// # Errors
     /// If a picture cannot be drawn.

@@ -17,7 +17,7 @@ pub struct ChartSpec {
     pub shown: Vec<Shown>,
     /// Name of the column along the x axis; the column defines the scale of the axis.
     pub x: String,
-    /// Description of the x axis that replaces the description of the x column, if the column contains several quantities.
+    /// Description of the x axis; replaces the description of the x column if that column contains several quantities.
     pub x_is: Option<Column>,
     /// Name of the column along the y axis. If the column has an interval, the chart shows a band or error bars.
     pub y: String,
@@ -76,7 +76,7 @@ pub struct Shown {
 
 macro_rules! declare_mark {
     ($($(#[$doc:meta])* $name:ident $({ $($columns:tt)* })? $file:ident;)*) => {
-        /// Form of a chart's marks.
+        /// Type of the marks of a chart, such as lines, points or tiles.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub enum Mark {
             $($(#[$doc])* $name $({ $($columns)* })?,)*
@@ -112,8 +112,8 @@ pub struct Rule {
 pub enum At {
     /// Constant position on the axis.
     Value(f64),
-    /// Column that contains the position for each panel and each value of the other axis. Examples: a chance level that depends on the number of objects, or a
-    /// limit that depends on the mass.
+    /// Column that contains the position of the reference line, for each panel and each value on the other axis. Examples: a chance level that depends on the
+    /// number of objects, or a limit that depends on the mass.
     Column(String),
 }
 

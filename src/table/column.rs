@@ -20,7 +20,7 @@ pub enum Role {
     Value(Better),
     /// Cost of a choice, such as time, memory or number of spheres. Smaller values are better.
     Cost,
-    /// Outcome of a row in words, such as right, diverged or refused.
+    /// Outcome of a row as a text, such as right, diverged or refused.
     Outcome,
     /// Auxiliary column, such as a count, a bound of an interval, or a note.
     Note,
@@ -40,13 +40,13 @@ pub enum Better {
 /// Scale on which the values of a column are drawn along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Words, in the order in which they first occur.
+    /// Texts, ordered by their first occurrence.
     Words,
     /// Numbers on a linear scale.
     Linear,
     /// Numbers on a logarithmic scale. Zero has a separate place at the start of the axis.
     Log,
-    /// Fractions of one on a linear scale, shown as percent or from 0 to 1.
+    /// Fractions on a linear scale, shown as percent or as numbers from 0 to 1.
     Share,
 }
 
@@ -196,7 +196,7 @@ impl Column {
 
 /// Type of table rows whose fields are the columns of the table, in their order.
 pub trait Columns {
-    /// Returns the columns of the table in their order, including the optional ones.
+    /// Returns the columns of the table in order, including the optional columns.
     fn columns() -> Vec<Column>;
 }
 
@@ -212,7 +212,7 @@ impl<A: Columns, B: Columns, C: Columns> Columns for (A, B, C) {
     }
 }
 
-/// Returns the name of the column for a study key; `noise` is short for `noise_std`.
+/// Returns the name of the column that belongs to a key of a study file; `noise` stands for `noise_std`.
 pub fn column_name(key: &str) -> &str {
     match key {
         "noise" => "noise_std",

@@ -1,6 +1,6 @@
 //! List of the marks of charts. Each mark is a variant of [`Mark`](super::Mark) and a file in `report/chart/marks` that draws it.
 
-/// Calls a macro with the list of all mark types of charts: documentation, variant with its columns, and file.
+/// Calls a macro with a list of all mark types of charts; each entry has a documentation, a variant with columns, and a file.
 macro_rules! for_each_mark {
     ($declare:ident) => {
         $declare! {

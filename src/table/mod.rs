@@ -1,4 +1,4 @@
-//! Result tables of a study: the only input of reports, pages, advice and comparisons. Each column has a role.
+//! Result tables of a study, from which reports, pages, advice and comparisons are made. Each column has a role.
 //!
 //! Rows are typed structs with one field per column. The macro `row!` defines the struct and its columns together. Each field has a display name, a unit, a
 //! scale and a [`Role`]. A field without a role does not compile. [`File`] specifies a table independently of its rows. A table created from rows equals the

@@ -1,4 +1,4 @@
-//! Result table: columns of numbers and words, and the bytes of its file.
+//! Result table: columns of numbers and texts, and the content of its file.
 
 use super::{Better, Column, Role, Scale};
 use crate::error::{Error, Result};
@@ -16,7 +16,7 @@ pub struct Table {
     pub title: &'static str,
     /// Explanation of the table for the reader, one or two sentences; may be empty.
     pub note: String,
-    /// Whether repeated runs of a study give equal bytes; false for tables of times.
+    /// Whether repeated runs of a study write identical tables; false for tables of computing times.
     pub repeats: bool,
     /// Whether each row summarises all work items of a study. A part of the items would then give other rows.
     pub is_summary: bool,
@@ -39,7 +39,7 @@ pub enum Data {
     Words {
         /// Distinct texts in the column, in the order in which they first occur.
         levels: Vec<String>,
-        /// For each row, the index of its word in `levels`.
+        /// Index in `levels` of the text in each row.
         codes: Vec<u32>,
     },
 }
@@ -71,7 +71,7 @@ impl fmt::Display for Value {
 const SAME_SETTING: f64 = 1e-3;
 
 impl Value {
-    /// Returns whether two values mean an equal setting; numbers are compared with a small tolerance.
+    /// Returns whether two settings have equal values; numbers are compared with a small tolerance.
     pub fn agrees(&self, wanted: &Self) -> bool {
         match (self, wanted) {
             (Self::Number(a), Self::Number(b)) => {

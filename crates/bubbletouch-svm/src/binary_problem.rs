@@ -5,7 +5,7 @@ use crate::dual::DualSolution;
 /// Binary problem of a multi-class SVM (one class against another or against all others), with its solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinaryProblem {
-    /// Position of the positive class: in this problem, its rows have the label +1.
+    /// Position of the positive class, whose rows have the label +1.
     pub positive: usize,
     /// Position of the negative class, whose rows have the label −1. `None` if all classes except the positive class are negative.
     pub negative: Option<usize>,

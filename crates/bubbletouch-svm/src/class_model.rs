@@ -32,7 +32,7 @@ pub trait ClassModel: Debug + Send + Sync {
         0
     }
 
-    /// For each row of scores, returns the label with the largest sum of score and log-prior; the lowest label if several sums are equal.
+    /// Returns for each row of scores the label with the largest sum of score and log-prior; if several are equal, the lowest label.
     fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         let prior = self
             .log_prior()

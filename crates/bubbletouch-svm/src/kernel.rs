@@ -47,7 +47,7 @@ pub enum Kernel {
     Polynomial {
         /// Scale parameter γ.
         gamma: Gamma,
-        /// Constant c₀ ≥ 0 (a negative constant makes the dual problem non-convex).
+        /// Constant c₀ ≥ 0 in the polynomial kernel (a negative constant makes the dual problem non-convex).
         coef0: f64,
         /// Degree d of the polynomial, at least 1.
         degree: u32,

@@ -5,7 +5,7 @@ use ndarray::{Array1, ArrayView2};
 use crate::Result;
 use crate::dataset::check_features;
 
-/// Number of partial sums that are added up in parallel, so that no addition has to wait for the previous one.
+/// Number of partial sums that are computed in parallel and independently of each other.
 const LANES: usize = 8;
 
 /// Mean and largest norm of the training rows (n × m).

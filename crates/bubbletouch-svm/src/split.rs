@@ -15,7 +15,7 @@ use crate::{Error, Result};
 /// Training rows and test rows, by index.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Split {
-    /// Training rows in drawing order: the classes alternate, and the rows of each class are shuffled. A smaller training set is therefore the start of a
+    /// Training rows in drawing order: the rows of each class are shuffled, and the classes alternate. A smaller training set is therefore the start of a
     /// larger one.
     pub train: Vec<usize>,
     /// Test rows, ascending.
@@ -236,7 +236,7 @@ fn check_groups_of_classes(
     }
 }
 
-/// For each class, returns its rows, shuffled by the random stream of the class.
+/// Returns the rows of each class, shuffled by the random stream of the class.
 fn draw_rows(labels: ArrayView1<usize>, seed: &dyn Streams) -> BTreeMap<usize, Vec<usize>> {
     let mut drawn = BTreeMap::<usize, Vec<usize>>::new();
     for (row, &class) in labels.iter().enumerate() {

@@ -74,7 +74,7 @@ impl Default for SvmParams {
     }
 }
 
-/// Training rows, their class labels, the kernel, and the centre that is subtracted from the rows.
+/// Training rows with their class labels, the kernel, and the centre that is subtracted from the rows.
 type Sorting<'a> = (
     &'a Dataset,
     &'a [usize],

@@ -1,4 +1,4 @@
-//! Training of many binary problems on one set of rows; common quantities are computed once.
+//! Training of many binary problems on one set of rows, with common quantities computed only once.
 //!
 //! The rows are sorted by class. One-vs-one needs each block of kernel values between two classes once, and each block within a class for all its pairs. The
 //! blocks within classes are stored; of other blocks, only the requested rows are read. n rows of k classes need about n²/k values in memory, not n².
@@ -26,10 +26,10 @@ use crate::smo::SolverScalar;
 
 /// Minimum number of features for screening, which solves each one-vs-one linear SVM on the rows near its margin.
 const SCREENING_FROM_FEATURES: usize = 128;
-/// Minimum mean number of rows per class for screening (training on the rows near the margin); with fewer rows, few rows would be omitted.
+/// Minimum mean number of rows per class for screening, that is, training on the rows near the decision boundary.
 const SCREENING_FROM_ROWS: usize = 64;
 
-/// Solved binary problems of all classes for one C.
+/// Solved binary problems of all classes for one value of C.
 pub(crate) struct Trained<T> {
     pub problems: Vec<BinaryProblem>,
     /// Normals of the decision hyperplanes for rows minus their centre (n_problems × m); `None` if the solver did not compute them.
@@ -206,7 +206,7 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// For each C of the path, solves one binary problem on the given sorted rows.
+    /// Solves one binary problem on the given sorted rows for each value of the penalty C.
     fn solve<G: Gram<T>>(
         &self,
         gram: &mut G,
@@ -222,7 +222,7 @@ impl<T: SolverScalar> Sorted<T> {
         }
     }
 
-    /// Creates a binary problem with its solution; the solution's offset refers to rows minus their centre and is converted to the original rows.
+    /// Creates a binary problem with its solution, and converts the solution's offset from centred rows to original rows.
     fn problem(
         &self,
         rows: &[usize],
@@ -247,7 +247,7 @@ fn without_normals<T>(problems: Vec<Vec<BinaryProblem>>) -> Vec<Trained<T>> {
     problems.into_iter().map(trained).collect()
 }
 
-/// For each C, sorts the problems in the order of their classes.
+/// Sorts the problems for each C in the order of their classes.
 fn in_order(problems: &mut [Vec<BinaryProblem>]) {
     for problems in problems {
         problems.sort_by_key(|problem| (problem.positive, problem.negative));

@@ -1,4 +1,4 @@
-//! How much memory a study may take.
+//! Memory limit of a study.
 
 use bubbletouch::study::memory::{GIB, machine_memory};
 use bubbletouch::{Error, Result};

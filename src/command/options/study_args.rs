@@ -13,7 +13,7 @@ const MAX_THREADS: usize = 1024;
 /// The study that a bare `bubbletouch` runs.
 pub const QUICKSTART_FILE: &str = "experiments/quickstart.toml";
 
-/// It is part of the command, so that it runs in any folder.
+/// Text of the quickstart study, which is contained in the program, so that the command works in any folder.
 const QUICKSTART: &str = include_str!("../../../experiments/quickstart.toml");
 
 #[derive(clap::Args)]
@@ -81,7 +81,7 @@ impl StudyArgs {
         })
     }
 
-    /// The study's text, what replaces some of it, and the folder where its results go.
+    /// Returns the source of the study: its text, the values replaced by options, and the result folder.
     pub fn source(&self, results: &Path) -> Result<Source> {
         set_threads(self.threads)?;
         Ok(Source {
@@ -114,7 +114,7 @@ impl StudyArgs {
     }
 }
 
-/// Sets the number of threads of everything that follows; all cores when left out.
+/// Sets the number of threads that the program uses; the default is the number of cores.
 pub fn set_threads(threads: Option<usize>) -> Result<()> {
     let Some(threads) = threads else {
         return Ok(());

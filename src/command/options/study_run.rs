@@ -53,7 +53,7 @@ pub struct RunArgs {
 }
 
 impl RunArgs {
-    /// Who listens: a person at a terminal, a program, or nobody.
+    /// Returns the progress listener: bars on a terminal, JSON events for a program, or none.
     fn progress(&self) -> Box<dyn Progress> {
         match (self.quiet, self.json) {
             (true, _) => Box::new(Silent),
@@ -135,7 +135,7 @@ impl<'a> StudyRun<'a> {
         self.failures(outcome)
     }
 
-    /// An error if some of the work failed.
+    /// Returns an error if some work items failed.
     pub fn failures(&self, outcome: &Outcome) -> Result<()> {
         match outcome.n_failed {
             0 => Ok(()),

@@ -1,4 +1,4 @@
-//! Which object a command is about: a mesh file or a built-in one; and its packing, with progress shown.
+//! Object for which a command is run: a mesh file or a built-in object; its packing, with a progress display.
 
 use crate::command::options::unused::check_used;
 use crate::command::terminal::streams::note;
@@ -114,7 +114,7 @@ impl WhichObject {
         Ok(packing.spheres)
     }
 
-    /// Without folders and ending.
+    /// Returns the file name of the object without folders and extension.
     pub fn name(&self) -> String {
         let stem = Path::new(&self.object).file_stem();
         stem.map_or_else(

@@ -4,7 +4,7 @@ use bubbletouch::files::check_single_output;
 use bubbletouch::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// Makes a folder to write to; the error says if a file stands there.
+/// Creates an output folder; returns an error if a file with this name exists.
 pub fn output_folder(folder: &Path) -> Result<()> {
     if folder.exists() && !folder.is_dir() {
         let allowed = "a folder, or a path where one can be made";
@@ -37,7 +37,7 @@ pub fn packings_beside(folder: &Path) -> PathBuf {
     folder.parent().unwrap_or(Path::new("")).join("packings")
 }
 
-/// Columns of the terminal, or of a page where there is none.
+/// Returns the width of the terminal in characters, or a default width without a terminal.
 pub fn terminal_width() -> usize {
     let terminal = console::Term::stdout();
     match terminal.size_checked() {

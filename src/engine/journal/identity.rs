@@ -103,7 +103,7 @@ impl Identity {
         ))
     }
 
-    /// Returns the parts of the identity by name: the program, the objects, and all keys of the study for which `may_differ` returns false.
+    /// Returns the parts of the identity by name: program, objects, and all study keys that may not differ.
     fn facts(&self, may_differ: impl Fn(&str) -> bool) -> BTreeMap<String, String> {
         let mut facts = BTreeMap::new();
         if let Some(table) = toml_text::table(&self.study) {

@@ -164,7 +164,7 @@ impl Journal {
         synced.map_err(|e| Error::io(&self.path, "write", e))
     }
 
-    /// Flushes all lines to the disk and blocks further writes; used before the process ends.
+    /// Writes all lines to the disk and prevents further writes before the process ends.
     ///
     /// # Errors
     /// If the journal cannot be written.
@@ -204,7 +204,7 @@ impl Writer {
     }
 }
 
-/// Returns whether the bytes can be the start of a journal: a checksum of 8 hexadecimal digits, a space and the key of the first line.
+/// Returns whether the bytes can be the start of a journal file: a checksum (8 hexadecimal digits), a space and the key of the first line.
 fn begins_header(bytes: &[u8]) -> bool {
     let expected = format!(" {{\"key\":\"{HEADER}\"");
     let is_digit = |byte: &u8| byte.is_ascii_hexdigit();
@@ -231,7 +231,7 @@ pub(crate) fn lock(path: &Path, file: &File) -> Result<()> {
     })
 }
 
-/// Opens or creates a journal file for this process alone, and reads it.
+/// Opens or creates a journal file with exclusive access for this process, and reads its content.
 fn read_locked(path: &Path) -> Result<(File, Vec<u8>)> {
     let file = OpenOptions::new()
         .read(true)

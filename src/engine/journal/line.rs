@@ -31,7 +31,7 @@ struct Line {
     record: Box<RawValue>,
 }
 
-/// Encodes a record as a journal line with its line break; also returns the checksum of the line. The checksum of the journal's first line is `first`, or 0 for
+/// Encodes a record as a journal line with a line break; also returns the checksum of the line. The checksum of the journal's first line is `first`, or 0 for
 /// the first line itself.
 pub fn encode(first: u32, key: &str, record: &impl Serialize) -> serde_json::Result<(u32, String)> {
     let json = serde_json::to_string(&Written { key, record })?;
@@ -58,7 +58,7 @@ pub struct Decoded {
     pub n_whole: usize,
 }
 
-/// Decodes the complete lines of a journal whose first line has the key `header`; an incomplete last line is ignored. If a line is damaged and an interrupted
+/// Decodes the complete lines of a journal whose first line contains the key `header`; ignores an incomplete last line. If a line is damaged and an interrupted
 /// write cannot be the cause, the error contains the number of the line (from 1) and the defect.
 pub fn decode(header: &str, bytes: &[u8]) -> Result<Decoded, (usize, &'static str)> {
     let mut decoded = Decoded::default();

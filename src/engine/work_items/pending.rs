@@ -108,7 +108,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         Ok(())
     }
 
-    /// Returns for each item whether it was pending, and the results of the finished items by item number.
+    /// Returns whether each work item was pending, and the results of the finished work items by number.
     pub(crate) fn into_results(self) -> (Vec<bool>, BTreeMap<usize, ItemResult<R>>) {
         let results = self.results.into_inner();
         let results = results.unwrap_or_else(|poisoned| poisoned.into_inner());

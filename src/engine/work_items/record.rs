@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// Type of the results of a work item: rows of result tables, and data from which tables are made. The journal stores them as JSON; fields that may be infinite
+/// Type of a work item's results: rows of result tables, and data from which tables are computed. The journal stores them as JSON; fields that may be infinite
 /// or NaN need `#[serde(with = "any_number")]`.
 pub trait ItemRows: Default + Serialize + DeserializeOwned + Send {
     /// Appends the rows of the next work item.

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 pub enum Part<'a> {
     /// All work items of the study.
     All,
-    /// Work items of one shard.
+    /// Only the work items of one shard are computed.
     Shard(Shard),
     /// Work items with the given numbers.
     Only(&'a BTreeSet<usize>),
@@ -19,7 +19,7 @@ pub enum Part<'a> {
 /// Options of a run: journal, treatment of failures, selection of work items, and progress.
 #[derive(Clone, Copy)]
 pub struct RunOptions<'a> {
-    /// Journal from which finished work items are read and in which new ones are stored.
+    /// Journal that contains finished work items and stores new ones.
     pub journal: &'a Journal,
     /// Whether the first failed work item ends the run.
     pub fail_fast: bool,

@@ -6,7 +6,7 @@ use crate::spelling::counted;
 /// Approximate memory of the program without the data of the study, bytes: the program itself, its objects, and the pictures that it draws at the end.
 const PROGRAM_BYTES: f64 = 2e8;
 
-/// Size of a study: numbers of objects, touches and configurations, and memory.
+/// Size of a study: its numbers of objects, touches and configurations, and its memory.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Scale {
     /// Description of the touched objects in words.
@@ -15,7 +15,7 @@ pub struct Scale {
     pub touches: String,
     /// Number of configurations of the study.
     pub n_configurations: usize,
-    /// Approximate memory of the data that all work items share, bytes, in addition to the memory of the program.
+    /// Approximate memory of the data that all work items share, bytes, without the memory of the program itself.
     pub bytes: f64,
     /// Approximate memory of one work item while it is computed, bytes.
     pub item_bytes: f64,

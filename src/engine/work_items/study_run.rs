@@ -1,4 +1,4 @@
-//! Run of a study's work items, with results from an existing journal.
+//! Run of a study's work items; results that the journal already contains are reused.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::record::{ItemResult, ItemRows};
@@ -10,7 +10,7 @@ use crate::row;
 row! {
 /// Failed work item, as a row of the table `failures.csv`.
 pub struct ItemFailure {
-    /// Name of the work item in words.
+    /// Name of the work item, in words.
     work_item: String => Subject "work item";
     /// Message of the error that ended the work item.
     error: String => Note;
@@ -19,13 +19,13 @@ pub struct ItemFailure {
 /// Run of a study's work items, which is created after the journal was read.
 pub struct StudyRun<'a, R> {
     items: &'a [WorkItem],
-    /// For each work item, its result in the journal; `None` if the journal has no result of the item.
+    /// Result of each work item in the journal; `None` if the journal contains no result of the item.
     before: Vec<Option<ItemResult<R>>>,
     pending: PendingItems<'a, R>,
 }
 
 impl<'a, R: ItemRows> StudyRun<'a, R> {
-    /// Creates the run and reads the results of all work items that the journal in the options contains.
+    /// Creates the run of work items, with the results that the journal in the options contains.
     pub fn new(items: &'a [WorkItem], options: &RunOptions<'a>) -> Self {
         let results = items.iter().map(|item| options.journal.get(&item.key()));
         let before: Vec<Option<ItemResult<R>>> = results.collect();
@@ -46,7 +46,7 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
         self.pending.n()
     }
 
-    /// Computes the pending work items with `measure` and returns the rows of the study. The rows belong to all items that did not fail in this or an earlier
+    /// Computes the pending work items by `measure` and returns all rows of the study. The rows belong to all items that did not fail in this or an earlier
     /// run, in the order of items; failed items are returned, too. Except for times, the rows equal the rows of a run that computes all items together.
     ///
     /// `place(number, rows)` sets the values in the rows that depend on the item's number, such as numbers of configurations. `words(number)` returns the name
@@ -91,7 +91,7 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
     }
 }
 
-/// Returns a function that tests whether the work item with a given number belongs to `part`.
+/// Returns a function that returns whether a work item, given by its number, belongs to `part`.
 fn is_in<'a>(items: &'a [WorkItem], part: Part<'a>) -> impl Fn(usize) -> bool + 'a {
     let groups = items.iter().map(|item| item.group);
     let n_groups = groups.max().map_or(0, |last| last + 1);

@@ -10,8 +10,8 @@ const CONTENT_DIGITS: usize = 16;
 pub struct WorkItem {
     /// Name of the work item. Items with equal names have equal result rows.
     pub name: String,
-    /// Inputs of the work item that neither its name nor the fixed keys of the study describe; may be empty. The item's number is not an input, because a later
-    /// study may have more items.
+    /// Inputs of the work item that are contained neither in its name nor in the fixed keys of the study; may be empty. The item's number is not an input,
+    /// because a later study may have more items.
     pub content: String,
     /// Number of the group to which the item belongs, from 0 without gaps. Items of a group share preparatory work, so one shard computes all of them if there
     /// are enough groups for every shard.
@@ -40,7 +40,7 @@ impl WorkItem {
         }
     }
 
-    /// Adds inputs on which the rows of the work item depend.
+    /// Adds inputs that determine the result rows of the work item.
     pub fn made_of(mut self, content: impl std::fmt::Debug) -> Self {
         self.content = short_hash(format!("{content:?}"), CONTENT_DIGITS);
         self

@@ -19,11 +19,11 @@ const MAX_VALUES: usize = 3;
 pub struct FrameAxes<'a> {
     /// Letters of the axes in their order in the file, such as `ntyx`; `None` for the default order.
     pub order: Option<&'a str>,
-    /// Numbers of rows and columns into which the axis `c` (all taxels in one axis) is divided.
+    /// Numbers of rows and columns of the taxel grid, if one array axis `c` contains all taxels.
     pub grid: Option<[usize; 2]>,
     /// Number of values that are recorded per taxel: 1, or the number of force components.
     pub n_values: usize,
-    /// Name of the key or option that sets the order, for error messages.
+    /// Name of the key or option that sets the axis order, for error messages.
     pub key: &'a str,
 }
 
@@ -49,7 +49,7 @@ pub struct FrameShape {
 }
 
 impl FrameShape {
-    /// Returns the number of values in each frame: taxels times values per taxel.
+    /// Returns the number of values in each frame: number of taxels times number of values per taxel.
     pub fn n_frame_values(&self) -> usize {
         self.n_values * self.rows * self.columns
     }
@@ -126,7 +126,7 @@ impl FrameShape {
     }
 }
 
-/// Determines which axes of an array are touches, frames, taxels, rows and columns.
+/// Determines which axes of an array belong to touches, frames, taxels, rows and columns.
 ///
 /// # Errors
 /// If the order does not fit the array, or no order is given and two orders are possible.
@@ -266,7 +266,7 @@ fn checked_order(order: &str, key: &str) -> Result<String> {
     }
 }
 
-/// Returns another axis order that is as plausible for the array as the default order; `None` if there is none.
+/// Returns another plausible axis order of the array; `None` if only the default order is plausible.
 fn other_order(shape: &[usize]) -> Option<&'static str> {
     let is_strip = |a: usize, b: usize| a.max(b) > MAX_ASPECT * a.min(b);
     match *shape {
@@ -278,7 +278,7 @@ fn other_order(shape: &[usize]) -> Option<&'static str> {
     }
 }
 
-/// Returns the axes of an array and their lengths as text, given the order of the axes.
+/// Returns a text that describes the axes of an array and their lengths, given the axis order.
 fn words(shape: &[usize], order: &str) -> String {
     let length = |letter: char| order.find(letter).map(|axis| shape[axis]);
     let of = |letter: char| length(letter).unwrap_or(1);

@@ -80,7 +80,7 @@ pub fn read(path: &Path) -> Result<FileArray> {
     })
 }
 
-/// Returns the numbers in a line if it contains only numbers separated by spaces; otherwise returns the whole line as one text.
+/// Returns the numbers in a line of numbers separated by spaces; returns any other line as one text.
 fn numbers_or_text(line: &str) -> Vec<String> {
     let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
     match words.iter().all(|word| word.parse::<f64>().is_ok()) {

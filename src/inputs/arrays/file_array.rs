@@ -1,4 +1,4 @@
-//! Arrays as stored in files: shape, element kind and elements.
+//! Contents of array files: shape, element type and elements.
 
 /// Kind of the elements of an array file.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,7 +22,7 @@ pub enum KeyValue {
 pub struct ClassLabels {
     /// Class number of every touch or row, from 0.
     pub labels: Vec<usize>,
-    /// For each class number, the value in the file: integers ascending, texts in the order of first occurrence.
+    /// Value in the file for each class number: integers in ascending order, texts in the order of first occurrence.
     pub classes: Vec<KeyValue>,
 }
 
@@ -189,7 +189,7 @@ fn with_rows(mut array: FileArray, path: &Path, n: usize) -> FileArray {
     array
 }
 
-/// Converts an array with one column of 0 and 1 for each class: for each row, returns the number of the column that contains 1.
+/// Converts a matrix with one 0/1 column per class to class numbers: for each row, the number of the column that contains 1.
 fn one_hot(mut array: FileArray) -> Result<FileArray> {
     let ([n, n_classes], Elements::Numbers(numbers)) = (&array.shape[..], &array.elements) else {
         return Ok(array);

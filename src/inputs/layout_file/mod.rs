@@ -33,7 +33,7 @@ pub struct LayoutFile {
     pub radii: Option<Vec<f64>>,
     /// Row and column of each taxel in the sensor's image, shape (n_taxels,). `None` if the file has no image.
     pub pixels: Option<Vec<[usize; 2]>>,
-    /// Name of the robot link on which the taxels are; `None` unless the layout is read from a robot's file.
+    /// Name of the robot link that carries the taxels; `None` if the layout is not read from a robot file.
     pub link: Option<String>,
     /// Notes on parts of the file that are not taxels, such as unused rows.
     pub notes: Vec<String>,
@@ -42,7 +42,7 @@ pub struct LayoutFile {
 /// Inputs that some formats of layout files need besides the file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LayoutOptions<'a> {
-    /// Surface from which the taxels get their normals, if the file has only positions.
+    /// Surface from which the normals of the taxels are taken, if the file contains only positions.
     pub mesh: Option<&'a TriangleMesh>,
     /// Name of the sensor to read; required only if the file has several sensors.
     pub sensor: Option<&'a str>,
@@ -145,7 +145,8 @@ impl LayoutFile {
     }
 }
 
-/// Maximum number of taxels whose nearest neighbours are searched to find the default radius. A larger number takes longer and hardly changes the median.
+/// Maximum number of taxels whose nearest neighbours are searched; the distances determine the default radius. A larger number takes longer and hardly changes
+/// the median.
 const MAX_LOOKED_AT: usize = 200;
 
 /// Minimum length of a normal or axis vector in a layout file. Files contain normals with four decimals; shorter vectors count as zero.

@@ -56,8 +56,8 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
 /// Position (metres) and normal of a taxel in the frame of its link.
 type Taxel = (DVec3, DVec3);
 
-/// For each link, returns the taxels that three prismatic joints along x, y and z connect to it, in the order of the file. The normal of a taxel is the axis of
-/// the third joint.
+/// Returns the taxels of each link in file order; a taxel is connected to its link by three prismatic joints along x, y and z. The normal of a taxel is the
+/// axis of the third joint.
 fn prismatic_taxels(robot: &Robot) -> BTreeMap<String, Vec<Taxel>> {
     let joints = robot.joints();
     let is_slide = |kind: JointKind| kind == JointKind::Prismatic;

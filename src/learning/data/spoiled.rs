@@ -8,8 +8,8 @@ use rand::Rng;
 use rand::seq::SliceRandom;
 use std::collections::BTreeMap;
 
-/// Returns a copy of the labels in which a given fraction (0 to 1) is wrong. In each class, the number of wrong labels is this fraction of the class's rows,
-/// rounded to whole rows. A wrong label is drawn uniformly from the other classes.
+/// Returns a copy of the labels in which a fraction (0 to 1) of the labels is replaced by wrong labels. In each class, the number of wrong labels is this
+/// fraction of the class's rows, rounded to whole rows. A wrong label is drawn uniformly from the other classes.
 ///
 /// For one seed, the wrong labels of a smaller fraction are a subset of the wrong labels of a larger fraction. With a single class, no label is changed.
 ///

@@ -1,4 +1,4 @@
-//! Fusion: one decision on several touches of one object.
+//! Fusion of several touches of one object into one decision.
 //!
 //! The scores of k touches are summed, and the sum determines one label. If scores are log-probabilities, the sum gives the decision for independent
 //! observations. If scores are decision values of an SVM, the sum is a vote weighted by margins.
@@ -10,7 +10,7 @@ use rand::seq::SliceRandom;
 
 use crate::random::Seed;
 
-/// Groups of test rows for which one common decision is made.
+/// Groups of test rows; one decision is made for each group.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FusedRows {
     /// For each group, the positions of its k rows. All rows of a group have the same class; groups are disjoint and ordered by class.

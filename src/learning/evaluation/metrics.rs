@@ -13,7 +13,7 @@ pub struct ConfusionMatrix {
 }
 
 impl ConfusionMatrix {
-    /// Counts the predictions of all rows by true and predicted class.
+    /// Creates the confusion matrix of the given true and predicted classes.
     ///
     /// # Errors
     /// If there are no rows, the numbers of predictions and true labels differ, or a label is `n_classes` or above.
@@ -55,7 +55,7 @@ impl ConfusionMatrix {
         self.n_correct() as f64 / self.n_rows() as f64
     }
 
-    /// For each class, returns the precision: correct predictions of the class divided by all predictions of the class; 0 if there are none.
+    /// Returns the precision of each class: correct predictions of the class divided by all its predictions; 0 if there are none.
     pub fn precision(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(0)))
     }

@@ -44,7 +44,7 @@ pub struct Poses {
 }
 
 impl Poses {
-    /// Returns the poses of only the touches with the given numbers, in the given order.
+    /// Returns the poses of the touches with the given numbers, in the given order.
     pub fn select(&self, touches: &[usize]) -> Self {
         Self {
             coordinates: self.coordinates.select(Axis(0), touches),
@@ -64,7 +64,7 @@ impl Poses {
         }
     }
 
-    /// Returns the sum over all axes of the squared differences of two poses, where each axis is in units of its bandwidth.
+    /// Returns the squared distance of two poses, summed over all axes, with each axis in units of its bandwidth.
     fn squared_distance(&self, bandwidths: &[f64], a: usize, b: usize) -> f64 {
         let along = bandwidths.iter().enumerate();
         let along = along.map(|(axis, bandwidth)| self.difference(axis, a, b) / bandwidth);
@@ -95,7 +95,7 @@ pub struct AnswerModel<'a> {
     answered: Vec<Vec<(usize, usize)>>,
     /// Bandwidth of each pose axis, in units of the axis range.
     bandwidths: Vec<f64>,
-    /// Strength of the prior, as a number of touches: weight of the label frequencies over all poses relative to touches near the pose.
+    /// Weight of the prior, as a number of touches: the label frequencies over all poses count as much as this number of touches near the pose.
     strength: f64,
 }
 
@@ -104,7 +104,7 @@ pub struct AnswerModel<'a> {
 const BANDWIDTHS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, f64::INFINITY];
 /// Candidate strengths of the prior, as numbers of touches. If small, few touches near a pose determine the probabilities; if large, many touches are needed.
 const STRENGTHS: [f64; 3] = [1.0, 5.0, 25.0];
-/// Number of passes over the model's parameters; in each pass, every parameter is optimised once.
+/// Number of passes over the parameters of the model; each pass optimises every parameter once.
 const PASSES: usize = 2;
 
 impl<'a> AnswerModel<'a> {
@@ -183,7 +183,7 @@ impl<'a> AnswerModel<'a> {
     }
 }
 
-/// Label probabilities of all objects for touches in one pose.
+/// Probability of each label for each object, for touches in one pose.
 #[derive(Clone, Debug)]
 pub struct PoseAnswers {
     /// Conditional probability of each label given each object, n_objects × n_answers, positive; each row sums to 1.
@@ -228,7 +228,7 @@ pub fn most_informative(
     first_greatest(left.iter().map(|&touch| poses[touch].information(&belief)))
 }
 
-/// Returns a sequence of k ≤ n touches from `0..n` that starts with the touch `first`. Each further touch is chosen by `next`, which receives the previous
+/// Returns a sequence of k touches out of n (k ≤ n) that starts with the touch `first`. Each further touch is chosen by `next`, which receives the previous
 /// touches in order and the remaining touches in ascending order. The result of `next` is a position in the list of remaining touches.
 pub fn sequence(
     (first, k): (usize, usize),

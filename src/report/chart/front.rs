@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// Maximum number of points on Pareto fronts that are numbered and listed below a chart.
 const MAX_NAMED: usize = 24;
 
-/// Pareto fronts of a chart: the points that no other point of their condition surpasses in both axes.
+/// Pareto fronts of a chart: the points that no other point under the same condition surpasses in both axes.
 pub(super) struct Front<'a> {
     view: &'a View<'a>,
     /// Pareto fronts of the chart: the panel index of each front, and its points in ascending order of x.
@@ -76,7 +76,7 @@ impl<'a> Front<'a> {
         self.said(self.numbered().map(|(_, place)| place))
     }
 
-    /// Describes each point of a Pareto front by its settings, its value and its cost.
+    /// Returns a description of each point of a Pareto front: its settings, its value and its cost.
     fn said(&self, places: impl Iterator<Item = &'a Place>) -> Vec<String> {
         let view = self.view;
         let settings =

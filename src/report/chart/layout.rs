@@ -1,4 +1,4 @@
-//! Pixel layout of a chart: the heading, and below it a grid of panels with ticks and titles.
+//! Pixel layout of a chart: a heading, and below it a grid of panels with tick labels and titles.
 
 use super::legend::{Heading, LEFT, LegendEntry, RIGHT};
 use super::scale::{Scale, Tick, thin};
@@ -33,7 +33,7 @@ pub(super) struct Layout {
     left: f64,
     /// Width of the whole chart, pixels.
     pub width: f64,
-    /// For each panel, the lines of the title above it.
+    /// Lines of the title above each panel.
     titles: Vec<Vec<String>>,
     /// Height above each row of panels, pixels; the first row has the additional height `above_first`.
     above: f64,

@@ -21,7 +21,7 @@ const SWATCH_GAP: f64 = 6.0;
 /// Gap between two legend entries, pixels.
 const GAP: f64 = 20.0;
 
-/// Heading of a chart: title, fixed settings and legend, above the panels, so that nothing covers data.
+/// Heading of a chart above its panels: title, fixed settings and legend.
 pub(super) struct Heading {
     title: Vec<String>,
     settings: Vec<String>,
@@ -36,7 +36,7 @@ pub(super) struct LegendEntry {
     text: String,
     /// Function that draws the mark of the entry; `None` for a text without a mark, such as the legend's title.
     mark: Option<DrawMark>,
-    /// Whether the entry is a series that readers of the page can hide by a click.
+    /// Whether the entry is a series that readers of the page can hide with a click.
     is_series: bool,
 }
 

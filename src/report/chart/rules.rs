@@ -9,7 +9,7 @@ use crate::table::{Along, At, Rule};
 /// Dash patterns of the reference lines in a chart: length of a dash and of a gap, pixels.
 const DASHES: [(u32, u32); 4] = [(5, 4), (2, 3), (9, 3), (1, 2)];
 
-/// Returns the legend entries of the reference lines; lines with equal labels share an entry.
+/// Returns the legend entries of the reference lines of a chart; lines with equal labels share one entry.
 pub(super) fn entries(view: &View) -> Vec<LegendEntry> {
     let rules = view.spec.rules.iter().enumerate();
     let rules = rules.filter(|(number, rule)| first_of(view, rule) == *number);
@@ -51,7 +51,7 @@ pub(super) fn draw(drawing: &mut Drawing, view: &View, panel: usize, frame: Area
     }
 }
 
-/// Returns the polylines of a reference line in a panel, as fractions of the panel's width and height.
+/// Returns the polylines of a reference line in a panel, in coordinates from 0 to 1 along the panel's width and height.
 fn lines(view: &View, rule: &Rule, panel: usize) -> Vec<Vec<Point>> {
     let (own, other) = match rule.along {
         Along::X => (&view.x, &view.y),

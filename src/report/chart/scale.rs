@@ -16,9 +16,9 @@ pub(super) struct Scale {
     is_log: bool,
     /// End of the part of a logarithmic axis that is reserved for zero, as a fraction of the axis length; `None` if no value is zero.
     pub shelf: Option<f64>,
-    /// Number of distinct positions on an axis of words or tiles; 0 for a continuous axis.
+    /// Number of distinct positions on an axis of texts or tiles; 0 for a continuous axis.
     pub n_levels: usize,
-    /// Whether the axis shows words; positions between two words have no meaning.
+    /// Whether the axis shows texts; positions between two texts have no meaning.
     pub is_words: bool,
     /// Ticks that may have a label, in ascending order of their values.
     pub ticks: Vec<Tick>,
@@ -158,7 +158,7 @@ fn distinct(values: &[f64]) -> Vec<f64> {
     distinct
 }
 
-/// Returns the lower and upper end of a logarithmic axis, with a margin of at least a twelfth of a decade around the values.
+/// Returns the lower and upper end of a logarithmic axis, with margins of at least a twelfth of a decade beside the values.
 fn log_ends(values: &[f64]) -> (f64, f64) {
     let mut positive = values.iter().copied().filter(|&v| v > 0.0);
     let (low, high) = match (positive.next(), values.last()) {
@@ -214,7 +214,7 @@ fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     enough.unwrap_or_else(|| even_ticks(10f64.powf(low), 10f64.powf(high)))
 }
 
-/// For each tick of an axis, returns whether there is enough space to show its label. A label needs `half` of the axis length on either side. Priority: the
+/// Returns for each tick of an axis whether its label fits into the available space. A label needs `half` of the axis length on either side. Priority: the
 /// ends, round ticks, other ticks.
 pub(super) fn thin(ticks: &[Tick], half: impl Fn(&Tick) -> f64) -> Vec<bool> {
     let last = ticks.len().saturating_sub(1);

@@ -1,4 +1,4 @@
-//! Series of a chart: points with markers and intervals, joined by the path of the mark.
+//! Series of a chart: points with markers and confidence intervals, optionally joined by lines.
 
 use super::front::{self, Front};
 use super::layout::Layout;

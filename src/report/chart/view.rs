@@ -60,7 +60,7 @@ pub(super) struct Groups {
     pub names: Vec<String>,
     /// For each group, its values as a title, in which numbers include the column's name.
     titles: Vec<String>,
-    /// For each table row, the index of its group; 0 for rows that are not shown.
+    /// Index of the group of each table row; 0 for rows that are not shown.
     pub of: Vec<usize>,
 }
 
@@ -199,7 +199,7 @@ impl<'a> View<'a> {
         row * self.panels.names.len() + place.panel
     }
 
-    /// Returns the column with this name.
+    /// Returns the setting in the column with this name.
     pub fn column(&self, name: &str) -> Result<Setting<'a>> {
         column_of(self.spec, self.table, name)
     }
@@ -285,7 +285,7 @@ impl<'a> View<'a> {
         format!("{n_drawn} of {n} rows are drawn; {}.", said.join(", "))
     }
 
-    /// Returns the rows whose marks are visible; a tile hides earlier tiles at the same position.
+    /// Returns the rows whose marks are visible; a tile at the position of an earlier tile covers the earlier tile.
     pub fn drawn(&self) -> Vec<usize> {
         let Some(fill) = self.spec.mark.fill() else {
             return self.places.iter().map(|place| place.row).collect();
@@ -328,7 +328,7 @@ impl<'a> View<'a> {
 }
 
 impl Groups {
-    /// Groups rows by the values of columns, in the order of first occurrence. Groups of a single numeric column are in ascending order.
+    /// Groups rows with equal values in the given columns, in the order of first occurrence. Groups of a single numeric column are in ascending order.
     fn new(table: &Table, settings: &[Setting], rows: &[usize]) -> Self {
         let mut groups = Setting::groups(settings, table, rows);
         if let [one] = settings

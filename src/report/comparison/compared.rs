@@ -1,4 +1,4 @@
-//! Report on the differences between two result folders: sentences, a table, and a page.
+//! Report on the differences between two result folders, as sentences, a table and a page.
 
 use crate::engine::program::PROGRAM;
 use crate::error::Result;

@@ -15,7 +15,7 @@ use crate::table::{Better, Column, Role, Table};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// Significance of a difference between two runs.
+/// Statistical significance of a difference between two runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Significance {
@@ -53,7 +53,7 @@ pub struct Difference {
     first: f64 => Value(Neither): Linear;
     /// Value in the second folder, averaged over common trials.
     second: f64 => Value(Neither): Linear;
-    /// Value in the second folder minus value in the first folder.
+    /// Value in the second folder minus the value in the first folder.
     difference: f64 => Value(Neither): Linear between [difference_low, difference_high];
     /// Lower end of the 95 % confidence interval of the difference; empty if trials are not paired.
     difference_low: Option<f64> => Note "95 % interval, lower end": Linear;
@@ -61,13 +61,13 @@ pub struct Difference {
     difference_high: Option<f64> => Note "95 % interval, upper end": Linear;
     /// Statistical significance of the difference between the two folders.
     significance: Significance => Outcome "difference" named SIGNIFICANCE;
-    /// Two-sided p-value of the hypothesis that there is no difference; empty if there are too few trials.
+    /// Two-sided p-value of the null hypothesis that the difference is zero; empty if there are too few trials.
     p_value: Option<f64> => Note "p-value": Linear;
     /// p-value after Holm's correction over all settings of the column.
     p_holm: Option<f64> => Value(Neither) "p (Holm)": Linear;
     /// Status of the p-value: present, or the reason why it is empty.
     p_status: Option<PStatus> => Outcome "test";
-    /// Number of trials that a p-value needs; empty if no number of trials is sufficient.
+    /// Minimum number of trials for which a p-value can be computed; empty if no number of trials is sufficient.
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }
 
@@ -77,7 +77,7 @@ pub struct ColumnDifferences {
     pub column: Column,
     /// Differences of all settings that have a number in both folders.
     pub rows: Vec<Difference>,
-    /// Number of settings that both folders contain, with or without a number in the column.
+    /// Number of settings that both folders contain; the column may be empty.
     pub n_both: usize,
     /// Number of settings that only the first folder contains.
     pub n_first_only: usize,
@@ -120,7 +120,7 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
     }
 }
 
-/// Settings that occur in a table, with the rows of each setting.
+/// Settings that occur in a table, with the row numbers of each setting.
 struct Settings<'a> {
     table: &'a Table,
     /// Columns whose values together identify a setting.
@@ -161,7 +161,7 @@ impl<'a> Settings<'a> {
         said.collect()
     }
 
-    /// Returns the setting of a row as text, limited to the columns that vary.
+    /// Returns the settings of a row as text, limited to columns whose values vary.
     fn words(&self, row: usize) -> String {
         let columns = self.columns.iter();
         let varying = columns.filter(|one| one.data.varies(0..self.table.n_rows));
@@ -169,7 +169,7 @@ impl<'a> Settings<'a> {
         said.collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the number in a column and row of the table as a count; `None` if the column or the number does not exist.
+    /// Returns the number in a column and row as an integer; `None` if the column or the number does not exist.
     fn count(&self, column: &str, row: usize) -> Option<usize> {
         let number = self.table.numbers(column)?[row];
         (!number.is_nan()).then_some(number as usize)
@@ -295,8 +295,8 @@ fn of_setting(
 }
 
 impl ColumnDifferences {
-    /// Returns how many of the selected rows improved and how many became worse. If neither direction is better, returns how many numbers became larger and how
-    /// many smaller.
+    /// Returns two counts among the selected rows: improved values and worsened values. If neither direction is better, returns how many numbers became larger
+    /// and how many smaller.
     pub fn counts(&self, is_counted: impl Fn(&Difference) -> bool) -> [usize; 2] {
         let less = matches!(self.column.role, Role::Cost | Role::Value(Better::Less));
         let count = |better: bool| {

@@ -7,7 +7,7 @@ use crate::report::swept::Setting;
 use crate::table::{Column, Role, Table, Value};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-/// Columns that identify configurations by number; another run may number the configurations differently.
+/// Columns that contain configuration numbers, which may differ between runs.
 const CONFIGURATION_NUMBERS: [&str; 2] = ["configuration", "best_configuration"];
 
 /// Roles of the columns whose entries together identify a row of a table.
@@ -24,7 +24,7 @@ pub struct TableEntries {
     pub n_both: usize,
     /// Number of rows that exist only in the first version.
     pub n_first_only: usize,
-    /// Number of rows that only the second version contains.
+    /// Number of rows that exist only in the second version.
     pub n_second_only: usize,
     /// Names of the columns that only one version of the table contains.
     pub one_sided: Vec<String>,
@@ -38,9 +38,9 @@ pub struct ColumnEntries {
     pub column: Column,
     /// Number of corresponding rows with equal entries.
     pub n_same: usize,
-    /// Changes of entries, as (text in the first version, text in the second version, number of rows), in the order of first occurrence.
+    /// Changed entries, as (text in the first version, text in the second version, number of rows), in the order of first occurrence.
     pub changes: Vec<(String, String, usize)>,
-    /// Number of rows that have an entry in the first version only.
+    /// Number of rows whose entry exists only in the first version.
     pub n_first_only: usize,
     /// Number of rows that exist only in the second version.
     pub n_second_only: usize,
@@ -71,7 +71,7 @@ pub fn files_of_one<'a>(one: &'a [Table], other: &[Table]) -> Vec<&'a str> {
     alone.map(|table| table.file).collect()
 }
 
-/// Settings of each configuration as text, by the configuration's number.
+/// Settings of each configuration as text; the key is the number of the configuration.
 type Configurations = HashMap<u64, String>;
 
 fn configurations(tables: &[Table]) -> Configurations {
@@ -111,7 +111,7 @@ fn settings(table: &Table, row: usize, roles: &[Role], configurations: &Configur
     said.collect()
 }
 
-/// Returns the entry of a row as text, with the name and unit of its column. A configuration number is replaced by the settings of the configuration.
+/// Returns the entry of a row as text, with the display name and unit of its column. A configuration number is replaced by the settings of the configuration.
 fn entry(one: Setting, row: usize, configurations: &Configurations) -> Option<String> {
     let value = one.data.value(row)?;
     let name = &one.column.name;

@@ -102,10 +102,10 @@ struct Choice<'a> {
 /// Design, given by the values of all its choices.
 type Design = Vec<String>;
 
-/// Table of a study whose compression ratios can be replaced by equivalent ratios of another table.
+/// Table of a study in which compression ratios can be replaced by equivalent ratios of another table.
 struct Ranked<'a> {
     table: &'a Table,
-    /// For each compression ratio of this table (by its bits), the equivalent ratio of the other table.
+    /// Equivalent compression ratio in the other table for each compression ratio (as bits) of this table.
     ratios: HashMap<u64, f64>,
 }
 
@@ -164,7 +164,7 @@ impl NominalRatio {
     }
 }
 
-/// Returns the distinct compression ratios of a table. Without numbers of measurements, each ratio is its own nominal ratio.
+/// Returns the distinct compression ratios in a table. Without numbers of measurements, each ratio is its own nominal ratio.
 fn nominal_ratios(table: &Table) -> Vec<NominalRatio> {
     let rows = table.groups(&["ratio"], 0..table.n_rows);
     let ratios = rows.iter().map(|rows| {
@@ -266,7 +266,7 @@ mod tests {
 
     const FILE: File<DesignRow> = File::new("accuracy.csv", "Accuracy", "");
 
-    /// Returns a test table of three ensembles (block averages, Gaussian, subsampling) at two ratios and the given noises, for an array of `n_taxels` taxels.
+    /// Returns a test table: three ensembles (block averages, Gaussian, subsampling), two compression ratios and the given noise levels.
     fn table(n_taxels: usize, accuracies: [f64; 6], noises: &[f64]) -> Vec<Table> {
         let mut rows = Vec::new();
         for (design, accuracy) in accuracies.into_iter().enumerate() {

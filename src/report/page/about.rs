@@ -20,7 +20,7 @@ pub struct StudyAbout {
     pub program: String,
     /// Provenance of the results (program, machine, times and hashes), if known.
     pub manifest: Option<Manifest>,
-    /// Whether all charts are written as files, without a maximum number.
+    /// Whether all charts are written as files; otherwise, their number is limited.
     pub all_charts: bool,
     /// File format of the charts.
     pub chart_format: ChartFormat,

@@ -41,7 +41,7 @@ impl Section {
     }
 }
 
-/// Returns a page as HTML, with the metadata of a study and the given sections. The HTML of the footer is `foot`. Sections without a body are omitted.
+/// Returns an HTML page with the metadata of a study and the given sections. The HTML of the footer is `foot`. Sections without a body are omitted.
 pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> String {
     let sections = sections.iter().filter(|section| !section.body.is_empty());
     let paragraph = |class: &str, before: &str, text: &str| match text {

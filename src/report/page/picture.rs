@@ -10,7 +10,7 @@ pub(crate) fn png_element(png: &[u8], (width, height): (usize, usize), title: &s
     )
 }
 
-/// Returns a `<figure>` with the given attributes that contains an `<svg>` or `<img>` element.
+/// Returns an HTML `<figure>` with the given attributes, which contains an `<svg>` or `<img>` element.
 pub(crate) fn figure(attributes: &str, element: &str, title: &str) -> String {
     let title = escape(title);
     format!("<figure {attributes} tabindex=\"0\" aria-label=\"{title}\">{element}</figure>")

@@ -15,14 +15,13 @@ use std::collections::HashMap;
 /// Maximum size of all charts on a page together, bytes. With a larger value, the page is slow; with a smaller value, charts of some hundred points become
 /// links.
 const MAX_CHART_BYTES: usize = 1_200_000;
-/// Maximum size of all tables on a page together, bytes. With a larger value, the page is slow; with a smaller value, tables of some hundred rows are
-/// truncated.
+/// Maximum total size of all tables on a page, bytes. With a larger value, the page is slow; with a smaller value, tables of some hundred rows are truncated.
 const MAX_TABLE_BYTES: usize = 1_200_000;
 
 /// Parts of a study's HTML page besides its tables and answers.
 #[derive(Default)]
 pub(crate) struct Beside {
-    /// Charts as SVG with the data of their marks, in the order of the chart specifications.
+    /// Charts as SVG files that contain the data of their marks, in the order of the chart specifications.
     pub charts: Vec<String>,
     /// Names of the charts that were not drawn because there are too many.
     pub left_out: Vec<String>,

@@ -19,7 +19,7 @@ struct Shown<'a> {
     is_number: bool,
     /// Indices of the result-table columns that each cell contains: the value, and the ends of its interval.
     held: Vec<usize>,
-    /// Whether any of the result-table columns in `held` varies between rows.
+    /// Whether any column in `held` has different values in different rows.
     varies: bool,
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn table_html(table: &Table, most_letters: usize) -> TableHtml {
     TableHtml { html, n_rows }
 }
 
-/// Iterates over the rows of the table's CSV file, each a list of fields. For a table without a file, the values are formatted as in a file.
+/// Returns the rows of the table's CSV file as lists of fields. For a table without a file, the values are formatted as in a file.
 fn fields(table: &Table) -> Box<dyn Iterator<Item = Vec<String>> + '_> {
     if table.csv.is_empty() {
         let field = |data: &Data, row| {

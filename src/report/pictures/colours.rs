@@ -1,4 +1,4 @@
-//! Colours of lines that colour-blind readers can distinguish, and colour maps of values.
+//! Colours of lines that colour-blind readers can distinguish, and colour maps for numbers.
 
 pub use bubbletouch_sim::raster::Rgb;
 use kuva::plot::ColorMap;

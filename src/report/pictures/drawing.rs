@@ -65,7 +65,7 @@ pub struct TextStyle {
     pub size: u32,
     /// Colour of the text.
     pub colour: Rgb,
-    /// Alignment of the text: whether its start, middle or end is at the given position.
+    /// Alignment of the text: whether the given position is its start, middle or end.
     pub align: Align,
     /// Clockwise rotation about the given position, degrees.
     pub angle: f64,
@@ -82,7 +82,7 @@ impl TextStyle {
         }
     }
 
-    /// Sets the alignment of the text.
+    /// Returns the text style with the given alignment.
     pub const fn align(self, align: Align) -> Self {
         Self { align, ..self }
     }
@@ -220,8 +220,8 @@ impl Drawing {
         self.polyline(&corners, stroke);
     }
 
-    /// Draws a filled marker with a given radius (pixels) at a point. The shape of the marker depends on the index of the line. A white rim separates the
-    /// marker from the background.
+    /// Draws a filled marker at a point; `radius` is in pixels. The shape of the marker depends on the index of the line. A white rim separates the marker from
+    /// the background.
     pub fn marker(&mut self, line: usize, at: Point, radius: f64, fill: Rgb) {
         for (radius, fill) in [(radius + 1.2, PAPER), (radius, fill)] {
             match line % N_MARKERS {
@@ -262,7 +262,7 @@ impl Drawing {
         self.svg_of(elements.cloned().collect(), title)
     }
 
-    /// Returns the drawing as an SVG file that contains the groups and their `data-` attributes, which scripts of a page read.
+    /// Returns the drawing as an SVG file with groups and `data-` attributes, which scripts of the page use.
     pub fn svg_with_data(&self, title: &str) -> String {
         self.svg_of(self.elements.clone(), title)
     }

@@ -1,4 +1,4 @@
-//! Round, evenly spaced numbers for axes.
+//! Evenly spaced round numbers for the ticks of axes.
 
 /// Returns the multiples of a round step size that lie between `low` and `high`.
 pub(crate) fn even_ticks(low: f64, high: f64) -> Vec<f64> {

@@ -14,7 +14,7 @@ use bubbletouch_sim::raster::{Canvas, Hit, Lighting, three_quarter_view};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Object whose approximation by spheres is drawn.
+/// Object that is approximated by spheres and shown in the picture.
 pub enum Original {
     /// Triangle mesh, which is interpreted as a solid body or as an open surface.
     Mesh(Box<Surface>, Body),
@@ -148,7 +148,7 @@ fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(
     None
 }
 
-/// Colour scale of the distances between spheres and original object in the third panel, metres.
+/// Colour scale of the third panel: distances between the spheres and the original object, metres.
 struct Scale {
     lowest: f64,
     highest: f64,
@@ -157,7 +157,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// Creates a colour scale that covers all visible distances except the extreme 1 %, which would make the other colours pale.
+    /// Creates a colour scale that covers all visible distances except the most extreme 1 %.
     fn new(seen: &[Option<Hit>], distances: &[f64]) -> Self {
         let of_hit = |(hit, &distance): (&Option<Hit>, &f64)| hit.is_some().then_some(distance);
         let mut distances: Vec<f64> = seen.iter().zip(distances).filter_map(of_hit).collect();
@@ -185,7 +185,7 @@ impl Scale {
     }
 }
 
-/// Formats a length in metres as millimetres with its sign; a negative number has a true minus sign.
+/// Formats a length in metres as millimetres with a sign; negative numbers have a true minus sign.
 fn signed_millimetres(metres: f64) -> String {
     let sign = if metres < 0.0 { "−" } else { "+" };
     format!("{sign}{}", short_number((1e6 * metres.abs()).round() / 1e3))
@@ -198,7 +198,7 @@ mod tests {
     use crate::mesh::TriangleMesh;
     use crate::objects::{Part, Shape, Sphere};
 
-    /// Creates a square surface of side 2 at z = 0, seen from above.
+    /// Creates a square surface with sides of length 2 in the plane z = 0, viewed from above.
     fn square() -> Surface {
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let corners = corners.map(|(x, y)| DVec3::new(x, y, 0.0));
@@ -211,7 +211,7 @@ mod tests {
         SphereUnion::new(vec![Sphere { center, radius }]).unwrap()
     }
 
-    /// Returns the sum of the red values minus the blue values over the third panel, without its colour bar.
+    /// Returns the sum of red minus blue over the pixels of the third panel, without its colour bar.
     fn redness(picture: &Picture) -> i64 {
         let tile = picture.height;
         let pixels = picture.rgb.chunks(3).enumerate();

@@ -1,4 +1,4 @@
-//! Output of one frame to a file; the file extension selects the format.
+//! Output of one frame to a file, in the format that the file extension selects.
 
 use crate::error::{Error, Result};
 use crate::files::{write_bytes, write_whole};

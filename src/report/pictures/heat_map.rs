@@ -1,4 +1,4 @@
-//! Heat map of a frame: its colour scale, and the reduction of large frames to blocks.
+//! Heat map of a frame: its colour scale, and the averaging of large frames over blocks of taxels.
 
 use crate::error::{Error, Result};
 use crate::report::pictures::colours::{Rgb, heat};
@@ -31,7 +31,7 @@ pub struct ColourScale {
 }
 
 impl ColourScale {
-    /// Creates the colour scale that covers the given values (metres or newtons). If all values are zero, the scale is 0 to 1.
+    /// Creates a colour scale that covers the given values, in metres or newtons. If all values are zero, the scale is 0 to 1.
     pub fn over<'a>(values: impl IntoIterator<Item = &'a f64>, quantity: Quantity) -> Self {
         let mut scale = Self {
             quantity,

@@ -44,7 +44,7 @@ impl Picture {
         Ok(Self { width, height, rgb })
     }
 
-    /// Returns the picture at half its size (rounded down); each pixel is the mean of four.
+    /// Returns the picture at half its width and height (rounded down); each pixel is the mean of four pixels.
     pub(crate) fn halved(&self) -> Self {
         Self {
             width: self.width / 2,
@@ -68,7 +68,7 @@ impl Picture {
         Ok(Self { width, height, rgb })
     }
 
-    /// Paints the points where the rays of a canvas hit an object, on the part of the picture with the given top left corner.
+    /// Paints the points where rays hit an object; the given corner is the top left corner of the painted area.
     pub(crate) fn paint(
         &mut self,
         canvas: &Canvas,

@@ -59,7 +59,8 @@ impl Cells {
         }
     }
 
-    /// Creates square cells of `side` pixels, each for a block of `block` × `block` taxels of a grid. The first cell starts at the given top left corner.
+    /// Creates square cells with sides of `side` pixels; each cell shows a block of `block` × `block` taxels of a grid. The first cell starts at the given top
+    /// left corner.
     pub fn of_grid(grid: &Grid, block: usize, side: f64, (x, y): Point) -> Self {
         let (rows, columns) = (grid.ny.div_ceil(block), grid.nx.div_ceil(block));
         let area = Area::new((x, y), (side * columns as f64, side * rows as f64));

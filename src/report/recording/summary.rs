@@ -6,7 +6,7 @@ use crate::report::terminal::rows_text;
 use crate::signal::Quantity;
 use crate::table::short_number;
 
-/// Returns the summary of a recording as text: frames and times, patches with their largest values, objects, and metadata. Reads all data of the file.
+/// Returns a text summary of a recording: frames and times, patches with their largest values, objects, and metadata. Reads all data of the file.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -38,7 +38,7 @@ pub fn recording_table(file: &mut RecordingFile) -> Result<String> {
     Ok(text)
 }
 
-/// Returns the row of the summary that describes a patch, with its largest values over all frames.
+/// Returns the summary row of a patch, with its largest values over all frames.
 fn row(file: &mut RecordingFile, patch: usize) -> Result<Vec<String>> {
     let (mut most_touched, mut peak_frame) = (0, 0);
     let (mut peak_deflection, mut peak_force) = (0.0, 0.0);

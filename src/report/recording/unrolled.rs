@@ -8,7 +8,7 @@
 use crate::table::short_number;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Minimum cosine of the angle between each taxel axis and the mean axis of a skin that counts as flat (10°). The projection then shortens lengths by at most
+/// Minimum cosine of the angle between each taxel axis and the mean axis (10°) for a skin to be drawn as flat. The projection then shortens lengths by at most
 /// 1.5 %.
 const FLAT: f64 = 0.985;
 /// Maximum deviation of the taxels from a fitted sphere or cylinder, relative to its radius. With a larger value, ellipsoids are accepted as spheres; with a
@@ -26,7 +26,8 @@ pub(super) struct Unrolled {
     pub sentence: String,
 }
 
-/// Returns the directions right, up and towards the viewer of a picture. If the view is along z, y is up, as in a heat map; otherwise z is up.
+/// Returns a matrix whose rows are the directions right, up and towards the viewer in a picture. If the view is along z, y is up, as in a heat map; otherwise z
+/// is up.
 fn view_from(towards_eye: DVec3) -> DMat3 {
     let is_above = towards_eye.z.abs() > 0.7;
     upright(towards_eye, if is_above { DVec3::Y } else { DVec3::Z })

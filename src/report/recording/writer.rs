@@ -145,7 +145,7 @@ impl RecordingWriter {
     }
 }
 
-/// Returns the size of one frame in bytes, summed over all arrays of the recording.
+/// Returns the size of one frame of all arrays of a recording, bytes.
 fn frame_bytes(members: &[Member]) -> usize {
     members.iter().map(Member::row_bytes).sum()
 }

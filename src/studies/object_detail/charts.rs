@@ -1,4 +1,4 @@
-//! Charts and answers of an object-detail study: deflection errors of models, their costs, and the accuracy of classifiers trained on models.
+//! Charts and answers of an object-detail study: deflection errors and costs of models, and the accuracy of classifiers trained on models.
 
 use crate::studies::object_detail::study::{ObjectDetailStudy, RECOGNITION};
 use crate::studies::object_detail::variants::within;
@@ -39,7 +39,7 @@ const SPHERES: Named = ("spheres", "number of spheres", "n_spheres_median");
 /// Chart axis that shows the computing time per touch.
 const TIME: Named = ("time", "time of a touch", "us_per_touch_median");
 
-/// Chart axes that show accuracies of classifiers, plotted against the deflection error of the models used in training.
+/// Chart axes for the accuracy of classifiers against the deflection error of their training models.
 const LEARNED: [Named; 2] = [
     (
         "recognition",
@@ -82,7 +82,7 @@ impl ObjectDetailStudy {
         errors.chain(learned).collect()
     }
 
-    /// Returns the answers: the most exact model, the cheapest model of each method within half a millimetre, and the loss of accuracy by training on models.
+    /// Returns the answers: the most exact model, the cheapest models within half a millimetre, and the loss of accuracy by training on models.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let costs = &tables[3];
         let rows = 0..costs.n_rows;
@@ -141,7 +141,7 @@ fn model_words(table: &Table, row: usize) -> String {
 /// Deflection error below which a model counts as exact enough, mm.
 const SMALL_MM: f64 = 0.5;
 
-/// Returns a description of the model, among `models` (rows of the table), that has the smallest value in the column `of`.
+/// Returns a description of the model with the smallest value in the column `of`; `models` are the table rows to compare.
 fn least(costs: &Table, models: impl Iterator<Item = usize>, of: &str) -> Option<String> {
     let number = |column: &str, row: usize| costs.number(column, row);
     let row = models.min_by(|&a, &b| number(of, a).total_cmp(&number(of, b)))?;

@@ -11,7 +11,7 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::touches::drawn_touches::draw_touches;
 use crate::world::Placement;
 
-/// Summary of |δ − δ\*| over taxels, where δ is the deflection on a model and δ\* the exact deflection.
+/// Summary of |δ − δ\*| over taxels, where δ is the deflection by a model and δ\* the deflection by the exact object.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DeflectionError {
     /// Mean of |δ − δ\*| over all taxels that the mesh or the model touches, mm, where δ is the deflection on the model and δ\* on the mesh.
@@ -42,7 +42,7 @@ fn mean(errors: &[f64]) -> f64 {
 /// Touches of the exact object, with the deflections of their taxels.
 pub(super) struct Truth {
     array: TaxelArray,
-    /// Touches that reached the exact object, with the deflections of their taxels.
+    /// Touches that reached the exact object, each with the deflections of its taxels.
     pub readings: Vec<Reading>,
     /// Number of touches in which the array misses the object.
     pub n_missed: usize,
@@ -103,13 +103,13 @@ impl Truth {
         Ok(truth)
     }
 
-    /// Returns the deflection error of a model that is pressed in the poses of the exact object. The patch is retracted by `offset` metres along its axis.
+    /// Returns the deflection error of a model in the poses of the exact object's touches. The patch is retracted by `offset` metres along its axis.
     pub fn error(&self, model: &Model, offset: f64) -> DeflectionError {
         DeflectionError::new(self.errors(model, offset))
     }
 
-    /// Returns the deflection error of a model if each touch has the same depth past first contact on the model as on the mesh. A study that contains only the
-    /// model makes this error.
+    /// Returns the deflection error of a model for touches with equal depths past first contact on model and mesh. A study that contains only the model makes
+    /// this error.
     pub fn error_past_own_contact(&self, model: &Model) -> DeflectionError {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         DeflectionError::new(self.errors_of(|pose, reading, workspace| {
@@ -155,8 +155,8 @@ impl Truth {
         })
     }
 
-    /// Returns |δ − δ\*| in metres for each taxel that the mesh (deflection δ\*) or the model (δ) touches. The function `press` computes the deflections on the
-    /// model.
+    /// Returns |δ − δ\*| in metres for each touched taxel, where δ is the deflection by the model and δ\* by the mesh. The function `press` computes the
+    /// deflections on the model.
     fn errors_of(&self, press: impl Fn(&[Pose], &Reading, &mut Workspace)) -> Vec<f64> {
         let mut workspace = Workspace::new();
         let mut errors = Vec::new();

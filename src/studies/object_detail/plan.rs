@@ -26,7 +26,7 @@ pub struct ObjectDetailPlan {
     pub placement: Placement,
 }
 
-/// Maximum number of points of a mesh at which distances are measured; all points are in memory together.
+/// Maximum number of mesh points at which distances are measured; all points are kept in memory.
 const MAX_POINTS: usize = 10_000_000;
 
 /// Descriptions of the keys of the table `[object_detail]` in a study file.

@@ -46,7 +46,7 @@ impl Learned {
         levels.flat_map(of_level).collect()
     }
 
-    /// Returns the name of the classifier's work item.
+    /// Returns the name of the work item that trains the classifier.
     pub fn name(&self) -> String {
         let (method, tolerance_mm) = self.level;
         format!(
@@ -57,7 +57,7 @@ impl Learned {
     }
 }
 
-/// Sensor that measures touches of models, for training and testing.
+/// Sensor that touches models for training and testing of classifiers.
 pub(super) struct Sensor<'a> {
     plan: &'a ObjectDetailPlan,
     spec: &'a DetailRecognitionSpec,

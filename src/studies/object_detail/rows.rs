@@ -63,7 +63,7 @@ row! {
 pub struct DetailTime {
     /// Computing time per touch of the model on one thread, median over touches, µs.
     us_per_touch: f64 => Cost "time of a touch" in "µs": Log;
-    /// Time to compute the model while other work runs on all threads, or to read it from the cache, s.
+    /// Time to compute the model while other threads are busy, or to read it from the cache, s.
     prepare_s: f64 => Cost "time to make the model" in "s": Log;
     /// Whether the model was read from the cache of an earlier run.
     cached: bool => Note "kept from a run before";
@@ -112,14 +112,14 @@ pub struct DetailSummary {
     error_after_offset_median_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
     /// Upper quartile, over all objects, of `error_after_offset_mm`: the deflection error with the best constant offset of the patch, mm.
     error_after_offset_q3_mm: f64 => Note "quartiles of deflection error after offset, upper" in "mm": Log;
-    /// Largest deflection error with the best constant offset of the patch (`error_after_offset_mm`) of any object's model, mm.
+    /// Largest value of `error_after_offset_mm` (deflection error with the best constant offset of the patch) of any object's model, mm.
     error_after_offset_worst_mm: f64 => Value(Less) "deflection error after offset of the worst object" in "mm": Log;
     /// Median, over all objects, of `error_own_contact_mm`: the deflection error at equal depths past each model's own first contact, mm.
     error_own_contact_median_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
     /// Largest deflection error at equal depths past each model's own first contact (`error_own_contact_mm`) of any object, mm.
     error_own_contact_worst_mm: f64 => Value(Less) "deflection error past own contact of the worst object" in "mm": Log;
-    /// Ratio of two values of `error_after_offset_mm`, dimensionless, median over all objects: this method's error divided by the error of the packing with
-    /// equal tolerance. Empty if there is no such packing.
+    /// Error of this method divided by that of the packing with equal tolerance (values of `error_after_offset_mm`), median over all objects, dimensionless.
+    /// Empty if there is no such packing.
     times_packing: Option<f64> => Value(Less) "times the error of the packing": Log;
 } }
 

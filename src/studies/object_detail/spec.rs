@@ -58,13 +58,13 @@ pub struct DetailRecognitionSpec {
 }
 
 impl DetailRecognitionSpec {
-    /// Returns the number of touches per object for training and testing together.
+    /// Returns the number of touches per object, which is the sum of its training and test touches.
     pub(super) fn n_touches(&self) -> usize {
         self.training_touches + self.test_touches
     }
 }
 
-/// Method that makes a model from a mesh.
+/// Method by which a model is made from a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DetailMethod {

@@ -62,7 +62,8 @@ pub(super) const RECOGNITION: File<DetailRecognition> = File::new(
     "",
 );
 
-/// Returns the number of the work item that computes an object's models. For an index past the last object, returns the number of the first classifier's item.
+/// Returns the number of the work item that computes all models of an object. For an index past the last object, returns the number of the first classifier's
+/// item.
 fn models_item(object: usize) -> usize {
     2 * object
 }

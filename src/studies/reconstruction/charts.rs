@@ -6,7 +6,7 @@ use crate::studies::reconstruction::study::ReconstructionStudy;
 use crate::table::{Along, ChartSpec, Mark, Rule, Table, short_number};
 
 impl ReconstructionStudy {
-    /// Returns two charts for each noise level: reconstruction error by number of measurements for each ensemble, and reconstruction error by computing time.
+    /// Returns two charts for each noise level: reconstruction error by number of measurements, and reconstruction error by computing time.
     pub(crate) fn charts(&self, tables: &[Table]) -> Vec<ChartSpec> {
         let (configurations, pareto) = (&tables[0], &tables[3]);
         let mut charts = Vec::new();

@@ -82,8 +82,8 @@ impl ReconstructionStudy {
     }
 }
 
-/// For a noise level, returns two table rows to show. One is the best configuration whose number of measurements is nearest to a quarter of the taxels. The
-/// other is the best configuration with the fewest measurements.
+/// Returns the two table rows whose frames are shown for a noise level. One is the best configuration whose number of measurements is nearest to a quarter of
+/// the taxels. The other is the best configuration with the fewest measurements.
 fn shown_rows(configurations: &Table, level: f64) -> Vec<usize> {
     let of_level: Vec<usize> = (0..configurations.n_rows)
         .filter(|&row| configurations.number("noise_std", row) == level)

@@ -39,8 +39,7 @@ pub struct ReconstructionPlan {
     pub dictionaries: Vec<Basis>,
 }
 
-/// Maximum value of the key `isometry_subsets`: supports (sets of atoms) that are randomly drawn for each support size. All drawn supports are in memory
-/// together.
+/// Maximum value of the key `isometry_subsets`, the number of randomly drawn sets of atoms (supports) per size. All drawn supports are in memory together.
 const MAX_SUBSETS: usize = 1_000_000;
 
 /// Maximum value of the key `atoms` (number of atoms of a dictionary), more than any array has taxels. The minimum is two, because λ = √(2 ln k) vanishes for k
@@ -199,7 +198,7 @@ impl ReconstructionPlan {
 }
 
 impl Check<'_> {
-    /// Checks that no signal step follows the noise. Solvers assume independent noise on every taxel and need a clean frame for comparison.
+    /// Returns an error if a signal step follows the noise. Solvers assume independent noise on every taxel and need a clean frame for comparison.
     fn noise_is_last(&self, signal: &SignalSpec) -> Result<()> {
         let refuse = |key, given: &str, allowed| Err(self.error(key, given, allowed));
         if signal.test_sensor.is_some() {

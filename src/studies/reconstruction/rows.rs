@@ -38,8 +38,8 @@ pub struct ReconstructionConfiguration {
 } }
 
 impl ReconstructionConfiguration {
-    /// Returns the name of the configuration's work item. The name contains the settings, because the configuration's number changes if an axis has more
-    /// values.
+    /// Returns the name of the work item that computes the configuration. The name contains the settings, because the configuration's number changes if an axis
+    /// has more values.
     pub(super) fn name(&self) -> String {
         format!(
             "{:?} in {:?} of {:?}, m = {}, noise {} {:?}",
@@ -70,8 +70,8 @@ pub struct ReconstructionScore {
     error_low: f64 => Note "95 % interval over touches, lower end": Log;
     /// Upper end of the 95 % interval of `error`, which covers its variation over touches.
     error_high: f64 => Note "95 % interval over touches, upper end": Log;
-    /// Relative error √(Σ‖y − x‖² / Σ‖x‖²) of the noisy frames y with respect to the clean frames x, dimensionless. The value is the error if all taxels are
-    /// read without compression.
+    /// Relative error √(Σ‖y − x‖² / Σ‖x‖²) of the noisy frames y with respect to the frames x without noise. The value is the error if all taxels are read
+    /// without compression.
     full_sampling_error: f64 => Note: Log;
     /// Signal-to-noise ratio of the reconstructed frames, −20 log₁₀ `error`, dB.
     snr_db: f64 => Value(More) "SNR" in "dB": Linear;
@@ -158,5 +158,5 @@ pub type ReconstructionRow = (
     ReconstructionTime,
 );
 
-/// Results of work items: the configurations with their errors and times, and the isometry statistics.
+/// Results of all work items: the configurations with their errors and times, and the isometry statistics.
 pub type ReconstructionRows = (Vec<ReconstructionRow>, Vec<EnsembleStatistics>);

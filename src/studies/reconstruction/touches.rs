@@ -30,7 +30,7 @@ pub(super) struct Touches {
     pub test: Array2<f64>,
     pub truth: Truth,
     pub noisy: Vec<Noisy>,
-    /// Dictionaries computed from the training frames, in the order of the plan; each is computed when it is first needed.
+    /// Dictionaries (sets of atoms) in the order of the plan; each is computed from the training frames when it is first needed.
     dictionaries: Vec<Shared<Dictionary>>,
     /// Row numbers of the test frames that the picture shows, each with the name of its object.
     pub shown: Vec<(usize, String)>,
@@ -83,7 +83,7 @@ impl Touches {
         })
     }
 
-    /// Returns a dictionary that is computed from the training frames; computes it at the first call.
+    /// Returns a dictionary of atoms that is computed from the training frames at the first call.
     pub(super) fn dictionary(
         &self,
         plan: &ReconstructionPlan,

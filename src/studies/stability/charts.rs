@@ -27,7 +27,7 @@ impl StabilityPlan {
         charts
     }
 
-    /// Returns one sentence per method with its number of right results, in descending order of this number.
+    /// Returns one sentence per method with its number of correct results, sorted from the largest to the smallest number.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let summary = &tables[1];
         let methods = summary.groups(&["method", "solver_iterations"], 0..summary.n_rows);

@@ -23,7 +23,7 @@ use std::time::Instant;
 /// Result of a simulation method at the time of evaluation.
 #[derive(Default)]
 struct Answer {
-    /// Kind of failure; `None` if the simulation succeeded. After a failure, all other values are zero or empty.
+    /// Kind of failure of the simulation; `None` if it succeeded. After a failure, all other values are zero or empty.
     broken: Option<Outcome>,
     /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels.
     force_imbalance: f64,
@@ -37,7 +37,7 @@ struct Answer {
 
 /// Duration of a simulation below which it is repeated, and the median time is used, seconds. In a single short run, other load of the machine would dominate.
 const SHORT: f64 = 5e-3;
-/// Number of times that a short simulation is repeated.
+/// Number of repetitions of a short simulation, from which its computing time is determined.
 const N_REPEATS: usize = 9;
 
 /// Simulates and evaluates a configuration, given its taxel parameters without damper.
@@ -84,7 +84,7 @@ pub(super) fn measure(
     Ok(best.expect("at least one try"))
 }
 
-/// Factor between the contact stiffness that is used and the one that just meets the tolerance. Penetration reduces the deflection of every taxel.
+/// Contact stiffness that the simulation uses, divided by the stiffness that just meets the tolerance. Penetration reduces the deflection of every taxel.
 const SAFETY: f64 = 4.0;
 
 /// Returns two contact stiffnesses to test, N/m: the lowest that meets the tolerance, and the highest for which the time step is stable.
@@ -237,7 +237,7 @@ fn press_to_weight(scene: &ConfigurationScene) -> Result<Answer> {
     })
 }
 
-/// With the quasi-static method, simulates a ball with imposed motion on damped taxels.
+/// Simulates a ball with imposed motion on damped taxels by the quasi-static method.
 fn press_and_release(
     configuration: &StabilityConfiguration,
     scene: &ConfigurationScene,

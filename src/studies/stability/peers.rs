@@ -1,4 +1,4 @@
-//! Results of other programs for the same configurations, read from a file.
+//! Results of other programs for the same configurations, read from a CSV file.
 
 use crate::error::Result;
 use crate::report::csv_tables::read_rows;

@@ -146,8 +146,8 @@ impl Check<'_> {
     }
 }
 
-/// Returns the masses M of the ball, kg, or `None` if its motion is imposed. A given mass per taxel is converted. An error consists of the key, the given value
-/// and the allowed values.
+/// Returns the possible masses M of the ball, kg; `None` if the motion of the ball is imposed. A given mass per taxel is converted. An error consists of the
+/// key, the given value and the allowed values.
 fn object_masses(
     part: &StabilityPartSpec,
 ) -> std::result::Result<Vec<Option<f64>>, [&'static str; 3]> {

@@ -60,7 +60,7 @@ pub struct StabilityScore {
     explicit_limit_s: f64 => Note "limit of an explicit spring" in "s": Log;
     /// Damping coefficient c of a taxel, N·s/m.
     damping_n_s_per_m: f64 => Note "taxel damping" in "N s/m": Log;
-    /// Contact stiffness κ, N/m; empty unless the method models contact by a penalty force, which is κ times the penetration.
+    /// Contact stiffness κ, N/m, of a method whose contact force is κ times the penetration; empty for other methods.
     contact_stiffness_n_per_m: Option<f64> => Note "contact stiffness" in "N/m": Log;
     /// Whether the result of the simulation is right, or else the kind of failure.
     outcome: Outcome => Outcome;
@@ -81,12 +81,12 @@ row! {
 pub struct StabilityTime {
     /// Wall-clock time of the whole simulation, s, on one thread while other threads run other simulations.
     wall_s: f64 => Cost "time" in "s": Log;
-    /// Wall-clock time divided by the simulated time; empty if the method does not step through time.
+    /// Wall-clock time divided by simulated time; empty if the method has no time steps.
     per_simulated_s: Option<f64> => Cost "computing a simulated second" in "s": Log;
 } }
 
 row! {
-/// Results of a method in a scene over all configurations: a row of `stability_summary.csv`.
+/// Results of a method in a scene, summarised over all configurations: a row of `stability_summary.csv`.
 pub struct StabilitySummary {
     /// Scene that is simulated.
     scene: StabilityScene => Condition;
@@ -96,7 +96,7 @@ pub struct StabilitySummary {
     solver_iterations: Option<usize> => Choice: Linear;
     /// Number of simulated configurations of the method in the scene.
     n_configurations: usize => Note "configurations": Linear;
-    /// Number of configurations with a right result.
+    /// Number of configurations whose result is correct.
     n_correct: usize => Value(More) "right": Linear;
     /// Number of configurations that ended with an inaccurate result.
     n_inaccurate: usize => Value(Less) "inaccurate": Linear;
@@ -129,7 +129,7 @@ pub struct Joints {
     load_kg: f64 => Note "load of a taxel" in "kg": Log;
     /// Whether the result of the simulation is right, or else the kind of failure.
     outcome: Outcome => Outcome;
-    /// Wall-clock time divided by the simulated time. If the method does not step through time, total wall-clock time, s.
+    /// Wall-clock time divided by simulated time, dimensionless. If the method does not step through time, total wall-clock time, s.
     time_s: f64 => Cost "computing a simulated second" in "s": Log;
 } }
 
@@ -157,7 +157,7 @@ pub enum Outcome {
     Inaccurate,
     /// Contact was missed: the sum of all deflections is below half or above twice the exact sum, or nothing supports the ball.
     MissedContact,
-    /// The energy of the simulation exceeds four times the energy that enters the scene.
+    /// The energy of the simulation exceeds four times the energy that was supplied to the scene.
     EnergyGrowth,
     /// A number of the simulated state became infinite or NaN.
     NotFinite,

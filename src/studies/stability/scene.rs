@@ -261,7 +261,7 @@ fn slowest(k: f64, c: f64, m: f64) -> f64 {
     }
 }
 
-/// Minimum number of time steps for a ball that moves freely.
+/// Minimum number of time steps in the simulation of a ball that moves freely.
 pub const LEAST_STEPS: f64 = 50.0;
 
 #[cfg(test)]

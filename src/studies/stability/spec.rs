@@ -16,7 +16,7 @@ pub struct StabilityStudySpec {
     /// Answer that the author expected before the first run. Default: empty.
     #[serde(default)]
     pub expected: String,
-    /// Table `[stability]`: scenes and simulation methods to compare.
+    /// Table `[stability]`: scenes, and the simulation methods that are compared on them.
     pub stability: StabilitySpec,
 }
 
@@ -67,11 +67,11 @@ pub struct StabilityPartSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StabilityScene {
-    /// A ball is lowered to first contact and released. The dampers stop it without oscillation: `c = 2 √(k (M / n + m))`, where n taxels carry the ball at
-    /// rest.
+    /// A ball is lowered until first contact and then released. The dampers stop it without oscillation: `c = 2 √(k (M / n + m))`, where n taxels carry the
+    /// ball at rest.
     Rest,
-    /// A ball has an imposed motion: from 2 mm above the array, at 0.5 m/s, to half the stroke, a pause, and back at the same speed. The damping of a taxel is
-    /// 0.508 of critical, as in SkinSim.
+    /// A ball moves at 0.5 m/s from 2 mm above the array to half the stroke, pauses, and returns at the same speed. The damping of a taxel is 0.508 of
+    /// critical, as in SkinSim.
     Press,
     /// A ball that can only move vertically is released as in `rest`. The taxels have the dampers of SkinSim, with a ratio of damping to stiffness of c / k =
     /// 0.13 / 16.37 s.
@@ -103,7 +103,7 @@ pub enum ContactMethod {
     /// Semi-implicit Euler steps with the better of two contact stiffnesses. One stiffness limits the penetration to 1/400 of the deflection or stroke. The
     /// other stiffness is the largest that is stable for the time step.
     SemiImplicit,
-    /// Implicit Euler steps in which the contact conditions hold exactly.
+    /// Implicit Euler steps that satisfy the contact conditions exactly.
     ImplicitEuler,
     /// The engine rapier with default settings except for the unit of length. Requires the feature `rapier`; omitted without it.
     RapierAsItComes,
@@ -126,7 +126,7 @@ impl ContactMethod {
         !self.is_engine() || cfg!(feature = "rapier")
     }
 
-    /// Returns whether the results of the method come from another program's table.
+    /// Returns whether the results of the method are read from a table of another program.
     pub fn is_peer(self) -> bool {
         matches!(
             self,
@@ -134,7 +134,7 @@ impl ContactMethod {
         )
     }
 
-    /// Returns whether the key `solver_iterations` applies to the method.
+    /// Returns whether the method is a physics engine, to which the key `solver_iterations` applies.
     pub fn is_engine(self) -> bool {
         matches!(
             self,

@@ -56,7 +56,7 @@ impl WholeBodyPlan {
         Ok(picture_of_body(self, &tables[0])?.into_iter().collect())
     }
 
-    /// Returns answers on the time from touch to decision, the growth of this time with the skin, steps per second, memory, and recognition.
+    /// Returns answers about the time from touch to decision, its growth with the skin, steps per second, memory, and recognition.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (cases, recognition) = (&tables[0], &tables[1]);
         let (timing, steps) = (&tables[3], &tables[4]);
@@ -101,7 +101,7 @@ impl WholeBodyPlan {
     }
 }
 
-/// Returns a filter that selects the rows of a scaling series; returns `None` if the table has no such rows.
+/// Returns a filter for the rows of a scaling series; `None` if the table has no such rows.
 fn of_series(table: &Table, series: &str) -> Option<Shown> {
     let mut rows = 0..table.n_rows;
     let row = rows.find(|&row| table.word("series", row) == series)?;

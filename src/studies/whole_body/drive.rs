@@ -8,7 +8,8 @@ use crate::whole_body::{BodyContact, BodyState, SphereClusters, WholeBody};
 use crate::world::Oscillation;
 use glam::DVec3;
 
-/// Time step after which a damped taxel without contact has returned to its rest position, seconds. The value is longer than any relaxation.
+/// Duration of a time step that is long enough for a damped taxel without contact to return to its rest position, seconds. The value is longer than any
+/// relaxation.
 pub(super) const FORGOTTEN: f64 = 1e9;
 /// Distance that the object moves between two tests for contact in the search for the first contact, metres. Bisection then refines the contact to
 /// `SEARCH_END`.
@@ -18,7 +19,7 @@ const SEARCH_END: f64 = 1e-7;
 /// Distance between the target and the point at which the search for the first contact starts, metres. The size of the object is added to it.
 const SEARCH_START: f64 = 0.05;
 
-/// Robot that is covered with skin, in a certain posture: with the poses of its patches and links.
+/// Robot that is covered with skin, in a given posture, with the poses of its patches and links.
 pub(super) struct Posture<'a> {
     pub body: &'a WholeBody,
     /// Pose of each patch in the world, `world_from_patch`.
@@ -60,7 +61,7 @@ impl Path {
     }
 }
 
-/// Object that moves along a path over a body's skin.
+/// Object that moves along a path over the skin of a robot.
 pub(super) struct Drive<'a> {
     pub body: &'a WholeBody,
     pub state: BodyState,
@@ -83,7 +84,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Presses the object against the skin at the start of a path, without deflections from earlier presses.
+    /// Presses the object against the undeformed skin at the start of a path.
     pub fn probe(&mut self, path: Path) -> BodyContact {
         let pose = [path.at(0.0)];
         self.state.press(self.body, &self.object, &pose, FORGOTTEN)
@@ -94,8 +95,8 @@ impl<'a> Drive<'a> {
         self.state.touched(self.body)
     }
 
-    /// Moves the start of the path along the unit vector `from`, which points away from the skin. At the new start, the object is `depth` metres past the first
-    /// contact.
+    /// Moves the start of the path in the direction of the unit vector `from`, away from the skin. At the new start, the object is `depth` metres past the
+    /// first contact.
     pub fn approach(&mut self, from: DVec3, depth: f64) -> Result<()> {
         let reach = self.object[0].ball().radius + self.object[0].ball().center.length();
         let path = self.path;

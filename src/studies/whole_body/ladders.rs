@@ -27,7 +27,7 @@ const SWING: f64 = 0.05;
 const SLIDE: f64 = 0.02;
 /// Period of the oscillation of the square of spheres, seconds.
 const PERIOD: f64 = 0.5;
-/// Number of bisections in the search for the depth at which the required number of taxels is touched.
+/// Number of bisections in the search for the press depth at which the required number of taxels is touched.
 const N_HALVINGS: usize = 40;
 
 /// One size in a scaling series: the numbers of taxels, of touched taxels and of spheres.

@@ -1,4 +1,4 @@
-//! Picture of the scene with the most touched patches: the robot with the object, and the robot alone with the pressure on its patches.
+//! Picture of the scene with the most touched patches: one view of the robot with the object, one of the pressure on the robot's patches.
 
 use crate::error::Result;
 use crate::objects::Sphere;

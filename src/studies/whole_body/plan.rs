@@ -72,7 +72,7 @@ pub struct Aim {
     pub motion: Oscillation,
 }
 
-/// Maximum number of measured steps of a scene; the times of all steps are in memory together.
+/// Maximum number of measured steps of a scene; the times of all steps are kept in memory.
 const MAX_STEPS: usize = 10_000_000;
 /// Maximum number of spheres of an object in a scaling series.
 const MAX_SPHERES: usize = 10_000_000;
@@ -121,7 +121,7 @@ pub fn whole_body_keys() -> Vec<KeyAbout> {
 }
 
 impl WholeBodyPlan {
-    /// Creates the plan of a study and checks all keys; the path of the robot is relative to `folder`.
+    /// Creates the plan of a study and checks all its keys; the path of the robot file is relative to `folder`.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -180,7 +180,7 @@ impl WholeBodyPlan {
         &self.spec.whole_body.recognition
     }
 
-    /// Returns the number of measured steps for each scene, and for each size of a scaling series.
+    /// Returns the number of measured steps of a scene, or of one size of a scaling series.
     pub fn n_steps(&self) -> usize {
         self.spec.whole_body.steps
     }

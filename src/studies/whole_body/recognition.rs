@@ -58,7 +58,7 @@ fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Res
     Ok(projection.columns())
 }
 
-/// Returns the measurements of all touches with all compressions: one row per touch, ordered by object. In a row, the measurements of the compressions follow
+/// Returns the measurements of all touches with each compression, one row per touch, ordered by object. In a row, the measurements of the compressions follow
 /// each other.
 fn measure(
     plan: &WholeBodyPlan,
@@ -98,7 +98,7 @@ fn measure(
     Ok(features)
 }
 
-/// Draws the random pose at which an object touches the skin (`link_from_object`), and how far it travels past the first contact, metres.
+/// Draws the random pose `link_from_object` of an object at a touch, and its travel past first contact in metres.
 fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
     let wanted = plan.recognition();
     let seed = Seed::new(plan.spec.seed).named("whole_body").named("touch");

@@ -60,7 +60,7 @@ pub struct BodyCount {
 } }
 
 row! {
-/// Measured and classified signals of a scene with one compression: a row of `sensed.csv`.
+/// Measurements and decisions of a scene with one compression: a row of `sensed.csv`.
 pub struct BodySensed {
     /// Name of the scene in which the object is recognised.
     scene: String => Subject;
@@ -70,7 +70,7 @@ pub struct BodySensed {
     measurement_sum_mm: f64 => Note "sum of measurements" in "mm": Linear;
     /// Most frequent decision of the classifier over all steps: the name of an object. If two are equally frequent, the one that comes first in the study.
     decision: String => Outcome;
-    /// Fraction of the steps in which the classifier decides for the object in `decision`, 0 to 1.
+    /// Fraction of the steps in which the classifier's decision is the object in `decision`, 0 to 1.
     decision_fraction: f64 => Note "share of the steps": Share;
 } }
 
@@ -113,12 +113,12 @@ pub enum Stage {
     Compress,
     /// Classification of the measurements by a support vector machine (SVM).
     Classify,
-    /// All three stages of a step together: press, compress and classify.
+    /// All three stages of a step: press, compression and classification.
     Whole,
 }
 
 row! {
-/// Timed part of a step. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
+/// Stage of a step whose time is measured. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
 pub struct BodyStage {
     /// Timed part of a step: press, compress, classify, or all three together.
     stage: Stage => Note;
@@ -129,9 +129,9 @@ pub struct BodyStage {
 } }
 
 row! {
-/// Number of touched taxels in steps that are timed with all threads. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
+/// Number of touched taxels in steps that are timed with all threads in use. A row of `steps.csv` is a [`BodyCase`], a `BodyTouch` and a [`StepTime`].
 pub struct BodyTouch {
-    /// Number of deflected taxels in a step, averaged over steps and rounded to two digits.
+    /// Number of deflected taxels per step, averaged over all steps and rounded to two digits.
     touched: f64 => Condition "touched taxels, about": Log;
     /// Number of deflected taxels per step, averaged over all steps.
     touched_mean: f64 => Note "touched taxels": Log;

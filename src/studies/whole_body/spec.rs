@@ -129,14 +129,14 @@ pub struct BodyRecognitionSpec {
 pub struct LaddersSpec {
     /// Total number of taxels of each skin in the series of growing skins.
     pub taxels: Vec<usize>,
-    /// Approximate numbers of touched taxels in the series of growing skins. Each skin is timed with each number that it is large enough for.
+    /// Approximate numbers of touched taxels in the series in which the skin grows. Each skin is timed with each number that it is large enough for.
     pub touched_at_taxels: Vec<usize>,
     /// Approximate numbers of touched taxels in the series of growing touches.
     pub touched: Vec<usize>,
     /// Number of spheres of each object in the series of growing objects; half of the spheres are on the side away from the skin. The series of growing skins
     /// and of growing touches use the first number.
     pub spheres: Vec<usize>,
-    /// Approximate number of touched taxels in the series of growing objects.
+    /// Approximate number of touched taxels in the series in which the object's number of spheres grows.
     pub touched_at_spheres: usize,
     /// Number of taxels of the skin in the series of growing touches and of growing objects.
     pub taxels_at_touch: usize,

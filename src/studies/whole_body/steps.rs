@@ -29,7 +29,7 @@ struct Step {
 
 /// Result of compressing and classifying one step.
 struct SensedStep {
-    /// Sum of the magnitudes of all measurements, metres.
+    /// Sum of the absolute values of all measurements, metres.
     size: f64,
     label: usize,
     compress_s: f64,
@@ -121,7 +121,7 @@ impl Drive<'_> {
 }
 
 impl Compression {
-    /// Computes the measurements and the decision of a step; `row` is scratch memory for the measurements.
+    /// Computes the measurements and the decision of a step, using `row` as memory for the measurements.
     fn sense(&self, drive: &Drive, row: &mut [f64]) -> Result<SensedStep> {
         let start = Instant::now();
         drive.state.measure(drive.body, &self.columns, row);

@@ -208,7 +208,7 @@ impl Study for WholeBodyPlan {
     }
 }
 
-/// Rounds a number to two significant digits; for example, a touch of 10,008 taxels counts as 10,000.
+/// Rounds a number to two significant digits; for example, 10,008 taxels become 10,000.
 fn round_to_two(value: f64) -> f64 {
     let unit = 10f64.powf(value.max(1.0).log10().floor() - 1.0);
     (value / unit).round() * unit
@@ -245,7 +245,7 @@ impl WholeBodyPlan {
         })
     }
 
-    /// Returns the object of a scene at the start of its path; an error message names the scene.
+    /// Returns the object of a scene at the start of its path; error messages contain the name of the scene.
     pub(super) fn begin<'a>(
         &self,
         scene: &ScenePlan,

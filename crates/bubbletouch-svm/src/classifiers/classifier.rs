@@ -33,8 +33,8 @@ pub use crate::classifiers::trained_classifier::TrainedClassifier;
 pub enum Cost {
     /// Fixed value of C.
     Fixed(f64),
-    /// C (and γ) with the highest accuracy on validation rows. If candidates are equally accurate, the smaller γ is chosen, then the smaller C. The final model
-    /// is trained on all training rows.
+    /// C and γ are selected by the highest accuracy on validation rows. If candidates are equally accurate, the smaller γ is chosen, then the smaller C. The
+    /// final model is trained on all training rows.
     Chosen(Candidates),
 }
 

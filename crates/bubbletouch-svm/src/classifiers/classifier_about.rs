@@ -21,7 +21,7 @@ pub struct ClassifierAbout {
     pub parameters: &'static [Parameter],
     /// Kernel of a kernel SVM; `None` for other kinds. Kernel SVMs solve several values of C together and keep kernel values in memory.
     pub kernel: Option<fn(&Parameters) -> Kernel>,
-    /// Function that trains the classifier on scaled rows. C is ignored if the kind of classifier has none; random draws use the given seed.
+    /// Function that trains the classifier on rows with scaled features. C is ignored if the kind of classifier has none; random draws use the given seed.
     pub train: Train,
 }
 

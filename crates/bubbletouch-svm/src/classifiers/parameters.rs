@@ -25,7 +25,7 @@ pub struct Parameter {
     pub is_always_written: bool,
 }
 
-/// Default of a classifier's parameter: a number or a rule.
+/// Default value of a classifier's parameter: a number, or a rule that computes the value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DefaultValue {
     /// A number.
@@ -107,7 +107,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the value of an integer parameter whose default is a number.
+    /// Returns the value of an integer parameter whose default is a fixed number.
     pub(crate) fn count(&self, parameters: &Parameters) -> usize {
         self.number(parameters) as usize
     }
@@ -186,7 +186,7 @@ impl Parameters {
     }
 }
 
-/// Keys of `[recognition]` that several kinds of classifiers share, each with a function that returns whether a kind uses the key.
+/// Keys of `[recognition]` that several kinds of classifiers share; the function returns whether a kind uses the key.
 const SHARED: [(&str, fn(ClassifierKind) -> bool); 7] = [
     ("tolerance", ClassifierKind::has_c),
     ("c", ClassifierKind::has_c),
@@ -199,7 +199,7 @@ const SHARED: [(&str, fn(ClassifierKind) -> bool); 7] = [
     ("solver_memory_gib", ClassifierKind::is_kernel_svm),
 ];
 
-/// Returns all parameters that classifiers declare, each once, in the order of the classifiers.
+/// Returns all parameters that classifiers declare, without repetitions, in the order of the classifiers.
 pub fn declared() -> impl Iterator<Item = &'static Parameter> {
     let of = |kind: &ClassifierKind| kind.about().parameters.iter();
     let all = move || ClassifierKind::ALL.iter().flat_map(of);
@@ -217,7 +217,7 @@ pub fn keys() -> impl Iterator<Item = &'static str> {
 }
 
 impl ClassifierKind {
-    /// Returns whether the training of this kind of classifier depends on a key of [`keys`].
+    /// Returns whether the training of this kind of classifier depends on the given key (see [`keys`]).
     pub fn uses(self, key: &str) -> bool {
         let mut shared = SHARED.iter().filter(|(shared, _)| *shared == key);
         let mut declared = self.about().parameters.iter();

@@ -1,4 +1,4 @@
-//! Trained classifiers: a scaling and a model with one interface for prediction.
+//! Trained classifiers, each consisting of a feature scaling and a model, with a common interface for prediction.
 
 use std::sync::Arc;
 
@@ -91,7 +91,7 @@ impl TrainedClassifier {
         }
     }
 
-    /// For each row of scores, returns the label that is predicted from the scores, by votes or with log-priors as the kind of classifier requires.
+    /// Returns the predicted label of each row of scores, by votes or by scores with log-priors, depending on the kind of classifier.
     pub fn labels_of_scores(&self, scores: ArrayView2<f64>) -> Array1<usize> {
         match &self.model {
             Model::Svm(model) => model.labels_of_values(scores),

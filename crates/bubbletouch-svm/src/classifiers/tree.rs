@@ -34,11 +34,11 @@ enum Node {
     Split {
         feature: usize,
         threshold: f64,
-        /// Indices of the two child nodes: first for values up to the threshold, then for larger values.
+        /// Indices of the two child nodes: the first for values up to the threshold, the second for larger values.
         children: [usize; 2],
     },
     Leaf {
-        /// For a leaf, the number of training rows of each class that reached it, as pairs (class, number) in ascending order of the class.
+        /// Pairs (class, number of training rows) of a leaf, ascending by class; empty for other nodes.
         counts: Vec<(u32, u32)>,
     },
 }
@@ -275,8 +275,8 @@ mod tests {
         (features, (0..60).map(|i| i * i / 7 % 3).collect())
     }
 
-    /// Labels predicted by a shallow tree equal the labels of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are
-    /// equally good, so scikit-learn's tree does not depend on its `random_state`.
+    /// Tests that a shallow tree predicts the labels of scikit-learn 1.9.1, `DecisionTreeClassifier(max_depth=3)`. No two splits of these rows are equally
+    /// good, so scikit-learn's tree does not depend on its `random_state`.
     #[test]
     fn a_shallow_tree_is_scikit_learns() {
         let (features, label) = waves();

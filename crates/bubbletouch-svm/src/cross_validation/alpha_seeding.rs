@@ -1,4 +1,4 @@
-//! Alpha seeding: the solution of one fold is the starting point of the next fold.
+//! Alpha seeding: the solution of a cross-validation fold is the starting point of the next fold.
 //!
 //! Two of k folds differ in only 2/k of their rows. The multipliers of removed rows are moved to the most similar added rows [DeCoste, Wagstaff 2000; Wen et
 //! al. 2017]. The constraint `Σβ = 0` and the bounds remain satisfied.

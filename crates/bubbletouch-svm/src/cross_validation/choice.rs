@@ -214,7 +214,7 @@ fn rows_exist(training: &Dataset, part: &[usize]) -> Result<()> {
     }
 }
 
-/// For each kernel and C, returns the number of correctly classified validation rows (kernels.len() × path.len()). Also returns the number of solver runs that
+/// Returns the number of correctly classified validation rows for each kernel and C (kernels.len() × path.len()). Also returns the number of solver runs that
 /// stopped at the iteration cap.
 fn on_one_matrix(
     params: &SvmParams,

@@ -14,7 +14,7 @@ use crate::training::Goal;
 
 /// Solutions of a binary problem on the training rows of one fold, for all values of C.
 pub(crate) struct FoldPath {
-    /// Label of each row of the problem: 1 for a positive row, −1 for a negative row, 0 for a row that the fold holds out.
+    /// Label of each row of the problem: 1 (positive), −1 (negative), or 0 if the row is held out by the fold.
     labels: Vec<f64>,
     /// Solutions in ascending order of C. Larger values of C than the last have the last solution.
     pub solutions: Vec<FoldSolution>,
@@ -35,8 +35,8 @@ pub(crate) struct FoldSolution {
 }
 
 impl FoldPath {
-    /// Solves the problem of a pair of classes on all folds and passes each solved fold to a callback. The argument `folds` contains the labels of each fold,
-    /// one per row of the Gram matrix; the rows in the range `positive` have the label 1.
+    /// Solves the problem of a pair of classes on all cross-validation folds; passes each solved fold to a callback. The argument `folds` contains the labels
+    /// of each fold, one per row of the Gram matrix; the rows in the range `positive` have the label 1.
     pub fn of_pair<T: SolverScalar>(
         gram: &mut Dense<T>,
         (folds, positive): (Vec<Vec<f64>>, &Range<usize>),

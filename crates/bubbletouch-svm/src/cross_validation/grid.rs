@@ -1,4 +1,4 @@
-//! Cross-validation of a whole grid of C and kernels on one matrix of products.
+//! Cross-validation of a whole grid of C values and kernels that share one matrix of inner products.
 //!
 //! All folds and candidates share the products of rows. The kernel values of a pair of classes are computed once for all folds (`fold_path`). For each C, the
 //! solver starts from the solution of the previous C. For the first C, a pair starts with all multipliers at their bounds, or from the previous fold
@@ -29,7 +29,7 @@ const CLASSES_AT_ONCE: usize = 8;
 pub(crate) struct Grid<'a, T> {
     /// Training rows, sorted by class label.
     pub sorted: &'a Sorted<T>,
-    /// Folds with the original row numbers; a row that a fold repeats counts once.
+    /// Training and validation rows of each fold, by original row number; repeated rows count once.
     pub folds: &'a [Split],
     /// Multi-class strategy: one-vs-one or one-vs-rest.
     pub multiclass: Multiclass,

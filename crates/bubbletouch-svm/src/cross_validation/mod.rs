@@ -1,4 +1,4 @@
-//! Choice of C and γ by cross-validation: all folds and candidates share one matrix of products.
+//! Choice of C and γ by cross-validation; all folds and candidates share one matrix of inner products.
 
 pub(crate) mod alpha_seeding;
 pub mod choice;

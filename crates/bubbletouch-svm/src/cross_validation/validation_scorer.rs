@@ -14,7 +14,7 @@ use crate::multiclass::Multiclass;
 use crate::predict::class_weights::{ClassWeights, weighted_sums};
 use crate::predict::voting::VoteCounter;
 
-/// Number of validation rows that are classified by votes at one time, which limits the memory of their kernel values.
+/// Number of validation rows that are classified together by votes; a larger number needs more memory for kernel values.
 const ROWS_AT_ONCE: usize = 512;
 
 /// Counter of correctly classified validation rows of one fold, updated after each binary problem is solved.
@@ -24,15 +24,15 @@ pub(crate) struct ValidationScorer<T> {
     problems: Vec<(usize, Option<usize>)>,
     /// Whether the fold has training rows of each class.
     is_class: Vec<bool>,
-    /// Validation rows whose class has training rows, as pairs (row number, position of the class), ascending.
+    /// Validation rows as pairs (row number, position of the class), ascending, without rows whose class has no training rows.
     rows: Vec<(usize, usize)>,
-    /// For each validation row and C, whether the row's own class loses against at least one other class.
+    /// Whether the class of each validation row loses against at least one other class, for each C.
     is_beaten: Array2<bool>,
     /// Coefficients of the support vectors, for each C and class.
     weights: Vec<Vec<ClassWeights<T>>>,
     /// Offset ρ of each decision function, shape n_C × n_problems.
     rho: Array2<f64>,
-    /// For each C, whether the solution of at least one problem differs from its solution for the previous C.
+    /// Whether at least one binary problem has, for each C, a different solution than for the previous C.
     is_new: Vec<bool>,
     n_capped: usize,
 }
@@ -69,7 +69,7 @@ impl<T: Scalar> ValidationScorer<T> {
         self.n_capped
     }
 
-    /// Adds the solution of the binary problem with the given number, for one or several values of C.
+    /// Adds the solution of a binary problem, given by its number, for one or several values of C.
     pub fn take(&mut self, problem: usize, solution: &FoldSolution) {
         let numbers = solution.numbers.clone();
         self.is_new[numbers.start] = true;
@@ -113,7 +113,7 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Returns the number of correctly classified validation rows for each C.
+    /// Returns the number of correctly classified validation rows for each value of the penalty C.
     pub fn n_correct(&self, kernel: &ProductKernel<T>) -> Vec<usize> {
         let is_settled =
             |at: &usize| self.is_pairs() && !self.is_beaten.row(*at).iter().any(|x| *x);

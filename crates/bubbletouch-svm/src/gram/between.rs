@@ -24,7 +24,7 @@ pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
     groups
 }
 
-/// Group of classes, with the kernel values between all rows of the group.
+/// Group of classes, with the kernel values between all rows of its classes.
 pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,
     rows: Range<usize>,
@@ -78,7 +78,7 @@ impl<'a, T: Scalar> Group<'a, T> {
             .collect()
     }
 
-    /// Returns the kernel values between two ranges of this group's rows, row by row.
+    /// Returns the kernel values between two ranges of rows of this group of classes, row by row.
     pub fn own_part(&self, rows: &Range<usize>, columns: &Range<usize>) -> Vec<&[T]> {
         self.part((&self.own, self.rows.start), rows, columns)
     }

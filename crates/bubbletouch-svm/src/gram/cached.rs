@@ -55,7 +55,7 @@ impl<'a, T: Scalar> Cached<'a, T> {
         }
     }
 
-    /// Computes row i of the Gram matrix unless it is cached; returns its position in the cache.
+    /// Returns the position of row i of the Gram matrix in the cache; computes the row if it is not cached.
     fn fetch(&mut self, i: usize) -> usize {
         self.n_asked += 1;
         let at = match self.place[i] {

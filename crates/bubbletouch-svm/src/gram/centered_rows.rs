@@ -36,7 +36,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self::of_rows_and(rows, centre, |_| ())
     }
 
-    /// Creates centred rows from an iterator over rows, and passes the norm and projection of each row ([`CenteredRow`]) to a callback.
+    /// Creates centred rows from an iterator, and passes the norm and projection of each row ([`CenteredRow`]) to a callback.
     pub fn of_rows_and<'a>(
         rows: impl ExactSizeIterator<Item = ArrayView1<'a, f64>>,
         centre: ArrayView1<f64>,
@@ -179,7 +179,7 @@ impl<T: Scalar> PointsView<'_, T> {
         self.apply(to, others, kernel);
     }
 
-    /// Returns the Gram matrix `K(x_i, x_j)` of these rows: n × n.
+    /// Returns the Gram matrix `K(x_i, x_j)` of the centred rows, n × n.
     pub fn own_kernel(&self, kernel: &KernelFunction) -> Array2<T> {
         let mut values = kernel.own_pairwise(self.values);
         self.apply(values.view_mut(), *self, kernel);

@@ -19,7 +19,7 @@ pub(crate) trait Gram<T> {
     /// For each j, returns the inverse curvature `1 / (K_ii + K_jj − 2 K_ij)` of the pair (i, j) of variables. Smaller curvatures are replaced by the minimum
     /// curvature.
     fn inverse_curvatures(&mut self, i: usize) -> &[T];
-    /// Returns the minimum curvature that pairwise steps use for a pair of variables.
+    /// Returns the minimum curvature that a pairwise step assumes for a pair of variables.
     fn smallest_curvature(&self) -> T;
     /// Returns the product of the Gram matrix K with the coefficients β, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
@@ -65,8 +65,8 @@ impl<T: Scalar> Dense<T> {
         n * padded(n) * size_of::<T>()
     }
 
-    /// Changes the size to n rows and reuses the memory. The function `fill` writes the n values of each row; the caller must write the values that `fill`
-    /// skips.
+    /// Changes the number of rows to n, computes all entries by `fill`, and reuses the allocated memory. The function `fill` writes the n values of each row;
+    /// the caller must write the values that `fill` skips.
     pub fn refill(&mut self, n: usize, mut fill: impl FnMut(usize, &mut [T])) {
         self.n = n;
         self.stride = padded(n);

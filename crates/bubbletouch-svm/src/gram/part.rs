@@ -1,4 +1,4 @@
-//! Gram matrix with values stored elsewhere: a row is assembled when the solver first requests it.
+//! Gram matrix whose values are stored elsewhere; a row is assembled when the solver first requests the row.
 
 use super::curvatures::InverseCurvatures;
 use super::matrix::{Dense, Gram, gather};
@@ -26,7 +26,7 @@ impl<T: Scalar> Workspace<T> {
     }
 }
 
-/// Gram matrix whose rows are assembled from larger matrices by a given function when they are first needed.
+/// Gram matrix whose rows are assembled from larger matrices by a function when they are first needed.
 pub(crate) struct Part<'a, T, F> {
     n: usize,
     stride: usize,
@@ -64,7 +64,7 @@ pub(crate) fn part_of_blocks<'a, T: Scalar>(
 }
 
 impl<'a, T: Scalar, F: FnMut(usize, &mut [T])> Part<'a, T, F> {
-    /// Creates a Gram matrix from its diagonal; the number of rows equals the length of the diagonal.
+    /// Creates a Gram matrix from its diagonal, whose length is the number of rows.
     pub fn new(
         diagonal: impl Iterator<Item = T>,
         write: F,

@@ -15,7 +15,7 @@ pub(crate) struct ProductKernel<'a, T> {
     points: &'a CenteredRows<T>,
     /// Range of row indices of each class.
     ranges: &'a [Range<usize>],
-    /// Pairwise products or L1 distances of all rows, n × n.
+    /// Inner products (or L1 distances) between all pairs of rows, n × n.
     pairwise: ArrayView2<'a, T>,
     kernel: KernelFunction,
     /// Kernel values between the rows of each class.
@@ -23,7 +23,7 @@ pub(crate) struct ProductKernel<'a, T> {
 }
 
 impl<'a, T: Scalar> ProductKernel<'a, T> {
-    /// Creates the kernel for rows sorted by class, given their pairwise products or L1 distances.
+    /// Creates the kernel matrix for rows sorted by class, given their inner products or L1 distances.
     pub fn new(
         (points, ranges): (&'a CenteredRows<T>, &'a [Range<usize>]),
         pairwise: ArrayView2<'a, T>,

@@ -24,7 +24,7 @@ pub(crate) struct Sorted<T> {
     points: CenteredRows<T>,
     /// Original row number of each row in sorted order.
     order: Vec<usize>,
-    /// Position in sorted order of each original row.
+    /// Position of each original row in the sorted order.
     place: Vec<usize>,
     /// For each class, the range of its rows in sorted order.
     ranges: Vec<Range<usize>>,
@@ -49,7 +49,7 @@ impl<T: Scalar> Sorted<T> {
         Self::within_classes(data, classes, kernel, centre, |_| 0)
     }
 
-    /// Sorts rows by class, and rows of one class by the given key; then subtracts the centre.
+    /// Sorts rows by class and by the given key within each class, and subtracts the centre.
     pub fn within_classes(
         data: &Dataset,
         classes: &[usize],
@@ -120,7 +120,7 @@ impl<T: Scalar> Sorted<T> {
         &self.order
     }
 
-    /// For each original row, returns its position in sorted order.
+    /// Returns the position of each original row in the sorted order.
     pub fn place(&self) -> &[usize] {
         &self.place
     }
@@ -140,7 +140,7 @@ impl<T: Scalar> Sorted<T> {
         self.farthest
     }
 
-    /// Returns the offset ρ that the decision function of a binary problem has for rows minus the centre.
+    /// Returns the offset ρ of a binary problem's decision function for centred rows.
     pub fn rho_about_centre(&self, problem: &BinaryProblem) -> f64 {
         problem.solution.rho
             - self.moved(
@@ -164,7 +164,7 @@ impl<T: Scalar> Sorted<T> {
         &self.classes
     }
 
-    /// Iterates over the classes, each with the range of its rows in sorted order.
+    /// Returns the classes, each with the range of its rows in the sorted order.
     pub fn classes_and_ranges(&self) -> impl Iterator<Item = (usize, Range<usize>)> + '_ {
         self.classes
             .iter()

@@ -46,7 +46,7 @@ pub(crate) fn eliminate(rows: &mut [Lanes], width: usize, inverse: &mut [f64], r
     }
 }
 
-/// Solves the triangular system `L v = side` in place for N right-hand sides, block by block; the contributions of previous blocks are subtracted first.
+/// Solves the triangular system `L v = side` in place for N right-hand sides, block by block from the first to the last.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute<const N: usize>(
     rows: &[Lanes],
@@ -72,7 +72,7 @@ pub(crate) fn substitute<const N: usize>(
     }
 }
 
-/// Subtracts a block of a matrix row, multiplied by one factor per right-hand side, from the N right-hand sides.
+/// Multiplies a block of a matrix row by one factor per right-hand side, and subtracts the products from the N right-hand sides.
 #[inline(always)]
 fn take_product<const N: usize>(own: &mut [Lanes; N], factors: &[f64; N], row: &Lanes) {
     for side in 0..N {

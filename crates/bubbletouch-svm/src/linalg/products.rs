@@ -9,7 +9,7 @@ use crate::linalg::scalar::Scalar;
 const ROWS_AT_ONCE: usize = 128;
 /// Maximum number of rows that are multiplied without copying them; for more rows, a matrix product with packed copies is faster.
 pub(crate) const FEW_ROWS: usize = 4;
-/// Number of rows and columns that are mirrored together: a cache line of f32.
+/// Number of rows and columns that are mirrored together, so that they fill a cache line of f32.
 const TILE: usize = 16;
 
 /// Writes the inner products `x_i · z_j` of rows x (n_left × m) and rows z (n × m): shape n_left × n.
@@ -56,7 +56,7 @@ pub(crate) fn own_products<T: Scalar>(rows: ArrayView2<T>) -> Array2<T> {
     with_each_other(rows, multiply)
 }
 
-/// Applies a symmetric `pairwise` function, such as [`multiply`], to all pairs of rows (n × m). Half of the n × n result is copied from the other half.
+/// Applies a symmetric function of two rows, such as [`multiply`], to all pairs of rows (n × m). Half of the n × n result is copied from the other half.
 pub(crate) fn with_each_other<T: Scalar>(
     rows: ArrayView2<T>,
     pairwise: impl Fn(ArrayView2<T>, ArrayView2<T>, ArrayViewMut2<T>),

@@ -29,7 +29,7 @@ pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bo
     false
 }
 
-/// Number of features processed together; the rows of a tile then stay in the first-level cache while the other rows are read.
+/// Number of features that are processed together, so that the rows of a tile fit into the first-level cache.
 #[cfg(target_arch = "x86_64")]
 const DEPTH: usize = 1024;
 
@@ -189,7 +189,7 @@ mod avx512 {
         ]
     }
 
-    /// Adds groups of four neighbouring lanes in each of four registers. Returns the sums in the order a₀ b₀ c₀ d₀ a₁ b₁ ….
+    /// Adds the four neighbouring lanes of each group within each of four registers. Returns the sums in the order a₀ b₀ c₀ d₀ a₁ b₁ ….
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn add_lanes([a, b, c, d]: [__m512; N]) -> __m512 {
@@ -201,7 +201,7 @@ mod avx512 {
         _mm512_add_ps(low, high)
     }
 
-    /// Adds neighbouring quarters of two registers a and b: a₀ + a₁, a₂ + a₃, b₀ + b₁, b₂ + b₃.
+    /// Adds neighbouring quarters within each of two registers a and b: a₀ + a₁, a₂ + a₃, b₀ + b₁, b₂ + b₃.
     #[inline]
     #[target_feature(enable = "avx512f")]
     fn add_parts(a: __m512, b: __m512) -> __m512 {
@@ -221,7 +221,7 @@ mod avx2 {
 
     /// Number of f32 values in a vector register (AVX2).
     const LANES: usize = 8;
-    /// Number of rows of a tile, each multiplied with [`M`] other rows; the sums and the loaded values fill 16 vector registers.
+    /// Number of rows of a tile, each multiplied with [`M`] other rows; the values fill 16 vector registers.
     const N: usize = 4;
     /// Number of other rows in a tile, chosen together with [`N`].
     const M: usize = 3;

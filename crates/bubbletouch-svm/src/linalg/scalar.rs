@@ -8,12 +8,12 @@ use crate::linalg::row_tiles;
 pub(crate) trait Scalar: NdFloat + Default {
     /// Converts an f64 to the nearest value of this type.
     fn from_f64(value: f64) -> Self;
-    /// Converts the value to f64 without rounding.
+    /// Converts the value to f64, which is exact.
     fn wide(self) -> f64;
     /// Replaces each squared distance d by `exp(−γ d)`.
     fn exponentials(distances: &mut [Self], gamma: f64);
-    /// Writes the inner products of rows with other rows of equal length into `products`, row by row, without packing. Returns `false`, and writes nothing, if
-    /// there is no fast implementation.
+    /// Writes the inner products of rows with other rows of equal length into `products`, row by row, without copying the rows. Returns `false`, and writes
+    /// nothing, if there is no fast implementation.
     fn products_in_place(_: &[&[Self]], _: &[&[Self]], _: &mut [Self]) -> bool {
         false
     }

@@ -36,7 +36,7 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// Copies the features (n × m), which must be finite, and appends the bias feature.
+    /// Copies the features (n × m), which must be finite, and appends a constant feature for the bias.
     pub(crate) fn new(features: ArrayView2<f64>) -> Result<Self> {
         let (n_rows, m) = features.dim();
         let mut values = Array2::zeros((n_rows, (m + 1).next_multiple_of(LANES)));

@@ -1,4 +1,4 @@
-//! Linear SVMs trained by coordinate descent, one class against the rest.
+//! Linear SVMs, trained by coordinate descent to separate each class from all others.
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, Zip, s};
 
@@ -15,7 +15,7 @@ use crate::streams::Streams;
 pub struct Convergence {
     /// Value of the primal objective, computed from the weights: an upper bound of the optimum.
     pub primal: f64,
-    /// Value of the dual objective, computed from the multipliers: a lower bound of the optimum. The duality gap is `primal − dual`.
+    /// Value of the dual objective at the multipliers, which is a lower bound of the optimum. The duality gap is `primal − dual`.
     pub dual: f64,
     /// Number of passes over all training rows.
     pub n_passes: usize,

@@ -20,7 +20,7 @@ pub(crate) struct ClassWeights<T> {
 }
 
 impl<V: Scalar> ClassWeights<V> {
-    /// Creates coefficients of 0 for a class in all given binary problems (positive class, negative class) that contain the class.
+    /// Creates coefficients of 0 for one class, in all given binary problems (positive class, negative class) that contain this class.
     pub fn zeros(
         class: usize,
         vectors: Range<usize>,
@@ -70,7 +70,7 @@ impl<V: Scalar> ClassWeights<V> {
         }
     }
 
-    /// Removes the rows whose coefficients are zero in all problems, and appends the numbers of the remaining rows to `support`.
+    /// Removes the rows whose coefficients are zero in all problems, and appends the row numbers of the other rows to `support`.
     pub fn of_support(self, support: &mut Vec<usize>) -> Self {
         let is_support = |at: &usize| {
             self.coefficients
@@ -91,8 +91,7 @@ impl<V: Scalar> ClassWeights<V> {
     }
 }
 
-/// For each problem and row, returns the sum of kernel values times coefficients (n_problems × n_rows), given the kernel values (n_rows × n_vectors) and all
-/// coefficients.
+/// Returns the sum of kernel values times coefficients for each problem and row, shape n_problems × n_rows.
 pub(crate) fn weighted_sums<T: Scalar>(
     weights: &[ClassWeights<T>],
     kernel_values: ArrayView2<T>,
@@ -111,7 +110,7 @@ pub(crate) fn weighted_sums<T: Scalar>(
 }
 
 impl ClassWeights<f64> {
-    /// Adds the contribution of the class's support vectors to the hyperplane normals of its problems (n_problems × m).
+    /// Adds the support vectors of the class, times their coefficients, to the hyperplane normals of the class's problems (n_problems × m).
     pub fn add_to<T: Scalar>(&self, normals: &mut Array2<f64>, sorted: &Sorted<T>) {
         let points = sorted.points().in_place();
         for (weights, &problem) in self.coefficients.rows().into_iter().zip(&self.problems) {

@@ -55,7 +55,7 @@ impl<T: Scalar> Pairs<T> {
         }
     }
 
-    /// For each row of kernel values (n × n_vectors), returns the class that wins against every other class (Condorcet winner). Returns `None` for a row if no
+    /// Returns the class that wins against every other class (Condorcet winner) for each row of kernel values (n × n_vectors). Returns `None` for a row if no
     /// class wins all its pairs, or if rounding could change the result of a pair.
     pub fn condorcet_winners(&self, kernel_values: ArrayView2<T>) -> Vec<Option<usize>> {
         let rows = kernel_values.rows().into_iter();
@@ -94,7 +94,7 @@ impl<T: Scalar> Pairs<T> {
         (&self.terms[start..end], rho)
     }
 }
-/// For each feature row (n × m), returns the class that wins against every other class, given the hyperplane normals and offsets ρ of all pairs.
+/// Returns, for each feature row (n × m), the class that wins against every other class; inputs are the normals and offsets ρ of all pairs.
 pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     n_classes: usize,
     (normals, rho): (ArrayView2<'a, T>, ArrayView1<'a, f64>),
@@ -116,7 +116,7 @@ pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
 trait Decides<T> {
     fn n_classes(&self) -> usize;
 
-    /// For a pair of classes, returns the weighted sum of its decision function, the sum of absolute terms, the number of terms, and the offset ρ.
+    /// Returns the weighted sum of a pair's decision function, the sum of its absolute terms, the number of terms, and the offset ρ.
     fn value(&mut self, pair: usize) -> (T, T, usize, f64);
 }
 
@@ -126,7 +126,7 @@ trait KernelValues<T> {
     fn with(&mut self, terms: &[(u32, T)]) -> &[T];
 }
 
-/// Kernel values that are all computed in advance.
+/// Kernel values that have all been computed before.
 impl<T> KernelValues<T> for &[T] {
     #[inline(always)]
     fn with(&mut self, _: &[(u32, T)]) -> &[T] {
@@ -154,7 +154,7 @@ impl<T: Scalar, K: KernelValues<T>> Decides<T> for ByKernel<'_, T, K> {
     }
 }
 
-/// Kernel values of one row, each computed when a pair of classes first requires it.
+/// Kernel values of one row, computed when a pair of classes first needs them.
 struct RowKernelValues<'a, T> {
     kernel: &'a KernelFunction,
     vectors: &'a CenteredRows<T>,
@@ -330,7 +330,7 @@ mod tests {
     const N_CLASSES: usize = 6;
     const N_VECTORS: usize = 5;
 
-    /// Returns irregular test coefficients, of which two in three are zero.
+    /// Returns irregular test coefficients; two of three are zero.
     fn weights() -> Vec<ClassWeights<f64>> {
         let pairs = Multiclass::OneVsOne.problems(N_CLASSES);
         let of_class = |class: usize| {

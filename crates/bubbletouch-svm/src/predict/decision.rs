@@ -98,7 +98,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         Self { centre, rho, sums }
     }
 
-    /// Returns the decision value of each problem for each row of features: n_rows × n_problems.
+    /// Returns the decision values of all binary problems for each row of features, n_rows × n_problems.
     pub fn values(&self, features: ArrayView2<f64>) -> Array2<f64> {
         let mut values = Array2::zeros((features.nrows(), self.rho.len()));
         let mut room = self.allocate_kernel_values(features.nrows());

@@ -68,7 +68,7 @@ pub(crate) enum VoteCounter {
 }
 
 impl VoteCounter {
-    /// Creates a counter that has no votes.
+    /// Creates a vote counter without votes.
     pub fn new(n_classes: usize, n_rows: usize, multiclass: Multiclass) -> Self {
         match multiclass {
             Multiclass::OneVsRest => Self::Best(vec![f64::NEG_INFINITY; n_rows], vec![0; n_rows]),

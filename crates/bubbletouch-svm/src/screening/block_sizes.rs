@@ -1,7 +1,7 @@
-//! Sizes of the blocks of class pairs that are solved together.
+//! Sizes of the blocks of class pairs whose binary problems are solved together.
 
-/// Dimension of the subspace in which screening first selects rows near the margins. With a larger value, the selection is better but slower; with a smaller
-/// value, more rounds follow.
+/// Dimension of the subspace in which screening first selects rows near the decision boundaries. With a larger value, the selection is better but slower; with
+/// a smaller value, more rounds follow.
 pub(crate) const FEW_DIMENSIONS: usize = 64;
 
 /// Number of classes per block of screening; the pairs of these classes with [`OTHERS_AT_ONCE`] other classes are solved together. With a larger value, their

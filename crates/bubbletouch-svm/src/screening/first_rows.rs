@@ -29,7 +29,7 @@ pub(crate) struct PairsNearMargin<'a, T> {
 }
 
 impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
-    /// Creates the selection for the given rows; `few` contains the rows projected to a subspace by [`few_dimensions`].
+    /// Creates the selection of rows near the class boundaries; `few` contains the rows projected to a subspace by [`few_dimensions`].
     pub fn new(sorted: &'a Sorted<T>, few: &'a Sorted<T>) -> Self {
         Self {
             along_means: along_means(few),
@@ -85,7 +85,7 @@ fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
     all
 }
 
-/// Returns all rows projected to a subspace that some of the rows span.
+/// Returns all rows projected to a low-dimensional subspace, which is spanned by some of the rows.
 pub(crate) fn few_dimensions<T: SolverScalar>(sorted: &Sorted<T>) -> Sorted<T> {
     let directions = spanned(sorted.points().all().values, FEW_DIMENSIONS);
     sorted.along(directions.view())

@@ -33,7 +33,7 @@ impl<T: SolverScalar> Within<T> {
         }
     }
 
-    /// Returns the inner products of the given row with all rows of its class.
+    /// Returns the inner products of one row with all rows of its class.
     fn row(&self, row: usize) -> &[T] {
         let n = self.diagonal.len();
         &self
@@ -47,7 +47,7 @@ impl<T: SolverScalar> Within<T> {
 pub(crate) struct PairWorkspace<'r, T> {
     /// Active rows (rows in the reduced problem) of both classes.
     rows: [Vec<&'r [T]>; 2],
-    /// Inner products between newly active rows of one class and active rows of the other.
+    /// Inner products between newly active rows of one class and active rows of the other class.
     across: Vec<T>,
     /// Rows ranked by their distance from the margin.
     pub ranked: Ranked,
@@ -69,7 +69,7 @@ impl<T> Default for PairWorkspace<'_, T> {
 /// Problem of a pair of classes, reduced to active rows near the margin, with its solution; the first class is positive.
 pub(crate) struct MarginPair<T> {
     classes: [usize; 2],
-    /// Active rows of the first and the second class, in the order in which they became active.
+    /// Active rows of both classes, in the order in which they became active.
     rows: Sides,
     /// For each row of the first and the second class, whether the row is active.
     takes_part: [Vec<bool>; 2],
@@ -107,8 +107,8 @@ impl<T: SolverScalar> MarginPair<T> {
         self.classes
     }
 
-    /// Activates rows of both classes, with coefficients of 0. The argument `products` contains the inner products of all rows with the hyperplane normal; it
-    /// is empty before the first solution. The positions of the first row of each class are in `starts`.
+    /// Adds rows of both classes to the active rows, with coefficients of 0. The argument `products` contains the inner products of all rows with the
+    /// hyperplane normal; it is empty before the first solution. The positions of the first row of each class are in `starts`.
     pub fn join<'r>(
         &mut self,
         joining: &Sides,
@@ -205,7 +205,7 @@ impl<T: SolverScalar> MarginPair<T> {
         labels
     }
 
-    /// Iterates over the active rows: the class (0 or 1), the row number within the class, and the coefficient.
+    /// Returns the active rows as triples: class (0 or 1), row number within the class, and coefficient.
     pub fn weighing(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let of_side = |side: usize| self.rows[side].iter().map(move |&row| (side, row));
         let rows = of_side(0).chain(of_side(1)).zip(&self.beta);

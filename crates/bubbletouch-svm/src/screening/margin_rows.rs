@@ -31,7 +31,7 @@ impl RankedRow {
         Self(u128::from(turned) << 64 | (side as u128) << 63 | row as u128)
     }
 
-    /// Returns the class (0 or 1) of the row and its number within the class.
+    /// Returns the class (0 or 1) of a row and its number within the class.
     pub fn place(self) -> RowOfPair {
         let place = self.0 as u64;
         ((place >> 63) as usize, (place & (u64::MAX >> 1)) as usize)

@@ -25,7 +25,7 @@ use crate::smo::SolverScalar;
 const FEW_ROUNDS: usize = 2;
 /// Tolerance of the solver in the low-dimensional subspace. With 0.5, the selected rows differ too much from the support vectors of the solution.
 const ROUGH_TOLERANCE: f64 = 0.1;
-/// Maximum number of solver iterations in the low-dimensional subspace, where classes may overlap that are separable with all features.
+/// Maximum number of solver iterations on rows projected to a low-dimensional subspace, where classes may not be separable.
 const ROUGH_ITERATIONS: u64 = 1000;
 /// Number of rows per class with which the first round with all features starts.
 const ROWS_NEAR_MARGIN: usize = 24;
@@ -61,7 +61,7 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
     }
 }
 
-/// Problems of several pairs of classes, each reduced to active rows near its margin.
+/// Binary problems of several pairs of classes, each solved on active rows near the decision boundary.
 pub(crate) struct NearMargin<'c, 'a, T> {
     classes: &'c Classes<'a, T>,
     pairs: Vec<MarginPair<T>>,

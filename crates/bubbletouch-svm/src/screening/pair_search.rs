@@ -9,7 +9,7 @@ use crate::smo::{ActiveSetGoal, solve_by_active_set};
 /// Violation of the optimality conditions below which the solver changes from pairwise steps to active-set steps.
 const EQUATIONS_FROM: f64 = 0.03;
 
-/// Stopping criteria of the solver for one pair of classes.
+/// Stopping criteria of the solver for the binary problem of one pair of classes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PairGoal {
     /// Penalty C of the soft-margin problem.
@@ -23,8 +23,8 @@ pub(crate) struct PairGoal {
 /// State of the solver: the coefficients β, and the gradient f of the dual objective.
 pub(crate) type State = (Vec<f64>, Vec<f64>);
 
-/// Solves a binary problem from a given state: pairwise steps to a rough tolerance, then active-set steps. If the active-set steps do not reach the tolerance,
-/// pairwise steps continue. The problem is given with its labels and the C of the state.
+/// Solves a binary problem from a given start: pairwise steps to a rough tolerance, followed by active-set steps. If the active-set steps do not reach the
+/// tolerance, pairwise steps continue. The problem is given with its labels and the C of the state.
 pub(crate) fn reach_by_equations<T: SolverScalar, G: Gram<T>>(
     gram: &mut G,
     (labels, state, c): (&[f64], State, f64),

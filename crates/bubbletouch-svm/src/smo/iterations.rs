@@ -32,7 +32,7 @@ impl Search {
 
 /// Reason why the pairwise steps of the solver stopped.
 pub(crate) enum Stop {
-    /// The tolerance or the iteration cap was reached.
+    /// The solver reached the tolerance or the maximum number of iterations.
     Done,
     /// The solver should continue with the given variables only, because no other variable can move.
     Shrink(Vec<usize>),

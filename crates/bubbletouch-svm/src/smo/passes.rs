@@ -95,7 +95,7 @@ pub(crate) fn step_along<T: Scalar>(
     select_up(f, up)
 }
 
-/// Second variable of a pairwise step, which decreases, and the violation of the optimality conditions.
+/// Second variable of a pairwise step (the variable that decreases), with the violation of the optimality conditions.
 pub(crate) struct Down<T> {
     /// Variable to decrease while `i` increases; `None` if no pair violates the optimality conditions. The variable has the largest second-order gain of the
     /// dual objective [Fan, Chen, Lin 2005].
@@ -164,7 +164,7 @@ fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
 mod tests {
     use super::*;
 
-    /// Returns irregular test values; some lanes repeat, so that ties occur.
+    /// Returns irregular test values, some of which are equal.
     fn values(n: usize, salt: f64) -> Vec<f64> {
         (0..n)
             .map(|i| ((i % 37) as f64 * 1.7 + salt).sin())

@@ -71,7 +71,7 @@ pub(crate) fn run<G: Gram<f32>>(
     )
 }
 
-/// Search for the largest value: for each lane, the largest value so far and its first position.
+/// Search for the largest value in vector registers: for each lane, the largest value found so far and its first position.
 struct Largest {
     values: __m512,
     places: __m512i,

@@ -1,4 +1,4 @@
-//! State of a binary problem: its Gram matrix, and its solution for the last C.
+//! State of a binary problem: its Gram matrix, and its solution for the most recent penalty C.
 
 use super::reached::violation;
 use super::solver_scalar::SolverScalar;

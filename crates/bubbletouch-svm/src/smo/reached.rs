@@ -12,7 +12,7 @@ pub(crate) struct Reached {
 }
 
 impl Reached {
-    /// Creates the dual solution, except its coefficients, from the coefficients β, the labels and the gradient f.
+    /// Creates the dual solution without its coefficients, given the coefficients β, the labels and the gradient f.
     pub fn solution(self, variables: (&[f64], &[f64], &[f64]), c: f64) -> DualSolution {
         let (beta, y, f) = variables;
         let (linear, quadratic) = linear_and_quadratic(beta, y, f);
@@ -27,8 +27,8 @@ impl Reached {
     }
 }
 
-/// Returns the violation of the optimality conditions for the given C. The value is negative if the conditions hold strictly, and infinite if the gradient is
-/// not finite.
+/// Returns the violation of the optimality conditions at the coefficients `beta` for the penalty `c`. The value is negative if the conditions hold strictly,
+/// and infinite if the gradient is not finite.
 pub(crate) fn violation(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> f64 {
     if !all_finite(f) {
         return f64::INFINITY;

@@ -15,12 +15,12 @@ use crate::gram::matrix::Gram;
 const MIN_PAIR_STEPS: u64 = 10_000;
 /// Minimum number of pairwise steps per row before active-set steps.
 const PAIR_STEPS_PER_ROW: u64 = 20;
-/// Maximum number of restarts after a check in f64 finds a violation that the precision of the matrix hides. With a larger value, time is spent on rounding
-/// errors; with a smaller value, solutions may miss their tolerance.
+/// Maximum number of solver restarts; a restart is needed if a check in f64 finds a violation that the matrix in f32 hides. With a larger value, time is spent
+/// on rounding errors; with a smaller value, solutions may miss their tolerance.
 const MAX_REFRESHES: usize = 30;
 
 impl<G> Smo<'_, G> {
-    /// Solves the problem for this C, starting from the last solution. The violation of the optimality conditions is at most `tolerance`.
+    /// Solves the binary problem for a given C, starting from the last solution. The violation of the optimality conditions is at most `tolerance`.
     pub fn solve<T: SolverScalar>(&mut self, c: f64, tolerance: f64) -> DualSolution
     where
         G: Gram<T>,

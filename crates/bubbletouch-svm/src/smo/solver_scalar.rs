@@ -1,4 +1,4 @@
-//! Pairwise steps for each precision, with the vector instructions that the processor supports.
+//! Pairwise steps in f32 and f64, with the vector instructions that the processor supports.
 
 use super::iterations::{Search, Stop, run_plain};
 #[cfg(target_arch = "x86_64")]

@@ -95,7 +95,7 @@ impl<T: Scalar> Variables<T> {
         }
     }
 
-    /// Increases coefficient i and decreases coefficient j by an equal amount, to the optimum along this line or to the first bound. Returns the amount.
+    /// Increases coefficient i and decreases coefficient j by an equal amount, up to the optimum or to the first bound. Returns the amount.
     #[inline(always)]
     pub fn step(&mut self, i: usize, j: usize, curvature: f64) -> f64 {
         let wanted = (self.f[i].wide() - self.f[j].wide()) / curvature;
@@ -136,7 +136,7 @@ impl<T: Scalar> Variables<T> {
     }
 }
 
-/// For any feasible coefficients β, returns the largest gradient f of variables that can increase and the smallest f of variables that can decrease.
+/// Returns the largest gradient f of variables that can increase and the smallest f of variables that can decrease, given feasible coefficients β.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn extremes(beta: &[f64], y: &[f64], f: &[f64], c: f64) -> (f64, f64) {
     // Each lane has its own extreme; the lanes are combined by halving.

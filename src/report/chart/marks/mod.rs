@@ -9,7 +9,7 @@ use crate::table::{Mark, for_each_mark};
 pub(in crate::report) struct MarkAbout {
     /// Function that draws a chart with marks of this type.
     pub(super) draw: fn(&View) -> Result<Drawing>,
-    /// Function that returns the path through the points of a line, from left to right; `None` if points are not joined.
+    /// Function that returns the path of a line through given points, from left to right; `None` if the points are not joined.
     pub path: Option<fn(&[Point]) -> Vec<Point>>,
     /// Whether each mark is a tile at the crossing of a row (y value) and a column (x value).
     pub is_tiled: bool,

@@ -13,8 +13,7 @@ use crate::table::{Table, Value, short_number};
 /// Maximum number of values that a sentence lists, and maximum number of conditions (settings of the world, such as noise) for which sentences are written.
 const MAX_LISTED: usize = 8;
 
-/// Returns the findings of a study as sentences: the best configuration in each condition, the cheapest configuration within its interval, the effect of each
-/// setting, and remarks.
+/// Returns the findings of a study as sentences: best and cheapest configurations under each condition, effects of settings, and remarks.
 pub fn answers(tables: &[Table]) -> Vec<String> {
     let Some(configurations) = filled(tables, CONFIGURATIONS) else {
         return vec!["No configuration has been computed.".to_owned()];
@@ -79,8 +78,7 @@ fn bests(configurations: &Table) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// Returns sentences on two configurations of a condition: the best one, and the one with the fewest measurements whose accuracy lies within the interval of
-/// the best.
+/// Returns sentences on two configurations: the most accurate one, and the one with the fewest measurements within its confidence interval.
 fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     let best = *offers.front(choices).last()?;
     let accuracy = |offer: &Candidate| offers.table.bounded(offers.value, offer.row);

@@ -1,4 +1,4 @@
-//! Search for a result table by file name; tables without rows are treated as missing.
+//! Search for a result table by file name; tables without rows are ignored.
 
 use crate::table::Table;
 

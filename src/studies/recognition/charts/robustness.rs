@@ -31,7 +31,7 @@ row! {
 pub struct Robustness {
     /// Number of the most accurate configuration of the design among all values of the condition; the number refers to a row of `summary.csv`.
     configuration: usize => Subject: Linear;
-    /// Settings in which this design differs from the other designs.
+    /// Settings by which the design differs from all other designs.
     design: String => Subject;
     /// Column name of the condition to which the design is robust or not, for example `noise_std`.
     condition: String => Subject;
@@ -63,19 +63,19 @@ pub struct Robustness {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
-    /// Towards larger values of the condition.
+    /// The condition changes towards larger values.
     Larger,
-    /// Towards smaller values of the condition.
+    /// The condition changes towards smaller values.
     Smaller,
 }
 
-/// Whether the accuracy falls half-way to chance within the swept values, or the reason why it does not.
+/// Whether the accuracy falls to half-way between its maximum and chance within the swept values, or why it does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HalfStatus {
-    /// The accuracy falls half-way to chance within the swept values.
+    /// The accuracy falls to half-way between its maximum and chance within the swept values.
     Found,
-    /// The accuracy stays above half-way to chance up to the last swept value.
+    /// The accuracy does not fall to half-way between its maximum and chance within the swept values.
     BeyondTheLastValue,
     /// The highest accuracy over all values of the condition is not above chance.
     AllAtChance,
@@ -99,7 +99,7 @@ const LOG_RATIO: f64 = 16.0;
 struct Curve {
     values: Vec<f64>,
     accuracy: Vec<f64>,
-    /// For each mean accuracy, the number of independent test rows from which it is computed.
+    /// Number of independent test rows from which each mean accuracy is computed.
     n_test: Vec<f64>,
     chance: f64,
 }
@@ -126,7 +126,7 @@ impl Curve {
         }
     }
 
-    /// Returns the smallest positive value of the condition, and whether values above it are placed on a logarithmic axis.
+    /// Returns the smallest positive value of a condition, and whether values above that value are shown on a logarithmic axis.
     fn scale(&self) -> (f64, bool) {
         let positive = self.values.iter().copied().filter(|&value| value > 0.0);
         let start = positive.fold(f64::INFINITY, f64::min);
@@ -358,7 +358,7 @@ impl ObjectCounts {
     }
 }
 
-/// For each condition, returns a sentence with the value at which the most robust design has lost half of its accuracy above chance.
+/// Returns a sentence for each condition: the value at which the most robust design has lost half of its accuracy above chance.
 pub(super) fn robustness_words(tables: &[Table]) -> Vec<String> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     match (of("summary.csv"), of(ROBUSTNESS.name())) {

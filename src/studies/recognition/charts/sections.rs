@@ -49,7 +49,7 @@ fn settings_html(settings: &[(String, String)], tables: &[Table]) -> String {
     format!("<dl>{html}</dl>")
 }
 
-/// Returns HTML that lists how often each limit of the model and of the solver was reached.
+/// Returns HTML that lists how often each limit of the simulation and of the solver was reached.
 fn limits_html(tables: &[Table]) -> String {
     let Some(table) = filled(tables, LIMITS_FILE) else {
         return String::new();

@@ -108,8 +108,8 @@ fn accuracy_charts(configurations: &Table, chart: &ChartSpec) -> Vec<ChartSpec> 
     signal.iter().flat_map(charts_of).collect()
 }
 
-/// Returns charts with the given setting along x, or with the main setting if none is given. If lines and panels show settings and no other setting remains, a
-/// second chart exchanges the two. The effects of both settings can then be read from lines within one panel.
+/// Returns charts whose x axis is the given setting; if none is given, the main setting of the study. If lines and panels show settings and no other setting
+/// remains, a second chart exchanges the two. The effects of both settings can then be read from lines within one panel.
 fn charts_along(
     configurations: &Table,
     chart: &ChartSpec,
@@ -153,7 +153,7 @@ fn name_of(setting: &Setting) -> String {
     setting.column.name.to_string()
 }
 
-/// Returns the title of a chart: `Accuracy by compression, for each pitch and array size (noise 10 %)`.
+/// Returns the title of a chart, such as `Accuracy by compression, for each pitch and array size (noise 10 %)`.
 fn title(
     configurations: &Table,
     x: &str,

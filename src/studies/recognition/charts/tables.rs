@@ -18,7 +18,7 @@ use crate::table::{Better, Column, Columns, Data, File, Role, Scale, Table};
 use serde::Serialize;
 use std::path::Path;
 
-/// Combined table of all results of each configuration; it is not written to a file.
+/// Name of the combined table of all results of each configuration; the table is not written to a file.
 pub const CONFIGURATIONS: &str = "configurations.csv";
 
 const ACCURACY: File<(Configuration, TrialScore)> = File::new(
@@ -112,7 +112,7 @@ pub fn read_tables(folder: &Path) -> Result<Vec<Table>> {
     From::Folder(folder).all(axes, has_folds)
 }
 
-/// Source from which the rows of all tables are taken: the results of a run, or the files of a folder.
+/// Source of the table rows: the results of a run, or the files of a result folder.
 enum From<'a> {
     Rows(&'a Tables),
     Folder(&'a Path),
@@ -225,7 +225,7 @@ pub(crate) fn note_of_groups(table: &Table) -> Option<String> {
     ))
 }
 
-/// Returns a note on the actual coverage of the bootstrap intervals; returns `None` if the coverage is 95 %.
+/// Returns a note on the actual coverage of the bootstrap intervals; `None` if the coverage is 95 %.
 fn note_of_few_trials(table: &Table) -> Option<String> {
     let low = table.numbers("bootstrap_low")?;
     let n_trials = table.numbers("n_trials")?.iter().zip(low);
@@ -255,7 +255,7 @@ fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)>
     chance.varies(0..summary.n_rows).then_some((column, chance))
 }
 
-/// Returns a table with one row per configuration: its results, its difference to the best configuration of its condition, and its costs.
+/// Returns a table with one row per configuration: its results, its difference to the best configuration under the same condition, and its costs.
 fn cells_of(tables: &[Table]) -> Option<Table> {
     let of = |file: &str| tables.iter().find(|table| table.file == file);
     let summary = of(SUMMARY.name())?;

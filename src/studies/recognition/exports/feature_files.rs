@@ -45,14 +45,14 @@ pub const FEATURE_FILES: [&str; 7] = [
     "configuration.toml",
 ];
 
-/// Labelled measurements of touches, with the training and test rows of one trial.
+/// Labelled feature rows of touches, with the training and test rows of one trial.
 #[derive(Clone, Debug)]
 pub struct FeatureSet {
     /// Measurements of every touch before scaling, shape (n_touches, m), with the number of the touched object as label.
     pub data: Dataset,
     /// Row numbers of the trial's training and test touches.
     pub split: Split,
-    /// Group number of every row; `None` if the split into training and test rows may divide groups.
+    /// Group number of every row; `None` if a split into training and test rows may divide groups.
     pub groups: Option<Array1<usize>>,
     /// For each class, its label as written in the file of labels.
     pub classes: Vec<KeyValue>,
@@ -304,7 +304,7 @@ impl FeatureSet {
     }
 }
 
-/// Returns an error if a row number occurs twice in the training and test rows.
+/// Returns an error if a row number occurs twice among the training and test rows.
 fn check_split(folder: &Path, split: &Split, n_rows: usize) -> Result<()> {
     let mut named_in = vec![None; n_rows];
     for (file, rows) in [("train.npy", &split.train), ("test.npy", &split.test)] {

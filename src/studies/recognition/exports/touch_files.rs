@@ -218,8 +218,8 @@ impl FrameFiles {
     }
 }
 
-/// Simulates all touches of an array, F frames each, block by block, and writes them into an existing folder; returns the number of touches. If `read` is
-/// given, its frames are written in place of the deflections.
+/// Simulates all touches of an array with F frames each, writes them into an existing folder, and returns their number. If `read` is given, its frames are
+/// written in place of the deflections.
 ///
 /// # Errors
 /// If the touches cannot be simulated or a file cannot be written.
@@ -376,7 +376,7 @@ fn recorded(
     }
 }
 
-/// Writes `recorded.toml`, the tables of a study that trains on the exported files.
+/// Writes `recorded.toml`, which contains the tables of a study of the exported files.
 fn write_recorded(
     folder: &Path,
     recorded: RecordedSpec,

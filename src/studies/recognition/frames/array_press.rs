@@ -42,8 +42,8 @@ impl TaxelArray {
 }
 
 impl ArrayPress<'_> {
-    /// Presses the array to a depth past first contact, metres, and then slides it. Only the first part of this path is simulated; `part` is its fraction of
-    /// the whole path. Returns `None` if the path misses the object.
+    /// Presses the array by a distance past first contact, metres, and then slides it along the object. Only the first part of this path is simulated; `part`
+    /// is its fraction of the whole path. Returns `None` if the path misses the object.
     pub fn touch(
         &self,
         pose: Pose,
@@ -73,13 +73,12 @@ impl ArrayPress<'_> {
         pose
     }
 
-    /// Returns the number of values that are read in a touch: deflections and shear forces of all taxels.
+    /// Returns the number of values that are read per frame of a touch: deflections and shear forces of all taxels.
     pub fn n_values(&self) -> usize {
         self.array.n_values()
     }
 
-    /// Writes the readings of the last touch in single precision, ordered by channel: [`n_values`](TaxelArray::n_values) deflections in metres,
-    /// followed by shear forces in newtons if the array reads shear.
+    /// Writes the readings of the last touch in f32: [`n_values`](TaxelArray::n_values) deflections in metres, then the shear forces (if read) in newtons.
     pub fn write_values(&self, workspace: &ArrayWorkspace, out: &mut [f32]) {
         let (deflections, shear) = out.split_at_mut(self.array.patch().n_taxels());
         round_to_single(workspace.press.deflections(), deflections);

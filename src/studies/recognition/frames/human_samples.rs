@@ -16,8 +16,8 @@ use rayon::prelude::*;
 /// Number of frames in a film strip; a film strip is one row of the picture.
 const N_FRAMES: usize = 4;
 
-/// Number of touches of each kind that are compared for the picture, which shows the one with the largest force. If only one touch were considered, a flat hand
-/// could be represented by a touch of one fingertip.
+/// Number of touches of each kind that are compared; the picture shows the touch with the largest force. If only one touch were considered, a flat hand could
+/// be represented by a touch of one fingertip.
 const N_LOOKED_AT: usize = 10;
 
 /// Returns film strips of the kinds of touch that the study lists for its picture; if it lists none, of all kinds. Each strip shows the strongest of the first

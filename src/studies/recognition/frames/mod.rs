@@ -1,4 +1,4 @@
-//! Frames of an array's touches: simulated once, shared by all configurations, and stored in memory.
+//! Frames of all touches of an array: simulated once, used by all configurations, and stored in memory.
 
 pub mod array_press;
 pub(crate) mod frame_store;

@@ -13,7 +13,7 @@ const BLOCK: usize = 32;
 /// Number of tasks per thread that are simulated before their frames are stored.
 const BLOCKS_A_THREAD: usize = 8;
 
-/// Returns the number of touches in a task, if each touch has `n_frames` frames.
+/// Returns the number of touches that a task simulates, if each touch has `n_frames` frames.
 fn block(n_frames: usize) -> usize {
     (BLOCK / n_frames.max(1)).max(1)
 }

@@ -42,9 +42,9 @@ pub struct TouchToRead {
     /// Number of the touch among all touches of the study. In the frames of the skin, its first frame has the index `number · F`, where F is the number of
     /// frames per touch.
     pub number: usize,
-    /// Seed of the random numbers of this reading, derived from the touch's name.
+    /// Seed of the random numbers of one reading, derived from the touch's name.
     pub seed: Seed,
-    /// Time between the frames of the touch, s; `None` if the press stops for each frame.
+    /// Time between two frames of a touch, s; `None` if the press stops for each frame.
     pub interval: Option<f64>,
     /// Number of the preceding touch, for sensor errors with memory; `None` if no touch precedes it.
     pub before: Option<usize>,
@@ -52,7 +52,7 @@ pub struct TouchToRead {
     pub skin: usize,
 }
 
-/// For classes given by name and number of touches, returns all their touches. Each touch is read at rest and has no preceding touch.
+/// Returns all touches of several classes, each class given by its name and its number of touches. Each touch is read at rest and has no preceding touch.
 pub fn touches_to_read<'a>(
     classes: impl IntoIterator<Item = (&'a str, usize)>,
     seed: &Seed,

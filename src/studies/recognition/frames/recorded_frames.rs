@@ -46,13 +46,13 @@ pub struct RecordedFrames {
     streams: Vec<String>,
     /// Number of touches of each class.
     counts: Vec<usize>,
-    /// Frames as recorded, in two sets: the training touches (or all touches), and the separate test set.
+    /// Recorded frames in two arrays: training touches (or all touches), and the separate test set.
     readings: [Array2<f64>; 2],
-    /// For each touch, its row index in the two sets of frames; touches are ordered by class.
+    /// Row index of each touch in the two arrays of frames; the touches are ordered by class.
     order: Vec<usize>,
     /// For each value of a frame, whether its taxel is masked.
     is_masked: Vec<bool>,
-    /// Reading of each taxel when it is not touched; 0 for a masked taxel.
+    /// Reading of each untouched taxel; 0 for a masked taxel.
     zeros: Vec<f64>,
     /// Reading of a taxel whose deflection equals its stroke.
     full_scale: f64,
@@ -388,7 +388,7 @@ impl RecordedSpec {
         }
     }
 
-    /// Checks and returns the reading of each taxel when it is not touched; 0 for a masked taxel.
+    /// Checks and returns the reading of each untouched taxel; the reading of a masked taxel is 0.
     fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
         let mut zeros = self.zeros(shape)?;
         for (taxel, zero) in zeros.iter_mut().enumerate() {
@@ -455,7 +455,7 @@ impl RecordedSpec {
     }
 }
 
-/// Returns an error if a file does not contain one value per touch.
+/// Returns an error if a file does not contain exactly one value per touch.
 fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
     let given = format!("{n_given} numbers");
     let allowed = format!("{n}, one a touch of {}", frames.display());

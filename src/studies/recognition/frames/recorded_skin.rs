@@ -8,7 +8,7 @@ use ndarray::{Array1, Array2, Axis};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Selection of those recorded frames in which nothing touches the skin.
+/// Selection of the recorded frames in which nothing touches the skin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UntouchedFrames {
     /// The recording does not state in which frames nothing touches the skin.
@@ -16,20 +16,20 @@ pub enum UntouchedFrames {
     /// Separate file of frames in which nothing touches the skin. The untouched frames are recorded at even intervals over the session of the main file, in
     /// order of time.
     File(PathBuf),
-    /// Numbers of the untouched frames in the main file, as ranges.
+    /// Ranges of the numbers of untouched frames in the main file.
     Among(Vec<Range<usize>>),
 }
 
 /// Paths of a skin's recorded frames, and how their readings are converted to deflections.
 #[derive(Clone, Debug)]
 pub struct RecordedSkinFiles {
-    /// Frames in the order of time, shape (n, rows, columns) or (n, F, rows, columns).
+    /// Frames in temporal order, shape (n, rows, columns) or (n, F, rows, columns).
     pub frames: PathBuf,
-    /// Letters of the axes of the frames, one per axis, as the key `order` of `[recorded]`; `None` for the default.
+    /// Order of the array axes of the frames, one letter per axis, as in the key `order` of `[recorded]`; `None` for the default order.
     pub order: Option<String>,
     /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
     pub grid: Option<[usize; 2]>,
-    /// Selection of those frames in which nothing touches the skin.
+    /// Selection of the recorded frames in which nothing touches the skin.
     pub untouched: UntouchedFrames,
     /// File of the total force on the skin in each frame, newtons, shape (n,).
     pub forces: Option<PathBuf>,

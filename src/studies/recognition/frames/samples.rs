@@ -195,7 +195,7 @@ pub(crate) fn spread_samples(plan: &Plan, classes: &[&str]) -> Result<Vec<usize>
     Ok(named_samples(plan, classes)?.unwrap_or_else(spread))
 }
 
-/// Returns the labels of the classes that the study lists for its sample picture; returns `None` if it lists none.
+/// Returns the class labels that the study lists for its sample picture; `None` if it lists none.
 ///
 /// # Errors
 /// If a listed name is not a class.

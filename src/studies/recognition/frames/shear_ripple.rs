@@ -88,7 +88,7 @@ fn exact_box() -> Result<Model> {
     Ok(MeshModel::new(mesh).into())
 }
 
-/// Prints the shear ripple on standard error if a study reads shear of packed objects. Returns whether it printed a note.
+/// Prints the error of shear forces on standard error if a study simulates shear on objects packed with spheres. Returns whether it printed a note.
 ///
 /// # Errors
 /// If an object cannot be packed.

@@ -58,7 +58,7 @@ pub trait TouchSet: Sync {
         (0, 0)
     }
 
-    /// Computes data that all touches need, on all threads. Without this call, the first touches would compute the data one after the other.
+    /// Computes data that all touches need, using all threads. Without this call, the first touches would compute the data one after the other.
     fn prepare(&self) {}
 
     /// Simulates all touches on an array with the given number of frames per touch; the result does not depend on the number of threads.
@@ -86,7 +86,7 @@ pub trait TouchSet: Sync {
 /// Sample touches that the pictures of a study show.
 #[derive(Clone, Debug)]
 pub struct Samples {
-    /// Touches that the sample picture shows.
+    /// Frames of the touches that the sample picture shows.
     pub shown: Snapshots,
     /// Picture of the first touch of every object; `None` for human touches.
     pub each: Option<Snapshots>,

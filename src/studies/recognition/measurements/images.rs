@@ -157,13 +157,13 @@ impl Images {
         ImageFeatures::new(wanted.join, self.shape, self.full_scale, cut)
     }
 
-    /// Returns the reading of an image pixel above which it counts as in contact.
+    /// Returns the reading above which a pixel of an estimated image counts as in contact.
     fn level(&self, estimate: &ImageEstimate) -> f64 {
         noise_level(estimate.noise_std(), self.shape.0 * self.shape.1)
     }
 }
 
-/// Divides the rows of all requested features into blocks of touches; for each block, returns its index and its rows.
+/// Divides the rows of all requested features into blocks of touches; returns the index and the rows of each block.
 fn blocks(
     mut rows: Vec<ArrayViewMut2<f64>>,
     n_touches: usize,

@@ -51,7 +51,7 @@ pub struct SensedBy {
 }
 
 impl Measurements {
-    /// Returns the numbers of all readings of the given touches: the first reading of each touch in order, followed by the second reading of each.
+    /// Returns the numbers of all readings of the given touches, ordered by reading, then by touch.
     pub fn readings(&self, touches: &[usize]) -> Vec<usize> {
         let n_read = self.values.nrows() / (self.n_touches * self.n_frames);
         let readings = (0..n_read).map(|reading| reading * self.n_touches);
@@ -188,7 +188,7 @@ pub fn measure_group(
     })
 }
 
-/// Draws tilted copies of the training touches of n classes. `full_scale` is the reading of a taxel at its stroke.
+/// Draws the random tilts of copies of the training touches of n classes.
 fn tilted_copies(
     inputs: &MeasurementInputs,
     train: (&[usize], usize),

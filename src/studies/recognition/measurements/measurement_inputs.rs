@@ -25,14 +25,13 @@ pub struct MeasurementInputs<'a> {
     pub array: &'a TaxelArray,
     /// Seed from which all random numbers of the study are derived.
     pub seed: u64,
-    /// Number of projections (measurement matrices) with which each split into training and test touches is combined; `None` if each trial has its own
-    /// projection.
+    /// Number of projections (measurement matrices) that are combined with each split; `None` if each trial has its own projection.
     pub projections_per_split: Option<usize>,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
     /// Signal chain of the training touches.
     pub signal: SignalInputs,
-    /// Skin that the test touches use: the training skin or another one.
+    /// Skin on which the test touches are simulated: the training skin or another one.
     pub test_sensor: TestSensor,
     /// Inputs of the test touches, where they differ from the training touches; `None` if the study has no table `[test]`.
     pub test: Option<TestInputs<'a>>,
@@ -55,7 +54,7 @@ pub struct TestInputs<'a> {
     pub array: &'a TaxelArray,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
-    /// Signal chain of the test touches.
+    /// Signal chain that is applied to the test touches.
     pub signal: SignalInputs,
 }
 
@@ -64,7 +63,7 @@ pub struct TestInputs<'a> {
 pub struct MeasuredTrial<'a> {
     /// Number of the trial, from 0.
     pub number: usize,
-    /// Split into training and test touches; `None` if the measurements do not depend on it. Measurements depend on the split if something is fitted to
+    /// Split into training and test touches; `None` if the measurements do not depend on the split. Measurements depend on the split if something is fitted to
     /// training touches, or if test touches have another skin.
     pub split: Option<&'a Hashed<Split>>,
 }
@@ -72,7 +71,7 @@ pub struct MeasuredTrial<'a> {
 /// Inputs of the signal chain; steps without effect are omitted.
 #[derive(Clone, Debug)]
 pub struct SignalInputs {
-    /// Steps of the signal chain, in the order in which they are applied.
+    /// Steps of the signal chain, in order of application.
     pub steps: Vec<StepSpec>,
     /// Unit of the noise standard deviation; if there is no noise, the unit is the full scale.
     pub noise_unit: NoiseUnit,
@@ -92,7 +91,7 @@ pub struct CopyInputs {
 }
 
 impl MeasurementInputs<'_> {
-    /// Returns a text that identifies the inputs: equal inputs have equal texts, and different inputs have different texts.
+    /// Returns a text that identifies the inputs; the texts are equal exactly if the inputs are equal.
     pub fn key(&self) -> String {
         format!("{self:?}")
     }
@@ -114,7 +113,7 @@ impl MeasurementInputs<'_> {
         self.test.is_some() || self.test_sensor != TestSensor::SameSkin
     }
 
-    /// Returns the numbers of measurements from which the images of frames are estimated, distinct and ascending.
+    /// Returns the distinct numbers of measurements from which images of frames are estimated, ascending.
     pub fn counts_of_images(&self) -> Vec<usize> {
         counts(&self.of_images)
     }
@@ -236,7 +235,7 @@ impl MeasurementGroup {
                 .any(|configuration| configuration.of_images().is_some())
     }
 
-    /// Returns the numbers of measurements from which the images of frames are estimated, distinct and ascending.
+    /// Returns the distinct numbers of measurements from which images of frames are estimated, ascending.
     pub fn counts_of_images(&self) -> Vec<usize> {
         counts(&self.features_of_images())
     }

@@ -8,13 +8,13 @@ use std::collections::HashMap;
 /// Tilted copies of touches: the copied touches, and the tilt of each copy.
 #[derive(Clone, Debug)]
 pub struct TiltedCopies {
-    /// Numbers of the touches of which copies are made.
+    /// Numbers of the touches that are copied.
     pub touches: Vec<usize>,
     /// Number of tilted copies of each touch in `touches`.
     pub n_copies: usize,
-    /// For each copy of each touch, its slope along x and y: the increase of the reading from one taxel to the next.
+    /// Slope of each copy of each touch along x and y: increase of the reading from one taxel to the next.
     pub slopes: Vec<(f64, f64)>,
-    /// For each copied touch, its position in `touches`.
+    /// Position in `touches` of each copied touch.
     places: HashMap<usize, usize>,
 }
 
@@ -49,7 +49,7 @@ impl TiltedCopies {
         }
     }
 
-    /// Returns the row numbers of the first `n_copies` copies of the given touches: the first copy of each touch, followed by the second copy of each.
+    /// Returns the row numbers of the first `n_copies` tilted copies of the given touches, ordered by copy, then by touch.
     ///
     /// # Panics
     /// If a touch was not copied, or if there are fewer copies.

@@ -16,7 +16,7 @@ pub struct MeasurementGroup {
     pub frames: usize,
     /// Condition of the signal: the strengths of noise, smoothing and sensor errors.
     pub condition: Condition,
-    /// Skin that the test touches use: the training skin or another one.
+    /// Skin on which the test touches are simulated: the training skin or another one.
     pub test_sensor: TestSensor,
     /// Ensemble from which the measurement matrix is drawn.
     pub ensemble: Ensemble,
@@ -73,8 +73,8 @@ impl MeasurementGroup {
         all
     }
 
-    /// Returns the numbers of measurements per frame that are computed for the group. If smaller sets of measurements are prefixes of larger ones, this is only
-    /// the largest number m; otherwise every m.
+    /// Returns the numbers m of measurements per frame that are computed for the group. If smaller sets of measurements are prefixes of larger ones, this is
+    /// only the largest number m; otherwise every m.
     pub fn projected(&self) -> Vec<usize> {
         let mut counts: Vec<usize> = self.configurations.iter().map(|c| c.measurements).collect();
         counts.sort_unstable();

@@ -67,7 +67,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Returns an error if an ensemble is learned from frames and the study has no frames to learn from.
+    /// Returns an error if an ensemble must be learned from frames but the study has no training frames.
     pub fn drawn(&self, key: &str, ensembles: impl IntoIterator<Item = Ensemble>) -> Result<()> {
         let mut ensembles = ensembles.into_iter();
         match ensembles.find(|ensemble| ensemble.is_learned()) {
@@ -121,7 +121,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that each hyper-parameter that differs from its default is used by a classifier, and that the solver can train every SVM.
+    /// Checks that each changed hyper-parameter is used by at least one classifier, and that the solver can train every SVM.
     fn parameters(&self, recognition: &RecognitionSpec, given: &toml::Table) -> Result<()> {
         let usual: toml::Table = RecognitionSpec::usual();
         let kinds = recognition.classifier.values();
@@ -185,7 +185,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks `temporal_features`: it may not require more frames than a touch has.
+    /// Checks the key `temporal_features`; it is not allowed if it requires more frames than a touch has.
     pub fn over_time(&self, recognition: &RecognitionSpec, frames: &[usize]) -> Result<()> {
         let fewest = frames.iter().copied().min().unwrap_or(0);
         let values = Axis::optional_values(&recognition.temporal_features);
@@ -240,8 +240,8 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks the key `next_touch`, a policy that chooses the touches of a decision. The policy requires several touches per decision, and poses that a robot
-    /// can command for any object.
+    /// Checks the key `next_touch`, which names the rule that chooses the touches of a decision. The policy requires several touches per decision, and poses
+    /// that a robot can command for any object.
     pub fn next_touch(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         let Some(chosen) = recognition.chosen_next().next() else {
@@ -311,7 +311,7 @@ impl RecognitionSpec {
         self.test_fraction.unwrap_or(0.25)
     }
 
-    /// Returns the depth windows of image features, as fractions of the full scale. For features of measurements, which have no window, returns a single
+    /// Returns the depth windows that image features use, as fractions of the full scale. For features of measurements, which have no window, returns a single
     /// `None`.
     pub fn foremost(&self, features: Features) -> Vec<Option<f64>> {
         match features.of_image() {
@@ -350,14 +350,14 @@ impl RecognitionSpec {
         chosen.any(|next| next == NextTouch::MostInformative)
     }
 
-    /// Returns the maximum tilt of a tilted copy about each axis, radians.
+    /// Returns the maximum tilt of a tilted copy of a touch about each axis, radians.
     pub fn copies_tilt(&self) -> f64 {
         self.tilt_augmentation_deg
             .unwrap_or(DEFAULT_TILT_DEG)
             .to_radians()
     }
 
-    /// Returns the number of folds of the inner cross-validation, by which C and γ are chosen; the default is 5.
+    /// Returns the number of folds of the inner cross-validation, which selects C and γ; the default is 5.
     pub fn n_choice_folds(&self) -> usize {
         self.cv_folds.unwrap_or(5)
     }

@@ -1,4 +1,4 @@
-//! Groups of touches that a split does not divide: touches with equal listed values, or touches whose drawn values are close.
+//! Groups of touches that a split does not divide: touches with equal listed values or with similar drawn values.
 //!
 //! If the values are listed, touches with equal values on the grouping axes form a group, for any object.
 //!

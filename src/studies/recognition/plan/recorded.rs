@@ -38,7 +38,7 @@ impl RecordedSpec {
 }
 
 impl Check<'_> {
-    /// Checks `[recorded]` and returns the array that recorded the frames. Keys that describe simulated touches are not allowed.
+    /// Checks the table `[recorded]` and returns the array with which the frames were recorded. Keys that describe simulated touches are not allowed.
     pub fn recorded(&self, recorded: &RecordedSpec, spec: &StudySpec) -> Result<Vec<TaxelArray>> {
         let StudySpec {
             objects, touches, ..

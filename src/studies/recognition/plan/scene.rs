@@ -18,7 +18,7 @@ fn finest_pitch(arrays: &[TaxelArray]) -> f64 {
 }
 
 impl ObjectsSpec {
-    /// Sets the defaults that depend on the arrays: the model of meshes and the maximum surface error of packed spheres.
+    /// Sets the defaults that depend on the arrays: the contact model of meshes and the maximum surface error of packed spheres.
     pub(crate) fn settle_surface_error(&mut self, arrays: &[TaxelArray]) {
         if self.meshes.is_some() {
             // The default is stored in the specification, so that the results record which model was used.
@@ -32,7 +32,7 @@ impl ObjectsSpec {
         self.settle_sizes(arrays);
     }
 
-    /// Sets the allowed sizes of those objects whose files state no unit of length.
+    /// Sets the range of allowed sizes of objects whose files do not state a unit of length.
     pub(crate) fn settle_sizes(&mut self, arrays: &[TaxelArray]) {
         let feels = |array: &TaxelArray| {
             let grid = array.grid();
@@ -75,7 +75,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that a layout of taxels has the keys that it needs, and no keys that it does not support.
+    /// Checks that a layout of taxels has all required keys and no unsupported keys.
     pub fn layout(&self, spec: &StudySpec) -> Result<()> {
         let SkinSpec {
             layout,

@@ -1,4 +1,4 @@
-//! Checks of `skin.sensed` and `touches.slide_mm`, and construction of the arrays.
+//! Checks of `skin.sensed` and `touches.slide_mm`, and creation of the arrays with these settings.
 
 use crate::error::Result;
 use crate::inputs::check::Check;

@@ -11,7 +11,7 @@ use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::spec::scene::{SensedSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec};
 
-/// Signal condition: the strengths of noise, smoothing and sensor errors, one value for each axis of `[signal]`.
+/// Signal condition: one strength of noise, smoothing and each sensor error, that is, one value for each axis of `[signal]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Condition {
     /// Noise standard deviation of a reading, in the noise unit of the plan.
@@ -152,7 +152,7 @@ impl SignalSpec {
 }
 
 impl Plan {
-    /// Returns all signal conditions: all combinations of the values of the axes. With `combine = "one_at_a_time"`, each axis varies alone.
+    /// Returns all signal conditions, that is, all combinations of the axis values of `[signal]`. With `combine = "one_at_a_time"`, each axis varies alone.
     pub fn conditions(&self) -> Vec<Condition> {
         let signal = &self.spec.signal;
         let first = |condition: Condition, (key, step, axis): &SignalAxis| {
@@ -186,7 +186,7 @@ impl Condition {
         self.noise > 0.0 || present.any(|(error, ..)| error.about().is_random_by_reading)
     }
 
-    /// Returns a copy of the condition in which one strength, given by its key and step, has another value.
+    /// Returns a copy of the signal condition with a different value of one strength, which is given by its key and step.
     pub(crate) fn with(mut self, (key, step): (&str, StepSpec), value: f64) -> Self {
         match step {
             StepSpec::Noise => self.noise = value,

@@ -35,7 +35,7 @@ pub struct Plan {
     pub spec: StudySpec,
     /// Arrays of taxels, one for each combination of pitch and size.
     pub arrays: Vec<TaxelArray>,
-    /// Distribution of touch poses; without meaning in studies of human touches.
+    /// Distribution from which the poses of touches are drawn; not used in studies of human touches.
     pub placement: Placement,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,
@@ -50,7 +50,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Creates the plan of a study and checks all keys.
+    /// Creates the plan of a study and checks all its keys.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.

@@ -122,7 +122,7 @@ impl TaxelArray {
         ((n, n), (2.0 * half + pitch) / n as f64)
     }
 
-    /// Returns the mapping from taxels to image pixels; returns `None` if each taxel is a pixel.
+    /// Returns the mapping from taxels to image pixels; `None` if each taxel is one pixel.
     pub fn chart(&self) -> Option<Chart> {
         let chart = || Chart::new(&self.chart_places(), self.pitch(), self.image());
         (!self.is_image()).then(chart)
@@ -155,7 +155,7 @@ impl TaxelArray {
         self.sensed.n_channels() * self.n_taxels()
     }
 
-    /// Returns the numbers of rows and columns of the taxels; returns `None` if the layout has no rows and columns.
+    /// Returns the numbers of rows and columns of taxels; `None` if the layout has no rows and columns.
     pub fn sides(&self) -> Option<(usize, usize)> {
         self.layout.sides(&self.grid).filter(|_| self.is_placed)
     }

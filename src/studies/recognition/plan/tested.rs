@@ -119,8 +119,8 @@ impl Check<'_> {
         }
     }
 
-    /// Checks that the frames of test and training touches have the same taxels and values. A key that is an axis of the study must not have a list in
-    /// `[test]`.
+    /// Returns an error if test frames and training frames differ in their taxels or in their values per taxel. A key that is an axis of the study must not
+    /// have a list in `[test]`.
     fn check_alike(&self, plan: &Plan, tested: &Plan) -> Result<()> {
         let shapes = |plan: &Plan| -> Vec<_> {
             let arrays = plan.arrays.iter();

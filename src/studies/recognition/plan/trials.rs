@@ -12,14 +12,14 @@ impl StudySpec {
         trial / self.projections_per_split.unwrap_or(1)
     }
 
-    /// Returns the number of the projection (measurement matrix) that a trial uses.
+    /// Returns the number of the projection (measurement matrix) that is used in a trial.
     pub fn projection_of(&self, trial: usize) -> usize {
         projection_of(self.projections_per_split, trial)
     }
 }
 
-/// Returns the number of the projection (measurement matrix) that a trial uses. Without `projections_per_split`, each trial has its own projection; otherwise,
-/// all splits share that many projections.
+/// Returns the number of the projection (measurement matrix) that is used in a trial. Without `projections_per_split`, each trial has its own projection;
+/// otherwise, all splits share that many projections.
 pub(crate) fn projection_of(projections_per_split: Option<usize>, trial: usize) -> usize {
     projections_per_split.map_or(trial, |n| trial % n)
 }

@@ -191,7 +191,8 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that the taxels' damper has an effect. A damper acts on moving taxels, and so affects only forces that are read during the press.
+    /// Returns an error if the taxels have a damper that has no effect in the study. A damper acts on moving taxels, and so affects only forces that are read
+    /// during the press.
     fn used_damper(&self, spec: &StudySpec) -> Result<()> {
         let (skin, touches, axes) = (&spec.skin, &spec.touches, &spec.axes);
         let reads_force = reads_force(spec) || has_axis(axes, &["skin.sensed", "signal.steps"]);
@@ -219,8 +220,8 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that the taxels' friction has an effect. Friction acts only on taxels that move along the object. On a flat array that is pressed straight on, no
-    /// taxel does.
+    /// Returns an error if the taxels have friction that has no effect in the study. Friction acts only on taxels that move along the object. On a flat array
+    /// that is pressed straight on, no taxel does.
     fn used_friction(&self, spec: &StudySpec) -> Result<()> {
         let (skin, axes) = (&spec.skin, &spec.axes);
         let rubs = spec.touches.slide_mm.is_some_and(|slide| slide > 0.0)

@@ -1,4 +1,4 @@
-//! Grouping of configurations by their conditions (settings of the world, such as noise); the best configuration is selected within each condition.
+//! Grouping of configurations by condition (external settings, such as noise), and selection of the best configuration under each condition.
 
 use crate::error::Result;
 use crate::studies::recognition::rows::configuration::Configuration;
@@ -19,7 +19,8 @@ pub fn settings_of(configurations: &[&Configuration]) -> Result<Table> {
         .of_columns(columns, configurations)
 }
 
-/// For each condition (settings of the world, such as noise), returns the indices of its configurations. The conditions are in the order of first occurrence.
+/// Returns the indices of the configurations under each condition, which is a combination of external settings such as noise. The conditions are in the order
+/// of first occurrence.
 ///
 /// # Errors
 /// If [`settings_of`] fails.

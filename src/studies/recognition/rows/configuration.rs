@@ -89,7 +89,7 @@ pub struct Configuration {
     ratio: f64 => always of "sensing.ratio";
     /// Number F of frames per touch. If the frames are concatenated, a touch has F times the features of a frame.
     frames: usize => always of "touches.frames";
-    /// Way in which the frames of a touch are combined into features, such as `deepest`. The column is present only if the study has the key; without the key,
+    /// Method that combines the frames of a touch into features, such as `deepest`. The column is present only if the study has the key; without the key,
     /// frames are concatenated.
     temporal_features: Option<TemporalFeatures> => if_given of "recognition.temporal_features";
     /// Features that are computed from the measurements of a touch, such as `raw`.
@@ -192,7 +192,7 @@ mod hidden {
     }
 }
 
-/// Strengths of sensor errors: one column for each strength that the study sets.
+/// Strengths of sensor errors, with one column for each strength that the study sets.
 mod each_strength {
     use super::*;
 

@@ -2,10 +2,10 @@
 
 use bubbletouch_sim::features::Join;
 
-/// Image features that the configurations of a group use.
+/// Image features that the configurations of a group need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeaturesOfImages {
-    /// Kinds of image features; their values are joined into one feature vector.
+    /// Kinds of image features whose values are concatenated into one feature vector.
     pub join: Join,
     /// Depth window of the features, as a fraction of the full scale; `None` for the whole image. The features use only deflections that are within the window
     /// below the largest deflection of a frame.

@@ -25,7 +25,7 @@ pub struct RowInputs {
 }
 
 impl RowInputs {
-    /// Returns the description of the image features; returns `None` if the features are computed from measurements.
+    /// Returns the description of the image features; `None` if the features are computed from measurements.
     pub fn of_images(&self) -> Option<FeaturesOfImages> {
         Some(FeaturesOfImages {
             join: self.features.of_image()?,

@@ -1,4 +1,4 @@
-//! Rows of the result tables: one plain struct for each kind of row, with one field per column.
+//! Row types of the result tables: one struct for each table, with one field per column.
 //!
 //! A row of `accuracy.csv` is a [`Configuration`] followed by a [`TrialScore`]; the other tables are built the same way.
 
@@ -46,14 +46,14 @@ pub struct TrialScore {
     macro_f1: f64 => Value(More) "macro F1": Share;
     /// Penalty C that the classifier used: given, or chosen by cross-validation within the training rows. Empty if the classifier has no C.
     c_used: Option<f64> => Note "C used": Log;
-    /// Parameter γ that the classifier's kernel used: given, scaled or chosen. Empty if the classifier has no γ.
+    /// Kernel parameter γ that the classifier used: given in the study, scaled or selected by cross-validation. Empty if the classifier has no γ.
     gamma_used: Option<f64> => Note "γ used": Log;
     /// Number of the classifier's optimisation problems that stopped at the maximum number of iterations.
     n_capped: usize => Note "solves that stopped at the cap": Linear;
 } }
 
 impl TrialScore {
-    /// Returns the accuracy of this trial in the form that statistics over trials need; each decision uses `n_fused` touches.
+    /// Returns the accuracy of this trial as input of the statistics over trials; each decision uses `n_fused` touches.
     pub fn repeat(&self, n_fused: usize) -> Repeat {
         let split = self.distinct_split.or(self.split);
         Repeat {
@@ -93,8 +93,8 @@ pub struct ConfigurationScore {
     /// column is present only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
-    /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials, 0 to 1: the variation under other splits, projections and noise on the same
-    /// touches. Empty with fewer than five trials, splits or projections.
+    /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials, 0 to 1; describes variation by split, projection and noise. Empty with fewer
+    /// than five trials, splits or projections.
     #[serde(default)]
     bootstrap_low: Option<f64> => Note "mean over trials, lower end": Share;
     /// Upper end of the 95 % bootstrap interval of the mean accuracy over trials. Empty under the conditions under which `bootstrap_low` is empty.
@@ -159,7 +159,7 @@ row! {
 pub struct Published {
     /// Published claim as text, such as `98 % at 64:1`.
     claim: String => Subject;
-    /// Publication that makes the claim.
+    /// Publication that contains the claim.
     source: String => Subject;
     /// Published accuracy, 0 to 1.
     published_accuracy: f64 => Value(Neither) "published accuracy": Share;
@@ -182,7 +182,7 @@ pub struct Comparison {
     configuration: usize => Subject: Linear;
     /// Number of the configuration with the highest mean accuracy in the same condition.
     best_configuration: usize => Note "best configuration": Linear;
-    /// Number of trials that both configurations have finished; all trials of one split count once.
+    /// Number of trials that both configurations have; all trials with the same split count as one.
     n_trials: usize => Note "trials of both": Linear;
     /// Accuracy of the configuration minus accuracy of the best configuration, averaged over trials.
     difference: f64 => Value(More) "difference to the best": Linear between [difference_low, difference_high];
@@ -261,11 +261,11 @@ row! {
 pub struct Limit {
     /// Name of the limit of the model, such as `saturated taxels`.
     limit: String => Subject;
-    /// Number of cases in which the limit was reached.
+    /// Number of touches or trained classifiers that reached the limit.
     count: u64 => Note: Log;
     /// Total number of cases in which the limit could be reached.
     total: u64 => Note: Linear;
-    /// Sentence on the meaning of the limit for the results.
+    /// Sentence that explains what the limit means for the results.
     meaning: String => Note;
 } }
 
@@ -290,9 +290,9 @@ pub struct Tables {
     pub confused: Vec<Confused>,
     /// Rows of `published.csv`: comparisons of published accuracies with the accuracies of this study.
     pub published: Vec<(Configuration, Published)>,
-    /// Rows of `variance.csv`, three per configuration: one for each source of variance. Empty unless the study has `projections_per_split`.
+    /// Rows of `variance.csv`: three per configuration, one for each source of variance. Empty unless the study has `projections_per_split`.
     pub variance: Vec<Variance>,
-    /// Rows of `limits.csv`: for each limit of the model, how often it was reached.
+    /// Rows of `limits.csv`: number of times that each limit of the simulation and of the solver was reached.
     pub limits: Vec<Limit>,
     /// Whether the trials are the folds of a cross-validation.
     pub has_folds: bool,
@@ -317,7 +317,7 @@ pub struct Variance {
     configuration: usize => Subject: Linear;
     /// Source from which the variance comes: split, projection or rest.
     source: Source => Subject "source of variance";
-    /// Number of random levels of the source: of splits, of projections, or of trials for `rest`.
+    /// Number of levels of a source of variance: number of splits, of projections, or of trials for `rest`.
     n_levels: usize => Note "levels": Linear;
     /// Degrees of freedom of the source's mean square, `mean_square`.
     degrees_of_freedom: usize => Note: Linear;
@@ -329,9 +329,9 @@ pub struct Variance {
     accuracy_std: f64 => Value(Less) "standard deviation of the accuracy": Linear between [accuracy_std_low, accuracy_std_high];
     /// Lower end of the 95 % interval of `accuracy_std`, computed by modified large samples; for `rest`, from the χ² distribution.
     accuracy_std_low: f64 => Note "standard deviation, lower end": Linear;
-    /// Upper end of the 95 % interval of `accuracy_std`, by the method of modified large samples; for `rest`, by the χ² distribution.
+    /// Upper end of the 95 % interval of `accuracy_std`, computed by modified large samples; for `rest`, from the χ² distribution.
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
-    /// Fraction of the variance of a trial's accuracy that is due to the source, 0 to 1, with negative estimates counted as zero. Empty if nothing varies.
+    /// Fraction of the variance of a trial's accuracy that is due to the source, 0 to 1; negative variance estimates count as zero. Empty if nothing varies.
     fraction: Option<f64> => Value(Less) "fraction of the variance": Share;
     /// p-value of the F test of the hypothesis that the source contributes no variance; empty for `rest`.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;

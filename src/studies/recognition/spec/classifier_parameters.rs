@@ -1,4 +1,4 @@
-//! Keys of `[recognition]` that classifiers declare in their own files, such as `n_trees`.
+//! Keys of `[recognition]` that are declared by classifiers, such as `n_trees`.
 
 use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::parameters::{DefaultValue, Parameter, declared};
@@ -36,7 +36,7 @@ impl ClassifierParameters {
     }
 }
 
-/// Writes the parameters as keys of a table, in the order of the declarations; integers are written without a decimal point.
+/// Writes the parameters as keys of a table, in the order of their declaration; integers have no decimal point.
 impl Serialize for ClassifierParameters {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
@@ -56,7 +56,7 @@ impl Serialize for ClassifierParameters {
     }
 }
 
-/// Adds the parameters that classifiers declare to the JSON Schema of `[recognition]`.
+/// Adds the parameters that classifiers declare to the JSON Schema of the table `[recognition]`.
 pub(super) fn with_parameters(schema: &mut Schema) {
     let keys = schema.ensure_object().get_mut("properties");
     let Some(keys) = keys.and_then(Value::as_object_mut) else {

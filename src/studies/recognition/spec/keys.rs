@@ -189,7 +189,7 @@ fn place_after(prefix: &str) -> usize {
     place.map_or(0, |place| place + 1)
 }
 
-/// For a kind of study without `[axes]`, returns the descriptions of the keys in `tables`; only keys that are listed in `axes` may have a list of values.
+/// Returns the descriptions of the keys in `tables`, for a kind of study without `[axes]`; only keys in `axes` may have a list of values.
 pub(crate) fn shared_keys(tables: &[&str], axes: &[&str]) -> Vec<KeyAbout> {
     let is_in = |tables: &[&str], path: &str| tables.iter().any(|table| is_at(path, table));
     let shared = recognition_keys().iter().copied();
@@ -219,7 +219,7 @@ impl Check<'_> {
         self.keys(name, table, recognition_keys())
     }
 
-    /// Checks the value of a numeric key of recognition studies, and returns it.
+    /// Checks and returns the value of a numeric key of recognition studies.
     pub fn number(&self, path: &str, value: f64) -> Result<f64> {
         let range = key(path).range;
         match range.contains(value) {

@@ -1,4 +1,4 @@
-//! Splits by pose: rules that decide which poses are for training and which for testing, if the touches have listed values.
+//! Splits by pose: rules that select training and test poses, if the touches have listed pose values.
 //!
 //! Values are numbered in ascending order, regardless of their order in the study. Each trial holds out one part. The parts are held out in order. After the
 //! last part, the first one follows again.
@@ -30,7 +30,7 @@ pub enum PoseSplit {
     Random,
     /// In each trial, one yaw is held out for testing; the next trial holds out the next yaw.
     LeaveOneYawOut,
-    /// The larger half of the yaws is held out for testing in one trial, the smaller half in the next.
+    /// The touches with the larger half of the yaw angles are test touches in one trial; those with the smaller half in the next trial.
     HalfOfYaws,
     /// One eighth of the offsets and yaws is held out for testing; the opposite eighth is used for training.
     OppositeBlocks,
@@ -56,7 +56,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns a phrase that describes which touches are tested.
+    /// Returns a phrase that describes which touches are held out for testing.
     pub fn words(self) -> &'static str {
         match self {
             Self::Random => "random touches: most have neighbours in the pose that are learned",
@@ -70,7 +70,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the grouping of training touches for the inner cross-validation, which chooses C or γ. Returns `None` if touches are drawn one by one.
+    /// Returns the rule that groups training touches for the inner cross-validation, which selects C and γ. Returns `None` if touches are drawn one by one.
     pub(crate) fn group(self) -> Option<GroupSpec> {
         match self {
             Self::Random | Self::OppositeBlocks => None,
@@ -149,7 +149,7 @@ impl PoseSplit {
         Ok(n_tested.into_iter().map(side).collect())
     }
 
-    /// For each touch, returns the index of its combination of values on `axes`; also returns the number of different combinations.
+    /// Returns the index of each touch's combination of values on `axes`, and the number of distinct combinations.
     fn numbered(self, touches: &[&Touch], axes: &[TouchAxis]) -> Result<(Vec<usize>, usize)> {
         let refused = |given: String| {
             let allowed = format!(
@@ -194,7 +194,7 @@ impl PartialOrd for Value {
     }
 }
 
-/// Property of touches that defines groups; a split does not divide a group.
+/// Property of touches that defines groups; all touches of a group are on one side of a split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum GroupSpec {

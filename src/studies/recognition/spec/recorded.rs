@@ -16,12 +16,12 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedSpec {
-    /// File of the frames, shape (n, rows, columns), or (n, F, rows, columns) for touches of F frames, or (n, taxels) for a skin without rows and columns. Any
-    /// numeric type of up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
+    /// File with the frames, shape (n, rows, columns); (n, F, rows, columns) for F frames per touch; (n, taxels) without rows and columns. Any numeric type of
+    /// up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
     #[serde(deserialize_with = "file_path")]
     pub frames: PathBuf,
-    /// File of the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus an
-    /// axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
+    /// File with the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus
+    /// an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
@@ -35,7 +35,7 @@ pub struct RecordedSpec {
         deserialize_with = "file_path"
     )]
     pub labels: PathBuf,
-    /// File of the group of every touch, shape (n,), such as its grasp or day. A split never divides a group.
+    /// File with the group of every touch, such as its grasp or day, shape (n,). A split never divides a group.
     #[serde(default, deserialize_with = "optional_file_path")]
     pub groups: Option<PathBuf>,
     /// Order of the array axes of the frames, one letter per axis: `n` touches, `t` frames of a touch, `y` rows, `x` columns, `c` values or taxels. The axis
@@ -45,28 +45,28 @@ pub struct RecordedSpec {
     /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<[usize; 2]>,
-    /// File of the frames of a separate test set, with the axes of `frames`; all touches of `frames` are then training touches.
+    /// File with the frames of a separate test set, with the array axes of `frames`; all touches of `frames` are then training touches.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub frames_test: Option<PathBuf>,
-    /// File of the tangential forces of the separate test set, newtons, in the format of `shear`.
+    /// File with the tangential forces of the separate test set, newtons, in the format of `shear`.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub shear_test: Option<PathBuf>,
-    /// File of the classes of the separate test set, in the format of `labels`.
+    /// File with the classes of the separate test set, in the format of `labels`.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "optional_file_path"
     )]
     pub labels_test: Option<PathBuf>,
-    /// File of the groups of the separate test set, in the format of `groups`. The interval of the accuracy is computed over these groups.
+    /// File with the groups of the separate test set, in the format of `groups`. The interval of the accuracy is computed over these groups.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",

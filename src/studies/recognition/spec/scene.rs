@@ -70,7 +70,7 @@ pub struct TouchesSpec {
     /// Axis: number F of frames per touch, at least 1. Default: 1. The frames are read at the depths d/F, 2d/F, …, d, where d is the depth of the touch; each
     /// has its own noise. The measurements of all frames are the features of the touch.
     pub frames: Axis<usize>,
-    /// Speed at which the patch approaches the object when it is read, mm/s, at least 0; it acts on the damper. Default: 0.
+    /// Speed of the patch towards the object when it is read, mm/s, at least 0; the speed affects the damper force. Default: 0.
     pub speed_mm_per_s: f64,
 }
 
@@ -146,7 +146,7 @@ pub enum SpreadSpec {
     Range(RangeSpec),
 }
 
-/// Grid or interval of values of a pose parameter.
+/// Values of a pose parameter, given as a grid or an interval.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum RangeSpec {

@@ -92,7 +92,7 @@ pub enum StepSpec {
     Noise,
     /// Gaussian smoothing of the readings over the array.
     Smoothing,
-    /// Sensor error, such as gain errors or drift; its strengths are set by keys of their own.
+    /// Sensor error, such as gain errors or drift, whose strengths are set by separate keys.
     Error(SensorError),
 }
 

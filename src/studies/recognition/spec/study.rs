@@ -150,8 +150,8 @@ pub struct RecognitionSpec {
     pub cv_folds: Option<usize>,
     /// Maximum number of training touches per object that are used to choose C and γ. Default: all. The default γ is computed from all training touches.
     pub cv_touches: Option<usize>,
-    /// Number of readings of each training touch, each with its own noise. Default: 1. Without noise, drift or pink noise, all readings of a touch are equal,
-    /// and one is used. C and γ are chosen on the first readings.
+    /// Number of readings of each training touch; each reading has its own noise. Default: 1. Without noise, drift or pink noise, all readings of a touch are
+    /// equal, and one is used. C and γ are chosen on the first readings.
     pub readings_per_touch: Option<usize>,
     /// Keys that [classifiers declare](crate::learning::classifiers::parameters): `degree`, `n_trees` and others.
     #[serde(flatten, skip_deserializing)]
@@ -162,7 +162,7 @@ pub struct RecognitionSpec {
     pub solver_memory_gib: Option<f64>,
     /// Axis: maximum number of training touches per object, at least 1. Default: all touches of the training split.
     pub train_touches: Option<Axis<usize>>,
-    /// Axis: fraction of each object's training touches that are labelled as another, randomly drawn object, 0 to 1. Default: 0.
+    /// Axis: fraction of each object's training touches whose label is replaced by that of another, randomly drawn object, 0 to 1. Default: 0.
     pub mislabelled_fraction: Option<Axis<f64>>,
     /// Axis: number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The numbers of all objects
     /// form a geometric sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.
@@ -175,12 +175,12 @@ pub struct RecognitionSpec {
     /// ones), or `most_informative` (the pose with the lowest expected entropy of the belief over objects). All test touches of the object are candidates, each
     /// at most once per decision.
     pub next_touch: Option<Axis<NextTouch>>,
-    /// Rule that decides which touches are held out for testing: `random` (default), or a rule by pose.
+    /// Rule that selects the test touches: `random` (default), or a rule by pose.
     #[serde(default, skip_serializing_if = "is_default")]
     pub split: PoseSplit,
     /// Fraction of the touches that a random split holds out for testing, between 0 and 1. Default: 0.25.
     pub test_fraction: Option<f64>,
-    /// Number k of folds of a k-fold split into training and test touches, at least 2; replaces `test_fraction`. `trials` must be a multiple of k.
+    /// Number k of folds if the split into training and test touches is a k-fold split, at least 2; replaces `test_fraction`.
     pub folds: Option<usize>,
     /// Property (`pose`, `offset`, `yaw`, `tilt`, `rest` or `depth`) that defines groups of touches. A group is never divided between training and test. If the
     /// values are drawn (`{ uniform = … }`), touches of an object that are connected by a chain of neighbours form a group. Neighbours differ by less than
@@ -308,7 +308,7 @@ impl StudySpec {
         })
     }
 
-    /// Returns one result-table column for each axis in `[axes]` that has no column yet.
+    /// Returns a result-table column for each axis in `[axes]` that does not have a column yet.
     pub fn axis_columns(&self) -> Vec<Column> {
         let of_cells = Configuration::columns();
         let of_trials = TrialScore::columns();

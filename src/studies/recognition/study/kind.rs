@@ -22,7 +22,7 @@ use crate::table::{ChartSpec, Table};
 
 /// Names of the tables and columns that contain the intervals of accuracies.
 const ACCURACIES: &str = "accuracy.csv, summary.csv: accuracy_low, accuracy_high";
-/// Statistical method of the accuracy intervals if test rows are held out one by one: the columns and the description.
+/// Statistical method of the accuracy intervals when single test rows are held out: the table columns and the description.
 const BY_ROWS: (&str, &str) = (
     ACCURACIES,
     "Wilson score interval of the counts of all trials, at the test rows of one trial",
@@ -36,7 +36,7 @@ const BY_GROUPS: (&str, &str) = (
     "score interval of the groups that are held out: Wilson's of the test rows divided by the design effect (Rao, Scott 1992), Student's t of groups - 1",
 );
 
-/// Statistical methods of all intervals and p-values other than accuracy intervals: the columns and the description. All intervals have a confidence of 95 %.
+/// Statistical methods of all intervals and p-values except accuracy intervals: the table columns and the description. All intervals have a confidence of 95 %.
 const METHODS: [(&str, &str); 5] = [
     (
         "summary.csv: bootstrap_low, bootstrap_high",

@@ -1,4 +1,4 @@
-//! Counts of how often touches and fits reached a limit of the model.
+//! Numbers of touches and trained classifiers that reached a limit of the simulation or of the solver.
 
 use crate::report::csv_tables::MISSED_TOUCHES;
 use crate::studies::recognition::rows::configuration::Configuration;

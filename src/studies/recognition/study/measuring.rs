@@ -195,7 +195,7 @@ impl Job<'_> {
         families.map(|&family| self.study.family_item(self.trial, family))
     }
 
-    /// Measures the group of configurations, then evaluates its pending families.
+    /// Computes the measurements of a group of configurations, then evaluates the group's pending families.
     fn run(&self, left: &PendingItems<RecognitionRows>, frames: [&Frames; 2]) -> Result<()> {
         let need: Vec<usize> = self.items().collect();
         let measured = left.prepare(&need, || self.measure(frames))?;

@@ -1,4 +1,4 @@
-//! Recognition studies as work items: one item for each family of configurations and trial, and one item for the touches of each array.
+//! Work items of recognition studies: one for each family of configurations and trial, and one for the touches of each array.
 
 pub(crate) mod kind;
 pub(crate) mod limits;

@@ -56,11 +56,11 @@ pub(crate) struct Touches {
     pub content: String,
 }
 
-/// Group of configurations, with its place in the study.
+/// Group of configurations, with its position in the study.
 pub(crate) struct PlacedGroup {
     /// Index of the part of the study that contains the group.
     pub part: usize,
-    /// Index of the group in the list of groups of its part.
+    /// Index of the group within its part of the study.
     place: usize,
     /// Index of the group's training touches in the list of all sets of touches.
     pub touches: usize,
@@ -288,7 +288,7 @@ impl RecognitionStudy {
         self.family_item(self.n_trials(), 0) + touches
     }
 
-    /// For a set of touches, returns the index of its part of the study, the index of its array, and its number of frames per touch.
+    /// Returns the study part, the array index and the number of frames per touch of a set of touches.
     pub(crate) fn made_on(&self, touches: usize) -> (usize, usize, usize) {
         let group = self.touch_sets[touches].group;
         let (_, MeasurementGroup { array, frames, .. }) = self.group(group);
@@ -308,12 +308,12 @@ impl RecognitionStudy {
         (touched, &plan.arrays[group.array], group.frames)
     }
 
-    /// Returns the number of frames per touch in a set of touches, for the part with the first values of the axes.
+    /// Returns the number of frames per touch of a set of touches, in the study part with the first values of the axes.
     pub(crate) fn first_frames(&self, touches: usize) -> usize {
         self.group(self.touch_sets[touches].group).0.plan.frames[0]
     }
 
-    /// Returns the rows of `stages.csv`: how long the touches of each array took to simulate and to measure.
+    /// Returns the rows of `stages.csv`: the times to simulate and to measure the touches of each array.
     fn stages(&self, rows: &[TouchRow]) -> Vec<StageTime> {
         let mut stages = Vec::new();
         for on in 0..self.touch_sets.len() {

@@ -13,11 +13,11 @@ use crate::studies::recognition::training::evaluation_inputs::solver_memory;
 use bubbletouch_sim::frame_coding::most_bytes;
 use bubbletouch_svm::{Multiclass, Solver};
 
-/// Memory of the result rows that a configuration has in a trial, bytes.
+/// Memory of the result rows of one configuration in one trial, bytes.
 const CELL_BYTES: f64 = 4e3;
 /// Memory per value of the training rows, bytes. The memory covers four copies of a value: original, scaled, sorted by class, and as support vectors.
 const TRAINING_BYTES: f64 = 32.0;
-/// Memory per value of the test rows, bytes. The memory covers three copies of a value: original, scaled, and in the format of the kernel.
+/// Memory per feature value of the test rows, bytes. The memory covers three copies of a value: original, scaled, and in the format of the kernel.
 const TEST_BYTES: f64 = 20.0;
 /// Memory of a score, and of its contribution to decisions on several touches, bytes.
 const SCORE_BYTES: f64 = 16.0;

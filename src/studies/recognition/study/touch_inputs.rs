@@ -6,7 +6,7 @@ use crate::studies::recognition::spec::human::HumanTouchSpec;
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::world::Placement;
 
-/// Inputs that determine the touches of a plan, except the array and the files of the objects. Plans with equal inputs share their touches.
+/// Inputs that determine the touches of a plan, without the array and the object files. Plans with equal inputs share their touches.
 #[derive(Debug)]
 pub(crate) struct TouchInputs<'a> {
     pub(crate) objects: &'a ObjectsSpec,
@@ -29,7 +29,7 @@ impl<'a> TouchInputs<'a> {
         }
     }
 
-    /// Returns a text that identifies the inputs: equal inputs have equal texts, and different inputs have different texts.
+    /// Returns a text that identifies the inputs; the texts are equal exactly if the inputs are equal.
     pub fn key(&self) -> String {
         format!("{self:?}")
     }

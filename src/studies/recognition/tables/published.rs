@@ -122,7 +122,8 @@ mod tests {
         toml::from_str(&text).unwrap()
     }
 
-    /// Returns a summary for all combinations of two classifiers, two ratios, and noise of 0 or 10 %. Accuracies increase with the number of the configuration.
+    /// Returns a test summary of all combinations of two classifiers, two compression ratios, and noise of 0 or 10 %. Accuracies increase with the number of
+    /// the configuration.
     fn summary() -> Vec<(Configuration, ConfigurationScore)> {
         let mut rows = Vec::new();
         for noise_std in [0.0, 0.1] {

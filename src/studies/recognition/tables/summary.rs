@@ -221,7 +221,7 @@ pub fn most_confused(
     Ok(pairs)
 }
 
-/// For each object, returns the number of its test rows in one configuration.
+/// Returns the number of test rows of each object in one configuration.
 fn rows_of_objects(confusion: &[Confusion], configuration: usize) -> BTreeMap<&str, usize> {
     let mut n_test = BTreeMap::new();
     for row in confusion

@@ -109,8 +109,8 @@ pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
     }
 }
 
-/// Among the configurations that differ only in their number of touches per decision, returns the one with the largest number, and this number. Returns `None`
-/// if no configuration has a larger number than the given one.
+/// Returns the configuration with the most touches per decision among configurations that are otherwise equal, and this number of touches. Returns `None` if no
+/// configuration has a larger number than the given one.
 fn max_touches_per_decision<'a>(
     mut configurations: impl Iterator<Item = &'a Configuration> + Clone,
     of: usize,

@@ -46,7 +46,7 @@ pub fn touch_labels(classes: &[(&str, usize)]) -> Array1<usize> {
     labels.collect()
 }
 
-/// Returns the seed of the random stream from which an object's touches are drawn.
+/// Returns the seed of the random stream from which the touches of an object are drawn.
 pub fn touch_stream(seed: &Seed, object: &Object) -> Seed {
     seed.named("touches").named(&object.name)
 }

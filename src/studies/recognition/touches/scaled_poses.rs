@@ -1,4 +1,4 @@
-//! Poses of touches along those placement axes that have more than one value.
+//! Poses of touches, restricted to the pose parameters that have more than one value.
 
 use crate::learning::evaluation::next_touch::Poses;
 use crate::world::{Placement, Spread, Touch, TouchAxis};

@@ -21,7 +21,7 @@ use bubbletouch_svm::DEFAULT_MEMORY_BYTES;
 use bubbletouch_svm::split::Split;
 use ndarray::{Array1, Axis};
 
-/// Number of hexadecimal digits of the hash in a work item's name. With fewer digits, the names of two work items may collide.
+/// Number of hexadecimal digits of the hash that a work item's name contains. With fewer digits, the names of two work items may collide.
 const DIGITS: usize = 24;
 
 /// Inputs of a trial that all families of configurations share.
@@ -35,7 +35,7 @@ pub struct TrialInputs<'a> {
     pub crossed: Option<(usize, usize)>,
     /// Split of all touches into training and test touches.
     pub split: &'a Hashed<Split>,
-    /// Number of the first split with the same training and test touches; `None` if this split is the first.
+    /// Number of the first trial split with the same training and test touches; `None` if this split is the first.
     pub distinct_split: Option<usize>,
     /// Number of the block of poses that the trial tests; `None` unless the split holds out blocks of poses.
     pub tested_block: Option<usize>,
@@ -60,7 +60,7 @@ pub struct FamilyInputs<'a> {
     pub training: TrainingInputs,
     /// Settings that differ between the family's configurations, in the order of the configurations. Configurations with equal C are adjacent.
     pub decisions: Vec<Decision>,
-    /// For each touch, its pose; `None` unless a configuration chooses touches by their poses.
+    /// Pose of each touch; `None` if no configuration selects touches by their poses.
     pub poses: Option<&'a Hashed<Poses>>,
 }
 
@@ -119,7 +119,8 @@ impl TrialInputs<'_> {
         }
     }
 
-    /// For each touch, returns its label for training. A fraction of the training touches is labelled as another object.
+    /// Returns the label of each touch that is used in training; labels may differ from the true object if mislabelled touches are studied. A fraction of the
+    /// training touches is labelled as another object.
     ///
     /// # Errors
     /// If the fraction is not between 0 and 1.

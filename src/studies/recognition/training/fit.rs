@@ -119,7 +119,7 @@ impl Training<'_> {
         Ok((chosen.best.c, classifier.with_choice(&chosen)))
     }
 
-    /// For each training touch, returns the label that is predicted for its first reading by a classifier trained without its fold. The classifiers have the
+    /// Returns a predicted label for each training touch; the classifier that predicts it is trained without the touch's fold. The classifiers have the
     /// parameters of `like`.
     ///
     /// # Errors

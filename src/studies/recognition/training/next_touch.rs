@@ -81,17 +81,17 @@ pub(super) fn choose_touches(
 pub(super) struct AnsweredTouches<'a> {
     pub(super) fitted: &'a Fitted,
     pub(super) test: &'a Dataset,
-    /// For each test row, the number of its touch.
+    /// Number of the touch of each test row.
     pub(super) touches: &'a [usize],
-    /// For each test touch, its group; `None` unless whole groups are held out.
+    /// Group of each test touch; `None` if the split does not hold out whole groups.
     pub(super) groups: Option<&'a [usize]>,
     pub(super) decide: Decide<'a>,
     pub(super) answer_s: f64,
     pub(super) n_train: usize,
-    /// Model that predicts the classifier's decision on a touch from its pose; `None` if no configuration uses it.
+    /// Model that predicts the classifier's decision from the pose of a touch; `None` if no configuration uses the model.
     pub(super) model: Option<AnswerModel<'a>>,
     pub(super) model_s: f64,
 }
 
-/// Function that returns one predicted label for each given group of test touches.
+/// Function that returns a predicted label for each given group of test touches.
 pub(crate) type Decide<'a> = Box<dyn Fn(&[Vec<usize>]) -> Array1<usize> + 'a>;

@@ -113,7 +113,7 @@ impl Trial<'_> {
         Ok(evaluations)
     }
 
-    /// Returns the results of decisions, each on a group of k test touches.
+    /// Computes the results of decisions, each of which combines k test touches.
     fn decide(
         &self,
         (family, configuration): (&FamilyInputs, &Decision),

@@ -28,7 +28,7 @@ pub(crate) struct FreeFactor {
 }
 
 impl FreeFactor {
-    /// Factorises the kernel matrix of the given variables; variables whose rows depend linearly on previous rows are omitted.
+    /// Factorises the kernel matrix of the given variables; variables that depend linearly on earlier variables are omitted.
     pub fn new<T: Scalar, G: Gram<T>>(gram: &mut G, free: &[usize]) -> Self {
         let width = (free.len() + JOINING).div_ceil(LANES);
         // The capacity includes all variables that may be added, so that rows are not moved.

@@ -71,9 +71,9 @@ struct ActiveSet<'a> {
     changes: Vec<f64>,
     c: f64,
     factor: FreeFactor,
-    /// For each variable, whether it has a position in the factors, that is, whether it is free.
+    /// Whether each variable is free, that is, whether it has a position in the factors.
     has_place: Vec<bool>,
-    /// Value of the gradient f on all free variables after the last solution.
+    /// Value of the gradient f, equal for all free variables, after the last solution of the equations.
     level: f64,
 }
 
@@ -192,7 +192,8 @@ impl<'a> ActiveSet<'a> {
         entering
     }
 
-    /// Makes the given variables free, up to the capacity. Returns true if at least one variable was added, or if none had to be added.
+    /// Adds the given variables to the free variables, as far as memory for the factors is available. Returns true if at least one variable was added, or if
+    /// none had to be added.
     fn join<T: Scalar, G: Gram<T>>(&mut self, gram: &mut G, entering: &[usize]) -> bool {
         for (number, &variable) in entering.iter().enumerate() {
             if !self.factor.join(gram, variable) {
@@ -217,7 +218,7 @@ mod tests {
     use crate::smo::variables::extremes;
     use ndarray::{Array1, Array2};
 
-    /// Returns the inner products and labels of n irregular rows with m features; the first half is separated from the others by `apart`.
+    /// Returns inner products and labels of n test rows with m features; the first half is separated from the second half by `apart`.
     fn problem(n: usize, m: usize, apart: f64) -> (Array2<f64>, Vec<f64>) {
         let rows = Array2::from_shape_fn((n, m), |(i, j)| {
             let side = if i < n / 2 { apart } else { -apart };
