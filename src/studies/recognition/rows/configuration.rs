@@ -31,7 +31,7 @@ macro_rules! configuration {
 
         impl Serialize for $configuration {
             fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                let n_fields = Self::columns().len() + self.variant.values.len();
+                let n_fields = [$(stringify!($field)),*].len() + self.variant.values.len();
                 let mut row = serializer.serialize_struct("Configuration", n_fields)?;
                 $($how::write(&self.$field, stringify!($field), &mut row)?;)*
                 row.end()
