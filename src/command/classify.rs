@@ -130,7 +130,7 @@ fn write_predictions(path: &Path, classes: &[KeyValue], predicted: &Array1<usize
     }
 }
 
-/// What is printed: in JSON, one key a field.
+/// Values that `bubbletouch classify` prints; in JSON, one key per field.
 #[derive(Serialize)]
 struct Findings {
     program: &'static str,
@@ -388,7 +388,7 @@ fn tell(found: &Findings) -> Result<()> {
     Ok(())
 }
 
-/// A word as studies spell it; the error lists what is allowed.
+/// Parses a text to a value that is spelled as in study files; the error lists the allowed values.
 pub fn word<T: for<'a> Deserialize<'a>>(text: &str) -> std::result::Result<T, String> {
     let deserializer: serde::de::value::StrDeserializer<serde::de::value::Error> =
         text.into_deserializer();

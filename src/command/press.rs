@@ -174,7 +174,7 @@ pub fn press(args: &Args) -> Result<()> {
 }
 
 impl Args {
-    /// Refuses options that nothing here uses.
+    /// Returns an error if options are given that have no effect.
     fn check_used(&self) -> Result<()> {
         let is_packed = self.model == Some(ModelSpec::Packed);
         let has_error = self.source.object.is_some() || is_packed;

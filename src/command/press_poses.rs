@@ -39,7 +39,7 @@ pub struct Args {
 }
 
 impl Args {
-    /// Refuses options of poses where there are none.
+    /// Returns an error if options for poses are given but have no effect.
     pub fn check_used(&self) -> Result<()> {
         let has_poses = self.poses.is_some();
         check_used("--repeat", self.repeat.is_some(), has_poses, "--poses")?;

@@ -1,4 +1,4 @@
-//! `bubbletouch recording`: what a file of frames over time holds, as a table, a picture or an animation.
+//! `bubbletouch recording`: shows a recording as a table, a picture or an animation.
 
 use super::classify::word;
 use crate::command::options::unused::check_used;
@@ -76,7 +76,7 @@ impl Args {
         self.quantity.unwrap_or(Quantity::Deflection)
     }
 
-    /// Refuses options that nothing here uses.
+    /// Returns an error if options are given that have no effect.
     fn check_used(&self) -> Result<()> {
         let is_animated = self.animate.is_some();
         let draws = is_animated || self.frame.is_some();

@@ -1,4 +1,4 @@
-//! `bubbletouch run`: a study from its file to its folder of results.
+//! `bubbletouch run`: runs a study file and writes its folder of results.
 
 use crate::command::options::study_run::{RunArgs, StudyRun};
 use crate::command::terminal::output::output_folder;

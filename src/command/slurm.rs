@@ -1,4 +1,4 @@
-//! `bubbletouch slurm`: the shards of a study as an array of jobs, and their merge after them.
+//! `bubbletouch slurm`: submits the shards of a study as an array of cluster jobs, followed by a job that merges them.
 
 use super::slurm_jobs::{queued_shards, submit};
 use crate::command::options::study_run::ResultsArgs;

@@ -1,4 +1,4 @@
-//! `bubbletouch touches`: just the data set.
+//! `bubbletouch touches`: writes the touches of a study as a data set.
 
 use crate::command::options::study_args::StudyArgs;
 use crate::command::terminal::output::output_folder;
@@ -166,7 +166,7 @@ fn data_sets<'a>(plans: &'a [(AxisValues, Plan)], read: Option<&ReadFrames>) -> 
     sets
 }
 
-/// The array, then each axis with its value, as parts of a folder's name.
+/// Returns the parts of a folder name: the array, followed by each axis with its value.
 fn folder_parts(set: &DataSet) -> Vec<String> {
     let ((ny, nx), pitch_mm) = (set.array.shape(), millimetres(set.array.pitch()));
     let array = format!("{nx}x{ny}_at_{pitch_mm}_mm");
@@ -212,7 +212,7 @@ fn number_equal_names(sets: &mut [DataSet]) {
 }
 
 impl Args {
-    /// An error for recorded frames, which are files already, and for frames of human touches as a configuration reads them.
+    /// Returns an error for recorded frames, which are files already, and for human touches after the signal chain.
     fn check(&self, plan: &Plan) -> Result<()> {
         let is_human = plan.spec.human_touch.is_some() && self.configuration.is_none();
         if plan.spec.places_objects() || is_human {

@@ -139,8 +139,8 @@ pub fn with_value(table: &toml::Table, key: &str, value: toml::Value) -> Result<
     }
 }
 
-/// Reads a study file that may contain the given keys, and the axes of the study. In the returned study, each key of an axis has its first value; keys that
-/// accept lists have all values.
+/// Reads a study file with its axes, after checking that it contains only allowed keys. In the returned study, each key of an axis has its first value; keys
+/// that accept lists have all values.
 ///
 /// # Errors
 /// If the study is invalid. If an axis has no values, a repeated value, a key that is also given elsewhere, or a key that cannot be an axis. The error names
@@ -412,7 +412,7 @@ impl StudyAxis {
         self.keys().iter().all(has)
     }
 
-    /// Returns whether the key of the axis belongs to test touches only.
+    /// Returns whether the key of the axis applies only to test touches.
     fn is_of_tests(&self) -> bool {
         self.key.starts_with(OF_TESTS)
     }

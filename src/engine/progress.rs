@@ -1,4 +1,4 @@
-//! Progress of a running study: the current stage and the number of completed steps.
+//! Progress of a study: the current stage and the number of completed steps.
 
 /// Receiver of progress reports during a run. The methods `stage` and `finish` are called by one thread at a time, `advance` by any thread.
 pub trait Progress: Sync {

@@ -34,7 +34,7 @@ pub enum AxisPlace {
     Table,
     /// Only in the table `[axes]`.
     Axes,
-    /// Nowhere: the key has one value in all configurations of a study.
+    /// The key cannot be swept: it has one value in all configurations of a study.
     Never,
 }
 
@@ -104,7 +104,7 @@ impl KeyAbout {
         self.path.rsplit('.').next().unwrap_or(self.path)
     }
 
-    /// Returns the name of the key without the suffix that states a unit, and this unit.
+    /// Returns the name of the key without its unit suffix, and the unit.
     fn name_and_unit(&self) -> (&'static str, &'static str) {
         let name = self.name();
         let found = UNITS.iter().find_map(|(suffix, unit)| {

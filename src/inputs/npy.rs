@@ -44,7 +44,7 @@ pub(crate) fn read_npy_header(reader: &mut impl Read) -> io::Result<(String, usi
     Ok((String::from_utf8_lossy(&text).trim().to_owned(), n_bytes))
 }
 
-/// Returns an error if a header contains another element type or another shape than given; commas and spaces are ignored.
+/// Returns an error if a header has another element type or shape than expected; commas and spaces are ignored.
 pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::Result<()> {
     let plain = |text: &str| {
         let letters = text.chars().filter(|letter| !letter.is_whitespace());

@@ -155,7 +155,7 @@ fn open(path: &Path, allowed: &str) -> Result<BufReader<File>> {
     Ok(BufReader::new(file))
 }
 
-/// Returns an error if a mesh path is a folder, a pipe or a device; reading a pipe or device might never end.
+/// Returns an error if a mesh path is a folder, a pipe or a device, because reading might not end.
 fn check_regular(path: &Path) -> Result<()> {
     let given = match std::fs::metadata(path) {
         Ok(meta) if meta.is_dir() => "a folder",
@@ -258,7 +258,7 @@ pub fn read_mesh(
     outward_mesh(read_mesh_file(path, unit, sizes)?, &place, close_holes)
 }
 
-/// Converts a mesh file to triangles whose normals point outwards, as [`read_mesh`] does.
+/// Converts a mesh file to triangles with outward normals, as [`read_mesh`] does.
 fn outward_mesh(
     file: MeshFile,
     place: &str,

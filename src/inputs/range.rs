@@ -36,9 +36,9 @@ pub enum Range {
     AtLeastOne,
     /// Integers between two bounds, including both.
     Count(usize, usize),
-    /// Numbers between two bounds, including both, with a description in words.
+    /// Numbers between two bounds (inclusive), with a description in words.
     Between(f64, f64, &'static str),
-    /// Zero and the numbers between two positive bounds, including both, with a description in words.
+    /// Zero, and the numbers between two positive bounds (inclusive), with a description in words.
     ZeroOrBetween(f64, f64, &'static str),
     /// Numbers that a classifier declares for its parameter.
     Declared(&'static Parameter),

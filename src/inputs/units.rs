@@ -1,6 +1,6 @@
-//! Units of keys in studies and scenes, and common bounds of sizes.
+//! Units of the keys in studies and scenes, and common bounds of sizes.
 
-/// Millimetre in metres: factor that converts mm to m.
+/// One millimetre in metres, the factor that converts mm to m.
 pub(crate) const MM: f64 = 1e-3;
 
 /// Maximum number of frames in a touch; a larger number indicates that the frame rate or a unit is wrong.

@@ -47,7 +47,7 @@ pub struct AdviceQuery {
     pub table: Option<String>,
     /// Name of the value column to optimise.
     pub value: Option<String>,
-    /// Name of the cost column to minimise, or a name that is valid for all kinds of studies.
+    /// Name of the cost column to minimise: a column name, or a short name that all kinds of studies accept.
     pub cost: Option<String>,
     /// Fixed conditions, each as text of the form `noise=0.05`.
     pub given: Vec<String>,
@@ -430,7 +430,7 @@ fn refuse_none<T>(found: &[T], (option, given): (&str, &str), mut known: Vec<&st
     }
 }
 
-/// Returns the given rows that satisfy a condition of the form `noise=0.05`.
+/// Returns those of the given rows that satisfy a condition of the form `noise=0.05`.
 fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
     let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
     let (key, value) = text.split_once('=').ok_or_else(refuse)?;

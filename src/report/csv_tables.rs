@@ -13,7 +13,7 @@ pub const FAILURES_FILE: &str = "failures.csv";
 
 /// File name of the table that counts how often each limit of the model was reached.
 pub const LIMITS_FILE: &str = "limits.csv";
-/// Name of the row in [`LIMITS_FILE`] that counts touches in which the object met no taxel.
+/// Name of the row in [`LIMITS_FILE`] that counts the touches without any touched taxel.
 pub const MISSED_TOUCHES: &str = "touches that met nothing";
 
 /// Description of a valid table file, for error messages.

@@ -1,4 +1,4 @@
-//! Progress of a run: bars on a terminal, one line per stage without a terminal, and JSON lines for other programs.
+//! Progress of a run: bars on a terminal, plain lines for other outputs, and JSON lines for other programs.
 //!
 //! ```text
 //! {"event":"stage","name":"recognise 32×32 at 2 mm","total":240}
@@ -259,7 +259,7 @@ fn report_regularly<W: Write>(state: &Weak<Mutex<State<W>>>) {
 }
 
 impl<W: Write> State<W> {
-    /// Writes and flushes a complete line, so that readers never receive a part of it. If the output is closed, the run continues.
+    /// Writes and flushes a complete line, so that readers never receive an incomplete line. If the output is closed, the run continues.
     fn write(&mut self, line: &impl std::fmt::Display) {
         let written = self.writer.write_all(format!("{line}\n").as_bytes());
         let _ = written.and_then(|()| self.writer.flush());
@@ -353,7 +353,7 @@ mod tests {
         assert_eq!(written.text(), text, "no bar is drawn later");
     }
 
-    /// Test output that stores all that is written to it, with the width of a terminal of 100 columns.
+    /// Test output that stores everything that is written, with the width of a terminal of 100 columns.
     #[derive(Clone, Debug, Default)]
     struct Written(Arc<Mutex<Vec<u8>>>);
 

@@ -20,7 +20,7 @@ impl RunClock {
         }
     }
 
-    /// Increases the number of finished work items by one.
+    /// Adds one to the number of finished work items.
     pub fn item_finished(&mut self) {
         self.n_finished += 1;
     }

@@ -46,7 +46,7 @@ pub struct Swept<'a> {
     /// Independent settings of a study that changes one setting at a time. Each row changes at most one of them from its value in the first row. The list is
     /// empty for other studies, or if there are fewer than two such settings.
     pub one_at_a_time: Vec<Setting<'a>>,
-    /// Settings that have an equal value in all rows.
+    /// Settings that have equal values in all rows.
     pub fixed: Vec<Setting<'a>>,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Setting<'a> {
         columns.map(|(column, data)| Self { column, data })
     }
 
-    /// Returns an iterator over the columns of a table that have one of the given roles.
+    /// Returns the columns of a table that have one of the given roles.
     pub fn of_roles(table: &'a Table, roles: &[Role]) -> impl Iterator<Item = Self> {
         Self::all(table).filter(|one| roles.contains(&one.column.role))
     }
@@ -231,7 +231,7 @@ pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> 
         .collect()
 }
 
-/// Returns all numeric settings if each row changes at most one of them from its value in the first row. Otherwise, tries only the settings of the signal.
+/// Returns all numeric settings, if each row differs from the first row in at most one of them. Otherwise, tries only the settings of the signal.
 fn one_at_a_time<'a>(free: &[Setting<'a>], rows: &[usize]) -> Vec<Setting<'a>> {
     let is_signal = |setting: &Setting| {
         setting.column.role == Role::Condition || setting.column.name == "smoothing_mm"

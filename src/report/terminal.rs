@@ -110,7 +110,7 @@ pub fn table_text(table: &Table, width: usize) -> String {
     text
 }
 
-/// Returns the columns of a table that are shown: varying settings, then values and outcomes, then costs.
+/// Returns the columns of a table to show: varying settings, followed by values and outcomes, and costs.
 fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
     let rank = |setting: &Setting| match setting.column.role {
         Role::Choice | Role::Condition | Role::Subject => 0,
@@ -124,7 +124,7 @@ fn shown_columns(table: &Table) -> Vec<Setting<'_>> {
     shown
 }
 
-/// Returns whether a column is worth showing: its entries differ between rows, or they are results.
+/// Returns whether a column is worth showing: its values differ between rows, or the column contains results.
 fn is_telling(table: &Table, setting: &Setting) -> bool {
     let mut rows = 0..table.n_rows;
     match setting.column.role {
@@ -189,7 +189,7 @@ fn columns_text(mut columns: Vec<TextColumn>, n_lines: usize, width: usize) -> (
     (lines, columns.len())
 }
 
-/// Returns the settings that are equal in all rows as text; empty if there are none.
+/// Returns a text with the settings that have equal values in all rows; empty if there are none.
 fn constants(table: &Table, width: usize) -> String {
     let rows: Vec<usize> = (0..table.n_rows).collect();
     if rows.len() < 2 {
@@ -262,7 +262,7 @@ fn pivot_text(table: &Table, width: usize) -> Option<String> {
     Some(constants(table, width) + &head + &text + &paragraph(&remark, width))
 }
 
-/// Formats rows of text as aligned columns without ruled lines. The columns with indices in `texts` are left-aligned, all others right-aligned.
+/// Formats rows of text as aligned columns without lines between them. The columns with indices in `texts` are left-aligned, all others right-aligned.
 pub fn rows_text(
     header: &[&str],
     texts: &[usize],

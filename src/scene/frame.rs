@@ -68,7 +68,7 @@ pub struct ObjectReading {
     pub pose: Pose,
     /// Rule by which the pose is determined: imposed, pressed, free or escaped.
     pub held: PoseControl,
-    /// Equilibrium of a free object, including the residual of the forces; `None` for other objects and after the object has escaped.
+    /// Equilibrium of a free object, with the force residual; `None` for other objects and for escaped objects.
     pub balance: Option<Equilibrium>,
 }
 
@@ -100,8 +100,7 @@ pub enum PoseControl {
     },
 }
 
-/// Tolerance within which a target force counts as reached, N (relative for forces above 1 N). With a smaller value, rounding errors of stiff skins count as
-/// missed forces.
+/// Tolerance for reaching a target force, N (relative for forces above 1 N). With a smaller value, rounding errors of stiff skins count as missed forces.
 const REACHED: f64 = 1e-9;
 
 impl PoseControl {
@@ -125,7 +124,7 @@ pub trait FrameSink {
     fn frame(&mut self, frame: &Frame) -> Result<()>;
 }
 
-/// Receiver that stores all frames, for scenes that fit into memory.
+/// Frame receiver that stores all frames, for scenes that fit into memory.
 impl FrameSink for Vec<Frame> {
     fn frame(&mut self, frame: &Frame) -> Result<()> {
         self.push(frame.clone());

@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::geometry::Pose;
 use crate::objects::SphereUnion;
 
-/// All free objects of a scene (objects that move under gravity and contact forces), with their common equilibrium.
+/// Free objects of a scene, which move under gravity and contact forces until a common equilibrium.
 #[derive(Clone, Debug)]
 pub(super) struct FreeObjects {
     all: Vec<Free>,
@@ -163,7 +163,7 @@ impl FreeObjects {
         own.collect()
     }
 
-    /// Iterates over the contacts of free objects with planes and other objects, which are identified by their scene numbers.
+    /// Returns the contacts of free objects with planes and with other objects, identified by their numbers in the scene.
     pub fn touches(&self) -> impl Iterator<Item = Touch> {
         self.balancer.touches().iter().map(|touch| Touch {
             object: self.there[touch.object],
@@ -196,7 +196,7 @@ impl FreeObjects {
         }
     }
 
-    /// For each patch, computes the deflections that imposed and pressed objects cause.
+    /// Computes the deflections of each patch that are caused by imposed and pressed objects.
     fn push_by_others(&mut self, plan: &ScenePlan, skins: &[SkinState], objects: &PlacedObjects) {
         let patches = plan.patches.iter().zip(skins).zip(&mut self.pushed);
         for ((patch, skin), pushed) in patches {

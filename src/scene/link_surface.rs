@@ -177,7 +177,7 @@ fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
     revolved(&profile, n)
 }
 
-/// Returns the number of facets around a circle for which the middle of each facet is at most [`SAGITTA`] times the pitch from the circle.
+/// Returns the number of facets of a circle for which the middle of each facet is at most [`SAGITTA`] times the pitch from the circle.
 fn n_facets(radius: f64, pitch: f64) -> usize {
     let cos = (1.0 - SAGITTA * pitch / radius).max(0.0);
     (PI / cos.acos()).ceil().clamp(N_FACETS[0], N_FACETS[1]) as usize

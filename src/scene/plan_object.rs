@@ -247,7 +247,7 @@ impl Reader<'_> {
         Ok(entry.solid.clone())
     }
 
-    /// Returns a model given in memory, after checking that the object has no keys that only apply to files.
+    /// Returns a model that is given in memory; returns an error if the object has keys that apply only to files.
     fn model_in_memory(&self, key: &str, spec: &ObjectSpec, model: &Model) -> Result<Model> {
         let shape = [
             ("object", spec.object.is_some()),

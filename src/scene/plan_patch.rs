@@ -44,7 +44,7 @@ impl PlannedPatch {
 }
 
 impl LayoutSpec {
-    /// Returns the distance between neighbouring taxels, mm; `None` for layouts whose taxels are listed one by one.
+    /// Returns the distance between neighbouring taxels, mm; `None` for layouts that list single taxels.
     pub fn pitch_mm(&self) -> Option<f64> {
         Some(match *self {
             Self::File(_) | Self::Sensor(_) => return None,

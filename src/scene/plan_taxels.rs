@@ -175,7 +175,7 @@ impl Lookup<'_> {
         self.reader.check.error(&key, given, allowed)
     }
 
-    /// Makes one value per taxel from several properties. If all properties are equal for all taxels, makes a single value for all taxels.
+    /// Computes one value per taxel from several properties. If all properties are equal for all taxels, makes a single value for all taxels.
     fn each<T, const N: usize>(
         &self,
         of: [&PerTaxel<f64>; N],

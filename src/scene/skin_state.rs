@@ -46,7 +46,7 @@ impl PlacedObjects {
         })
     }
 
-    /// Returns whether any object may touch the patch, by comparing a bounding box of the taxels with the bounding balls of the objects.
+    /// Returns whether any object may touch the patch: the bounding box of the taxels intersects the bounding ball of an object.
     pub fn can_reach(&self, patch: &PlannedPatch, world_from_patch: &Pose) -> bool {
         let skin = &patch.skin;
         let Some(bounds) = skin.tree().bounds() else {

@@ -93,7 +93,7 @@ impl SceneSpec {
         toml_text::read(place, text)
     }
 
-    /// Returns whether the text contains `rpy_deg`, the former name of `rotation_deg`, which is still accepted.
+    /// Returns whether the text contains the key `rpy_deg`, the former name of `rotation_deg`.
     pub fn has_old_names(text: &str) -> bool {
         fn is_old(value: &toml::Value) -> bool {
             match value {

@@ -73,7 +73,7 @@ pub struct OscillationSpec {
     pub period_s: f64,
 }
 
-/// Pose at a given time, such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.
+/// Pose at a given time (way-point), such as `{ time_s = 0.5, position_mm = [0.0, 0.0, 20.0] }`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = with_rpy_deg)]

@@ -20,7 +20,7 @@ pub struct ObjectSpec {
     /// Name of a built-in object; the command `bubbletouch objects` lists them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<String>,
-    /// TOML file of objects in which the name `object` is searched. Default: the built-in objects.
+    /// TOML file of objects that contains the object named `object`. Default: the built-in objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub objects: Option<FilePath>,

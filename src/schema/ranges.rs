@@ -107,8 +107,8 @@ fn number(value: f64) -> Value {
     }
 }
 
-/// Returns the last allowed number on the way from an allowed number to another one, by bisection of the ordered numbers. If the neighbours of the allowed
-/// number are not allowed, only whole numbers are.
+/// Returns the last allowed number between an allowed and a refused number, by bisection over the ordered numbers. If the neighbours of the allowed number are
+/// not allowed, only whole numbers are.
 fn last_allowed(allowed: f64, refused: f64, is_allowed: impl Fn(f64) -> bool) -> f64 {
     const NEAR: f64 = 1e-9;
     if !is_allowed(allowed + NEAR) && !is_allowed(allowed - NEAR) {

@@ -100,7 +100,7 @@ fn write_columns(columns: &[Column], page: &mut String) {
     }
 }
 
-/// Returns the unit of the numbers in the file. Charts show fractions as percent.
+/// Returns the unit of the column's numbers in the file. Charts show fractions as percent.
 fn unit(column: &Column) -> &str {
     match column.unit.as_ref() {
         "%" | ":1" => "",

@@ -35,8 +35,8 @@ pub struct Bootstrap {
 }
 
 impl Bootstrap {
-    /// Returns the bootstrap interval of the mean of `scores`. The shape of `scores` is (n_trials, 1), or splits × projections for crossed trials. Returns
-    /// `None` for fewer than [`FEWEST`] rows, or for 2 to 4 columns.
+    /// Returns the bootstrap confidence interval of the mean of `scores`. The shape of `scores` is (n_trials, 1), or splits × projections for crossed trials.
+    /// Returns `None` for fewer than [`FEWEST`] rows, or for 2 to 4 columns.
     ///
     /// Rows are drawn with replacement. If there are several columns, columns are drawn too, independently of the rows (Owen, *The pigeonhole bootstrap*,
     /// Annals of Applied Statistics 2007).

@@ -7,7 +7,7 @@ use crate::{Error, Result};
 use bubbletouch_sim::statistics::interval::{Interval, check_confidence};
 use ndarray::ArrayView2;
 
-/// Comparison of the scores of two configurations in their common trials.
+/// Comparison of the scores of two configurations in the trials that both have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
     /// Score of `a` minus score of `b`, averaged over the trials.

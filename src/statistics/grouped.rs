@@ -92,8 +92,8 @@ pub fn count_groups(rows: impl IntoIterator<Item = (usize, bool)>) -> Vec<GroupC
     counts.collect()
 }
 
-/// Returns the confidence interval of the mean accuracy of `tests` if groups are drawn at random, and the number of groups. For a single group, the interval is
-/// 0 to 1.
+/// Returns the confidence interval of the mean accuracy of `tests` for randomly drawn groups, and the number of groups. For a single group, the interval is 0
+/// to 1.
 ///
 /// # Errors
 /// If there are no tests, a test has no rows or no groups, more rows are correct than exist, or the confidence is outside 0..1.
@@ -116,7 +116,7 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
     Ok((interval, n_groups))
 }
 
-/// Pooled statistics of tests on groups of rows.
+/// Statistics that combine all tests on groups of rows.
 struct Clustered {
     /// Mean accuracy over all tests.
     share: f64,

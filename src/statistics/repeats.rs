@@ -86,7 +86,7 @@ pub struct Tested {
 pub struct Paired {
     ours: Vec<Repeat>,
     theirs: Vec<Repeat>,
-    /// Sizes of the trials of the first configuration that are paired, or of all its trials if none is paired; `None` if a size is unknown.
+    /// Numbers of rows in the paired trials of the first configuration, or in all its trials if none are paired; `None` if unknown.
     sizes: Option<Vec<TrialSize>>,
     /// Whether several trials of a configuration use the same split.
     has_repeats: bool,
@@ -166,7 +166,7 @@ impl Paired {
         }))
     }
 
-    /// Compares the first configuration with the second; returns `None` for a single trial, or if a combination of split and projection has no trial.
+    /// Compares the first configuration with the second; returns `None` for a single trial, or if a combination of split and projection is missing.
     fn test(&self, sizes: &[TrialSize]) -> Result<Option<Comparison>> {
         let (Some(ours), Some(theirs)) = (scores(&self.ours), scores(&self.theirs)) else {
             return Ok(None);

@@ -88,7 +88,7 @@ impl<K: Study> Loaded<K> {
         }
     }
 
-    /// Returns the charts, pictures and page of a result folder as files in memory, without writing them. `of_run` describes the run.
+    /// Returns the charts, pictures and page of a result folder as files in memory.
     fn files_of(&self, of_run: StudyAbout, tables: &[Table]) -> Result<Vec<NamedFile>> {
         let wall_s = of_run.manifest.as_ref().and_then(Manifest::wall_s);
         let about = StudyAbout {
@@ -233,7 +233,7 @@ impl<K: Study> AnyStudy for Loaded<K> {
     }
 }
 
-/// Returns whether the bytes are a picture, a page or a chart of this program; used if the manifest of a folder is missing.
+/// Returns whether the bytes are a picture, a page or a chart that this program has written; used if the folder has no manifest.
 fn is_drawn(bytes: &[u8]) -> bool {
     let holds = |mark: &str| {
         bytes

@@ -88,7 +88,7 @@ pub(crate) struct KindFiles {
     pub tables: TableFiles,
 }
 
-/// For each kind of study, returns the description of the files that it reads and writes.
+/// Returns a description of each kind of study's input and result files.
 pub(crate) fn kind_files(generator: fn() -> SchemaGenerator) -> Vec<KindFiles> {
     let kinds = KINDS.iter().map(|entry| KindFiles {
         about: entry.about,

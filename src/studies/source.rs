@@ -38,7 +38,7 @@ impl Source {
         }
     }
 
-    /// Reads the study that is stored in a result folder; no option overrides the study.
+    /// Reads the study that is stored in a result folder, without changes by command-line options.
     ///
     /// # Errors
     /// If the folder has no study or the study cannot be read.

@@ -21,7 +21,7 @@ use std::path::Path;
 pub struct About {
     /// Name of the table that a study file has only if it is of this kind.
     pub table: &'static str,
-    /// Phrase of the form `a study that …` that describes what studies of this kind compare or measure.
+    /// Phrase of the form `a study that …` that describes the purpose of this kind of study.
     pub words: &'static str,
     /// Rule that decides which studies of this kind may resume each other's runs.
     pub resumes: Resumes,
@@ -57,7 +57,7 @@ pub struct Facts {
 }
 
 impl Facts {
-    /// Creates the facts about a study from its specification and the hashes of its content outside the study file.
+    /// Creates the facts about a study from its specification and from the hashes of files outside the study file.
     pub fn new(spec: &impl Serialize, content: BTreeMap<String, String>) -> Self {
         Self::of_toml(toml_text::write(spec), content)
     }

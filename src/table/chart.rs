@@ -103,7 +103,7 @@ pub struct Rule {
     pub along: Along,
     /// Position of the reference line on its axis.
     pub at: At,
-    /// Label of the reference line in the legend.
+    /// Label of the reference line in the legend of the chart.
     pub words: String,
 }
 

@@ -111,7 +111,7 @@ impl<R: Columns> File<R> {
         self.parse(columns, &path, csv)
     }
 
-    /// Reads an optional table of a study from its CSV file in a folder; returns `None` if the file does not exist. Returns `None` if the file does not exist.
+    /// Reads an optional table of a study from its CSV file in a folder. Returns `None` if the file does not exist.
     ///
     /// # Errors
     /// If the file cannot be read, or has other columns or invalid values.

@@ -35,7 +35,7 @@ pub struct Table {
 pub enum Data {
     /// Column of numbers; NaN for an absent value.
     Numbers(Vec<f64>),
-    /// Column of words, stored as codes; the empty word for an absent value.
+    /// Column of texts, stored as codes; an empty text is an absent value.
     Words {
         /// Distinct texts in the column, in the order in which they first occur.
         levels: Vec<String>,
@@ -262,7 +262,7 @@ pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
 /// Collector of a column's values from the fields of a CSV file.
 struct Maker {
     data: Data,
-    /// For each word found so far, its index into `levels`.
+    /// Index into `levels` of each text found so far.
     known: HashMap<String, u32>,
 }
 

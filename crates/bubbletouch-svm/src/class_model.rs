@@ -27,7 +27,7 @@ pub trait ClassModel: Debug + Send + Sync {
         None
     }
 
-    /// Returns how many of the optimisation problems solved in training stopped at their iteration cap before reaching the tolerance.
+    /// Returns the number of optimisation problems in training that stopped at the maximum number of iterations before reaching the tolerance.
     fn n_capped(&self) -> usize {
         0
     }

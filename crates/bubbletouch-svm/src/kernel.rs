@@ -228,7 +228,8 @@ impl KernelFunction {
         }
     }
 
-    /// Writes the pairwise products (or L1 distances) between rows (n_left × m) and other rows (n × m): shape n_left × n. Kernel values are computed from them.
+    /// Writes the pairwise products (or L1 distances) between rows (n_left × m) and other rows (n × m) into an array of shape n_left × n. Kernel values are
+    /// computed from them.
     pub fn pairwise<T: Scalar>(
         &self,
         left: ArrayView2<T>,

@@ -136,7 +136,7 @@ pub fn stratified_k_fold(
     folds(labels, &drawn, &fold_of, k)
 }
 
-/// Group hold-out: test rows are whole groups (for example all touches of one pose), so no row of a test group is a training row.
+/// Group hold-out: whole groups (for example all touches of one pose) are held out as test rows.
 ///
 /// Groups with equal sets of classes form a stratum. In a stratum of n groups, `test_fraction · n` (rounded, 1 to n − 1) are test groups. Strata of a single
 /// group are pooled. `groups` contains one group number per row.

@@ -143,8 +143,8 @@ impl SvmParams {
         self.solve_sorted(sorted, goal)
     }
 
-    /// Returns whether kernel values need f64: if there are few rows, the tolerance is near the rounding error of f32, or large coefficients multiply this
-    /// error. The largest squared distance of a row from the centre is `farthest`.
+    /// Returns whether kernel values must be computed in f64, depending on the number of rows, the tolerance and the penalty. The largest squared distance of a
+    /// row from the centre is `farthest`.
     pub(crate) fn needs_double(
         &self,
         n_rows: usize,

@@ -24,7 +24,7 @@ use crate::screening::near_margin::NearMargin;
 use crate::smo::Smo;
 use crate::smo::SolverScalar;
 
-/// Minimum number of features for screening, which solves each one-vs-one linear SVM on the rows near its margin.
+/// Minimum number of features for screening, which trains each one-vs-one linear SVM only on rows near its decision boundary.
 const SCREENING_FROM_FEATURES: usize = 128;
 /// Minimum mean number of rows per class for screening, that is, training on the rows near the decision boundary.
 const SCREENING_FROM_ROWS: usize = 64;
@@ -167,7 +167,7 @@ impl<T: SolverScalar> Sorted<T> {
         );
     }
 
-    /// Solves the binary problem of each class against all others. Returns, for each C of the path, one problem per class.
+    /// Solves one binary problem for each class, which separates the class from all others. Returns, for each C of the path, one problem per class.
     pub fn one_vs_rest(&self, goal: Goal) -> Vec<Trained<T>> {
         let mut problems = vec![Vec::new(); goal.path.len()];
         // Two copies are in memory: the matrix product, and the padded matrix of the solver.

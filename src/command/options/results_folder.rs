@@ -41,7 +41,7 @@ fn check(path: &Path, hash: &str) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// The study of a folder, which is to hold at most so many bytes. Without a manifest, paths in it are relative to the folder.
+/// Loads the study of a result folder, with a limit of its memory in bytes. Without a manifest, paths in it are relative to the folder.
 pub fn load_study(
     folder: &Path,
     manifest: Option<&Manifest>,

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// Maximum number of threads on machines with fewer cores: further threads need memory and do not reduce the run time.
 const MAX_THREADS: usize = 1024;
 
-/// The study that a bare `bubbletouch` runs.
+/// Path of the study that `bubbletouch` runs if it is called without arguments.
 pub const QUICKSTART_FILE: &str = "experiments/quickstart.toml";
 
 /// Text of the quickstart study, which is contained in the program, so that the command works in any folder.

@@ -101,7 +101,7 @@ impl<'a> StudyRun<'a> {
         self.started.elapsed().unwrap_or_default().as_secs_f64()
     }
 
-    /// Writes the folder and says what was found; an error if some of the work failed. `what` is said before the time it took.
+    /// Writes the result folder and prints the findings; returns an error if some work items failed.
     pub fn end(&self, outcome: &Outcome, n_before: usize, what: &str) -> Result<()> {
         let (study, folder) = (self.study.as_ref(), &self.folder);
         let of_study = &self.args.results.study;

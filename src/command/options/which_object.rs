@@ -42,7 +42,7 @@ pub struct WhichObject {
 }
 
 impl WhichObject {
-    /// A file goes before a built-in object of the same name.
+    /// Loads the object; a file has priority over a built-in object with the same name.
     pub fn load(&self) -> Result<Original> {
         if self.objects.is_some() {
             self.check_used()?;

@@ -1,4 +1,4 @@
-//! What the command says: results on standard output, notes on standard error. Nothing else here writes to either.
+//! Output of the command: results on standard output, notes on standard error. Nothing else here writes to either.
 //!
 //! A reader that closes its pipe has read enough: what is said after that is dropped, the work goes on to its end, and the exit code is
 //! that of the work. A standard output that takes no more for another reason (a full disk) is an error. Notes are never one.

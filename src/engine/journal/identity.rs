@@ -20,7 +20,7 @@ pub struct Identity {
     pub study: String,
     /// SHA-256 hash of each object's content, by the object's name.
     pub objects: BTreeMap<String, String>,
-    /// Rule that decides which other studies may resume the run. The rule is not stored in the journal.
+    /// Rule that determines which other studies may resume the run. The rule is not stored in the journal.
     #[serde(skip)]
     same: SameStudy,
 }
@@ -61,7 +61,7 @@ impl SameStudy {
 }
 
 impl Identity {
-    /// Creates the identity of a study, given as TOML, for this program.
+    /// Creates the identity of a study, which consists of the TOML text, the objects and this program.
     pub fn new(study: String, objects: BTreeMap<String, String>, same: SameStudy) -> Self {
         Self {
             program: crate::engine::program::PROGRAM.to_owned(),

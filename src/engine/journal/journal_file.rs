@@ -129,7 +129,7 @@ impl Journal {
         self.append(key, record).map(|_| ())
     }
 
-    /// Appends a line with a key and a record to the journal, and returns the checksum of the line; returns 0 if the journal stores nothing.
+    /// Appends a line with a key and a record, and returns the checksum of the line; returns 0 if the journal does not store anything.
     fn append(&self, key: &str, record: &impl Serialize) -> Result<u32> {
         let Some(writer) = &mut *self.lock() else {
             return Ok(0);

@@ -51,8 +51,8 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.is_pending[number]
     }
 
-    /// Returns the elements of `all` whose work items are pending, each with its item number. The work items of the elements are numbered consecutively from
-    /// `first`.
+    /// Returns the elements of `all` whose work items are pending, each with the number of its item. The work items of the elements are numbered consecutively
+    /// from `first`.
     pub fn among<T>(&self, first: usize, all: impl IntoIterator<Item = T>) -> Vec<(usize, T)> {
         let numbered = (first..).zip(all);
         numbered.filter(|(number, _)| self.has(*number)).collect()

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 /// Selection of the work items that a run of a study computes.
 #[derive(Clone, Copy, Debug)]
 pub enum Part<'a> {
-    /// All work items of the study.
+    /// All work items of the study are computed.
     All,
     /// Only the work items of one shard are computed.
     Shard(Shard),

@@ -27,7 +27,7 @@ impl Scale {
         self.bytes_at_once(1)
     }
 
-    /// Returns the maximum number of concurrent work items whose memory is at most `ceiling` bytes, limited to the number of threads. Returns `None` if a
+    /// Returns the number of work items that can run concurrently within a memory of `ceiling` bytes, limited to the number of threads. Returns `None` if a
     /// single item does not fit.
     pub fn n_at_once(&self, ceiling: f64) -> Option<usize> {
         let n_threads = (1..=rayon::current_num_threads()).rev();

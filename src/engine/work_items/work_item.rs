@@ -16,8 +16,8 @@ pub struct WorkItem {
     /// Number of the group to which the item belongs, from 0 without gaps. Items of a group share preparatory work, so one shard computes all of them if there
     /// are enough groups for every shard.
     pub group: usize,
-    /// Whether the rows are results of the study. If false, the item only prepares data for results; studies that share only preparing items are different
-    /// studies.
+    /// Whether the rows of the work item are results of the study. If false, the item only prepares data for results; studies that share only preparing items
+    /// are different studies.
     pub is_result: bool,
 }
 

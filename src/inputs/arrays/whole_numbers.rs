@@ -103,7 +103,7 @@ pub fn read_group_keys(path: &Path, name: &str, n: usize) -> Result<Vec<usize>> 
     Ok(group_keys(&read_group_values(path, name, n)?))
 }
 
-/// Converts group values to group numbers. Integers are unchanged; texts are numbered in the order of first occurrence.
+/// Converts group values to group numbers; equal values get equal numbers. Integers are unchanged; texts are numbered in the order of first occurrence.
 pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
     let mut numbers = HashMap::new();
     let keys = values.iter().map(|value| match value {

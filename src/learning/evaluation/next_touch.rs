@@ -52,7 +52,7 @@ impl Poses {
         }
     }
 
-    /// Returns the absolute difference of two poses `a` and `b` along an axis; for a periodic axis, the smaller of the two possible differences.
+    /// Returns the absolute difference of the poses `a` and `b` along an axis; for a periodic axis, the shorter way around.
     fn difference(&self, axis: usize, a: usize, b: usize) -> f64 {
         let apart = (self.coordinates[[a, axis]] - self.coordinates[[b, axis]]).abs();
         match self.turns[axis] {
@@ -91,7 +91,7 @@ impl Poses {
 #[derive(Clone, Debug)]
 pub struct AnswerModel<'a> {
     poses: &'a Poses,
-    /// For each object, its touches and their predicted labels.
+    /// Touches of each object, with the labels that were predicted for them.
     answered: Vec<Vec<(usize, usize)>>,
     /// Bandwidth of each pose axis, in units of the axis range.
     bandwidths: Vec<f64>,
@@ -164,7 +164,7 @@ impl<'a> AnswerModel<'a> {
         (-0.5 * self.poses.squared_distance(&self.bandwidths, a, b)).exp()
     }
 
-    /// For the pose of the given touch, returns the probabilities of all labels for each object.
+    /// Returns the probabilities of all labels for each object in the pose of the given touch.
     pub fn at(&self, touch: usize) -> PoseAnswers {
         let n = self.answered.len();
         let mut given = Array2::from_elem((n, n), 1.0 / n as f64);

@@ -31,7 +31,7 @@ pub(super) fn words(view: &View) -> String {
 }
 
 impl<'a> Front<'a> {
-    /// Computes the Pareto fronts of a chart; the list is empty if the specification requests no front.
+    /// Computes the Pareto fronts of a chart; the result is empty if the chart has none.
     pub fn new(view: &'a View) -> Self {
         let conditions = Setting::of_roles(view.table, &[Role::Condition]);
         let conditions: Vec<Setting> = conditions.collect();

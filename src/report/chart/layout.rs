@@ -15,7 +15,7 @@ const LABEL: u32 = 13;
 const GAP: f64 = 26.0;
 /// Minimum width of a chart, pixels; leaves enough space for the title.
 const NARROWEST: f64 = 560.0;
-/// Maximum width of the labels on the left of panels or tiles, pixels.
+/// Maximum width of the labels to the left of panels or tiles, pixels.
 const WIDEST: f64 = 230.0;
 /// Maximum height of a rotated label below a panel, pixels.
 const DEEPEST: f64 = 160.0;

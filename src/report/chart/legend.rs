@@ -34,7 +34,7 @@ type DrawMark = Box<dyn Fn(&mut Drawing, Area)>;
 /// Legend entry: a mark and a text with its meaning.
 pub(super) struct LegendEntry {
     text: String,
-    /// Function that draws the mark of the entry; `None` for a text without a mark, such as the legend's title.
+    /// Function that draws the mark of the entry; `None` for entries without a mark, such as the legend's title.
     mark: Option<DrawMark>,
     /// Whether the entry is a series that readers of the page can hide with a click.
     is_series: bool,

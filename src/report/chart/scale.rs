@@ -14,7 +14,7 @@ pub(super) struct Scale {
     /// Values (or their logarithms) in ascending order, each with its position on the axis. Between two values, positions are interpolated linearly.
     anchors: Vec<(f64, f64)>,
     is_log: bool,
-    /// End of the part of a logarithmic axis that is reserved for zero, as a fraction of the axis length; `None` if no value is zero.
+    /// End of the part of a logarithmic axis that shows zero, as a fraction of the axis length; `None` if no value is zero.
     pub shelf: Option<f64>,
     /// Number of distinct positions on an axis of texts or tiles; 0 for a continuous axis.
     pub n_levels: usize,

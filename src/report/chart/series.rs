@@ -211,7 +211,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the numbers of the points on Pareto fronts, on the side without other points. If two numbers overlap, the later one is omitted.
+    /// Draws the numbers of the points on Pareto fronts, on the side where no other points are. If two numbers overlap, the later one is omitted.
     fn draw_numbers(&self, drawing: &mut Drawing) {
         let up = match front::is_more_better(self.view) {
             true => -8.0,

@@ -166,7 +166,7 @@ impl<'a> View<'a> {
         places
     }
 
-    /// Returns the horizontal offset of a line on an axis of words, so that error bars of several lines do not overlap.
+    /// Returns the horizontal offset of a line on an axis of texts; offsets keep error bars of different lines apart.
     fn beside(&self, line: usize) -> f64 {
         if !self.x.is_words || self.spec.mark.about().path.is_none() {
             return 0.0;

@@ -74,7 +74,7 @@ pub fn differences_page(
     )
 }
 
-/// Returns the chart that compares one column of two runs: values of the second run against values of the first run.
+/// Returns a chart of one column: values of the second run against values of the first run.
 fn chart(
     values: &Table,
     one: &ColumnDifferences,
@@ -154,7 +154,7 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     said
 }
 
-/// Returns sentences about rows and entries that differ but do not enter the means in `sentences`: outcomes, numbers absent in one run, and all other columns.
+/// Returns sentences about all other differences than those of means: outcomes, numbers absent in one run, and other columns.
 pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Vec<String> {
     let has_moved = |file: &str, column: &str| {
         let mut of_column = found.iter().filter(|one| one.column.name == column);
@@ -176,7 +176,7 @@ pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Ve
     said.flatten().collect()
 }
 
-/// Returns sentences about the differing rows and entries of one table. If another sentence counts the rows, `counts_rows` is true. For a column whose mean
+/// Returns sentences about the rows and entries of one table that differ. If another sentence counts the rows, `counts_rows` is true. For a column whose mean
 /// another sentence reports, `has_moved` returns true.
 fn table_words(
     table: &TableEntries,

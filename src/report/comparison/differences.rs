@@ -23,9 +23,9 @@ pub enum Significance {
     Significant,
     /// Difference that could not be tested: there are no intervals, and no trials or too few.
     Untested,
-    /// Difference that is not significant: chance can explain it.
+    /// Difference that is not significant, so that chance can explain it.
     NotSignificant,
-    /// No difference: both values are equal.
+    /// No difference, because both values are equal.
     Same,
 }
 
@@ -45,9 +45,9 @@ pub struct Difference {
     column: String => Subject;
     /// Choices, conditions and subjects of the compared rows that vary in the table, as text.
     setting: String => Subject;
-    /// Index of the first row with this setting in the second folder's table, counted from 0.
+    /// Index of the first row with this setting in the second folder's table, from 0.
     row: usize => Note: Linear;
-    /// Number of trials that both folders contain; 1 if the setting is not repeated.
+    /// Number of trials that both folders contain; 1 if the setting has a single trial.
     n_trials: usize => Note "trials of both": Linear;
     /// Value in the first folder, averaged over common trials.
     first: f64 => Value(Neither): Linear;
@@ -125,7 +125,7 @@ struct Settings<'a> {
     table: &'a Table,
     /// Columns whose values together identify a setting.
     columns: Vec<Setting<'a>>,
-    /// For each setting, its rows (one per trial), in the order of first occurrence.
+    /// Table rows of each setting (one per trial), in the order of first occurrence.
     groups: Vec<Vec<usize>>,
     is_repeated: bool,
 }
@@ -151,7 +151,7 @@ impl<'a> Settings<'a> {
         })
     }
 
-    /// Returns the setting of a row as a set of texts, each a value with its unit; absent values are omitted.
+    /// Returns the setting of a row as a set of texts, each a value with its unit, without absent values.
     fn key(&self, row: usize) -> BTreeSet<String> {
         let columns = self.columns.iter();
         let said = columns.filter_map(|Setting { column, data }| {

@@ -32,7 +32,7 @@ pub struct TableEntries {
     pub columns: Vec<ColumnEntries>,
 }
 
-/// Differences in one column between corresponding rows of two versions of a table.
+/// Differences in one column between the common rows of two versions of a table.
 pub struct ColumnEntries {
     /// Description of the compared column.
     pub column: Column,

@@ -1,4 +1,4 @@
-//! Common parts of all pages: head, question, table of contents, sections, and footer.
+//! Common parts of all pages: head, question, table of contents, sections and footer.
 
 use super::about::StudyAbout;
 use crate::report::pictures::drawing::escape;

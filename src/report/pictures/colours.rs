@@ -32,8 +32,8 @@ pub fn heat(value: f64) -> Rgb {
     of_map(&ColorMap::Viridis, value)
 }
 
-/// Returns a shade of blue for a value from 0 to 1 (other values are clamped), from pale to dark. The colour of 0 is not white, because white means that a
-/// value is absent.
+/// Returns a shade of blue from pale (0) to dark (1); values outside 0 to 1 are clamped. The colour of 0 is not white, because white means that a value is
+/// absent.
 pub fn tint(part: f64) -> Rgb {
     of_map(&ColorMap::Blues, 0.12 + 0.88 * part.clamp(0.0, 1.0))
 }

@@ -12,7 +12,7 @@ use kuva::render::color::Color;
 pub use kuva::render::render::TextAnchor as Align;
 use kuva::render::render::{PathData, Primitive, Scene, TextSpan, build_path};
 
-/// Number of image pixels per drawing pixel at which the library kuva renders a drawing; blocks of 2 × 2 image pixels are then averaged.
+/// Number of image pixels per drawing pixel in the rendering by the library kuva, before averaging over blocks of 2 × 2 pixels.
 ///
 /// kuva renders rotated text and slanted lines with jagged edges. At a scale of 4 they are smooth; at a smaller scale they are not.
 const FINE: u32 = 4;
@@ -120,7 +120,7 @@ impl Stroke {
     }
 }
 
-/// Number of different marker shapes, by which lines can be distinguished without colours.
+/// Number of different marker shapes, which distinguish lines without colours.
 pub const N_MARKERS: usize = 8;
 
 /// Vector drawing on a white background.

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 /// Object that is approximated by spheres and shown in the picture.
 pub enum Original {
-    /// Triangle mesh, which is interpreted as a solid body or as an open surface.
+    /// Triangle mesh, interpreted as a solid body or as an open surface.
     Mesh(Box<Surface>, Body),
     /// Solid that consists of primitive shapes.
     Solid(Solid),
@@ -94,8 +94,7 @@ pub fn fit_picture(
 }
 
 impl Original {
-    /// Returns the point where a ray first hits the object, and the unit normal there, if the distance is at most `length`. The normal points towards the start
-    /// of the ray.
+    /// Returns the first point where a ray hits the object within `length`, and the unit normal at this point. The normal points towards the start of the ray.
     fn first_hit(&self, start: DVec3, direction: DVec3, length: f64) -> Option<(DVec3, DVec3)> {
         match self {
             Self::Mesh(surface, _) => {

@@ -1,4 +1,4 @@
-//! Summary of a recording as a table for the terminal.
+//! Summary of a recording as a text table.
 
 use super::reader::RecordingFile;
 use crate::error::Result;

@@ -63,7 +63,7 @@ impl RecordingWriter {
         })
     }
 
-    /// Appends a frame; its patches and objects must have the order of the header.
+    /// Appends a frame to the recording; its patches and objects must have the order given in the header.
     ///
     /// # Errors
     /// If the time does not increase, the patches, objects or taxels differ from the header, or a write fails. The frame is then not part of the

@@ -138,7 +138,7 @@ fn model_words(table: &Table, row: usize) -> String {
     table.words("method", row) + &within(tolerance_mm)
 }
 
-/// Deflection error below which a model counts as exact enough, mm.
+/// Deflection error below which a model is considered exact enough, mm.
 const SMALL_MM: f64 = 0.5;
 
 /// Returns a description of the model with the smallest value in the column `of`; `models` are the table rows to compare.

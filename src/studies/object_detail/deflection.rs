@@ -39,7 +39,7 @@ fn mean(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |sum, error| sum + error) / errors.len().max(1) as f64
 }
 
-/// Touches of the exact object, with the deflections of their taxels.
+/// Touches of the exact object with the deflections of their taxels, which serve as reference.
 pub(super) struct Truth {
     array: TaxelArray,
     /// Touches that reached the exact object, each with the deflections of its taxels.
@@ -59,11 +59,11 @@ pub(super) struct Reading {
     deflections: Vec<f64>,
 }
 
-/// Number of offsets of the patch that are tried on a coarse grid before the best one is refined. With a smaller value, the search may end in a local minimum.
+/// Number of patch offsets on the coarse grid from which the search for the best offset starts. With a smaller value, the search may end in a local minimum.
 const N_OFFSETS: usize = 48;
 /// Approximate number of golden-section steps that refine the best offset of the coarse grid.
 const N_STEPS: usize = 30;
-/// Number of repetitions of each touch whose computing time is measured.
+/// Number of times that each touch is repeated to measure its computing time.
 const N_REPEATS: usize = 3;
 
 impl Truth {
@@ -117,8 +117,8 @@ impl Truth {
         }))
     }
 
-    /// Returns the retraction of the patch that minimises the deflection error over all touches of a model, metres. The error there is at most the error
-    /// without retraction.
+    /// Returns the retraction of the patch that minimises a model's deflection error over all touches, metres. The error there is at most the error without
+    /// retraction.
     pub fn best_offset(&self, model: &Model) -> f64 {
         let cost = |offset| mean(&self.errors(model, offset));
         let Some((low, high)) = self.offset_range(model) else {
@@ -183,8 +183,8 @@ impl Truth {
 }
 
 impl Reading {
-    /// Returns |δ − δ\*| in metres for each taxel that the mesh (deflection δ\*) or the model (δ) touches. The slice `felt` contains the deflections δ, metres,
-    /// shape (n_taxels,).
+    /// Returns |δ − δ\*| in metres for each touched taxel, where δ is the deflection by the model and δ\* by the mesh. The slice `felt` contains the
+    /// deflections δ, metres, shape (n_taxels,).
     pub fn errors<'a>(&'a self, felt: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
         let pairs = felt.iter().zip(&self.deflections);
         let touched = pairs.filter(|(model, mesh)| **model > 0.0 || **mesh > 0.0);

@@ -12,7 +12,7 @@ use crate::studies::object_detail::spec::DetailMethod;
 use crate::studies::object_detail::variants::{Variant, variants};
 use std::path::Path;
 
-/// Object with all its models: the mesh and its replacements.
+/// Object with all its models, including the exact mesh.
 pub(super) struct Measured<'a> {
     pub mesh: &'a NamedMesh,
     surface: Surface,

@@ -31,8 +31,7 @@ pub(super) struct Learned {
 }
 
 impl Learned {
-    /// Returns all classifiers of the study: one per kind of classifier, for each method and tolerance of models. Returns an empty list if the study has no
-    /// recognition.
+    /// Returns all classifiers of the study: one for each kind of classifier, method and tolerance. Returns an empty list if the study has no recognition.
     pub fn all(plan: &ObjectDetailPlan) -> Vec<Self> {
         let kinds = plan.recognition().map_or(&[][..], |spec| &spec.classifiers);
         let of_level = |(number, level)| {

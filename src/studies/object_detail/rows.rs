@@ -149,7 +149,7 @@ pub struct DetailRecognition {
     accuracy_on_mesh_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % Wilson interval of `accuracy_on_mesh`, 0 to 1.
     accuracy_on_mesh_high: f64 => Note "95 % interval, upper end": Share;
-    /// Fraction of correctly recognised test touches, 0 to 1, if the models of the training are touched in place of the exact meshes.
+    /// Fraction of correctly recognised test touches, 0 to 1, if the test touches the models used in training instead of the meshes.
     accuracy_on_itself: f64 => Value(More) "accuracy on the models learned from": Share between [accuracy_on_itself_low, accuracy_on_itself_high];
     /// Lower end of the 95 % Wilson interval of `accuracy_on_itself`, 0 to 1.
     accuracy_on_itself_low: f64 => Note "95 % interval, lower end": Share;

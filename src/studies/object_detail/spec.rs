@@ -26,7 +26,7 @@ pub struct ObjectDetailStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ObjectDetailSpec {
-    /// Tolerances of the packing, mm, each at least 1e-6: maximum distance between the surface of the spheres and the mesh.
+    /// Tolerances of the packing (maximum distance between spheres and mesh surface), mm, each at least 1e-6.
     pub tolerances_mm: Vec<f64>,
     /// Methods that make models from the meshes.
     pub methods: Vec<DetailMethod>,

@@ -32,7 +32,7 @@ pub(super) struct Variant {
     pub cached: bool,
 }
 
-/// Returns all models of a mesh in the order of [`levels`]; the first is the mesh itself. Error messages name `place`, the file of the mesh.
+/// Returns all models of a mesh in the order of [`levels`]; the first model is the mesh itself. Error messages name `place`, the file of the mesh.
 pub(super) fn variants(
     plan: &ObjectDetailPlan,
     place: &str,

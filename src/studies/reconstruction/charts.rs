@@ -40,8 +40,7 @@ impl ReconstructionStudy {
         self.sample_frames(tables)
     }
 
-    /// For each noise level, returns two answers: the most accurate configuration, and the smallest number of measurements with which a reconstruction is as
-    /// accurate as reading all taxels.
+    /// Returns two answers per noise level: the most accurate configuration, and the smallest sufficient number of measurements.
     pub(crate) fn answers(&self, tables: &[Table]) -> Vec<String> {
         let (configurations, timing) = (&tables[0], &tables[2]);
         let error = |row: usize| configurations.number("error", row);

@@ -124,7 +124,7 @@ pub struct EnsembleStatistics {
     dictionary: Basis => Choice named DICTIONARIES;
     /// Number k of atoms that the dictionary has.
     atoms: usize => Note "atoms of the dictionary": Linear;
-    /// Mutual coherence of the measured atoms, 0 to 1: the largest absolute cosine of the angle between two of them. Atoms that the measurement matrix maps to
+    /// Mutual coherence of the measured atoms, 0 to 1: the largest absolute cosine of the angle between two atoms. Atoms that the measurement matrix maps to
     /// zero are excluded.
     coherence: f64 => Value(Less) "mutual coherence": Share;
     /// Welch bound, 0 to 1: the smallest mutual coherence that this number of atoms can have in m dimensions (m measurements).
@@ -146,8 +146,8 @@ pub struct EnsembleStatistics {
     /// Median deviation over all drawn sets of atoms (supports). The deviation is max(1 − σ²_min, σ²_max − 1) for the smallest and largest singular value of
     /// the matrix of a set's measured atoms.
     deviation_median: f64 => Value(Less) "median deviation": Linear;
-    /// Largest deviation max(1 − σ²_min, σ²_max − 1) over all drawn sets of atoms, where σ_min and σ_max are singular values of a set's measured atoms. The
-    /// value is a lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
+    /// Largest deviation max(1 − σ²_min, σ²_max − 1) over all drawn sets of atoms; σ_min, σ_max: singular values of a set's measured atoms. The value is a
+    /// lower bound on the isometry constant δₛ, whose exact value is NP-hard to compute.
     delta_lower_bound: f64 => Value(Less) "lower bound of δ": Linear;
 } }
 

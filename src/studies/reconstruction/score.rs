@@ -16,7 +16,7 @@ pub(super) fn square_errors(a: ArrayView2<f64>, b: ArrayView2<f64>) -> Vec<f64> 
         .collect()
 }
 
-/// Clean test frames with which reconstructions are compared.
+/// Test frames without noise, with which reconstructed frames are compared.
 pub(super) struct Truth {
     /// Squared norm ‖x‖² of each clean test frame x.
     squares: Vec<f64>,
@@ -27,7 +27,7 @@ pub(super) struct Truth {
 
 /// Result of reconstructing a block of test frames.
 pub(super) struct Found {
-    /// Squared error ‖x̂ − x‖² of each reconstructed frame x̂, where x is the clean frame.
+    /// Squared error ‖x̂ − x‖² of each frame: x̂ is the reconstructed frame, x the frame without noise.
     pub errors: Vec<f64>,
     /// Number of non-zero dictionary coefficients, summed over the frames of the block.
     pub n_atoms: usize,

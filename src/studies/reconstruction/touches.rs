@@ -96,7 +96,7 @@ impl Touches {
         })
     }
 
-    /// Returns those rows of `frames` that the picture shows.
+    /// Returns the rows of `frames` that the picture shows.
     pub(super) fn pick(&self, frames: &Array2<f64>) -> Array2<f64> {
         let rows: Vec<usize> = self.shown.iter().map(|(row, _)| *row).collect();
         frames.select(Axis(0), &rows)

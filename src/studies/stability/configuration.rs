@@ -25,7 +25,7 @@ use std::time::Instant;
 struct Answer {
     /// Kind of failure of the simulation; `None` if it succeeded. After a failure, all other values are zero or empty.
     broken: Option<Outcome>,
-    /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels.
+    /// Relative error of the total contact force, |Σ f − expected| / expected, where f is the force of a taxel.
     force_imbalance: f64,
     /// Deflections of all taxels at the time of evaluation, metres, shape (n_taxels,).
     deflection: Vec<f64>,
@@ -40,7 +40,7 @@ const SHORT: f64 = 5e-3;
 /// Number of repetitions of a short simulation, from which its computing time is determined.
 const N_REPEATS: usize = 9;
 
-/// Simulates and evaluates a configuration, given its taxel parameters without damper.
+/// Simulates and evaluates a configuration, given the taxel parameters without a damper.
 pub(super) fn measure(
     configuration: &StabilityConfiguration,
     undamped: Taxel,

@@ -45,7 +45,7 @@ impl StabilityConfiguration {
         self.taxels * self.taxels
     }
 
-    /// Returns the mass M of a free ball divided by the mass m of a taxel; returns `None` if the ball's motion is imposed.
+    /// Returns the mass M of a free ball divided by the mass m of a taxel; `None` if the motion of the ball is imposed.
     pub fn mass_ratio(&self) -> Option<f64> {
         self.object_mass_kg.map(|mass| mass / self.taxel_mass_kg)
     }
@@ -106,9 +106,9 @@ pub struct StabilitySummary {
     n_energy_growth: usize => Value(Less) "energy growth": Linear;
     /// Number of configurations in which the simulation produced infinite or NaN values.
     n_not_finite: usize => Value(Less) "not finite": Linear;
-    /// Largest `force_imbalance` of the configurations that did not fail; empty if all failed.
+    /// Largest `force_imbalance` of the configurations whose simulation succeeded; empty if all failed.
     worst_force_imbalance: Option<f64> => Value(Less): Log;
-    /// Largest `deflection_error` of the configurations that did not fail; empty if all failed.
+    /// Largest `deflection_error` of the configurations whose simulation succeeded; empty if all failed.
     worst_deflection_error: Option<f64> => Value(Less): Log;
 } }
 
@@ -129,7 +129,7 @@ pub struct Joints {
     load_kg: f64 => Note "load of a taxel" in "kg": Log;
     /// Whether the result of the simulation is right, or else the kind of failure.
     outcome: Outcome => Outcome;
-    /// Wall-clock time divided by simulated time, dimensionless. If the method does not step through time, total wall-clock time, s.
+    /// Wall-clock time per second of simulated time, s. If the method does not step through time, total wall-clock time, s.
     time_s: f64 => Cost "computing a simulated second" in "s": Log;
 } }
 

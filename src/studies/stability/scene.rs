@@ -57,7 +57,7 @@ pub(super) struct ConfigurationScene {
 }
 
 impl TestBed {
-    /// Creates a square array with `side` taxels along a side, under a ball whose radius is the side length of the array.
+    /// Creates a square array with `side` taxels per side, and above it a ball whose radius is the side length of the array.
     fn new(side: usize, taxel: Taxel) -> Result<Self> {
         let grid = Grid {
             nx: side,
@@ -139,7 +139,7 @@ impl TestBed {
 }
 
 impl ConfigurationScene {
-    /// Creates the scene of a configuration, given its taxel parameters without damper.
+    /// Creates the scene of a configuration, given the taxel parameters without a damper.
     pub fn new(configuration: &StabilityConfiguration, undamped: Taxel) -> Result<Self> {
         let cradle = TestBed::new(configuration.taxels, undamped)?;
         let mut scene = match configuration.object_mass_kg {

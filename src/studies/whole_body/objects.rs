@@ -47,7 +47,7 @@ pub(super) fn built_in(name: &str, surface_error: f64) -> Result<SphereUnion> {
 /// Radius of the spheres that form a cushion (a square of spheres), divided by the distance between neighbouring spheres. With a larger radius, more spheres
 /// touch each taxel.
 const SPHERE_RADIUS: f64 = 3.0;
-/// Golden ratio, which defines the positions of points: multiples of it, modulo 1, spread evenly over a square for any number of points.
+/// Golden ratio; its multiples modulo 1 spread any number of points evenly over a square.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Returns a cushion: a square of `n` spheres with side length `side`, metres, bent around a cylinder about z, with its centre at +x. One half of the spheres

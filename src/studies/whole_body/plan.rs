@@ -53,7 +53,7 @@ pub struct WholeBodyPlan {
 /// Plan of a scene: an object, its motion, and the joint positions of the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePlan {
-    /// Specification of the scene: its keys with the values and units of the study file.
+    /// Specification of the scene, with the keys, values and units of the study file.
     pub spec: BodySceneSpec,
     /// Target position, approach direction and motion of the object.
     pub aim: Aim,

@@ -117,7 +117,7 @@ fn draw(plan: &WholeBodyPlan, object: usize, touch: usize) -> (Pose, f64) {
     )
 }
 
-/// Trains a classifier on the first touches of each object, and tests it on the object's other touches.
+/// Trains a classifier on the first touches of each object, and tests it on the remaining touches.
 fn train(
     plan: &WholeBodyPlan,
     name: &str,

@@ -102,7 +102,7 @@ pub struct BodySensingSpec {
 pub struct BodyRecognitionSpec {
     /// Names of the built-in objects that are recognised.
     pub objects: Vec<String>,
-    /// Name of the robot link in whose frame the objects approach.
+    /// Name of the robot link in whose frame the approach of the objects is defined.
     pub link: String,
     /// Position in the link's frame that the objects approach, mm.
     pub at_mm: [f64; 3],

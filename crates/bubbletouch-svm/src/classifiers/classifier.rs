@@ -252,7 +252,7 @@ impl Classifier {
         Ok(TrainedClassifier::new(scaling, model, c, chosen))
     }
 
-    /// Trains the model on scaled rows; `c` is the penalty C, or `None` if the kind of classifier has no penalty.
+    /// Trains the model on rows with scaled features; `c` is the penalty C, or `None` for classifiers without C.
     fn train_model(&self, scaled: &Dataset, c: Option<f64>, seed: &dyn Streams) -> Result<Model> {
         let c = c.unwrap_or(1.0);
         Ok(match self.kernel_svm(c) {

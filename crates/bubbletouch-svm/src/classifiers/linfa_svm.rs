@@ -1,4 +1,4 @@
-//! The linear SVM of the crate linfa-svm, for comparison with [`linear_svm`](super::linear_svm).
+//! Linear SVM of the crate linfa-svm, for comparison with [`linear_svm`](super::linear_svm).
 //!
 //! linfa-svm solves binary problems. Its multi-class scheme is linfa's `MultiClassModel`: one SVM separates each class from all others, Platt scaling fits a
 //! probability to its decision values on the training rows, and the class with the highest probability wins. Of equal probabilities, the lower label wins.

@@ -1,4 +1,4 @@
-//! Registry of classifiers with one interface for training and prediction: SVMs with all kernels, and classifiers without a kernel.
+//! Registry of classifiers with a common interface: SVMs with all kernels, and classifiers without a kernel.
 //!
 //! Equal rows and equal seeds give equal models on every machine. [`Classifier`](classifier::Classifier) contains the parameters of all kinds.
 

@@ -26,7 +26,7 @@ pub struct NaiveBayes {
 }
 
 impl NaiveBayes {
-    /// From labelled rows, estimates the mean and variance of every feature in each class.
+    /// Estimates the mean and variance of every feature in each class from labelled rows.
     ///
     /// # Errors
     /// If the data are empty, or a feature is NaN or infinite. If the number of labels differs from the number of rows, or there is a single class. If all

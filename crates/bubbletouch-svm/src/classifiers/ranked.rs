@@ -1,4 +1,4 @@
-//! Ranks of feature values: tree growing needs only ranks, and integers are fast to sort.
+//! Ranks of feature values; growing trees needs only ranks, and integers are faster to sort.
 
 use ndarray::{Array2, ArrayView2, Axis};
 

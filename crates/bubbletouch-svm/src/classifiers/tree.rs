@@ -81,7 +81,7 @@ struct Grower<'a> {
     ranked: &'a Ranked,
     label: &'a [usize],
     n_classes: usize,
-    /// Sort keys of the rows of the current node: rank of the feature value (upper 32 bits) and class (lower 32 bits).
+    /// Sort keys of the rows in the current node: rank of the feature value (upper 32 bits) and class (lower 32 bits).
     keys: Vec<u64>,
     left: Vec<f64>,
     right: Vec<f64>,

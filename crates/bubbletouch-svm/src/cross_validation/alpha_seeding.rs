@@ -7,9 +7,9 @@ use std::ops::Range;
 
 use crate::linalg::scalar::Scalar;
 
-/// Transfer of a solution from one cross-validation fold to the next (alpha seeding), given the rows in which their training sets differ.
+/// Transfer of a solution from one cross-validation fold to the next, given the rows that differ (alpha seeding).
 pub(crate) struct AlphaSeeding {
-    /// For each of the two classes, the rows removed from the training set and the rows added to it, ascending.
+    /// Rows that are removed from and added to the training set, ascending, for each of the two classes.
     sides: [(Vec<usize>, Vec<usize>); 2],
 }
 

@@ -240,7 +240,7 @@ fn on_one_matrix(
     grid(params, &sorted, folds, kernels, goal)
 }
 
-/// Sorts the training rows by class, and within a class by fold, so that the training rows of each fold form few contiguous ranges.
+/// Sorts the training rows by class and by fold, so that the training rows of each fold form few contiguous ranges.
 fn by_fold<T: SolverScalar>(
     (training, centre): (&Dataset, ArrayView1<f64>),
     folds: &[Split],
@@ -293,7 +293,7 @@ mod tests {
         dataset(features, Array1::from_iter((0..n).map(|i| i % 3))).unwrap()
     }
 
-    /// Returns folds of rows whose classes alternate, so that each fold contains all classes.
+    /// Returns folds of test rows; the classes of the rows alternate, so that every fold contains all classes.
     fn folds_of(n_rows: usize, k: usize) -> Vec<Split> {
         let fold_of = |row: usize| (row / 3) % k;
         let fold = |fold: usize| {

@@ -127,7 +127,7 @@ fn along<T: SolverScalar>(
     solutions
 }
 
-/// For each fold, returns the product of the Gram matrix with the labels of the fold, which are 0 for held-out rows.
+/// Returns the product of the Gram matrix with the labels of each fold; held-out rows have the label 0.
 fn sums_of_folds<T: SolverScalar>(
     gram: &mut Dense<T>,
     all: &[f64],
@@ -203,7 +203,7 @@ mod tests {
         }
     }
 
-    /// Asserts that a fold's solutions equal the solutions on its training rows alone.
+    /// Asserts that the solutions of a fold equal those computed from the fold's training rows only.
     fn assert_is_alone((gamma, path): (f64, &FoldPath), fold: usize, goal: Goal) {
         let rows: Vec<usize> = (0..N).filter(|at| at % 3 != fold).collect();
         let own: Vec<f64> = rows.iter().map(|&at| label(at, fold)).collect();

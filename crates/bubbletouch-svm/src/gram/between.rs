@@ -64,7 +64,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         others.write_kernel(own, &self.sorted.kernel(), values);
     }
 
-    /// Selects the kernel values between some rows and some columns (rows of this group), row by row; `values` starts with row number `first`.
+    /// Returns the kernel values between some rows and some columns of this group, row by row; `values` starts with row number `first`.
     fn part<'v>(
         &self,
         (values, first): (&'v [T], usize),

@@ -77,7 +77,7 @@ impl<'a, T: Scalar> Cached<'a, T> {
         at
     }
 
-    /// Returns a position of the cache for a new row: an empty position, or else the position of the least recently used row.
+    /// Returns a position in the cache for a new row: an empty position, or the position of the least recently used row.
     fn make_room(&mut self) -> usize {
         let most = (self.limit / (self.stride * size_of::<T>()).max(1)).max(2);
         if self.rows.len() < most {

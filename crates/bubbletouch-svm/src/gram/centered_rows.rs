@@ -186,7 +186,7 @@ impl<T: Scalar> PointsView<'_, T> {
         values
     }
 
-    /// Converts the inner products (or L1 distances) of these rows with other rows to kernel values, in place.
+    /// Converts the inner products (or L1 distances) of these rows with other rows to kernel values in place.
     pub fn apply(
         &self,
         mut pairwise: ArrayViewMut2<T>,

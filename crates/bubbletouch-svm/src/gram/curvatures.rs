@@ -35,7 +35,7 @@ impl<T: Scalar> InverseCurvatures<T> {
         }
     }
 
-    /// Prepares the storage for another Gram matrix with n rows and the given padded diagonal; the memory is reused.
+    /// Prepares the storage for another Gram matrix with n rows and the given padded diagonal; reuses the allocated memory.
     pub fn renew(&mut self, n: usize, diagonal: &[T]) {
         let n_kept = if n <= MAX_KEPT { n } else { 0 };
         self.is_here.clear();

@@ -29,7 +29,7 @@ pub(crate) trait Gram<T> {
             *f -= product;
         }
     }
-    /// Returns whether a submatrix of n rows fits into the memory limit.
+    /// Returns whether a Gram matrix of n rows fits into the memory limit.
     fn fits(&self, n: usize) -> bool;
     /// Returns the submatrix of the rows and columns with the given indices.
     fn part(&mut self, indices: &[usize]) -> Dense<T>;

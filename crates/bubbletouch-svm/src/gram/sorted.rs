@@ -149,7 +149,7 @@ impl<T: Scalar> Sorted<T> {
             )
     }
 
-    /// Returns how much centring the rows changes the offset ρ, given the coefficients of some rows. The change is 0 unless the kernel is linear.
+    /// Returns the change of the offset ρ due to centring the rows, given the coefficients of some rows. The change is 0 unless the kernel is linear.
     pub fn moved(&self, rows: impl Iterator<Item = usize>, coefficients: &[f64]) -> f64 {
         if self.centre_products.is_empty() {
             return 0.0;

@@ -3,7 +3,7 @@
 //! Each row is stored in blocks of [`LANES`] values; entries up to and including the diagonal are 0. The inverse of D is stored separately, with 0 for unused
 //! rows.
 
-/// Number of values processed in parallel: four vector registers, so that no addition has to wait for the previous one.
+/// Number of values that are processed in parallel: four vector registers, so that additions do not wait for each other.
 pub(crate) const LANES: usize = 32;
 /// Number of unknowns of a triangular system that are solved as one block.
 const BLOCK: usize = 8;
@@ -155,7 +155,7 @@ mod tests {
     const WIDTH: usize = 3;
     const RIDGE: f64 = 1e-3;
 
-    /// Returns an irregular symmetric matrix whose diagonal dominates, with the ridge added to the diagonal.
+    /// Returns an irregular diagonally dominant symmetric matrix, with the ridge added to the diagonal.
     fn matrix() -> Vec<[f64; N]> {
         let value = |i: usize, j: usize| (((i.min(j) * N + i.max(j)) as f64).sin() * 1e4).fract();
         let entry = |i: usize, j: usize| if i == j { 40.0 + RIDGE } else { value(i, j) };

@@ -7,8 +7,8 @@ use crate::linalg::scalar::Scalar;
 /// Minimum norm of a row's part that is orthogonal to the previous directions, relative to the norm of the row. Below it, the row adds no direction.
 const NEW_SHARE: f64 = 1e-2;
 
-/// Returns at most `n_dimensions` orthonormal directions of length m that span some of the given rows (n × m). The rows are selected at even intervals and
-/// orthogonalised by the Gram-Schmidt process.
+/// Returns up to `n_dimensions` orthonormal vectors of length m in the space that is spanned by selected rows (n × m). The rows are selected at even intervals
+/// and orthogonalised by the Gram-Schmidt process.
 pub(crate) fn spanned<T: Scalar>(rows: ArrayView2<T>, n_dimensions: usize) -> Array2<T> {
     let mut directions = Array2::zeros((0, rows.ncols()));
     let n_rows = n_dimensions.min(rows.nrows());

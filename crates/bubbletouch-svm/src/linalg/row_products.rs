@@ -7,7 +7,7 @@ use ndarray::Array2;
 
 use crate::linalg::scalar::Scalar;
 
-/// Rows of a matrix in contiguous memory.
+/// Rows of a matrix, stored contiguously in memory.
 #[derive(Clone, Copy)]
 pub(crate) struct Rows<'a, T> {
     /// Matrix values in row-major order.

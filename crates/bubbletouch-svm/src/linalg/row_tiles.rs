@@ -1,4 +1,4 @@
-//! Inner products of a few f32 rows with a few others without packing; each row is read once for all products of a tile.
+//! Inner products of a few f32 rows with a few other rows; each row is read once for all products of a tile.
 //!
 //! The code uses the processor's vector instructions explicitly. The compiler can generate them from plain loops, but not in every build; a build without them
 //! is ten times slower.
@@ -132,7 +132,7 @@ mod avx512 {
         products
     }
 
-    /// Returns the inner products of N rows with N others. Each lane of a vector register has its own sum; the lanes are added at the end.
+    /// Returns the inner products of N rows with N other rows. Each lane of a vector register has its own sum; the lanes are added at the end.
     ///
     /// The sums of each row have separate variables, because the compiler would store an array of arrays in memory.
     #[target_feature(enable = "avx512f")]
@@ -223,7 +223,7 @@ mod avx2 {
     const LANES: usize = 8;
     /// Number of rows of a tile, each multiplied with [`M`] other rows; the values fill 16 vector registers.
     const N: usize = 4;
-    /// Number of other rows in a tile, chosen together with [`N`].
+    /// Number of rows of the second factor in a tile, chosen together with [`N`].
     const M: usize = 3;
 
     #[target_feature(enable = "avx2,fma")]

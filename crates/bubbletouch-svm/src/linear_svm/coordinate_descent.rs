@@ -77,7 +77,7 @@ impl Rows {
     }
 }
 
-/// Solves one binary problem, given the label ±1 of each row; returns the multiplier of each row times its label.
+/// Solves one binary problem, given the label ±1 of each row; returns the label times the multiplier of each row.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn solve(
     rows: &Rows,

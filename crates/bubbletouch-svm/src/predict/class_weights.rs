@@ -38,7 +38,7 @@ impl<V: Scalar> ClassWeights<V> {
         }
     }
 
-    /// Creates the coefficients of all training rows of a class.
+    /// Creates the coefficients of all training rows of one class.
     pub fn new<T: Scalar>(
         sorted: &Sorted<T>,
         class: usize,

@@ -16,7 +16,7 @@ use crate::kernel::KernelFunction;
 use crate::linalg::scalar::Scalar;
 use crate::predict::class_weights::ClassWeights;
 
-/// Number of parallel partial sums, so that no addition has to wait for the previous one. For contiguous products, `WIDE` is used: one vector register.
+/// Number of partial sums that are computed in parallel and independently of each other. For contiguous products, `WIDE` is used: one vector register.
 const LANES: usize = 4;
 const WIDE: usize = 16;
 
@@ -25,7 +25,7 @@ const WIDE: usize = 16;
 #[derive(Clone, Debug)]
 pub(crate) struct Pairs<T> {
     n_classes: usize,
-    /// Support vectors and their coefficients in all decision functions, one pair of classes after another.
+    /// Support vectors and coefficients of all decision functions, one pair of classes after another.
     terms: Vec<(u32, T)>,
     /// End index of each pair's terms in `terms`, and the offset ρ of the pair's decision function. The order of the pairs is (0, 1), (0, 2), …, (1, 2), ….
     ends: Vec<(usize, f64)>,
@@ -86,7 +86,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// For a pair of classes, returns the terms (support vector, coefficient) and the offset ρ of the decision function.
+    /// Returns the terms (support vector, coefficient) and the offset ρ of the decision function of a pair of classes.
     #[inline(always)]
     fn pair(&self, pair: usize) -> (&[(u32, T)], f64) {
         let start = if pair == 0 { 0 } else { self.ends[pair - 1].0 };

@@ -29,7 +29,7 @@ pub(crate) struct DecisionFunctions<T> {
     sums: Sums<T>,
 }
 
-/// Data from which the weighted sums of kernel values in all decision functions are computed.
+/// Data from which the sums of kernel values in all decision functions are computed.
 #[derive(Clone, Debug)]
 enum Sums<T> {
     /// For a linear kernel, the normals of the hyperplanes, n_problems × m.
@@ -168,7 +168,7 @@ impl<T: Scalar> DecisionFunctions<T> {
             .map(|rows| CenteredRows::new(rows, self.centre.view()))
     }
 
-    /// Allocates memory for the kernel values of one block of rows, which all blocks reuse.
+    /// Allocates memory for the kernel values of a block of rows; the memory is reused for all blocks.
     fn allocate_kernel_values(&self, n_rows: usize) -> Array2<T> {
         let n_vectors = match &self.sums {
             Sums::Hyperplanes(_) => 0,
@@ -197,7 +197,7 @@ impl<T: Scalar> DecisionFunctions<T> {
     }
 }
 
-/// Returns the predicted classes of all rows: the given winners, or for undecided rows the classes returned by `elect`.
+/// Returns the predicted classes of all rows: the given winners, and for undecided rows the classes that `elect` returns.
 fn elect_open(
     mut winners: Vec<Option<usize>>,
     elect: impl FnOnce(&[usize]) -> Vec<usize>,
@@ -213,7 +213,7 @@ fn elect_open(
 }
 
 impl<T: Scalar> Support<T> {
-    /// Returns the kernel values between some rows and all support vectors: n_rows × n_vectors.
+    /// Returns the kernel values between the given rows and all support vectors, n_rows × n_vectors.
     fn kernel_values<'a>(
         &self,
         points: &CenteredRows<T>,

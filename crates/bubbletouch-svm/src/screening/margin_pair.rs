@@ -15,7 +15,7 @@ use crate::smo::variables::extremes;
 
 /// Minimum number of rows that are added to the reduced problem of a pair per round, while rows violate the optimality conditions.
 const MIN_JOINING: usize = 24;
-/// Maximum fraction of the rows of a pair that its reduced problem contains; above it, all rows of the pair are added.
+/// Maximum fraction of a pair's rows in its reduced problem; if it is exceeded, all rows of the pair are used.
 const MAX_SHARE: f64 = 0.6;
 
 /// Inner products between the rows of one class.

@@ -14,7 +14,7 @@ pub(crate) type Sides = [Vec<usize>; 2];
 /// Row of a pair of classes, given by its class (0 or 1) and its number within the class.
 pub(crate) type RowOfPair = (usize, usize);
 
-/// Row of a pair of classes, ranked by a distance and then by its position. Distance and position are packed into one number, because ranked rows are compared
+/// Row of a pair of classes, ordered by a distance and then by its position. Distance and position are packed into one number, because ranked rows are compared
 /// more often than read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct RankedRow(u128);

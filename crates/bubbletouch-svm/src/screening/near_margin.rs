@@ -50,7 +50,7 @@ impl<'a, T: SolverScalar> Classes<'a, T> {
         }
     }
 
-    /// Returns the positions of the first rows of two classes.
+    /// Returns the positions of the first row of two classes.
     fn starts(&self, classes: [usize; 2]) -> [usize; 2] {
         classes.map(|class| self.sorted.ranges()[class].start)
     }

@@ -5,8 +5,8 @@ use super::solver_scalar::SolverScalar;
 use super::variables::{linear_and_quadratic, rho};
 use crate::gram::matrix::Gram;
 
-/// Default maximum number of iterations, as in LIBSVM; 100 per row if that is more. With a larger value, hard problems take hours; with a smaller value,
-/// problems that LIBSVM solves are reported as not solved.
+/// Default maximum number of iterations, as in LIBSVM; for many rows, 100 times the number of rows. With a larger value, hard problems take hours; with a
+/// smaller value, problems that LIBSVM solves are reported as not solved.
 const MAX_ITERATIONS: u64 = 10_000_000;
 
 /// Binary problem given by a Gram matrix and labels, with its solution for the last C.

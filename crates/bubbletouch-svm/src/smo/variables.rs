@@ -118,8 +118,9 @@ impl<T: Scalar> Variables<T> {
         step
     }
 
-    /// Returns the variables that may still move. The largest gradient of variables that can increase is `highest`, the smallest gradient of variables that can
-    /// decrease is `lowest`. All omitted variables are at a bound, and their gradients point out of the allowed range [Joachims 1999].
+    /// Returns the variables that can still move; shrinking omits the others. The largest gradient of variables that can increase is `highest`, the smallest
+    /// gradient of variables that can decrease is `lowest`. All omitted variables are at a bound, and their gradients point out of the allowed range [Joachims
+    /// 1999].
     pub fn worth_keeping(&self, highest: T, lowest: T) -> Vec<usize> {
         (0..self.beta.len())
             .filter(|&i| {

@@ -33,7 +33,7 @@ pub struct Robustness {
     configuration: usize => Subject: Linear;
     /// Settings by which the design differs from all other designs.
     design: String => Subject;
-    /// Column name of the condition to which the design is robust or not, for example `noise_std`.
+    /// Column name of the condition whose effect is described, for example `noise_std`.
     condition: String => Subject;
     /// Direction in which the condition is followed, starting from its most accurate value: towards larger or smaller values.
     direction: Direction => Subject "towards";
@@ -143,7 +143,7 @@ impl Curve {
         }
     }
 
-    /// Returns the condition's value at a position along its axis; the inverse of `place`.
+    /// Returns the value of the condition at a position along its axis; the inverse function of `place`.
     fn value(&self, place: f64) -> f64 {
         match self.scale() {
             (_, false) => place,

@@ -35,7 +35,7 @@ const SUMMARY: File<(Configuration, ConfigurationScore)> = File::new(
 /// Text for a study without held-out groups and without folds: the test rows over which the intervals in `summary.csv` are computed.
 pub(crate) const OVER_TRIAL: &str =
     "Intervals are 95 % Wilson intervals at the test decisions of one trial.";
-/// Text for a study with folds and without held-out groups: the test rows over which the intervals in `summary.csv` are computed.
+/// Note for studies with folds but without held-out groups: the test rows from which the intervals in `summary.csv` are computed.
 pub(crate) const OVER_FOLDS: &str =
     "Intervals are 95 % Wilson intervals at the test decisions of all folds, each touch once.";
 const CONFUSION: File<Confusion> = File::new("confusion.csv", "Confusion matrix", "").summary();

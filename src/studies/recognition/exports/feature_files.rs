@@ -1,4 +1,4 @@
-//! Training data of one configuration as files, so that other programs can train on exactly the same rows.
+//! Feature files of one configuration, with which other programs can train on exactly the same rows.
 //!
 //! | file | content |
 //! |---|---|
@@ -128,7 +128,7 @@ impl StudyPart {
         })
     }
 
-    /// Simulates the touches of a group of configurations in memory, and computes their measurements in a trial.
+    /// Simulates the touches of a group of configurations, and computes their measurements in one trial.
     pub(crate) fn measured(
         &self,
         (group, n_measurements): (&MeasurementGroup, usize),
@@ -281,7 +281,7 @@ impl FeatureSet {
         })
     }
 
-    /// Returns the training rows as a data set; only the first `n` of them if `n` is given.
+    /// Returns the training rows as a data set; if `n` is given, only the first `n` rows.
     ///
     /// # Errors
     /// If `n` is zero or larger than the number of training rows.

@@ -1,4 +1,4 @@
-//! Frames and features in files for other programs.
+//! Export of frames and features to files for other programs.
 
 pub mod feature_files;
 pub mod touch_files;

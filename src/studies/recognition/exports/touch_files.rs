@@ -87,7 +87,7 @@ struct Reading<'a> {
 pub struct ReadFrames {
     /// Index of the array that the configuration uses, in the list of arrays of the plan.
     pub array: usize,
-    /// Frame values, shape (n_touches · F, n_taxels), where F is the number of frames per touch; the last of the F frames is the deepest.
+    /// Frame values, shape (n_touches · F, n_taxels), with F frames per touch; the last frame of a touch is the deepest.
     values: Array2<f64>,
     n_frames: usize,
     /// Whether the values are forces in newtons; otherwise they are deflections in metres.
@@ -166,7 +166,7 @@ pub fn touch_units(
     }
 }
 
-/// Open frame files: one for each quantity, or a single file if frames are written as a configuration reads them.
+/// Open frame files: one file for each quantity, or a single file for frames after the signal chain.
 struct FrameFiles {
     frames: NpyFile,
     shear: Option<NpyFile>,

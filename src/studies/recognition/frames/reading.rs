@@ -98,7 +98,7 @@ pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>
     Ok((values, cpu_s))
 }
 
-/// Memory that a thread reuses for every block of touches that it measures.
+/// Memory that a thread reuses for each block of touches.
 #[derive(Debug, Default)]
 struct Working {
     /// Frames of the current block of touches, one after the other.
@@ -111,7 +111,7 @@ struct Working {
     scratch: SignalWorkspace,
 }
 
-/// Computes the measurements of a block of touches with F frames each.
+/// Computes the measurements of a block of touches, each with F frames.
 fn measure_block(
     reading: Reading,
     touches: &[TouchToRead],

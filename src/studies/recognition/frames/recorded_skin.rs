@@ -35,7 +35,7 @@ pub struct RecordedSkinFiles {
     pub forces: Option<PathBuf>,
     /// Reading of a taxel that is not touched.
     pub zero: f64,
-    /// Reading of a taxel at full scale; `None` for the largest of all readings.
+    /// Reading of a taxel at full scale; if `None`, the largest of all readings.
     pub full_scale: Option<f64>,
     /// Deflection of a taxel at full scale, mm; `None` if unknown.
     pub stroke_mm: Option<f64>,

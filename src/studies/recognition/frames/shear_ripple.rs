@@ -1,4 +1,4 @@
-//! Unevenness of shear readings on a flat face that is modelled by packed spheres.
+//! Error in shear readings on a flat face that is approximated by packed spheres.
 //!
 //! On an exactly flat face, every taxel has the same shear reading. Packed spheres bulge by up to half the surface error. The bulges tilt the contact normals,
 //! so the shear readings ripple; a classifier can learn this ripple.

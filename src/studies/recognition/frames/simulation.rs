@@ -20,7 +20,7 @@ pub fn simulate_array(
     touched.simulate((array, n_frames), progress)
 }
 
-/// Presses one array on every object, touch by touch; the result does not depend on the number of threads.
+/// Presses one array on every object, touch by touch; the results do not depend on the number of threads.
 ///
 /// A touch to depth d consists of F = `n_frames` frames, read at the depths d/F, 2d/F, …, d. If the array slides, the frames are read at F points of its path.
 /// Each frame is simulated as a separate touch, because a taxel at rest has no memory.

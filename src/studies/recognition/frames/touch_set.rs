@@ -30,7 +30,7 @@ pub trait TouchSet: Sync {
         touch_labels(&self.classes())
     }
 
-    /// Returns the group number of every touch, for splits into training and test touches that do not divide groups. By default, each touch is its own group.
+    /// Returns the group number of every touch; splits never divide the touches of a group. By default, each touch is its own group.
     ///
     /// # Errors
     /// If an axis is spread uniformly and has no distance.
@@ -74,7 +74,7 @@ pub trait TouchSet: Sync {
     /// If a picture cannot be made.
     fn samples(&self, plan: &Plan, groups: &[MeasurementGroup]) -> Result<Samples>;
 
-    /// Returns the number of touches whose depth past first contact is larger than the stroke of the taxels, metres.
+    /// Returns the number of touches that are deeper past first contact than the stroke of the taxels, metres.
     fn n_deeper_than(&self, _stroke: f64) -> usize {
         0
     }

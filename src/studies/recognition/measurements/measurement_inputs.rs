@@ -137,7 +137,7 @@ fn counts(of_images: &[FeaturesOfImages]) -> Vec<usize> {
 }
 
 impl SignalInputs {
-    /// Returns the signal steps of a skin, whose errors are drawn with the given seed.
+    /// Returns the signal steps of a skin whose sensor errors are drawn with the given seed.
     pub fn steps(&self, skin: &Seed) -> Vec<SignalStep> {
         let condition = &self.condition;
         let step = |&step: &StepSpec| match step {

@@ -27,7 +27,7 @@ const ONE_OF: [[&str; 2]; 3] = [
     ["test_fraction", "folds"],
 ];
 
-/// Keys of `[recognition]`, each with the keys of which at least one must also be given.
+/// Keys of `[recognition]` that require other keys: each with a list of which at least one must be given.
 const BESIDE: [(&str, &[&str]); 4] = [
     ("cv_touches", &["c_grid", "gamma_grid"]),
     ("tilt_augmentation_deg", &["tilt_augmentation"]),

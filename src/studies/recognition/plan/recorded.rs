@@ -22,7 +22,7 @@ impl RecordedSpec {
         };
     }
 
-    /// Returns keys of `[touches]` that describe the recorded touches: the number of frames, and a speed if time passes between the frames of a touch.
+    /// Returns keys of `[touches]` that describe the recording: the number of frames and, if time passes between frames, a speed.
     ///
     /// # Errors
     /// If the file of the frames does not exist or has other axes.

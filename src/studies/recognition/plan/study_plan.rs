@@ -43,7 +43,7 @@ pub struct Plan {
     pub noise_unit: NoiseUnit,
     /// Numbers of frames per touch (axis `touches.frames`).
     pub frames: Vec<usize>,
-    /// Rule that forms groups of touches which a split does not divide; `None` if touches are not grouped.
+    /// Rule that forms groups of touches, which are never divided by a split; `None` if touches are not grouped.
     pub group_by: Option<KeepTogether>,
     /// Plan of the study with the keys of `[test]`, which gives the test touches and their signal; `None` unless the study has `[test]`.
     pub tested: Option<Arc<Plan>>,

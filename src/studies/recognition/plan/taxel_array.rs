@@ -1,4 +1,4 @@
-//! Arrays of taxels with which a study touches objects.
+//! Arrays of taxels that a study presses on objects.
 
 use crate::error::Result;
 use crate::inputs::units::millimetres;
@@ -67,7 +67,7 @@ impl TaxelArray {
         Ok(self)
     }
 
-    /// Returns the array with its taxel positions marked as unknown; used for recorded skins without a layout.
+    /// Returns the array with unknown taxel positions, for recorded skins without a layout.
     pub fn without_places(mut self) -> Self {
         self.is_placed = false;
         self

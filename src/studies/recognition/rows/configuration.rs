@@ -1,4 +1,4 @@
-//! Configuration of a recognition study: one value of every axis. The parameters of a configuration are the first columns of a row of results.
+//! Configuration of a recognition study: one value for every axis. The parameters of a configuration are the first columns of a row of results.
 
 use crate::doc_of;
 use crate::engine::axes::AxisValues;
@@ -69,7 +69,7 @@ pub struct Configuration {
     ny: usize => always (Note, "taxels along y", "", Linear);
     /// Numbers of rows and columns of the images that represent frames of the array.
     image_shape: (usize, usize) => hidden;
-    /// Side length of the array along x, mm: nx times the pitch.
+    /// Side length of the array along x, mm: number of columns nx times the pitch.
     size_mm: f64 => always of "skin.size_mm";
     /// Noise standard deviation of a taxel's reading, in `noise_unit`.
     noise_std: f64 => always of "signal.noise_std_full_scale";

@@ -89,8 +89,8 @@ pub struct ConfigurationScore {
     accuracy_low: f64 => Note "95 % interval, lower end": Share;
     /// Upper end of the 95 % interval of the mean accuracy, computed as `accuracy_low`.
     accuracy_high: f64 => Note "95 % interval, upper end": Share;
-    /// Number of held-out groups, over all trials, over which the interval is computed; if no groups are held out, the number of test rows of a trial. The
-    /// column is present only if the study holds out groups.
+    /// Number of held-out groups from which the interval is computed, over all trials; without groups, the number of test rows of a trial. The column is
+    /// present only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
     /// Lower end of the 95 % bootstrap interval of the mean accuracy over trials, 0 to 1; describes variation by split, projection and noise. Empty with fewer
@@ -190,7 +190,7 @@ pub struct Comparison {
     difference_low: Option<f64> => Note "difference, lower end": Linear;
     /// Upper end of the 95 % interval of `difference`; empty if there is only one trial.
     difference_high: Option<f64> => Note "difference, upper end": Linear;
-    /// Two-sided p-value of the hypothesis that the mean difference is zero; empty if there are too few trials.
+    /// Two-sided p-value of the null hypothesis that the mean difference is zero; empty if there are too few trials.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
     /// `p_value` after Holm's correction for the number of comparisons: all configurations except the best ones. Empty for the best ones.
     #[serde(default)]
@@ -238,7 +238,7 @@ pub struct Pareto {
 } }
 
 row! {
-/// Processor time of a stage before recognition on one array: a row of `stages.csv`.
+/// Processor time of one stage before recognition, for one array: a row of `stages.csv`.
 pub struct StageTime {
     /// Name of the stage: `simulate`, or `measure` (signal chain and measurement matrix). If touches have several frames, their number is added.
     stage: String => Subject;

@@ -105,7 +105,7 @@ pub struct RecordedSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ZeroSpec {
-    /// Reading that all untouched taxels have in common.
+    /// Common reading of all untouched taxels.
     One(f64),
     /// File with one reading for each taxel: an array with the taxel axes of `frames`, or a list in row-major order.
     Each(PathBuf),
@@ -167,7 +167,7 @@ pub enum PreviousTouch {
     /// Another touch of the study, drawn at random in each trial, as in studies of pressed objects.
     #[default]
     Random,
-    /// No touch precedes a touch.
+    /// No touch precedes any touch of the recording.
     None,
 }
 
@@ -278,7 +278,7 @@ impl RecordedSpec {
         frame_shape(&path.display().to_string(), &shape, axes)
     }
 
-    /// Reads the readings of untouched taxels, shape (rows · columns,), in row-major order.
+    /// Returns the readings of untouched taxels, shape (rows · columns,), in row-major order.
     ///
     /// # Errors
     /// If the file cannot be read or does not have one number for each taxel of `shape`, the axes of `frames`.

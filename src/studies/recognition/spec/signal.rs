@@ -42,7 +42,7 @@ pub struct SignalSpec {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalAxes(BTreeMap<usize, SignalAxis>);
 
-/// Axis of the signal: its key, the step to which it belongs, and its values.
+/// Axis of a signal parameter: its key, the signal step to which it belongs, and its values.
 pub type SignalAxis = (&'static str, StepSpec, Axis<f64>);
 
 /// Returns all axes that `[signal]` may contain, in the order in which they are swept.
@@ -67,7 +67,7 @@ impl SignalAxes {
         self.0.values()
     }
 
-    /// Sets the values of the signal axis with this key, if `[signal]` may contain the key.
+    /// Sets the values of the signal axis with this key; does nothing if `[signal]` has no such axis.
     fn set(&mut self, key: &str, axis: Axis<f64>) {
         let found = all_axes().enumerate().find(|(_, (known, _))| *known == key);
         if let Some((place, (key, step))) = found {
@@ -86,7 +86,7 @@ impl Serialize for SignalAxes {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum StepSpec {
-    /// Conversion of deflections into forces, newtons.
+    /// Conversion of deflections to forces, newtons.
     Force,
     /// Addition of zero-mean Gaussian noise to each reading.
     Noise,

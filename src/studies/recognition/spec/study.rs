@@ -328,7 +328,7 @@ impl StudySpec {
     }
 }
 
-/// Returns the default seed of all kinds of studies.
+/// Returns the default random seed of all kinds of studies.
 pub(crate) fn default_seed() -> u64 {
     2018
 }

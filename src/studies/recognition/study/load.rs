@@ -116,8 +116,8 @@ impl RecognitionStudy {
     }
 }
 
-/// Number of touches times trials above which [`slow_splits`] returns a message; it corresponds to a few seconds. With a larger value, commands are silent for
-/// longer; with a smaller value, short waits are announced.
+/// Product of the numbers of touches and trials above which [`slow_splits`] returns a message. With a larger value, commands are silent for longer; with a
+/// smaller value, short waits are announced.
 const MANY_SPLITS: f64 = 7e7;
 
 /// Returns a message if the split of the touches into training and test touches takes a noticeable time.
@@ -126,7 +126,7 @@ fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
         .then(|| format!("splitting {n_touches} touches in {n_trials} trials"))
 }
 
-/// Returns a text that identifies a plan's touches; it does not depend on the array and the files of the objects.
+/// Returns a text that identifies the touches of a plan, independently of the array and the object files.
 pub fn touch_content(plan: &Plan) -> String {
     TouchInputs::new(plan).key()
 }

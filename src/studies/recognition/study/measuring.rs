@@ -1,4 +1,4 @@
-//! Computation of the work items: simulates the touches of an array once, measures each group once per trial, and evaluates every pending family.
+//! Computation of the work items: simulates touches once per array, measures each group once per trial, and evaluates each pending family.
 
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Measurement to compute: a group of configurations in a trial, and the pending families of configurations that use it.
+/// Measurement to compute: a group of configurations in one trial, and the group's pending families.
 pub(crate) struct Job<'a> {
     study: &'a RecognitionStudy,
     /// Index of the group; if several groups have equal measurements, index of the first one.

@@ -64,7 +64,7 @@ pub(crate) struct PlacedGroup {
     place: usize,
     /// Index of the group's training touches in the list of all sets of touches.
     pub touches: usize,
-    /// Index of the group's test touches in the list of all sets of touches; equal to `touches` unless the study has `[test]`.
+    /// Index of the group's test touches in the list of all sets of touches; equal to `touches` if the study has no table `[test]`.
     pub tested: usize,
     /// Index of the first group with the same measurements as this group.
     pub measured_as: usize,

@@ -76,7 +76,7 @@ pub struct StudyPart {
     pub plan: Plan,
     /// Training touches of the part; parts with equal touches share them.
     pub touched: Arc<dyn TouchSet + Send>,
-    /// Test touches of the part, with the numbers of the training touches. Unless the study has `[test]`, they are the training touches themselves.
+    /// Test touches of the part, numbered like the training touches. Unless the study has `[test]`, they are the training touches themselves.
     pub tested: Arc<dyn TouchSet + Send>,
     /// Splits and configurations for this combination of axis values.
     pub sweep: Sweep,
@@ -145,7 +145,7 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// Assigns the configurations to the combination `variant` of the values in `[axes]`, and numbers them from `first`.
+    /// Assigns the configurations to the combination `variant` of axis values in `[axes]`, and numbers them from `first`.
     pub(crate) fn place(&mut self, first: usize, variant: &AxisValues) {
         for configuration in self
             .groups

@@ -1,4 +1,4 @@
-//! Comparison of published accuracies with the accuracies of a study: finds the most accurate configuration to which each claim applies.
+//! Comparison of a study with published accuracies: finds the most accurate configuration to which each claim applies.
 
 use crate::error::{Error, Result};
 use crate::inputs::toml_value::number;

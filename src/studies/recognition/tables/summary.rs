@@ -44,7 +44,7 @@ pub fn summarise(
         .collect()
 }
 
-/// Returns those counts of trials that hold out whole groups, in the form that statistics over groups need.
+/// Returns the counts of the trials that hold out whole groups, as input of the statistics over groups.
 pub fn grouped_tests<'a>(
     trials: impl Iterator<Item = (&'a TrialScore, &'a Vec<GroupCount>)>,
 ) -> Vec<GroupedTest<'a>> {

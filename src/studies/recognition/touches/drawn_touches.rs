@@ -39,7 +39,7 @@ pub fn draw_touches(
     touched.collect()
 }
 
-/// For each touch, returns its label: the number of its class. The argument contains the name and the number of touches of each class.
+/// Returns the label of each touch, which is the number of its class. The argument contains the name and the number of touches of each class.
 pub fn touch_labels(classes: &[(&str, usize)]) -> Array1<usize> {
     let classes = classes.iter().enumerate();
     let labels = classes.flat_map(|(label, (_, n))| std::iter::repeat_n(label, *n));

@@ -37,7 +37,7 @@ pub struct TrialInputs<'a> {
     pub split: &'a Hashed<Split>,
     /// Number of the first trial split with the same training and test touches; `None` if this split is the first.
     pub distinct_split: Option<usize>,
-    /// Number of the block of poses that the trial tests; `None` unless the split holds out blocks of poses.
+    /// Number of the block of poses on which the trial is tested; `None` if the split does not hold out blocks of poses.
     pub tested_block: Option<usize>,
     /// For each touch, the number of the touched object.
     pub labels: &'a Hashed<Array1<usize>>,
@@ -45,7 +45,7 @@ pub struct TrialInputs<'a> {
     pub group_keys: Option<&'a Hashed<Array1<usize>>>,
 }
 
-/// Inputs of a family of configurations that all its trials share.
+/// Inputs of a family of configurations that are equal in all its trials.
 #[derive(Clone, Debug)]
 pub struct FamilyInputs<'a> {
     /// Inputs that determine how feature rows are computed from measurements.
@@ -56,7 +56,7 @@ pub struct FamilyInputs<'a> {
     pub mislabelled_fraction: Option<f64>,
     /// Number of training touches of the most frequent object, divided by the number of the least frequent one, at least 1; `None` for equal numbers.
     pub class_imbalance: Option<f64>,
-    /// Classifier, with the candidates from which its C and γ are chosen.
+    /// Classifier, and the candidate values from which its C and γ are selected.
     pub training: TrainingInputs,
     /// Settings that differ between the family's configurations, in the order of the configurations. Configurations with equal C are adjacent.
     pub decisions: Vec<Decision>,

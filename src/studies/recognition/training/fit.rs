@@ -16,7 +16,7 @@ use std::time::Instant;
 
 /// Training rows of a family of configurations in one trial, and the parameters of the training.
 pub struct Training<'a> {
-    /// Classifier, with the candidates from which its C and γ are chosen.
+    /// Classifier, and the candidate values from which its C and γ are selected.
     pub inputs: &'a TrainingInputs,
     /// Training rows in drawing order with alternating objects: first readings, then further readings, then tilted copies.
     pub data: Dataset,
@@ -24,7 +24,7 @@ pub struct Training<'a> {
     pub n_first: usize,
     /// Group of each training row; `None` if the split may divide groups.
     pub group_keys: Option<Array1<usize>>,
-    /// Seed of the random numbers by which inner folds are drawn.
+    /// Seed of the random numbers with which the inner cross-validation folds are drawn.
     pub seed: Seed,
 }
 
@@ -73,7 +73,7 @@ impl Training<'_> {
         Ok(fitted.collect())
     }
 
-    /// Trains one classifier with a given C, a chosen C, or no C. The kernel parameter γ is also given or chosen.
+    /// Trains one classifier with a given C, with a C selected by cross-validation, or without C. The kernel parameter γ is also given or chosen.
     fn train(&self, c: Option<f64>) -> Result<Fitted> {
         let start = Instant::now();
         let classifier = &self.inputs.classifier;

@@ -1,4 +1,5 @@
-//! Choice of the test touches that are combined into one decision, if poses are chosen. The robot touches an unknown object in a known frame.
+//! Selection of the test touches that are combined into one decision, if the study selects touches by their poses. The robot touches an unknown object in a
+//! known frame.
 
 use crate::error::Result;
 use crate::learning::evaluation::next_touch::{

@@ -30,7 +30,7 @@ pub(crate) struct ActiveSetGoal {
     pub c: f64,
     /// Maximum violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,
-    /// Maximum number of active-set steps. Each step ends at the optimum of the free variables, or at a bound that removes one variable.
+    /// Maximum number of active-set steps of the solver. Each step ends at the optimum of the free variables, or at a bound that removes one variable.
     pub most_ways: u64,
 }
 
