@@ -1,4 +1,4 @@
-//! Recognition: classifiers are trained on labelled measurements and scored on others.
+//! Recognition: training of classifiers on labelled measurements, and their evaluation on other measurements.
 //!
 //! | stage | input | output |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! Command lines that can be pasted into a shell.
+//! Functions that write command lines which can be pasted into a shell.
 
 /// Joins words to a line that a POSIX shell splits into the same words.
 pub fn shell_line(words: &[impl AsRef<str>]) -> String {

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 /// Values of the command-line options that are given, in the order of their declaration.
 pub struct ParameterOptions(Vec<(&'static Parameter, GivenValue)>);
 
-/// Value of an option: a number, or the classifier's own rule.
+/// Value of a command-line option: a number, or `None` for the classifier's default rule.
 type GivenValue = Option<f64>;
 
 /// Parameters of all classifiers, each with the name of its command-line option.
@@ -23,7 +23,7 @@ impl ParameterOptions {
         self.0.iter().any(|(parameter, _)| parameter.key == key)
     }
 
-    /// Returns a classifier with the given values.
+    /// Returns a copy of the classifier in which the options' values are set.
     ///
     /// # Errors
     /// If the classifier has no such parameter, or if a value is out of its range.

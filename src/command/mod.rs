@@ -108,7 +108,7 @@ mod tests {
     use clap::{Command, CommandFactory, Parser};
     use std::collections::BTreeSet;
 
-    /// Maximum number of words of a help line, without its default.
+    /// Maximum number of words in a help line, without the default value.
     const MAX_WORDS: usize = 12;
 
     /// Calls `check` with every subcommand, nested ones included.

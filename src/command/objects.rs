@@ -1,4 +1,4 @@
-//! `bubbletouch objects`: what there is to touch, as a list or as pictures.
+//! `bubbletouch objects`: lists or draws the objects that can be touched.
 
 use super::{objects_pack, objects_show};
 use crate::command::options::unused::check_used;
@@ -15,7 +15,7 @@ use bubbletouch::study::{ModelSpec, ObjectsSpec, load_mesh, read_mesh_file};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// Pixels along a side of one object's picture.
+/// Side length of the picture of one object, pixels.
 const PICTURE: usize = 640;
 /// Side length of an object's picture in an overview of many objects, pixels.
 const TILE: usize = 240;

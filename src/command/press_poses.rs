@@ -1,4 +1,4 @@
-//! `bubbletouch press --poses`: one object read in many places, and how long each reading takes.
+//! `bubbletouch press --poses`: presses one object in many poses and measures the time of each reading.
 
 use crate::command::options::unused::check_used;
 use crate::command::terminal::output::check_ending;

@@ -86,7 +86,7 @@ pub fn simulate(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Notes of one scene that are printed, at most: a file of a robot may have the same fault in each of its joints.
+/// Maximum number of notes that are printed for one scene, because a robot file may repeat a fault in each joint.
 const MAX_NOTES: usize = 12;
 
 fn note_all(mut notes: impl Iterator<Item = String>) {

@@ -27,7 +27,7 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Rule that determines which combinations of the axes' values become configurations.
+/// Rule that selects the combinations of axis values that become configurations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CombineSpec {
@@ -102,8 +102,8 @@ impl AxisValues {
 pub struct AxisValue {
     /// Table column of the axis.
     pub column: Column,
-    /// Number, truth value, or text; lists and tables are converted to text. The field is `None` if the axis keeps the value of the study and the study has no
-    /// such value.
+    /// Number, truth value or text on the axis; lists and tables are converted to text. The field is `None` if the axis keeps the value of the study and the
+    /// study has no such value.
     pub value: Option<toml::Value>,
 }
 
@@ -242,7 +242,7 @@ fn take_combine(
     CombineSpec::deserialize(value).map_err(|error| Error::toml(place, text, &error))
 }
 
-/// Returns the values of a TOML list; for any other value, an empty list.
+/// Returns the values of a TOML list, or an empty list for any other value.
 fn list(place: &str, text: &str, value: &Spanned<DeValue>) -> Result<Vec<toml::Value>> {
     let DeValue::Array(values) = value.get_ref() else {
         return Ok(Vec::new());
@@ -464,7 +464,7 @@ impl StudyAxes {
         axes.any(|axis| axis.keys().iter().any(|own| own == key))
     }
 
-    /// Returns the columns of those axes that result tables do not have yet. For a name that another column already has, `is_taken` returns true.
+    /// Returns one column for each axis that has no column in result tables yet. For a name that another column already has, `is_taken` returns true.
     pub fn columns(&self, is_taken: impl Fn(&str) -> bool) -> Vec<Column> {
         let column = |axis: &StudyAxis| {
             let alike = self.axes.iter().filter(|other| other.name() == axis.name());

@@ -55,7 +55,7 @@ pub struct Manifest {
     pub target: String,
     /// Name of the processor, or `unknown`.
     pub cpu: String,
-    /// Widest vector instructions of the processor, which affect the rounding of matrix products. `None` in manifests of earlier versions.
+    /// Widest vector instructions of the processor, on which the rounding of matrix products depends.
     #[serde(default)]
     pub instructions: Option<Instructions>,
     /// Number of hardware threads of the machine on which the results were computed.
@@ -88,7 +88,7 @@ pub struct Manifest {
     /// SHA-256 hash of each result table with times, by file name; the hashes differ between runs. Empty in manifests of earlier versions.
     #[serde(default)]
     pub times_sha256: BTreeMap<String, String>,
-    /// SHA-256 hash of each chart, picture, page and other file in the folder except the manifest, by file name. `None` in manifests of earlier versions.
+    /// SHA-256 hash of each chart, picture, page and other file in the folder, by file name, without the manifest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub files_sha256: Option<BTreeMap<String, String>>,
     /// Statistical methods that compute the intervals and p-values, by table and columns.

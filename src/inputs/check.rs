@@ -119,7 +119,7 @@ impl Check<'_> {
             .map_err(|allowed| self.error(key, given, allowed))
     }
 
-    /// Checks that a list of swept values contains values and no duplicates; a duplicate would repeat configurations.
+    /// Checks that a list of swept values is not empty and has no duplicates, which would repeat configurations.
     pub fn list<T: Clone + PartialEq + std::fmt::Debug>(
         &self,
         key: &str,

@@ -32,7 +32,7 @@ pub struct KeyAbout {
 pub enum AxisPlace {
     /// In the table of the key, or in `[axes]`.
     Table,
-    /// Only in the table `[axes]`.
+    /// The key may be swept only in the table `[axes]`.
     Axes,
     /// The key cannot be swept: it has one value in all configurations of a study.
     Never,
@@ -148,8 +148,7 @@ pub(crate) fn unit_of(name: &str) -> &'static str {
     found.map_or("", |(_, unit)| unit)
 }
 
-/// Returns the description of a key, or of the key that contains it: `touches.depth_mm` for `touches.depth_mm.within`. Returns `None` if the list has no such
-/// key.
+/// Returns the description of a key, or of the key above it: `touches.depth_mm` for `touches.depth_mm.within`. Returns `None` if the list has no such key.
 pub fn find<'k>(keys: &'k [KeyAbout], path: &str) -> Option<&'k KeyAbout> {
     let exact = keys.iter().find(|key| key.path == path);
     exact.or_else(|| keys.iter().find(|key| is_at(path, key.path)))

@@ -72,7 +72,7 @@ impl NpyFile {
         Ok(Self(file))
     }
 
-    /// Writes the next elements of the array, `N` bytes each.
+    /// Writes the next elements of the array, each with `N` bytes.
     ///
     /// # Errors
     /// If the file cannot be written.

@@ -167,8 +167,8 @@ fn check_regular(path: &Path) -> Result<()> {
     Err(Error::input(path.display(), given, allowed))
 }
 
-/// Builds an object from a mesh file as specified in `spec`; its name is the file name without extension. If the folder `packings` is given, packings are read
-/// from it or written to it. If vertex spheres are far from the mesh, a note is printed on standard error.
+/// Builds an object from a mesh file as `spec` requires; the name of the object is the file name without extension. If the folder `packings` is given, packings
+/// are read from it or written to it. If vertex spheres are far from the mesh, a note is printed on standard error.
 ///
 /// # Errors
 /// If the file cannot be read, the size is outside the allowed range, or the mesh cannot be converted to the requested model.

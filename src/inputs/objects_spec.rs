@@ -79,7 +79,7 @@ impl ObjectsSpec {
         self.close_holes_mm.map(|width| width * MM)
     }
 
-    /// Returns the maximum distance between spheres and the surface that they represent, metres.
+    /// Returns the maximum distance between the spheres and the surface of an object, metres.
     pub(crate) fn surface_error(&self) -> f64 {
         self.surface_error_mm.unwrap_or(SURFACE_ERROR_MM) * MM
     }

@@ -1,4 +1,4 @@
-//! JSON Schemas of types of the lower crates, which do not depend on `schemars`.
+//! JSON Schemas of types from crates that do not depend on `schemars`.
 
 use bubbletouch_sim::features::{Features, ImageFeature};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};

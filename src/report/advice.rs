@@ -225,7 +225,7 @@ impl<'a> Candidates<'a> {
         measured.filter_map(worst).collect()
     }
 
-    /// Returns the advice that meets a requirement, selected from the candidates of one condition.
+    /// Returns the advice for a requirement, selected from the candidates under one condition.
     ///
     /// # Errors
     /// If the requirement is out of range, there are no candidates, or no candidate meets the requirement; the error names the nearest candidate.

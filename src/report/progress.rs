@@ -156,7 +156,7 @@ impl Drop for Bars {
     }
 }
 
-/// Writes how many steps per second a progress bar makes.
+/// Writes the number of steps per second of a progress bar.
 fn write_rate(state: &ProgressState, text: &mut dyn fmt::Write) {
     // Writing to the text of a bar cannot fail.
     let _ = write!(text, "{:.2}/s", state.per_sec());

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 /// for a phone and drawing takes minutes.
 pub const MAX_CHARTS: usize = 24;
 
-/// Returns the files of a result folder with charts, pictures and the page. The function `beyond` computes additional content while charts are drawn. Charts
-/// without drawable rows are omitted.
+/// Returns the files of a result folder: tables, charts, pictures and the page. The function `beyond` computes additional content while charts are drawn.
+/// Charts without drawable rows are omitted.
 ///
 /// # Errors
 /// If a chart or picture cannot be drawn.

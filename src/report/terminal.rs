@@ -28,7 +28,7 @@ pub enum Ink {
 }
 
 impl Ink {
-    /// Returns the colours that standard output supports.
+    /// Returns the range of colours that standard output supports.
     pub fn of_stdout() -> Self {
         let variable = |name: &str| std::env::var(name).unwrap_or_default();
         let refused = !variable("NO_COLOR").is_empty() || variable("TERM") == "dumb";
@@ -279,7 +279,7 @@ pub fn rows_text(
     table.to_string()
 }
 
-/// Creates a table with a ruled line below its header, at least 20 characters wide; its texts wrap to fit the width.
+/// Creates a table with a line below its header, at least 20 characters wide; its texts wrap to fit the width.
 fn ruled_table(width: usize) -> TextTable {
     let mut table = TextTable::new();
     table.load_preset(presets::NOTHING);

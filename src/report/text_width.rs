@@ -1,4 +1,4 @@
-//! Text width in DejaVu Sans, the font of the pictures.
+//! Width of texts in DejaVu Sans, the font of the pictures.
 
 /// Widths of the ASCII characters U+0020 to U+007E in thousandths of the font size (DejaVu Sans 2.37, read with fontTools 4).
 const ASCII: [u16; 95] = [

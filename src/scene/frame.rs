@@ -57,7 +57,7 @@ pub struct FrictionReading {
     pub shear: DVec3,
     /// Number of taxels in sticking contact, that is, without sliding.
     pub n_sticking: usize,
-    /// Number of taxels whose contacts slipped during the last step.
+    /// Number of taxels whose contacts slid during the last step.
     pub n_slipping: usize,
 }
 
@@ -89,7 +89,7 @@ pub enum PoseControl {
     },
     /// The object moves freely and is in equilibrium.
     AtRest,
-    /// The object is free but not in equilibrium, because the solver reached its iteration limit.
+    /// The object is free, but the solver reached its iteration limit before an equilibrium.
     NotConverged,
     /// The object was free, left the skin and has no contact any more.
     Escaped {

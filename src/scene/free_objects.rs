@@ -23,7 +23,7 @@ pub(super) struct FreeObjects {
     /// Numbers (indices in the scene) of the imposed and pressed objects, which act as obstacles.
     obstacles: Vec<usize>,
     balancer: EquilibriumSolver,
-    /// For each patch, the deflections that imposed and pressed objects cause, metres; empty if none of these objects touches the patch.
+    /// Deflections of each patch that imposed and pressed objects cause, metres; empty if none of these objects touches the patch.
     pushed: Vec<Vec<f64>>,
     workspace: Workspace,
 }
@@ -145,7 +145,7 @@ impl FreeObjects {
             .all(|free| free.reading.held != PoseControl::NotConverged))
     }
 
-    /// Iterates over the forces between free objects and the taxels of a patch, in taxel order.
+    /// Returns the forces between free objects and the taxels of a patch, in taxel order.
     pub fn on_patch(&self, patch: usize) -> impl Iterator<Item = &TaxelLoad> {
         let loads = self.balancer.loads().iter();
         loads.filter(move |load| load.skin == patch)
@@ -209,7 +209,7 @@ impl FreeObjects {
         }
     }
 
-    /// Writes the pose and equilibrium of each free object to the entry of `readings` with the object's scene number.
+    /// Writes the pose and equilibrium of each free object into `readings`, at the object's number in the scene.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for free in &self.all {
             readings[free.object] = free.reading;

@@ -36,7 +36,7 @@ pub struct ScenePlan {
     pub n_frames: usize,
     /// Number of frames of the full scene, before [`cut`](Self::cut) shortened it. The drift of the sensors depends on this duration.
     pub n_frames_uncut: usize,
-    /// Number of equal time steps between two frames, for scenes that need such steps.
+    /// Number of equal time steps between two frames, used by scenes whose state depends on earlier steps.
     pub n_substeps: usize,
     /// Gravitational acceleration, m/s², world frame.
     pub gravity: DVec3,
@@ -271,7 +271,7 @@ fn check_names(check: &Check, spec: &SceneSpec) -> Result<()> {
     Ok(())
 }
 
-/// Checks that planes occur only with free objects, and that all objects are made of spheres if one is free.
+/// Checks that planes occur only together with free objects, and that all objects consist of spheres if an object is free.
 fn check_rigid(
     check: &Check,
     spec: &SceneSpec,

@@ -33,7 +33,7 @@ pub struct PlannedObject {
 }
 
 impl ObjectSpec {
-    /// Returns the maximum distance between spheres and surface, mm: the key `surface_error_mm`, or a default that depends on the finest pitch of the patches.
+    /// Returns the maximum distance between spheres and surface, mm: the key `surface_error_mm`, or a default derived from the smallest pitch.
     fn surface_error_or_default_mm(&self, finest_mm: f64, for_mesh: ModelSpec) -> f64 {
         let model = self.mesh.as_ref().map_or(ModelSpec::Mesh, |_| for_mesh);
         let default = || model.default_surface_error_mm(finest_mm);
@@ -44,7 +44,7 @@ impl ObjectSpec {
 /// Rule by which the pose of an object is determined.
 #[derive(Clone, Debug)]
 pub enum Movement {
-    /// Motion that is imposed and does not depend on contacts.
+    /// Imposed motion, which does not depend on contacts.
     Imposed(Motion),
     /// Motion that is imposed relative to a link of a robot.
     Carried {

@@ -22,7 +22,7 @@ struct Pressed {
     now: HeldForce,
     /// Target of the total spring force of the patch, N.
     wanted: f64,
-    /// Contacts of the object with the patch, which do not depend on the travel of the object.
+    /// Contacts of the object with the patch, independent of the distance that the object travels.
     contacts: Vec<TaxelContact>,
 }
 

@@ -9,7 +9,7 @@ type Allowed = fn(f64) -> bool;
 
 const COUNT: Allowed = |number| number >= 1.0;
 
-/// Allowed numbers for each key of a scene file, by the path of the key; tables in lists and variants share a path.
+/// Allowed numbers of each key of a scene file, by key path.
 pub(crate) const RANGES: &[(&str, Allowed)] = &[
     ("dt_ms", positive),
     ("output_hz", positive),

@@ -29,7 +29,7 @@ pub(crate) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Adds the file name and `key` to the error, if the result is an error.
+    /// Adds the file name and `key` to the error message if the result is an error.
     pub fn under<T>(&self, key: &str, result: Result<T>) -> Result<T> {
         result.map_err(|error| error.under(format!("{}, key {key}: ", self.check.place)))
     }

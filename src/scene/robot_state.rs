@@ -27,7 +27,7 @@ impl RobotState {
         }
     }
 
-    /// Sets the joint positions from now on, rad or m, one per coordinate; the joints no longer follow the scene.
+    /// Sets the joint positions from now on (rad or m, one number per coordinate), in place of the motion in the scene file.
     pub fn set_positions(&mut self, positions: &[f64]) {
         self.positions.copy_from_slice(positions);
         self.are_set = true;

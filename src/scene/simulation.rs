@@ -43,7 +43,8 @@ pub struct Simulation<'p> {
     pub(super) time: f64,
     /// Whether the program makes the steps instead of the scene's clock.
     pub(super) is_by_hand: bool,
-    /// Length of the last step, seconds, if its patches are not computed yet. The required computations depend on whether a frame is read next.
+    /// Duration of the last step, seconds, if the deflections of its patches have not been computed yet. The required computations depend on whether a frame is
+    /// read next.
     unfelt: Option<f64>,
     n_read: usize,
     pub(super) n_steps: usize,
@@ -187,7 +188,7 @@ impl<'p> Simulation<'p> {
         Ok(())
     }
 
-    /// Moves robots, objects and patches to their poses at `time`, which is `dt` seconds after the last step.
+    /// Moves robots, objects and patches to their poses at `time`; `dt` is the time since the last step, seconds.
     fn go_to(&mut self, time: f64, dt: f64) -> Result<()> {
         let plan = self.plan;
         self.n_steps += 1;

@@ -21,7 +21,7 @@ pub(super) struct PlacedObjects {
     pub balls: Vec<(DVec3, f64)>,
 }
 
-/// Pose of objects that must have no contact: far from all skin, but with a finite squared distance.
+/// Pose of objects without contact: far from all patches, but with a finite squared distance.
 pub(super) const OUT_OF_REACH: Pose = Pose {
     rotation: glam::DQuat::IDENTITY,
     translation: DVec3::new(0.0, 0.0, 1e100),
@@ -101,7 +101,7 @@ impl SkinState {
         }
     }
 
-    /// Marks the given contacts as held: these parts of objects push their taxels in the following steps, even from behind the substrate.
+    /// Marks contacts as held: the parts of objects in contact push their taxels in the next steps, even from behind the substrate.
     pub fn hold<'a>(&mut self, contacts: impl IntoIterator<Item = &'a TaxelContact>) {
         self.workspace.hold(contacts);
     }

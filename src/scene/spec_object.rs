@@ -92,7 +92,7 @@ pub struct FreeSpec {
 pub struct PressSpec {
     /// Name of the patch whose force is controlled.
     pub patch: String,
-    /// Direction in which the object travels, world frame, of any length.
+    /// Direction of the object's travel in the world frame; its length is arbitrary.
     pub direction: [f64; 3],
     /// Target of the patch's total spring force from all objects, N, at least 0: one number, or one number for each time in `time_s`.
     pub force_n: Numbers,

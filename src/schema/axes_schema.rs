@@ -73,7 +73,7 @@ fn axes_table(schema: &Value) -> Value {
     })
 }
 
-/// A key, its place in the schema of a study, and that schema.
+/// Key with its position in the schema of a study, and the schema of the key.
 struct Key<'s> {
     pointer: String,
     schema: &'s Value,

@@ -13,7 +13,7 @@ pub(super) fn bound(schema: &mut Value, path: &str, is_allowed: impl Fn(f64) -> 
     }
 }
 
-/// Returns the schemas of a key: several if a table has variants.
+/// Returns all schemas of a key; a table with variants has several.
 fn at<'s>(schema: &'s mut Value, path: &str) -> Vec<&'s mut Value> {
     let (name, rest) = path
         .split_once('.')

@@ -153,7 +153,7 @@ struct Table<'s> {
     description: &'s str,
 }
 
-/// Tables that have a section, with their headings.
+/// Tables that already have a section on the page, with the headings of the sections.
 type Written = Vec<(Value, String)>;
 
 impl FileKind<'_> {
@@ -241,7 +241,7 @@ impl FileKind<'_> {
     }
 }
 
-/// Tables whose keys repeat keys of other tables.
+/// Names of the tables that repeat keys of other tables.
 const REPEATED: [&str; 2] = ["test", "axes"];
 
 impl<'s> Table<'s> {
@@ -265,7 +265,7 @@ impl<'s> Table<'s> {
         names
     }
 
-    /// Returns the description of a key of the table.
+    /// Returns the description of a key in the table.
     fn about<'k>(&self, name: &str, keys: &'k [KeyAbout]) -> Option<&'k KeyAbout> {
         let names = self.path.iter().map(|step| &step.name[..]).chain([name]);
         let path = names.collect::<Vec<_>>().join(".");
@@ -439,7 +439,7 @@ fn axis(about: Option<&KeyAbout>) -> &'static str {
     }
 }
 
-/// Returns the unit of a key. Charts show fractions as percent.
+/// Returns the unit of a key's numbers. Charts show fractions as percent.
 fn unit(name: &str, about: Option<&KeyAbout>) -> &'static str {
     match about.map_or_else(|| unit_of(name), KeyAbout::unit) {
         "%" | ":1" => "",

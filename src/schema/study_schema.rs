@@ -78,7 +78,7 @@ pub fn study_schema() -> Value {
     })
 }
 
-/// Returns the conditions that select the rules of a file's kind. A file without a table of another kind is a recognition study.
+/// Returns the conditions by which a schema selects the rules for the kind of a file. A file without a table of another kind is a recognition study.
 fn rules_of_kinds(kinds: &[KindSchema]) -> Value {
     let Some((recognition, others)) = kinds.split_first() else {
         return json!({});

@@ -19,7 +19,7 @@ All columns of the CSV files in a results folder. This page is generated from th
 - `[axes]` of a recognition study adds one column for each swept key behind the columns of the configuration. The column has the name and unit of the key.
 ";
 
-/// Number of columns from which a table refers to the same columns of a table before.
+/// Minimum number of columns that two tables share for the second table to refer to the columns of the first.
 const MIN_SHARED: usize = 4;
 
 /// Returns the page.

@@ -3,7 +3,7 @@
 use crate::{Error, Result};
 use ndarray::{ArrayView2, Axis};
 
-/// Mean squares from the analysis of variance of a two-way table that has one score per entry.
+/// Mean squares of a two-way analysis of variance with one score per entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MeanSquares {
     pub mean: f64,

@@ -113,8 +113,7 @@ pub fn about(text: &str) -> Option<About> {
     find(text).map(|entry| entry.about)
 }
 
-/// Returns the descriptions of all keys that study files of a kind may have; `kind` is a name such as `recognition` or `stability`. Returns `None` if there is
-/// no such kind.
+/// Returns the descriptions of all keys of a kind of study; `kind` is a name such as `recognition` or `stability`. Returns `None` if there is no such kind.
 pub fn keys(kind: &str) -> Option<Vec<KeyAbout>> {
     let entry = KINDS.iter().find(|entry| entry.about.table == kind)?;
     Some((entry.keys)())
@@ -135,7 +134,7 @@ pub fn load(source: &Source) -> Result<Box<dyn AnyStudy>> {
     with_folder(source.folder.clone(), || (entry.load)(source))
 }
 
-/// Reads and checks the plans of a recognition study: one plan for each combination of the values in the table `[axes]`.
+/// Reads and checks a recognition study; returns one plan for each combination of the values in `[axes]`.
 ///
 /// # Errors
 /// If the study is of another kind, or a key is unknown or out of its range.

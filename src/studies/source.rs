@@ -16,7 +16,7 @@ pub struct Source {
     pub text: String,
     /// Folder to which paths in the study file are relative.
     pub folder: PathBuf,
-    /// Path of meshes, or of a file that lists objects, from the command line; `None` keeps the study's objects.
+    /// Path of meshes or of an object file that the command line gives; `None` keeps the objects of the study.
     pub objects: Option<PathBuf>,
     /// Random seed from the command line; `None` keeps the study's seed.
     pub seed: Option<u64>,

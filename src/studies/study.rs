@@ -23,7 +23,7 @@ pub struct About {
     pub table: &'static str,
     /// Phrase of the form `a study that …` that describes the purpose of this kind of study.
     pub words: &'static str,
-    /// Rule that decides which studies of this kind may resume each other's runs.
+    /// Rule that determines which studies of this kind may resume each other's runs.
     pub resumes: Resumes,
 }
 
@@ -239,7 +239,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     }
 }
 
-/// Computes those work items of a study that the options select.
+/// Computes the work items of a study that the options select.
 ///
 /// # Errors
 /// If the journal cannot be written, a work item fails and the first failure ends the run, or the computation fails as a whole.

@@ -26,7 +26,7 @@ pub struct ChartSpec {
     pub lines: Vec<String>,
     /// Column that divides the rows into panels, one for each value; `None` for a single panel.
     pub panels: Option<String>,
-    /// Form of the marks: lines, points or tiles.
+    /// Type of the marks: lines, points or tiles.
     pub mark: Mark,
     /// Reference lines across the chart, such as the chance level, a limit or a published value.
     pub rules: Vec<Rule>,

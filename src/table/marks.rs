@@ -11,7 +11,7 @@ macro_rules! for_each_mark {
             Points points;
             /// One coloured tile for each pair of x and y values.
             Tiles {
-                /// Column that determines the tile's colour: an outcome by colour and letter, or a number by a sequential colour scale.
+                /// Column that determines the colour of the tiles: outcomes with one colour each, or numbers on a sequential colour scale.
                 fill: String,
                 /// Column whose value is written on the tile. If the value is absent, the letter or number of `fill` is written.
                 sign: Option<String>,

@@ -11,6 +11,6 @@ pub struct BinaryProblem {
     pub negative: Option<usize>,
     /// Indices of the training rows that belong to the two classes of the problem.
     pub rows: Vec<usize>,
-    /// Solution of the dual problem, with one coefficient per entry of `rows`.
+    /// Solution of the dual problem, with one coefficient for each entry of `rows`.
     pub solution: DualSolution,
 }

@@ -112,8 +112,8 @@ pub fn given_hold_out(
     split(labels, &draw_rows(labels, seed), sides)
 }
 
-/// Stratified k-fold: k splits with disjoint test rows that cover all rows. The rows of each class, and all rows, are distributed as evenly as possible:
-/// counts differ by at most 1.
+/// Stratified k-fold: k splits whose disjoint sets of test rows together contain all rows. The rows of each class, and all rows, are distributed as evenly as
+/// possible: counts differ by at most 1.
 ///
 /// # Errors
 /// If k is below 2, or a class has fewer than k rows.
@@ -165,7 +165,7 @@ pub fn group_hold_out(
     split(labels, &draw_rows(labels, seed), &sides)
 }
 
-/// Group k-fold: k splits with disjoint test rows that cover all rows; each group is in the test rows of exactly one fold.
+/// Group k-fold: k splits whose disjoint sets of test rows together contain all rows; a group is never divided.
 ///
 /// Groups are assigned in random order, larger groups first, to the fold with the fewest rows so far.
 ///

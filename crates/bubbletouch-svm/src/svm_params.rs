@@ -95,8 +95,8 @@ impl SvmParams {
         Ok(models.swap_remove(0))
     }
 
-    /// Trains one model for each C in `path` (instead of `self.c`) with shared kernel values. Returns the models in the order of `path`. The solver starts from
-    /// the solution of the next smaller C.
+    /// Trains one model for each C in `path` (in place of `self.c`) with shared kernel values. Returns the models in the order of `path`. The solver starts
+    /// from the solution of the next smaller C.
     ///
     /// # Errors
     /// If a parameter is out of range, or the data cannot be used for training.

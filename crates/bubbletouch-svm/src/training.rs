@@ -62,7 +62,7 @@ impl<T: SolverScalar> Sorted<T> {
         without_normals(problems)
     }
 
-    /// Returns whether the kernel values of one-vs-one training fit in memory: the blocks within groups of classes, between two groups, and the largest pair.
+    /// Returns whether the kernel values for one-vs-one training fit into memory: blocks within and between groups of classes, and the largest pair.
     fn fits(&self, memory: usize) -> bool {
         let largest = self.ranges().iter().map(Range::len).max().unwrap_or(0);
         Group::bytes(self, &groups(self.ranges())) + Dense::<T>::bytes(2 * largest) <= memory

@@ -51,7 +51,7 @@ impl StudyArgs {
         Ok(Path::new("results").join(self.name()?))
     }
 
-    /// The study and what replaces some of it, as arguments of another command.
+    /// Returns the study and the values replaced by options as arguments of another command.
     pub fn arguments(&self) -> Vec<String> {
         let mut words = vec![self.study.display().to_string()];
         if let Some(objects) = &self.objects {

@@ -124,7 +124,7 @@ impl WhichObject {
     }
 }
 
-/// The objects of a TOML file, or the built-in ones.
+/// Returns the objects of a TOML file, or the built-in objects if no file is given.
 pub fn catalogue(file: Option<&Path>) -> Result<Catalogue> {
     file.map_or_else(Catalogue::builtin, load_catalogue)
 }

@@ -7,7 +7,7 @@ use bubbletouch::{Error, Result};
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 
-/// Says a line on standard output.
+/// Prints a line on standard output.
 pub fn say(line: impl Display) -> Result<()> {
     write_out(format!("{line}\n").as_bytes())
 }

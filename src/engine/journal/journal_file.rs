@@ -74,7 +74,8 @@ impl Journal {
         Ok(journal)
     }
 
-    /// Reads the identity and the records of a journal, even while another process writes to it. Returns `None` if there is no file or no complete line.
+    /// Reads the identity and the records of a journal, also while another process writes to the journal. Returns `None` if there is no file or no complete
+    /// line.
     ///
     /// # Errors
     /// If the file cannot be read or is damaged.

@@ -11,7 +11,7 @@ enum Written {
     Words(String),
 }
 
-/// Serialises an optional number that may be infinite or NaN.
+/// Serialises an optional number, which may be infinite or NaN.
 ///
 /// # Errors
 /// If the serializer fails.

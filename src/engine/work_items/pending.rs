@@ -15,7 +15,7 @@ pub struct PendingItems<'a, R> {
     /// Receiver of progress reports; each finished item advances it by one step.
     pub progress: &'a dyn Progress,
     items: &'a [WorkItem],
-    /// For each work item of the study, whether it is pending.
+    /// Whether each work item of the study is pending.
     is_pending: Vec<bool>,
     /// Results of the items that this run has finished, by item number.
     results: Mutex<BTreeMap<usize, ItemResult<R>>>,
@@ -70,7 +70,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.keep(number, result)
     }
 
-    /// Computes data that several pending work items need. If `make` fails, all pending items in `numbers` are recorded as failed, and `None` is returned.
+    /// Computes data that several pending work items use. If `make` fails, all pending items in `numbers` are recorded as failed, and `None` is returned.
     ///
     /// # Errors
     /// If the journal cannot be written, or if `make` fails and the first failure ends the run.

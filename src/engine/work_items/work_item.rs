@@ -22,7 +22,7 @@ pub struct WorkItem {
 }
 
 impl WorkItem {
-    /// Creates a work item whose name describes all inputs of its rows.
+    /// Creates a work item; its name must describe all inputs of its rows.
     pub fn new(name: String, group: usize) -> Self {
         Self {
             name,

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::inputs::units::{MAX_FRAMES, MAX_SIDE};
 use ndarray::{Array2, ArrayD};
 
-/// Maximum ratio of the last two axis lengths for which these axes are assumed to be the rows and columns of a grid. With a larger value, time may be mistaken
+/// Maximum ratio of the last two axis lengths for which these two axes are interpreted as rows and columns of a grid. With a larger value, time may be mistaken
 /// for taxels; with a smaller value, the order must be given for more arrays.
 const MAX_ASPECT: usize = 6;
 /// Maximum length at which an array's last axis is assumed to contain the values of one taxel (three force components).
@@ -42,7 +42,7 @@ pub struct FrameShape {
     pub has_grid: bool,
     /// Number of recorded values per taxel.
     n_values: usize,
-    /// Numbers of the file's axes in the order touch, frame, taxel, y, x.
+    /// Indices of the file's axes in the order touch, frame, taxel, y, x.
     axes: Vec<usize>,
     /// Letters of the axes in their order in the file.
     order: String,
@@ -54,7 +54,7 @@ impl FrameShape {
         self.n_values * self.rows * self.columns
     }
 
-    /// Returns the axis order and the expected axis lengths of an additional array with `n_values` values per taxel. The shape of the frames is `shape`; the
+    /// Returns the axis order and the axis lengths that an additional array with `n_values` values per taxel must have. The shape of the frames is `shape`; the
     /// additional axis c comes before the axes of position.
     pub fn beside(&self, shape: &[usize], n_values: usize) -> (String, Vec<usize>) {
         let (mut order, mut shape) = (self.order.clone(), shape.to_owned());

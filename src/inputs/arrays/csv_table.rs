@@ -1,4 +1,4 @@
-//! CSV tables with one row per line. Semicolons, tabs and spaces are also accepted as separators, and one header line is allowed.
+//! Reader of CSV tables with one row per line. Semicolons, tabs and spaces are also accepted as separators, and one header line is allowed.
 
 use crate::error::{Error, Result};
 use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};

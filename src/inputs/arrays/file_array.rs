@@ -22,7 +22,7 @@ pub enum Elements {
     Texts(Vec<String>),
 }
 
-/// Array as stored in a file.
+/// Array as it is stored in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileArray {
     /// Name of the file and of the archive member, for error messages.

@@ -38,7 +38,7 @@ impl ClassLabels {
     }
 }
 
-/// Returns the distinct values: integers ascending, texts in the order of first occurrence.
+/// Returns the distinct values: integers in ascending order, texts in the order of first occurrence.
 fn distinct(values: &[KeyValue]) -> Vec<KeyValue> {
     let all = values.iter().cloned();
     match values.first() {

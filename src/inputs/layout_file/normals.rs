@@ -1,4 +1,4 @@
-//! Computation of a mesh's surface normals at the positions of taxels.
+//! Computation of surface normals of a mesh at the positions of taxels.
 
 use crate::error::{Error, Result};
 use crate::mesh::{Surface, TriangleMesh};

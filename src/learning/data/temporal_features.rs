@@ -47,8 +47,8 @@ pub enum TemporalFeatures {
 /// Number of features that describe the course of a touch.
 const N_COURSE: usize = 10;
 
-/// Level of contact strength above which a frame counts as in contact, as a fraction of the range from the lowest to the highest level. With a smaller value,
-/// noise counts as contact; with a larger value, weak contacts are missed.
+/// Contact strength above which a frame counts as in contact, as a fraction of the range from the lowest to the highest strength. With a smaller value, noise
+/// counts as contact; with a larger value, weak contacts are missed.
 const CONTACT_LEVEL: f64 = 0.5;
 
 impl TemporalFeatures {
@@ -229,7 +229,7 @@ mod tests {
         row.to_vec()
     }
 
-    /// Returns a test touch whose frames have one non-zero measurement each, except the fourth frame.
+    /// Returns a test touch: every frame has a single non-zero measurement, except the fourth frame.
     fn touch() -> Array2<f64> {
         array![
             [0.0, 0.0],

@@ -129,7 +129,7 @@ impl<'a> AnswerModel<'a> {
         model
     }
 
-    /// Sets the parameter returned by `number` to the candidate value with the highest likelihood.
+    /// Sets the parameter that `number` returns to the candidate value with the highest likelihood.
     fn choose<const N: usize>(&mut self, values: [f64; N], number: impl Fn(&mut Self) -> &mut f64) {
         let likelihoods = values.map(|value| {
             *number(self) = value;
@@ -188,7 +188,7 @@ impl<'a> AnswerModel<'a> {
 pub struct PoseAnswers {
     /// Conditional probability of each label given each object, n_objects × n_answers, positive; each row sums to 1.
     given: Array2<f64>,
-    /// For each object, the entropy of its label probabilities, nats.
+    /// Entropy of the label probabilities of each object, nats.
     entropies: Array1<f64>,
 }
 
@@ -207,7 +207,7 @@ impl PoseAnswers {
         *belief /= belief.sum();
     }
 
-    /// Returns the mutual information of object and label in this pose: the expected reduction of the entropy of the belief over objects, nats.
+    /// Returns the mutual information of object and label in this pose, nats: the expected reduction of the entropy of `belief`.
     pub fn information(&self, belief: &Array1<f64>) -> f64 {
         entropy(belief.dot(&self.given).view()) - belief.dot(&self.entropies)
     }

@@ -21,7 +21,7 @@ pub(super) fn is_more_better(view: &View) -> bool {
     !matches!(y, Ok(Role::Value(Better::Less) | Role::Cost))
 }
 
-/// Returns the legend text that explains the Pareto front.
+/// Returns the legend text for the line of the Pareto front.
 pub(super) fn words(view: &View) -> String {
     let cost = match view.column(&view.spec.x) {
         Ok(x) if matches!(&x.column.unit[..], "s" | "ms" | "us" | "µs") => "faster",
@@ -63,7 +63,7 @@ impl<'a> Front<'a> {
         points.any(|place| place.row == row)
     }
 
-    /// Returns the points of all Pareto fronts with their numbers, panel by panel along x; none if there are more than can be listed.
+    /// Returns the numbered points of all Pareto fronts, panel by panel along x; returns none if there are too many to list.
     pub fn numbered(&self) -> impl Iterator<Item = (usize, &'a Place)> {
         let all = self.fronts.iter().flat_map(|front| &front.1);
         let n = all.clone().count();

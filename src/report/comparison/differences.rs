@@ -175,7 +175,7 @@ impl<'a> Settings<'a> {
         (!number.is_nan()).then_some(number as usize)
     }
 
-    /// Returns the numbers of a column in the given rows as scores, each with the trial of its row.
+    /// Returns the numbers of a column in the given rows as scores of trials.
     fn repeats(&self, column: &str, rows: &[usize]) -> Vec<Repeat> {
         let repeats = rows.iter().map(|&row| {
             let trial = self.count("trial", row).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Exact comparison of two versions of a table: common rows, and columns in which the entries of such rows differ.
+//! Exact comparison of two versions of a table: the common rows, and the columns whose entries differ in these rows.
 //!
 //! The module `differences` compares means over trials. This module compares single entries exactly. The entries include outcomes, notes, numbers
 //! that one version lacks, and tables that identify configurations by number.
@@ -53,7 +53,7 @@ impl ColumnEntries {
     }
 }
 
-/// Compares the tables that both folders contain, in the order of the second folder.
+/// Compares all tables that exist in both folders, in the order of the second folder.
 pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
     let numbers = [first, second].map(configurations);
     let with_files = second.iter().filter(|table| !table.csv.is_empty());

@@ -115,7 +115,7 @@ impl<'a> Ranked<'a> {
         Self { table, ratios }
     }
 
-    /// Pairs each compression ratio with the nearest ratio of the other table, if both can result from rounding one nominal ratio to whole measurements.
+    /// Pairs each compression ratio with the nearest ratio of the other table, if both can result from rounding one ratio.
     fn like(table: &'a Table, other: &Table) -> Self {
         let (ours, theirs) = (nominal_ratios(table), nominal_ratios(other));
         let nearest = |of: &NominalRatio, among: &[NominalRatio]| {

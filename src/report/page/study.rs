@@ -97,7 +97,7 @@ fn charts_html(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     charts.collect::<String>() + &not_drawn(&beside.left_out)
 }
 
-/// Returns an HTML sentence about the charts that have no file, and how to draw them.
+/// Returns an HTML sentence that states which charts were not drawn and how to draw them.
 fn not_drawn(left_out: &[String]) -> String {
     let (Some(first), Some(last)) = (left_out.first(), left_out.last()) else {
         return String::new();

@@ -14,7 +14,7 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
 
-/// Writes one frame of deflections of a grid (ny × nx, metres) as `.csv`, `.npz` or `.png`, depending on the file extension.
+/// Writes one frame of deflections (ny × nx, metres) as `.csv`, `.npz` or `.png`, as the file extension requires.
 ///
 /// - `.csv`: ny lines of nx numbers with 17 significant digits, no header.
 /// - `.npz`: arrays `deflection` (ny × nx), `x` (nx) and `y` (ny), metres, f64; opens with `np.load`.

@@ -66,7 +66,7 @@ pub fn pressure_text(
     Ok(text)
 }
 
-/// Returns a sentence about a frame: the position of its largest value, and the number of taxels above zero.
+/// Returns a sentence about a frame: the position of its largest value, and the number of its positive values.
 pub(crate) fn peak_sentence(frame: &Array2<f64>, pitch_mm: f64, quantity: Quantity) -> String {
     let (ny, nx) = frame.dim();
     let touched = frame.iter().filter(|&&value| value > 0.0).count();

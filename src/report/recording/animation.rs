@@ -87,7 +87,7 @@ pub fn shown_frames(time: &[f64], playback: &Playback) -> Result<Vec<ShownFrame>
     Ok(shown)
 }
 
-/// Writes a patch of a recording as an animated PNG that loops, with one colour scale for all frames. Returns the frames that are shown.
+/// Writes the frames of a patch in a recording as an endless animated PNG with one colour scale. Returns the frames that are shown.
 ///
 /// The memory holds only one picture and the file.
 ///

@@ -97,7 +97,7 @@ pub struct RecordingHeader {
     pub about: Value,
 }
 
-/// Floating-point type of the elements of a recorded array, in little-endian byte order; NumPy's names are `<f4` and `<f8`.
+/// Floating-point type of recorded arrays, little-endian: `<f4` or `<f8` in NumPy's notation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Element {
     Single = 4,
@@ -137,7 +137,7 @@ impl Member {
         self.n_numbers() * self.element as usize
     }
 
-    /// Returns the shape of the whole array if it has `n_rows` rows.
+    /// Returns the shape of the complete array for `n_rows` rows.
     pub fn shape(&self, n_rows: usize) -> Vec<usize> {
         [&[n_rows], &self.row[..]].concat()
     }

@@ -1,4 +1,4 @@
-//! Reader of recordings: reads one row or one block of rows at a time.
+//! Reader of recordings, which reads one row or one block of rows at a time.
 
 use super::header::{Element, Member, RecordingHeader};
 use crate::error::{Error, Result};

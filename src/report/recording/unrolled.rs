@@ -1,4 +1,4 @@
-//! Projection of a skin to a plane: the position of each taxel in the picture.
+//! Projection of a skin to a plane, which gives the position of each taxel in the picture.
 //!
 //! Flat skins are seen from above. Cylinders are unrolled. Parts of spheres are flattened about their middle with true distances from it (azimuthal equidistant
 //! projection). A skin is detected as a cylinder or sphere if its rest centres p and axes n satisfy p = c + R n (for a cylinder, without the axial parts). Any

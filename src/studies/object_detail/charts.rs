@@ -104,7 +104,7 @@ impl ObjectDetailStudy {
     }
 }
 
-/// Returns the table of classifiers; returns `None` if the study trained none.
+/// Returns the table of trained classifiers; `None` if the study has trained none.
 fn learned(tables: &[Table]) -> Option<&Table> {
     tables.iter().find(|table| table.file == RECOGNITION.name())
 }
@@ -117,8 +117,8 @@ const OF_SPHERES: [&str; 4] = [
     "medial_spheres",
 ];
 
-/// Returns a sentence on the classifier whose accuracy on its training models exceeds its accuracy on the exact meshes the most. Returns `None` if no
-/// classifier has a higher accuracy on its models.
+/// Returns a sentence on the classifier with the largest drop in accuracy from its training models to the exact meshes. Returns `None` if no classifier has a
+/// higher accuracy on its models.
 fn misled_most(learned: &Table) -> Option<String> {
     let shares = |row: usize| {
         ["accuracy_on_mesh", "accuracy_on_itself"].map(|share| learned.number(share, row))

@@ -67,7 +67,7 @@ const N_STEPS: usize = 30;
 const N_REPEATS: usize = 3;
 
 impl Truth {
-    /// Touches an exact model of an object. The poses are those in which other studies touch an object of this name.
+    /// Computes the touches of the exact model of an object. The poses are those in which other studies touch an object of this name.
     pub fn new(
         (name, exact): (&str, Model),
         array: &TaxelArray,
@@ -167,8 +167,8 @@ impl Truth {
         errors
     }
 
-    /// Returns the smallest and largest useful retraction of the patch, metres. Outside of this range, every touch misses the model, or is deeper on the model
-    /// than on the mesh at every taxel.
+    /// Returns the smallest and the largest patch retraction that can reduce the error of a model, metres. Outside of this range, every touch misses the model,
+    /// or is deeper on the model than on the mesh at every taxel.
     fn offset_range(&self, model: &Model) -> Option<(f64, f64)> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();

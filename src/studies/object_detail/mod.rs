@@ -1,4 +1,4 @@
-//! Object-detail studies: how much detail of an object's model a skin can detect, and what the detail costs.
+//! Object-detail studies, which measure how much model detail a skin can detect, and the cost of this detail.
 //!
 //! A file with an `[object_detail]` table is an object-detail study: [`ObjectDetailStudySpec`] (as written) → [`ObjectDetailPlan`]
 //! (checked, SI) → [`ObjectDetailStudy`] → tables of [`rows`].

@@ -89,7 +89,7 @@ impl ObjectDetailPlan {
         })
     }
 
-    /// Returns the keys of `[object_detail.recognition]`; returns `None` if the study has no such table.
+    /// Returns the keys of `[object_detail.recognition]`; `None` if the study has no such table.
     pub fn recognition(&self) -> Option<&DetailRecognitionSpec> {
         self.spec.object_detail.recognition.as_ref()
     }

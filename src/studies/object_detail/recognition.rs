@@ -22,7 +22,7 @@ use crate::world::Placement;
 use ndarray::Array2;
 use std::ops::Range;
 
-/// Classifier that is trained on models of one method and tolerance.
+/// Classifier that is trained on touches of models of one method and tolerance.
 pub(super) struct Learned {
     /// Index of the method and tolerance of the models with which the classifier is trained.
     number: usize,
@@ -68,7 +68,7 @@ pub(super) struct Sensor<'a> {
 pub(super) struct ModelMeasurements {
     /// Measurements of the touches, shape (n_touches, m).
     measurements: Array2<f64>,
-    /// Mean deflection error if the model and the mesh are pressed to equal depths past their own first contact, mm.
+    /// Mean deflection error for equal depths past the first contact of the model and of the mesh, mm.
     own_contact_error_mm: f64,
 }
 
@@ -86,8 +86,8 @@ impl<'a> Sensor<'a> {
         })
     }
 
-    /// Returns the measurements of touches for each model of an object; the first model is the mesh. All models are touched in equal poses, while the object
-    /// lies in its stable poses.
+    /// Returns the measurements of all touches for each model of an object; the first model is the exact mesh. All models are touched in equal poses, while the
+    /// object lies in its stable poses.
     pub fn measure(&self, made: &Measured) -> Result<Vec<ModelMeasurements>> {
         let object =
             |variant: &Variant| Object::of_one_part(&made.mesh.name, variant.model.clone());

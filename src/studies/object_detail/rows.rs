@@ -54,7 +54,7 @@ pub struct DetailScore {
     error_after_offset_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log;
     /// 95th percentile of |δ − δ*| over taxels while the patch is retracted by `offset_mm`, mm. Here δ is the deflection on the model and δ* on the mesh.
     error_after_offset_p95_mm: f64 => Value(Less) "deflection error after offset, 95th percentile" in "mm": Log;
-    /// Deflection error if mesh and model are pressed to equal depths past their own first contact, as other studies do, mm.
+    /// Deflection error for equal depths past the first contact of mesh and model, as in other studies, mm.
     error_own_contact_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
 } }
 
@@ -160,7 +160,7 @@ pub struct DetailRecognition {
 } }
 
 row! {
-/// Computing time per touch for a method and tolerance. A row of `object_detail_cost.csv` is a [`DetailSummary`] followed by a `LevelTime`.
+/// Computing time per touch for one method and tolerance. A row of `object_detail_cost.csv` is a [`DetailSummary`] followed by a `LevelTime`.
 pub struct LevelTime {
     /// Computing time of a touch of the model on one thread, median over objects, µs.
     us_per_touch_median: f64 => Cost "time of a touch, one thread" in "µs": Log;

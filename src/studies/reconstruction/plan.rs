@@ -235,7 +235,7 @@ impl Check<'_> {
         }
     }
 
-    /// Returns an error if the study file sets a solver limit that none of its solvers uses.
+    /// Returns an error if the study sets a solver limit that none of its solvers uses.
     fn efforts(&self, wanted: &ReconstructionSpec) -> Result<()> {
         let (given, usual) = (wanted.effort(), Effort::default());
         let pursuit = (Solver::Omp, "omp");

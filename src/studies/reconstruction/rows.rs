@@ -52,7 +52,7 @@ impl ReconstructionConfiguration {
         )
     }
 
-    /// Returns the name of the work item that computes the isometry statistics of a dictionary with this configuration's measurements.
+    /// Returns the name of the work item that computes the isometry statistics of a dictionary with the measurements of this configuration.
     pub(super) fn isometry_name(&self, basis: Basis) -> String {
         let (ensemble, m) = (self.ensemble, self.measurements);
         format!("isometry of {ensemble:?}, m = {m}, {basis:?}")
@@ -101,7 +101,7 @@ pub struct ReconstructionPareto {
     error: f64 => Value(Less): Log;
     /// Reconstruction time per frame on one core, µs; the value of the column `us_per_frame` in `timing.csv`.
     us_per_frame: f64 => Cost "time of a frame on one core" in "us": Log;
-    /// Number of frames reconstructed per second on one core, equal to the column `frames_per_s_per_core` of `timing.csv`.
+    /// Number of frames reconstructed per second on one core; the value of the column `frames_per_s_per_core` in `timing.csv`.
     frames_per_s_per_core: f64 => Value(More) "frames a second on one core": Log;
     /// Whether the configuration is on the Pareto front. On the front, no other configuration with equal noise is at least as fast and as accurate, and better
     /// in one of the two.

@@ -45,7 +45,8 @@ impl Truth {
         }
     }
 
-    /// Returns the score over all test frames. The slice `full` contains the squared error ‖y − x‖² of each noisy frame y, where x is the clean frame.
+    /// Returns the score of the reconstructions of all test frames. The slice `full` contains the squared error ‖y − x‖² of each noisy frame y, where x is the
+    /// clean frame.
     pub(super) fn score(&self, found: &[Found], full: &[f64]) -> ReconstructionScore {
         let n_frames = self.squares.len();
         let errors: Vec<f64> = found.iter().flat_map(|f| f.errors.clone()).collect();

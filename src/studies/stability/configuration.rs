@@ -1,4 +1,4 @@
-//! Simulation of one configuration: a scene is simulated by a method, and the result is evaluated.
+//! Simulation and evaluation of one configuration: a scene simulated by a method.
 
 use crate::contact::equilibrium::{
     EquilibriumSolver, FreeObject, Ground, Outcome as EquilibriumOutcome, PlacedSkin,

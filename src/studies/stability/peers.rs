@@ -31,7 +31,7 @@ pub(super) fn peer_rows(plan: &StabilityPlan) -> Result<(Vec<StabilityRow>, Stri
     Ok((rows, sources.join("; ")))
 }
 
-/// Returns whether the plan has a configuration that differs from the given one only in the method.
+/// Returns whether the plan contains a configuration that differs from the given one only in its method.
 fn is_asked(plan: &StabilityPlan, configuration: &StabilityConfiguration) -> bool {
     let is_like = |(other, _): &(StabilityConfiguration, _)| {
         let of_method = StabilityConfiguration {

@@ -62,7 +62,7 @@ pub struct StabilityScore {
     damping_n_s_per_m: f64 => Note "taxel damping" in "N s/m": Log;
     /// Contact stiffness κ, N/m, of a method whose contact force is κ times the penetration; empty for other methods.
     contact_stiffness_n_per_m: Option<f64> => Note "contact stiffness" in "N/m": Log;
-    /// Whether the result of the simulation is right, or else the kind of failure.
+    /// Outcome of the simulation: a correct result, or the kind of failure.
     outcome: Outcome => Outcome;
     /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels; empty if the simulation failed.
     #[serde(with = "any_number")]
@@ -127,7 +127,7 @@ pub struct Joints {
     joints: usize => Condition: Log;
     /// Load of a taxel, kg: the mass M of the ball divided by the number of taxels.
     load_kg: f64 => Note "load of a taxel" in "kg": Log;
-    /// Whether the result of the simulation is right, or else the kind of failure.
+    /// Outcome of the simulation: a correct result, or the kind of failure.
     outcome: Outcome => Outcome;
     /// Wall-clock time per second of simulated time, s. If the method does not step through time, total wall-clock time, s.
     time_s: f64 => Cost "computing a simulated second" in "s": Log;
@@ -163,5 +163,5 @@ pub enum Outcome {
     NotFinite,
 }
 
-/// Largest force imbalance and deflection error with which a simulation counts as right, dimensionless.
+/// Largest force imbalance and deflection error of a correct simulation, dimensionless.
 pub const TOLERANCE: f64 = 0.01;

@@ -170,8 +170,8 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
 /// Minimum number of array sizes with equal load per taxel that form a series of growing arrays.
 const LEAST_RUNGS: usize = 3;
 
-/// Selects the load per taxel that the plunger configurations have on the most array sizes, and returns their rows. Returns no rows if fewer than three array
-/// sizes share a load.
+/// Returns the results of the plunger scene for the load per taxel that was simulated on the most array sizes. Returns no rows if fewer than three array sizes
+/// share a load.
 fn joints(rows: &[StabilityRow]) -> Vec<Joints> {
     let plungers = rows.iter();
     let plungers =

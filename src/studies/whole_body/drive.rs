@@ -90,7 +90,7 @@ impl<'a> Drive<'a> {
         self.state.press(self.body, &self.object, &pose, FORGOTTEN)
     }
 
-    /// Returns the numbers of the taxels that the last press touched, with their deflections, metres.
+    /// Returns the numbers of the taxels that the last press touched, and their deflections in metres.
     pub fn touched(&self) -> impl Iterator<Item = (usize, f64)> {
         self.state.touched(self.body)
     }

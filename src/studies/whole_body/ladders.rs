@@ -41,7 +41,7 @@ pub(super) struct ScalingPoint {
     n_spheres: usize,
 }
 
-/// Returns all sizes of all scaling series that the specification lists.
+/// Returns all sizes of all scaling series in the specification.
 pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
     let small = SMALL.0 * SMALL.1 * 10_000;
     let mut rungs = Vec::new();
@@ -81,7 +81,7 @@ pub(super) fn rungs(wanted: &LaddersSpec) -> Vec<ScalingPoint> {
     rungs
 }
 
-/// Simulates and times one size of a scaling series.
+/// Simulates one size of a scaling series and measures its computing times.
 pub(super) fn climb(plan: &WholeBodyPlan, rung: &ScalingPoint) -> Result<Driven> {
     let sleeve = Sleeve::of_body(rung.n_taxels, rung.sleeve, plan.pitch);
     let (body, patches) = sleeve.body(rung.n_taxels, plan.taxel, plan.pitch)?;

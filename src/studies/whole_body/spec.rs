@@ -31,7 +31,7 @@ pub struct WholeBodySpec {
     /// Whether the flat ends of cylinders are also covered with skin. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub flat_ends: bool,
-    /// Radius ρ of a taxel, mm, positive. Default: half the pitch.
+    /// Radius ρ of a taxel, mm, ρ > 0. Default: half the pitch.
     pub taxel_radius_mm: Option<f64>,
     /// Stroke s of a taxel, mm, positive: its maximum deflection. Default: 2.
     #[serde(default = "number::<2>")]

@@ -29,7 +29,7 @@ pub struct ClassifierAbout {
 pub type Train = fn(&Classifier, &Dataset, f64, &dyn Streams) -> Result<Arc<dyn ClassModel>>;
 
 impl ClassifierAbout {
-    /// Creates the descriptor of a classifier without C and without parameters.
+    /// Creates the descriptor of a classifier that has neither a penalty C nor parameters.
     pub(crate) const fn new(words: &'static str, train: Train) -> Self {
         Self {
             words,

@@ -66,7 +66,7 @@ impl KNearest {
         })
     }
 
-    /// For each row of features, returns the indices of the nearest training rows, nearest first (n_rows × n_neighbours).
+    /// Returns the indices of the nearest training rows for each row of features, nearest first (n_rows × n_neighbours).
     ///
     /// # Errors
     /// If the number of columns differs from training, or a feature is NaN or infinite.

@@ -8,7 +8,7 @@ use ndarray::Array1;
 /// value, more iterations are needed.
 const MEMORY: usize = 10;
 
-/// Minimum decrease of the function in an accepted step, as a fraction of the decrease that the gradient predicts (Armijo's condition).
+/// Minimum decrease of the function in an accepted step, relative to the decrease predicted by the gradient (Armijo's condition).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
 /// Limit below which relative changes of the function value are treated as rounding errors.

@@ -25,8 +25,7 @@ pub const MAX_ITERATIONS: usize = 1000;
 pub struct LogisticParams {
     /// Weight C > 0 of the data relative to the regularisation.
     pub c: f64,
-    /// Stopping tolerance, above 0: the largest component of the gradient of the mean loss (the objective divided by `C n_rows`). scikit-learn's default is
-    /// 1e-4.
+    /// Stopping tolerance, above 0: the largest component of the gradient of the mean loss (the objective divided by `C n_rows`).
     pub tolerance: f64,
     /// Maximum number of iterations. If it is reached, the solver stops and the model is marked as capped.
     pub max_iterations: usize,

@@ -5,7 +5,7 @@ use crate::kernel::Gamma;
 use crate::{Error, Result};
 use std::collections::BTreeMap;
 
-/// Largest count that a parameter allows. Larger counts exceed memory or take too long.
+/// Largest allowed value of integer parameters. Larger counts exceed memory or take too long.
 pub const MAX_COUNT: f64 = 1e8;
 
 /// Declaration of a numeric parameter of a classifier.
@@ -19,7 +19,7 @@ pub struct Parameter {
     pub is_integer: bool,
     /// Smallest and largest value that the parameter allows.
     pub range: [f64; 2],
-    /// Default of the parameter, which holds if no value is given.
+    /// Default value of the parameter, used if no value is given.
     pub default: DefaultValue,
     /// Whether a study that is written with all defaults contains the parameter even if none of its classifiers uses it.
     pub is_always_written: bool,

@@ -12,7 +12,7 @@ const DEGREE: Parameter = Parameter::integer(
 )
 .always_written();
 
-/// Constant of the polynomial kernel; the default 1 differs from scikit-learn's 0, which omits all lower powers.
+/// Constant of the polynomial kernel; the default 1 (0 in scikit-learn) includes all lower powers.
 const COEF0: Parameter = Parameter::real(
     "coef0",
     "constant c₀ of the polynomial kernel",

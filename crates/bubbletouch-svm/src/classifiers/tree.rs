@@ -176,7 +176,7 @@ impl Grower<'_> {
         (0..).zip(counts).filter(|&(_, count)| count > 0).collect()
     }
 
-    /// Returns the best split of the given rows by one feature; `None` if the feature is constant.
+    /// Returns the best split of the given rows by one feature; `None` if the feature has equal values in all rows.
     fn split(&mut self, feature: usize, rows: &[u32]) -> Option<Split> {
         self.keys.clear();
         self.keys.extend(rows.iter().map(|&row| {

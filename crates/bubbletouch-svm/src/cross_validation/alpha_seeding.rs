@@ -28,8 +28,8 @@ impl AlphaSeeding {
         Self { sides }
     }
 
-    /// Returns the coefficients β with the values of removed rows transferred to the most similar added rows. Returns `None` if a removed row has no added row
-    /// left. `similar` returns the kernel values of a row with all rows.
+    /// Returns the coefficients β after the values of removed rows were transferred to the most similar added rows. Returns `None` if a removed row has no
+    /// added row left. `similar` returns the kernel values of a row with all rows.
     pub fn transfer<'k, T: Scalar>(
         &self,
         beta: &[f64],

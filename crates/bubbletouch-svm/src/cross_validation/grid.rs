@@ -21,8 +21,8 @@ use crate::training::Goal;
 /// several passes.
 const FOLDS_AT_ONCE: usize = 8;
 
-/// Number of classes per block in one-vs-one cross-validation. The pairs between two blocks of classes are solved together and share kernel values (5 MB for
-/// 140 rows per class).
+/// Number of classes per block of the kernel matrix in one-vs-one cross-validation. The pairs between two blocks of classes are solved together and share
+/// kernel values (5 MB for 140 rows per class).
 const CLASSES_AT_ONCE: usize = 8;
 
 /// Data of a cross-validated grid search over kernels and C: training rows, folds and multi-class strategy.

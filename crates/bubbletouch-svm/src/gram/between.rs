@@ -83,7 +83,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         self.part((&self.own, self.rows.start), rows, columns)
     }
 
-    /// Selects kernel values between rows of another group and rows of this group from the values that `with` computed.
+    /// Returns kernel values between rows of another group and rows of this group, selected from the values computed by `with`.
     pub fn part_with<'v>(
         &self,
         other: &Self,

@@ -4,8 +4,8 @@
 
 use crate::linalg::scalar::Scalar;
 
-/// Minimum curvature of the dual objective along a pair of variables, relative to the largest diagonal entry. Equal rows with different labels have zero
-/// curvature.
+/// Minimum curvature of the dual objective along a pair of variables, relative to the largest diagonal entry of the Gram matrix. Equal rows with different
+/// labels have zero curvature.
 const SMALLEST_CURVATURE: f64 = 1e-12;
 
 /// Maximum number of rows for which all inverse curvatures of a Gram matrix are stored (4 MB in f32); for larger matrices, one row is stored.
@@ -21,7 +21,7 @@ fn smallest<T: Scalar>(diagonal: &[T]) -> T {
 #[derive(Clone, Debug)]
 pub(crate) struct InverseCurvatures<T> {
     values: Vec<T>,
-    /// For each row of `values`, whether the row has been computed. If this list is empty, `values` contains only the row that was requested last.
+    /// Whether each row of `values` has been computed. If this list is empty, `values` contains only the row that was requested last.
     is_here: Vec<bool>,
     smallest: T,
 }
@@ -47,7 +47,7 @@ impl<T: Scalar> InverseCurvatures<T> {
         self.smallest = smallest(diagonal);
     }
 
-    /// Returns the minimum curvature that is used in pairwise steps.
+    /// Returns the minimum curvature that pairwise steps use.
     pub fn smallest(&self) -> T {
         self.smallest
     }
@@ -67,7 +67,7 @@ impl<T: Scalar> InverseCurvatures<T> {
     }
 }
 
-/// For one row i, writes the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)` of all pairs (i, j); `own` is K_ii. Curvatures below `smallest` are replaced by
+/// Writes the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)` of all pairs (i, j) for one row i; `own` is K_ii. Curvatures below `smallest` are replaced by
 /// this value.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn write<T: Scalar>(to: &mut [T], (row, diagonal): (&[T], &[T]), (own, smallest): (T, T)) {

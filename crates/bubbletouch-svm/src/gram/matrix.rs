@@ -87,7 +87,8 @@ impl<T: Scalar> Dense<T> {
         self.refill(whole.nrows(), |i, to| copy(to, whole.row(i)));
     }
 
-    /// Builds the Gram matrix of two groups of rows. The blocks within the groups are given; `write` computes the block between the second and the first group.
+    /// Builds the Gram matrix of two groups of rows from its four blocks. The blocks within the groups are given; `write` computes the block between the second
+    /// and the first group.
     pub fn of_blocks(
         &mut self,
         [own, others]: [ArrayView2<T>; 2],

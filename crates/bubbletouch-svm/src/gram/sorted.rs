@@ -26,7 +26,7 @@ pub(crate) struct Sorted<T> {
     order: Vec<usize>,
     /// Position of each original row in the sorted order.
     place: Vec<usize>,
-    /// For each class, the range of its rows in sorted order.
+    /// Range of each class's rows in the sorted order.
     ranges: Vec<Range<usize>>,
     classes: Vec<usize>,
     kernel: KernelFunction,
@@ -110,12 +110,12 @@ impl<T: Scalar> Sorted<T> {
         &self.points
     }
 
-    /// Returns the centred rows without the information about classes.
+    /// Returns the centred rows without their class labels.
     pub fn into_points(self) -> CenteredRows<T> {
         self.points
     }
 
-    /// For each sorted row, returns its original row number.
+    /// Returns the original row number of each sorted row.
     pub fn order(&self) -> &[usize] {
         &self.order
     }
@@ -125,7 +125,7 @@ impl<T: Scalar> Sorted<T> {
         &self.place
     }
 
-    /// Returns the kernel function of all binary problems.
+    /// Returns the kernel function that all binary problems use.
     pub fn kernel(&self) -> KernelFunction {
         self.kernel
     }

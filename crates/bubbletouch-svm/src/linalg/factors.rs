@@ -182,7 +182,7 @@ mod tests {
         side
     }
 
-    /// Asserts that the matrix times the solution of its factors equals the right-hand side.
+    /// Asserts that the solution computed from the factors satisfies the linear equations of the matrix.
     fn assert_solves((rows, inverse): &(Vec<Lanes>, Vec<f64>), matrix: &[[f64; N]]) {
         let both = |(a, b): (Lanes, Lanes)| [a, b];
         let mut sides: Vec<[Lanes; 2]> = side(0).into_iter().zip(side(1)).map(both).collect();

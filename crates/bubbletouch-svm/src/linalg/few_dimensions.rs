@@ -1,10 +1,10 @@
-//! Low-dimensional subspace spanned by some of many rows.
+//! Low-dimensional subspace that is spanned by some of the rows.
 
 use ndarray::{Array1, Array2, ArrayView2};
 
 use crate::linalg::scalar::Scalar;
 
-/// Minimum norm of a row's part that is orthogonal to the previous directions, relative to the norm of the row. Below it, the row adds no direction.
+/// Minimum norm of the component of a row that is orthogonal to all previous directions, relative to the row's norm. Below it, the row adds no direction.
 const NEW_SHARE: f64 = 1e-2;
 
 /// Returns up to `n_dimensions` orthonormal vectors of length m in the space that is spanned by selected rows (n × m). The rows are selected at even intervals

@@ -57,7 +57,7 @@ impl Scalar for f32 {
 /// 2 units in the last place; results below the smallest normal number are 0. The code has no branches, so that it is vectorised.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn exponentials_f32(distances: &mut [f32], gamma: f32) {
-    /// Rounding constant 1.5 · 2²³: adding it to a number rounds the number to an integer, which is then in the low bits of the sum.
+    /// Rounding constant 1.5 · 2²³; the sum of this constant and a number contains the rounded number in its low bits.
     const ROUND: f32 = 12_582_912.0;
     /// Smallest x for which `exp(x)` is a normal number in f32.
     const LOWEST: f32 = -87.336_54;

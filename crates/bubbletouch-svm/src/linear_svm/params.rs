@@ -10,8 +10,7 @@ pub const MAX_PASSES: usize = 1000;
 pub struct LinearSvmParams {
     /// Penalty C for each unit of margin violation, above 0.
     pub c: f64,
-    /// Stopping tolerance, above 0: the difference between the largest and smallest projected gradient, in units of the margin. scikit-learn's default for
-    /// LinearSVC is 1e-4.
+    /// Stopping tolerance, above 0: difference between the largest and smallest projected gradient, in units of the margin.
     pub tolerance: f64,
     /// Maximum number of passes over the rows, at least 1. At this limit, the solver stops and marks the problem as capped.
     pub max_passes: usize,

@@ -69,7 +69,7 @@ impl<T: Scalar> Pairs<T> {
         .collect()
     }
 
-    /// For each of a few feature rows, returns the class that wins against every other class; only the required kernel values are computed.
+    /// Returns the class that wins against every other class for each of a few feature rows; computes only the required kernel values.
     pub fn condorcet_winners_by_few(
         &self,
         rows: &CenteredRows<T>,

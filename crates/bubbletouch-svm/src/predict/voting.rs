@@ -63,7 +63,7 @@ impl Voting {
 pub(crate) enum VoteCounter {
     /// For one-vs-one: number of votes for each class and row, n_classes × n_rows.
     Counts(Array2<u16>),
-    /// For one-vs-rest: for each row, the largest decision value so far and the class with this value.
+    /// Votes for one-vs-rest: for each row, the largest decision value found so far and its class.
     Best(Vec<f64>, Vec<usize>),
 }
 

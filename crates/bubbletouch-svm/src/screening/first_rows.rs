@@ -38,7 +38,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         }
     }
 
-    /// Returns all pairs of classes in blocks; the data of a block fit into the cache.
+    /// Returns all pairs of classes in blocks whose data fit into the processor's cache.
     pub fn blocks(&self) -> impl Iterator<Item = Vec<(usize, usize)>> {
         let n = self.all.sorted.ranges().len();
         let some = move |start, at_once| start..n.min(start + at_once);

@@ -25,7 +25,7 @@ pub(crate) struct Within<T> {
 }
 
 impl<T: SolverScalar> Within<T> {
-    /// Creates the inner products of one class from n × n values.
+    /// Creates the inner products of the rows of one class from an n × n matrix.
     pub fn new(products: Array2<T>) -> Self {
         Self {
             diagonal: products.diag().to_vec(),
@@ -262,7 +262,7 @@ impl<T: SolverScalar> MarginPair<T> {
         (0..takes_part.len()).filter(|&row| !takes_part[row])
     }
 
-    /// Returns the last solution of the pair, with the coefficients of all rows of both classes (0 for inactive rows).
+    /// Returns the last solution of the pair of classes, with coefficients of all rows (0 for inactive rows).
     pub fn solution(&mut self) -> DualSolution {
         let n_first = self.takes_part[0].len();
         let mut coefficients = vec![0.0; n_first + self.takes_part[1].len()];

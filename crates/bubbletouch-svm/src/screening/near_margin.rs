@@ -123,8 +123,8 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         (2 * within + across + normals + few) * size_of::<T>() + Dense::<T>::bytes(2 * largest)
     }
 
-    /// Solves all pairs for this C, starting from the last solutions, until no row violates the optimality conditions by more than `tolerance`. Returns the
-    /// solution and the hyperplane normal of each pair. The coefficients belong to all rows of the first class, then of the second.
+    /// Solves the problems of all pairs for the penalty `c`, until no row violates the optimality conditions by more than `tolerance`. Returns the solution and
+    /// the hyperplane normal of each pair. The coefficients belong to all rows of the first class, then of the second.
     pub fn solve(&mut self, c: f64, tolerance: f64) -> Vec<(DualSolution, Vec<T>)> {
         let goal = PairGoal {
             c,
@@ -136,7 +136,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         })
     }
 
-    /// For each pair, returns the rows that are approximately near the margin for this C.
+    /// Returns the rows of each pair of classes that are near the decision boundary for the penalty `c`, approximately.
     pub fn near_margin(mut self, c: f64) -> Vec<Sides> {
         let goal = PairGoal {
             c,

@@ -1,4 +1,4 @@
-//! Solver of one pair of classes on its rows near the margin: pairwise steps, followed by active-set steps.
+//! Solver of the binary problem of two classes on rows near the decision boundary: pairwise steps, followed by active-set steps.
 
 use crate::gram::matrix::Gram;
 use crate::smo::Smo;

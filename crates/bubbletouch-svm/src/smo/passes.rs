@@ -7,7 +7,7 @@
 use crate::linalg::lanes::LANES;
 use crate::linalg::scalar::Scalar;
 
-/// Returns the largest sum `a_i + b_i` over all indices i. Each lane has its own maximum; the lanes are combined at the end.
+/// Returns the largest value of `a_i + b_i` over all indices i. Each lane has its own maximum; the lanes are combined at the end.
 #[inline(always)]
 fn largest_sum<T: Scalar>(a: &[T], b: &[T]) -> T {
     let mut lanes = [T::neg_infinity(); LANES];

@@ -75,7 +75,7 @@ pub(crate) fn run<G: Gram<f32>>(
 struct Largest {
     values: __m512,
     places: __m512i,
-    /// Indices of the 16 values that are compared next.
+    /// Indices of the 16 values that are compared in the next step.
     next: __m512i,
 }
 

@@ -9,7 +9,7 @@ use crate::gram::matrix::Gram;
 /// smaller value, problems that LIBSVM solves are reported as not solved.
 const MAX_ITERATIONS: u64 = 10_000_000;
 
-/// Binary problem given by a Gram matrix and labels, with its solution for the last C.
+/// Binary problem, given by a Gram matrix and labels, with its solution for the last penalty C.
 pub(crate) struct Smo<'a, G> {
     pub(super) gram: &'a mut G,
     /// Label of each row: 1, −1, or 0 for a row that is excluded from the problem.

@@ -7,9 +7,9 @@ use crate::gram::matrix::Gram;
 use crate::gram::row_sums::add_row;
 
 impl<G> Smo<'_, G> {
-    /// Returns the unsolved problem with a start for small C: all multipliers at C, except 0 for the surplus rows of the larger class. The surplus rows are its
-    /// rows that are farthest from the other class. If the objective with equal multipliers has its maximum below C, all multipliers start at 0. `sums`
-    /// contains the product of the Gram matrix with the labels.
+    /// Returns the problem with a start for small C: all multipliers are C, except 0 for the surplus rows of the larger class. The surplus rows are its rows
+    /// that are farthest from the other class. If the objective with equal multipliers has its maximum below C, all multipliers start at 0. `sums` contains the
+    /// product of the Gram matrix with the labels.
     pub fn at_bounds<T: SolverScalar>(mut self, c: f64, sums: &[f64]) -> Self
     where
         G: Gram<T>,
@@ -77,7 +77,7 @@ mod tests {
     use crate::gram::matrix::Dense;
     use ndarray::Array2;
 
-    /// Returns the kernel matrix and the labels of points on a line whose classes overlap; one class has five more rows.
+    /// Returns the kernel matrix and labels of test points on a line; the classes overlap, and one class has five more rows.
     fn problem(gamma: f64) -> (Dense<f64>, Vec<f64>) {
         let n = 45;
         let at = |i: usize| (i as f64 * 1.7).sin() + if i % 9 < 4 { 0.4 } else { 0.0 };

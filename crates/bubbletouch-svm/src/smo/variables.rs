@@ -5,8 +5,8 @@ use crate::linalg::scalar::Scalar;
 
 /// Number of variables processed in parallel.
 const LANES: usize = 8;
-/// Number of variables whose gradients are compared in parallel to find the largest and the smallest. With 64, the compiler generates a vectorised loop; with
-/// 8, it unrolls the loop and inserts many shuffles.
+/// Number of variables whose gradients are compared in parallel in the search for the largest and smallest gradient. With 64, the compiler generates a
+/// vectorised loop; with 8, it unrolls the loop and inserts many shuffles.
 const EXTREMES_LANES: usize = 64;
 
 /// Returns a number that marks whether a variable can move: 0 if it can, otherwise −∞.
@@ -38,7 +38,7 @@ pub(crate) fn bounds(y: f64, c: f64) -> (f64, f64) {
     (c * y.min(0.0), c * y.max(0.0))
 }
 
-/// State of the variables during the pairwise steps of the solver. Slices are padded to whole lanes with variables that cannot move.
+/// Variables of a binary problem during the pairwise steps of the solver. Slices are padded to whole lanes with variables that cannot move.
 #[derive(Clone, Debug)]
 pub(crate) struct Variables<T> {
     /// Coefficient of each row: its label times its multiplier.

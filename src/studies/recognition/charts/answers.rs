@@ -47,7 +47,7 @@ pub fn words(tables: &[Table], width: usize) -> String {
         })
 }
 
-/// Returns a note on the number of touches that deflected no taxel; returns `None` if there are no such touches.
+/// Returns a note on the number of touches without any deflected taxel; `None` if there are none.
 fn missed(tables: &[Table]) -> Option<String> {
     let limits = filled(tables, LIMITS_FILE)?;
     let row = (0..limits.n_rows).find(|&row| limits.word("limit", row) == MISSED_TOUCHES)?;

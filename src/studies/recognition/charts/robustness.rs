@@ -37,7 +37,7 @@ pub struct Robustness {
     condition: String => Subject;
     /// Direction in which the condition is followed, starting from its most accurate value: towards larger or smaller values.
     direction: Direction => Subject "towards";
-    /// Value of the condition at which the accuracy is highest, in the unit of the condition.
+    /// Value of the condition at which the accuracy of the design is highest, in the unit of the condition.
     clean_at: f64 => Note "most accurate at": Linear;
     /// Highest mean accuracy of the design over all values of the condition, 0 to 1.
     clean_accuracy: f64 => Note "accuracy there": Share;

@@ -83,7 +83,7 @@ pub const TABLES: &[&dyn AnyFile] = &[
 /// Table files of studies with several projections per split, and of studies that sweep a condition.
 pub const TABLES_OF_PARTS: &[&dyn AnyFile] = &[&VARIANCE, &ROBUSTNESS];
 
-/// Returns every table of a run, in the order of their files, followed by [`CONFIGURATIONS`].
+/// Returns all tables of a run in the order of their files, followed by [`CONFIGURATIONS`].
 ///
 /// # Errors
 /// If a row cannot be written to a file.
@@ -187,7 +187,7 @@ impl From<'_> {
     }
 }
 
-/// Sets the unit of the noise column and the meaning of an empty C; both depend on the rows of the table.
+/// Sets the unit of the noise column and the meaning of an empty C, which depend on the rows of the table.
 fn say(table: &mut Table) {
     let unit = match (table.n_rows > 0).then(|| table.word("noise_unit", 0)) {
         Some("mm") => "mm",
@@ -212,7 +212,7 @@ fn say(table: &mut Table) {
     }
 }
 
-/// Returns a note that intervals are computed over held-out groups of touches; returns `None` if single test rows are held out.
+/// Returns a note that intervals are computed over held-out groups; `None` if single test rows are held out.
 pub(crate) fn note_of_groups(table: &Table) -> Option<String> {
     let n_groups = table.numbers("n_groups")?;
     let least = n_groups.iter().copied().fold(f64::INFINITY, f64::min);

@@ -54,7 +54,7 @@ pub struct FeatureSet {
     pub split: Split,
     /// Group number of every row; `None` if a split into training and test rows may divide groups.
     pub groups: Option<Array1<usize>>,
-    /// For each class, its label as written in the file of labels.
+    /// Label of each class, as it is written in the label file.
     pub classes: Vec<KeyValue>,
 }
 

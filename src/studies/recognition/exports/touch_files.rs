@@ -45,7 +45,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
-/// Number of frames that are simulated together and kept in memory before they are written.
+/// Number of frames that are simulated and kept in memory before they are written to a file.
 const BLOCK: usize = 256;
 
 #[derive(Serialize)]
@@ -72,7 +72,7 @@ struct ObjectRow<'a> {
     n_touches: usize,
 }
 
-/// Touch to be written: its frames, pose and depth.
+/// Touch to write to files: its frames, pose and depth.
 struct Reading<'a> {
     row: TouchRow<'a>,
     /// Values of the F frames of the touch, one frame after the other.
@@ -95,7 +95,7 @@ pub struct ReadFrames {
 }
 
 impl ReadFrames {
-    /// Simulates all touches and applies the signal chain of a configuration. The resulting frames of all touches are kept in memory.
+    /// Simulates all touches and applies a configuration's signal chain. The resulting frames of all touches are kept in memory.
     ///
     /// # Errors
     /// If the study does not have the configuration or the trial, or a signal step is invalid.

@@ -7,7 +7,7 @@ use ndarray::{Array2, ArrayViewMut2};
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Approximate number of frames that a thread simulates in one task. With a smaller value, scheduling takes more time; with a larger value, the threads finish
+/// Approximate number of frames in one simulation task of a thread. With a smaller value, scheduling takes more time; with a larger value, the threads finish
 /// at different times.
 const BLOCK: usize = 32;
 /// Number of tasks per thread that are simulated before their frames are stored.

@@ -42,7 +42,7 @@ pub struct RecordedFrames {
     pub spec: RecordedSpec,
     /// Names of the classes, in the order of their labels.
     names: Vec<String>,
-    /// Names from which the seeds of the classes' random numbers are derived.
+    /// Names from which the seeds of the random numbers of each class are derived.
     streams: Vec<String>,
     /// Number of touches of each class.
     counts: Vec<usize>,
@@ -50,7 +50,7 @@ pub struct RecordedFrames {
     readings: [Array2<f64>; 2],
     /// Row index of each touch in the two arrays of frames; the touches are ordered by class.
     order: Vec<usize>,
-    /// For each value of a frame, whether its taxel is masked.
+    /// Whether each value of a frame belongs to a masked taxel.
     is_masked: Vec<bool>,
     /// Reading of each untouched taxel; 0 for a masked taxel.
     zeros: Vec<f64>,
@@ -190,7 +190,7 @@ impl RecordedFrames {
 }
 
 impl RecordedSpec {
-    /// For each file of the recording, returns its SHA-256 hash by its path.
+    /// Returns the SHA-256 hash of each file of the recording, by path.
     ///
     /// # Errors
     /// If a file cannot be read.
@@ -266,7 +266,7 @@ impl RecordedSpec {
         }
     }
 
-    /// For each class, returns its name, the name from which the seed of its random numbers is derived, and its number of touches.
+    /// Returns the name, the random-stream name and the number of touches of each class.
     fn classes(&self, labels: &ClassLabels) -> Result<(Vec<String>, Vec<String>, Vec<usize>)> {
         let n_classes = labels.classes.len();
         let mut counts = vec![0; n_classes];

@@ -43,7 +43,7 @@ pub trait TouchSet: Sync {
         Vec::new()
     }
 
-    /// Returns the group number of every touch; returns `None` if the data define no groups.
+    /// Returns the group number of every touch; `None` if the data do not define groups.
     fn own_groups(&self) -> Option<Array1<usize>> {
         None
     }

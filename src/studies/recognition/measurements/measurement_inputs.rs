@@ -47,7 +47,7 @@ pub struct MeasurementInputs<'a> {
     pub copies: Option<CopyInputs>,
 }
 
-/// Inputs of the measurements that differ between test touches and training touches.
+/// Measurement inputs of the test touches, where they differ from those of the training touches.
 #[derive(Clone, Debug)]
 pub struct TestInputs<'a> {
     /// Array of taxels of the test touches; its frames have the shape of the training touches' frames.
@@ -96,7 +96,7 @@ impl MeasurementInputs<'_> {
         format!("{self:?}")
     }
 
-    /// Returns the number and the split of a trial, as needed for measurements.
+    /// Returns the number and the split of a trial for the computation of measurements.
     pub fn trial<'s>(&self, sweep: &'s Sweep, number: usize) -> MeasuredTrial<'s> {
         let depends = self.learns() || self.has_own_test();
         let split = depends.then(|| &sweep.splits[number]);
@@ -108,7 +108,7 @@ impl MeasurementInputs<'_> {
         self.ensemble.is_learned() || !self.of_images.is_empty()
     }
 
-    /// Returns whether test touches are read differently from training touches.
+    /// Returns whether test touches are read by another skin or signal chain than training touches.
     pub fn has_own_test(&self) -> bool {
         self.test.is_some() || self.test_sensor != TestSensor::SameSkin
     }
@@ -240,7 +240,7 @@ impl MeasurementGroup {
         counts(&self.features_of_images())
     }
 
-    /// Returns the inputs of the tilted copies; their number is the largest that any configuration of the group needs.
+    /// Returns the inputs of the tilted copies, whose number is the largest that any configuration of the group uses.
     fn copies(&self, plan: &Plan) -> Option<CopyInputs> {
         let recognition = &plan.spec.recognition;
         let copied = self.configurations.iter();

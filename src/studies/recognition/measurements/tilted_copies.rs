@@ -1,4 +1,4 @@
-//! Tilted copies of training touches: they show objects in tilts in which the training touches do not.
+//! Tilted copies of training touches, which show objects at tilts that the training touches do not have.
 
 use crate::random::Seed;
 use crate::studies::recognition::measurements::measurement_inputs::CopyInputs;

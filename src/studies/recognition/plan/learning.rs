@@ -36,8 +36,7 @@ const BESIDE: [(&str, &[&str]); 4] = [
 ];
 
 impl Check<'_> {
-    /// Checks `[sensing]`: exactly one of a compression ratio and a number of measurements is given. The number may not exceed the number of taxels of any
-    /// array.
+    /// Checks that `[sensing]` contains either a compression ratio or a number of measurements. The number may not exceed the number of taxels of any array.
     pub fn sensing(&self, sensing: &SensingSpec, arrays: &[TaxelArray]) -> Result<()> {
         self.table("sensing", sensing)?;
         if sensing.ratio.is_some() && sensing.measurements.is_some() {

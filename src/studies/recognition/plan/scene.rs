@@ -154,7 +154,7 @@ impl Check<'_> {
         self.arrays(skin)
     }
 
-    /// Returns the array of a study that has a single array, and an error otherwise; `allowed` is the text of the error.
+    /// Returns the only array of a study; returns an error with the text `allowed` if the study has several arrays.
     pub fn one_array(&self, skin: &SkinSpec, allowed: &str) -> Result<TaxelArray> {
         let mut arrays = self.grids(skin)?;
         match (arrays.pop(), arrays.len()) {

@@ -16,7 +16,7 @@ use crate::studies::recognition::spec::signal::{SignalAxis, SignalSpec, StepSpec
 pub struct Condition {
     /// Noise standard deviation of a reading, in the noise unit of the plan.
     pub noise: f64,
-    /// Standard deviation of the Gaussian that smooths the readings over the array, metres.
+    /// Standard deviation of the Gaussian filter that smooths the readings over the array, metres.
     pub smoothing: f64,
     /// Strengths of the sensor errors, such as gain errors and drift.
     pub strengths: Strengths,

@@ -38,7 +38,7 @@ macro_rules! configuration {
             }
         }
 
-        /// Returns the columns of a configuration, without the columns of the axes in the table `[axes]`.
+        /// Returns the columns of the result tables that describe a configuration, except the columns of axes declared in `[axes]`.
         impl Columns for $configuration {
             fn columns() -> Vec<Column> {
                 let mut columns = Vec::new();

@@ -42,7 +42,7 @@ pub struct TrialScore {
     /// only if the study holds out groups.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     n_groups: Option<usize> => Note "groups of the interval": Linear, optional;
-    /// F1 score (harmonic mean of precision and recall) averaged over all objects, 0 to 1.
+    /// F1 score (harmonic mean of precision and recall), averaged over all objects, 0 to 1.
     macro_f1: f64 => Value(More) "macro F1": Share;
     /// Penalty C that the classifier used: given, or chosen by cross-validation within the training rows. Empty if the classifier has no C.
     c_used: Option<f64> => Note "C used": Log;
@@ -135,7 +135,7 @@ pub struct Confused {
     predicted: String => Subject "recognised as";
     /// Number of test rows of `object` that were recognised as `predicted`, over all trials.
     count: usize => Note "test rows": Log;
-    /// Number of test rows of `object`, over all trials.
+    /// Number of test rows of `object`, summed over all trials.
     n_test: usize => Note "test rows of the object": Linear;
     /// Fraction of the object's test rows that were recognised as `predicted`, `count / n_test`, 0 to 1.
     fraction: f64 => Value(Less) "fraction of the object's test rows": Share between [fraction_low, fraction_high];

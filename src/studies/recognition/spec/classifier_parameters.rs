@@ -22,7 +22,7 @@ impl Default for ClassifierParameters {
 }
 
 impl ClassifierParameters {
-    /// Returns the classifier after setting the parameters that its kind declares.
+    /// Returns a copy of the classifier in which the parameters of its kind are set.
     ///
     /// # Panics
     /// If a value is out of its range.

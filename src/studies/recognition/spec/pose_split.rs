@@ -80,7 +80,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the number of the block that is tested in a trial; returns `None` unless the split holds out blocks of neighbouring poses.
+    /// Returns the number of the block of poses that is tested in a trial; `None` if the split does not hold out blocks.
     pub(crate) fn tested_block(self, trial: usize) -> Option<usize> {
         (self == Self::OppositeBlocks).then_some(trial % (1 << BLOCK.len()))
     }

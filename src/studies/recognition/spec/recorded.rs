@@ -87,7 +87,7 @@ pub struct RecordedSpec {
         deserialize_with = "optional_file_path"
     )]
     pub depths: Option<PathBuf>,
-    /// Speed at which the skin approached the object when it was read, mm/s, at least 0; it acts on the damper. Default: 0.
+    /// Speed of the skin towards the object when it was read, mm/s, at least 0; the speed affects the damper force. Default: 0.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub speed_mm_per_s: f64,
     /// Time between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.

@@ -30,7 +30,7 @@ pub struct SkinSpec {
     pub friction: Option<f64>,
     /// Tangential stiffness k_t of a taxel, N/m, positive; used with `friction`. Default: the stiffness along the axis.
     pub shear_stiffness_n_per_m: Option<f64>,
-    /// Radius ρ of a taxel, mm, positive. Default: half the pitch.
+    /// Radius ρ of a taxel, mm, ρ > 0. Default: half the pitch.
     pub taxel_radius_mm: Option<f64>,
     /// Stroke s of a taxel, mm, positive: its maximum deflection.
     pub stroke_mm: f64,
@@ -75,7 +75,7 @@ pub struct TouchesSpec {
 }
 
 impl TouchesSpec {
-    /// Returns a text that names the keys of `[touches]` with a list of values, which may be mistaken for an axis of the study. Returns `None` if there is no
+    /// Returns a text that names the keys of `[touches]` with several values, which users may mistake for an axis of the study. Returns `None` if there is no
     /// such key.
     pub fn mixed_values(&self) -> Option<String> {
         let table = toml::Table::try_from(self).expect("every field of a study has a TOML form");

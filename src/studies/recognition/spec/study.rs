@@ -53,8 +53,8 @@ pub struct StudySpec {
     /// Number of trials per configuration, at least 1, each with a new split, projection and noise. Default: 1.
     #[serde(default = "count::<1>")]
     pub trials: usize,
-    /// Number P of projections (measurement matrices) that are combined with each of `trials` / P splits. Default: one projection per trial. With several
-    /// projections, `variance.csv` separates the effect of the projection on the accuracy from the effect of the split.
+    /// Number P of projections (measurement matrices) per split; the study has `trials` / P splits, each combined with P projections. Default: one projection
+    /// per trial. With several projections, `variance.csv` separates the effect of the projection on the accuracy from the effect of the split.
     pub projections_per_split: Option<usize>,
     /// Table `[objects]`: the touched objects.
     #[serde(default, skip_serializing_if = "is_default")]
@@ -120,7 +120,7 @@ pub struct RecognitionSpec {
     pub tilt_augmentation: Option<Axis<usize>>,
     /// Maximum tilt of a copy about the array's x and y axes, degrees; tilts are distributed uniformly. Default: 5.
     pub tilt_augmentation_deg: Option<f64>,
-    /// Axis: way in which the frames of a touch are combined into features. Values: `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in
+    /// Axis: method that combines the frames of a touch into features. Values: `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in
     /// time), `moments` of each measurement, `course` of the touch, or `summarised` (moments and course). Default: all frames are concatenated.
     pub temporal_features: Option<Axis<TemporalFeatures>>,
     /// Axis: kind of classifier, such as `linear_svm`.
@@ -145,8 +145,8 @@ pub struct RecognitionSpec {
     /// Candidate values of the kernel parameter γ, as multiples of its default; replaces `gamma`. The default is 1 / (F · m · variance), where F · m is the
     /// number of features of a touch. For the Laplacian kernel, the standard deviation replaces the variance. Each fit chooses one candidate together with C.
     pub gamma_grid: Option<Vec<f64>>,
-    /// Number of folds of the inner cross-validation, which chooses C and γ, and estimates decisions on unseen touches for `most_informative`. Default: 5.
-    /// Folds do not divide groups that the split does not divide.
+    /// Number of folds of the inner cross-validation, which selects C and γ and estimates decisions on unseen touches for `most_informative`. Default: 5. Folds
+    /// do not divide groups that the split does not divide.
     pub cv_folds: Option<usize>,
     /// Maximum number of training touches per object that are used to choose C and γ. Default: all. The default γ is computed from all training touches.
     pub cv_touches: Option<usize>,

@@ -243,7 +243,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Returns a text that describes the split: how test touches relate to training touches.
+/// Returns a text that describes how the split selects test touches in relation to training touches.
 fn split_words(spec: &StudySpec) -> String {
     let held_out = match spec.recognition.group_by {
         _ if let Some(recorded) = &spec.recorded => {

@@ -137,7 +137,7 @@ const TOUCH_BYTES: f64 = 400.0;
 /// Memory of one touch in the split of one trial, bytes.
 const SPLIT_BYTES: f64 = 8.0;
 
-/// Checks before drawing whether the touches of `n_classes` classes, with one split per trial, fit into `ceiling` bytes (`None`: no limit).
+/// Checks whether the touches of `n_classes` classes, with one split per trial, fit into `ceiling` bytes (`None`: no limit).
 ///
 /// # Errors
 /// If the touches need more memory; the error names the key that sets their number.

@@ -73,8 +73,8 @@ impl RecognitionStudy {
         jobs.filter(is_left).collect()
     }
 
-    /// For a set of touches, returns the measurements that pending families of configurations need. If smaller sets of measurements are prefixes of larger
-    /// ones, a group is measured once for all its configurations. Otherwise, each number m of measurements is measured separately.
+    /// Returns the measurements of a set of touches that pending families of configurations need. If smaller sets of measurements are prefixes of larger ones,
+    /// a group is measured once for all its configurations. Otherwise, each number m of measurements is measured separately.
     fn jobs(&self, left: &PendingItems<RecognitionRows>, touches: usize) -> Vec<Job<'_>> {
         let mut alike: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, family) in self.families.iter().enumerate() {
@@ -189,7 +189,7 @@ impl RecognitionStudy {
 }
 
 impl Job<'_> {
-    /// Returns the numbers of the work items that the job finishes.
+    /// Returns the numbers of the work items that are finished by this job.
     fn items(&self) -> impl Iterator<Item = usize> + '_ {
         let families = self.families.iter();
         families.map(|&family| self.study.family_item(self.trial, family))

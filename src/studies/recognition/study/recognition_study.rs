@@ -66,7 +66,7 @@ pub(crate) struct PlacedGroup {
     pub touches: usize,
     /// Index of the group's test touches in the list of all sets of touches; equal to `touches` if the study has no table `[test]`.
     pub tested: usize,
-    /// Index of the first group with the same measurements as this group.
+    /// Index of the first group that has the same measurements as this group.
     pub measured_as: usize,
 }
 
@@ -261,7 +261,7 @@ impl RecognitionStudy {
         self.first().plan.spec.trials
     }
 
-    /// Returns the group of configurations with this number, and the part of the study to which it belongs.
+    /// Returns the group of configurations with this number, and its part of the study.
     pub(crate) fn group(&self, number: usize) -> (&StudyPart, &MeasurementGroup) {
         let PlacedGroup { part, place, .. } = self.groups[number];
         let part = &self.parts[part];
@@ -283,7 +283,7 @@ impl RecognitionStudy {
         trial * self.families.len() + family
     }
 
-    /// Returns the number of the work item of a set of touches.
+    /// Returns the number of the work item that simulates and measures a set of touches.
     pub(crate) fn touches_item(&self, touches: usize) -> usize {
         self.family_item(self.n_trials(), 0) + touches
     }

@@ -3,7 +3,8 @@
 use crate::studies::recognition::training::trial::Evaluation;
 use serde::{Deserialize, Serialize};
 
-/// Results of work items. Some items evaluate configurations in a trial; the others simulate or measure sets of touches.
+/// Results of all work items: rows of configurations, and rows of touches. Some items evaluate configurations in a trial; the others simulate or measure sets
+/// of touches.
 pub type RecognitionRows = (Vec<ConfigurationRow>, Vec<TouchRow>);
 
 /// Result of one configuration in one trial.

@@ -72,7 +72,7 @@ pub struct Sweep {
 
 /// Part of a study: plan, touches and configurations of one combination of the values in `[axes]`.
 pub struct StudyPart {
-    /// Plan of the study for this combination of values.
+    /// Plan of the study for this combination of axis values.
     pub plan: Plan,
     /// Training touches of the part; parts with equal touches share them.
     pub touched: Arc<dyn TouchSet + Send>,

@@ -112,7 +112,8 @@ fn mean(trials: &[Row], value: fn(&TrialScore) -> f64) -> f64 {
     trials.iter().map(|(_, t)| value(t)).sum::<f64>() / trials.len() as f64
 }
 
-/// Compares every configuration with the best one of its condition, paired by trial. The best one has the highest mean accuracy (the first in a tie).
+/// Compares every configuration with the best configuration under the same condition, paired by trial. The best one has the highest mean accuracy (the first in
+/// a tie).
 ///
 /// # Errors
 /// If a trial has no training or test rows.

@@ -12,8 +12,7 @@ use crate::studies::recognition::tables::variance_table::variances;
 use crate::studies::recognition::training::trial::Evaluation;
 use std::collections::BTreeMap;
 
-/// Computes all result tables except the stages and the published accuracies. `name` returns the class name of a label in a configuration. `n_folds` returns
-/// the number of folds of a configuration, or 1 without folds. `matrices` lists the configurations whose confusion matrix is stored.
+/// Computes all result tables except those of stages and published accuracies.
 ///
 /// # Errors
 /// If the trials of a configuration have no rows.

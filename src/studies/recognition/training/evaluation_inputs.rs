@@ -52,13 +52,13 @@ pub struct FamilyInputs<'a> {
     pub rows: RowInputs,
     /// Maximum number of training touches per object; `None` for all training touches of the split.
     pub train_touches: Option<usize>,
-    /// Fraction of the training touches that are labelled as another object, 0 to 1; `None` for no such touches.
+    /// Fraction of the training touches that are labelled as another object, 0 to 1; `None` if all labels are correct.
     pub mislabelled_fraction: Option<f64>,
     /// Number of training touches of the most frequent object, divided by the number of the least frequent one, at least 1; `None` for equal numbers.
     pub class_imbalance: Option<f64>,
     /// Classifier, and the candidate values from which its C and γ are selected.
     pub training: TrainingInputs,
-    /// Settings that differ between the family's configurations, in the order of the configurations. Configurations with equal C are adjacent.
+    /// Settings of a decision for each configuration of the family, in the order of the configurations. Configurations with equal C are adjacent.
     pub decisions: Vec<Decision>,
     /// Pose of each touch; `None` if no configuration selects touches by their poses.
     pub poses: Option<&'a Hashed<Poses>>,
@@ -97,7 +97,7 @@ impl TrialInputs<'_> {
         format!("trial {number} {}", short_hash(format!("{self:?}"), DIGITS))
     }
 
-    /// Returns the seed of the trial's random numbers for the purpose `name`.
+    /// Returns the seed of the trial's random numbers that are used for the purpose `name`.
     pub fn stream(&self, name: &str) -> Seed {
         let seed = Seed::new(self.seed).named(name);
         seed.numbered(self.number as u64)

@@ -99,8 +99,8 @@ impl Training<'_> {
         })
     }
 
-    /// Chooses the best C and γ among the candidates by cross-validation; returns C, and the classifier with γ. γ is a multiple of the default γ of all
-    /// training rows, even if the choice uses only some of the rows. A single candidate gives the same result as a given value.
+    /// Selects the best C and γ among the candidates by cross-validation; returns C, and the classifier with γ. A single candidate gives the same result as a
+    /// given value.
     fn choose(&self, classifier: Classifier, candidates: &Candidates) -> Result<(f64, Classifier)> {
         let unit = self.gamma()?;
         let scaled_by = |scale: f64| match unit {
@@ -151,7 +151,7 @@ impl Training<'_> {
         Ok(answers)
     }
 
-    /// Returns the γ that is given or computed from the training rows; returns `None` if the classifier has no γ.
+    /// Returns the kernel parameter γ, given or computed from the training rows; `None` if the classifier has no γ.
     fn gamma(&self) -> Result<Option<f64>> {
         let classifier = &self.inputs.classifier;
         let kernel = classifier.kind.about().kernel;

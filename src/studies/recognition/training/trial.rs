@@ -1,4 +1,4 @@
-//! Evaluation of a family of configurations in one trial: one fit for each C, one prediction of all test touches, one decision for each number of touches.
+//! Evaluation of a family of configurations in one trial: training for each C, prediction of all test touches, and decisions on several touches.
 
 use crate::error::Result;
 use crate::learning::evaluation::fusion::{fuse_rows, fuse_scores};

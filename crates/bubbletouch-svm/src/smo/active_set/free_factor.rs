@@ -163,7 +163,7 @@ mod tests {
 
     const N: usize = 120;
 
-    /// Returns the kernel matrix of irregular rows that have m features.
+    /// Returns the kernel matrix of irregular test rows with m features.
     fn kernel(m: usize) -> Array2<f64> {
         let feature = |(i, j): (usize, usize)| (((i * m + j) as f64).sin() * 1e4).fract();
         let rows = Array2::from_shape_fn((N, m), feature);

@@ -115,7 +115,7 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
-    /// Moves the free variables to their optimum; variables that reach a bound stay there. Returns the number of steps.
+    /// Moves the free variables to their common optimum; variables that reach a bound stay there. Returns the number of steps.
     fn solve_free(&mut self, most_ways: u64) -> u64 {
         let mut f = self.factor.values(&self.f[..]);
         for n_ways in 0..most_ways {
