@@ -1,4 +1,4 @@
-//! Short path to the kinds of studies. The code is in [`studies`](crate::studies).
+//! Re-exports of the kinds of studies under a short path. The code is in [`studies`](crate::studies).
 
 pub use crate::studies::*;
 

@@ -1,4 +1,4 @@
-//! Simulated touch for robot skin: press, sense, recognise.
+//! Tactile simulation for robot skin: simulates presses, sensor signals and object recognition.
 //!
 //! # Glossary
 //!

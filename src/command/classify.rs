@@ -283,7 +283,7 @@ impl Args {
         }
     }
 
-    /// Refuses options of a choice that is not made, and hyper-parameters that the classifier does not use.
+    /// Returns an error if options for an unused parameter choice, or hyper-parameters that the classifier does not use, are given.
     fn check_parameters(&self) -> Result<()> {
         let chooses = !self.c_grid.is_empty();
         let chooses_gamma = !self.gamma_grid.is_empty();

@@ -56,7 +56,7 @@ pub fn merge(args: &Args) -> Result<()> {
     run.end(&outcome, n_all, &format!("{n_journals} shards, "))
 }
 
-/// Journals of shards in a folder, by name.
+/// Returns the shard journals in a folder, sorted by name.
 fn shard_journals(folder: &Path) -> Result<Vec<PathBuf>> {
     let failed = |e| Error::io(folder, "read", e);
     let mut paths = Vec::new();

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 const PICTURE: usize = 640;
 /// Side length of an object's picture in an overview of many objects, pixels.
 const TILE: usize = 240;
-/// Objects in a row of a sheet.
+/// Number of objects in a row of the overview picture.
 const COLUMNS: usize = 6;
 
 /// List or draw objects; inspect, pack and show meshes
@@ -87,7 +87,7 @@ struct MeshArgs {
     unit: Option<LengthUnit>,
 }
 
-/// An object behind the name of its set.
+/// Object, preceded by the name of its set.
 type Listed = (String, Object);
 
 pub fn objects(args: &Args) -> Result<()> {

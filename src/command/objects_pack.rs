@@ -1,4 +1,4 @@
-//! `bubbletouch objects pack`: a mesh or a built-in object as few spheres, and how well they fit.
+//! `bubbletouch objects pack`: packs a mesh or a built-in object with few spheres, and measures the surface error.
 
 use crate::command::options::which_object::WhichObject;
 use crate::command::terminal::output::check_ending;

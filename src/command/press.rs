@@ -1,4 +1,4 @@
-//! `bubbletouch press`: one object, one patch, one reading.
+//! `bubbletouch press`: presses one object on one patch and prints the reading.
 
 use super::classify::word;
 use super::press_place::Place;
@@ -213,7 +213,7 @@ impl Args {
         self.taxel_radius_mm.unwrap_or(0.5 * self.pitch_mm) * MM
     }
 
-    /// The object and `patch_from_object` before any travel.
+    /// Returns the object and its initial pose `patch_from_object`.
     fn placed_object(&self) -> Result<(Model, Pose)> {
         let (nx, ny) = self.taxels;
         let side = nx.max(ny) as f64 * self.pitch_mm * MM;
@@ -249,8 +249,7 @@ impl Args {
         Ok((model, pose))
     }
 
-    /// How far past first contact, metres; none if the press is to a force, or the object is read where it is. Says if taxels cannot
-    /// follow.
+    /// Returns the press depth past first contact, metres; `None` for a press to a force, or for an object that is not moved. Says if taxels cannot follow.
     fn depth(&self, taxel: &Taxel) -> Result<Option<f64>> {
         let is_placed = self.source.spheres.is_some() || self.many.poses.is_some();
         let default = (!is_placed && self.force_n.is_none()).then_some(3.0);

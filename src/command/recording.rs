@@ -89,7 +89,7 @@ impl Args {
     }
 }
 
-/// The number of the patch to draw.
+/// Returns the number of the patch that is drawn.
 fn chosen_patch(args: &Args, file: &RecordingFile) -> Result<usize> {
     let patches = &file.header().patches;
     let named = |name: &String| patches.iter().position(|patch| patch.name == *name);

@@ -6,8 +6,8 @@ use std::io;
 use std::path::Path;
 use std::process::Command;
 
-/// Submits a job, or an array of them, of this name that runs a line of the shell, with more options of sbatch; its number. Its script and
-/// what it says are files of its name in the folder `slurm` of a study's results.
+/// Submits a cluster job, or an array of jobs, that runs a shell command; returns the number of the job. Its script and what it says are files of its name in
+/// the folder `slurm` of a study's results.
 pub fn submit(name: &str, options: &[String], line: &str, results: &Path) -> Result<String> {
     let folder = results.join("slurm");
     std::fs::create_dir_all(&folder).map_err(|e| Error::io(&folder, "create folder", e))?;

@@ -34,8 +34,8 @@ pub enum CombineSpec {
     /// All combinations of the values of the axes are computed.
     #[default]
     All,
-    /// A base configuration, and variants of it in which a single axis takes another of its values. The base has the first value of each axis; for `[axes]`, it
-    /// has the values of the study's own tables.
+    /// A base configuration, and variants in which a single axis has another value than in the base configuration. The base has the first value of each axis;
+    /// for `[axes]`, it has the values of the study's own tables.
     OneAtATime,
 }
 
@@ -63,7 +63,7 @@ pub struct StudyAxis {
     pub line: Option<usize>,
 }
 
-/// Values that one configuration of a study has on the axes of the study.
+/// Values of one configuration on all axes of the study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AxisValues {
     /// Number of the combination of values, from 0.
@@ -97,7 +97,7 @@ impl AxisValues {
     }
 }
 
-/// Value that one configuration has on an axis, as written in result tables.
+/// Value of one configuration on an axis, as it is written in result tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisValue {
     /// Table column of the axis.
@@ -430,7 +430,7 @@ fn without_test(key: &str) -> &str {
 /// by powers of two overlap on a linear axis; with a smaller value, evenly spaced values are drawn unevenly. Zero is drawn separately.
 const LOG_FROM: f64 = 16.0;
 
-/// Returns whether two TOML values are equal; the integer 1 and the float 1.0 count as equal.
+/// Returns whether two TOML values are equal; an integer and a float of the same size count as equal.
 fn is_same(one: &toml::Value, other: &toml::Value) -> bool {
     match (number(one), number(other)) {
         (Some(one), Some(other)) => one == other,

@@ -10,7 +10,7 @@ pub trait Progress: Sync {
     fn expect(&self, _n_items: usize) {}
     /// Counts one work item as finished; may be called by any thread.
     fn item_finished(&self) {}
-    /// Ends the last stage; `message` describes the result of the run.
+    /// Ends the last stage of the run; `message` describes the result.
     fn finish(&self, message: &str);
 }
 

@@ -14,7 +14,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Returns an iterator over all `count` shards of a study, from first to last.
+    /// Returns all `count` shards of a study, from first to last.
     pub fn all(count: usize) -> impl Iterator<Item = Self> {
         (1..=count).map(move |index| Self { index, count })
     }

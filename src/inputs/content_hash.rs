@@ -6,7 +6,7 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
-/// Value that is too large to be part of a cache key. Its `Debug` form is the SHA-256 hash of its bytes, computed at first use.
+/// Value with its hash; the hash replaces the value in cache keys. Its `Debug` form is the SHA-256 hash of its bytes, computed at first use.
 #[derive(Clone)]
 pub struct Hashed<T> {
     value: T,

@@ -221,7 +221,7 @@ fn vertex_sphere_error(file: MeshFile, spheres: &SphereUnion) -> Option<f64> {
     Some(error.protrusion.max.max(error.gap.max))
 }
 
-/// Prints a note on standard error if the spheres around vertices are farther than half a pitch from their meshes.
+/// Prints a note on standard error if the vertex spheres of an object are farther than half a pitch from its mesh.
 fn note_vertex_spheres(built: &[BuiltMesh], spec: &ObjectsSpec) {
     let Some(pitch) = spec.pitch else { return };
     let errors = built

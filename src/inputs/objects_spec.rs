@@ -30,7 +30,7 @@ pub struct ObjectsSpec {
     #[serde(alias = "mesh_unit")]
     #[schemars(with = "Option<Names<LengthUnit>>")]
     pub unit: Option<LengthUnit>,
-    /// Allowed sizes of meshes for which no unit is given. This is not a key of the file: the plan derives the limits from the arrays.
+    /// Range of allowed sizes of meshes without a given unit. This is not a key of the file: the plan derives the limits from the arrays.
     #[serde(skip)]
     pub sizes: Option<SizeLimits>,
     /// Pitch of the finest array, metres. This is not a key of the file. If vertex spheres are farther than half a pitch from their mesh, a note is printed on

@@ -13,7 +13,7 @@ pub(crate) fn number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(integer)
 }
 
-/// Returns whether a dotted key path equals `name` or lies below it.
+/// Returns whether a dotted key path equals `name` or is below `name`.
 pub(crate) fn is_at(key: &str, name: &str) -> bool {
     let rest = key.strip_prefix(name);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

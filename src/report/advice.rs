@@ -60,7 +60,7 @@ pub struct AdviceQuery {
 pub enum Requirement {
     /// Minimum of the value: the cheapest choice that reaches at least this value is selected.
     Value(f64),
-    /// Maximum cost, positive: selects the choice with the best value within this budget.
+    /// Maximum of the cost, positive: the choice with the best value within this budget is selected.
     Budget(f64),
     /// No requirement: the choice with the best value is selected at any cost.
     Best,
@@ -88,7 +88,7 @@ pub struct Advice {
     pub next_up: Option<Candidate>,
 }
 
-/// Rows of one table among which advice selects, limited to the given conditions.
+/// Rows of one table from which advice is selected, restricted to the given conditions.
 pub struct Candidates<'a> {
     /// Table that contains the candidates.
     pub table: &'a Table,
@@ -203,8 +203,8 @@ impl<'a> Candidates<'a> {
         conditions.map(offers).collect()
     }
 
-    /// For each choice, returns a candidate with its worst value and its highest cost over all conditions. Choices that were not measured in every condition
-    /// are omitted.
+    /// Returns, for each choice, a candidate that has the worst value and the highest cost over all conditions. Choices that were not measured in every
+    /// condition are omitted.
     pub fn worst(&self) -> Vec<Candidate> {
         let n_conditions = self.swept.by_condition(&self.rows).len();
         let choices = self.swept.of_role(Role::Choice);
@@ -515,7 +515,7 @@ mod tests {
         time: f64 => Cost in "µs": Linear;
         /// Number of taxels.
         taxels: f64 => Cost: Linear;
-        /// Weight of the design, which is absent in all rows.
+        /// Weight of the design; all rows lack this value.
         weight: Option<f64> => Cost: Linear;
         /// Accuracy, a fraction.
         accuracy: f64 => Value(More): Share between [low, high];

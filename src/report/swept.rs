@@ -51,7 +51,7 @@ pub struct Swept<'a> {
 }
 
 impl<'a> Setting<'a> {
-    /// Returns an iterator over all columns of a table.
+    /// Returns all columns of a table.
     pub fn all(table: &'a Table) -> impl Iterator<Item = Self> {
         let columns = table.columns.iter().zip(&table.data);
         columns.map(|(column, data)| Self { column, data })
@@ -174,9 +174,9 @@ impl<'a> Swept<'a> {
         self.free.iter().chain(&self.following)
     }
 
-    /// Returns the main setting for charts and tables: the independent numeric setting with the most values. If several have equally many values, the last
-    /// column is taken, because columns follow the order of processing. A setting that is absent in some rows is ranked after words, because its axis has no
-    /// place for such a row.
+    /// Returns the main setting of charts and tables, which is the independent numeric setting with the most values. If several have equally many values, the
+    /// last column is taken, because columns follow the order of processing. A setting that is absent in some rows is ranked after words, because its axis has
+    /// no place for such a row.
     pub fn main(&self, rows: &[usize]) -> Option<Setting<'a>> {
         let numbers = self.free.iter().filter(|setting| setting.is_number());
         let numbers = numbers.filter(|setting| numbers_are_there(setting, rows));

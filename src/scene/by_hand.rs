@@ -1,4 +1,4 @@
-//! Manual control of a scene: a program sets poses and joint positions instead of the scene file.
+//! Manual control of a scene: a program sets poses and joint positions in place of the scene file.
 //!
 //! A manually set pose takes effect in the next step and remains. All other motions follow the scene file.
 //!
@@ -52,8 +52,8 @@ impl Simulation<'_> {
         self.advance(self.time + dt, dt)
     }
 
-    /// Resets the simulation to the state before the first frame, and removes all manual settings. The skin keeps its drawn properties (positions of draped
-    /// taxels, sensor gains). `seed` determines the noise of the readings; the plan's seed restores the original noise.
+    /// Resets the simulation to the state before the first frame, without manual poses and joint positions. The skin keeps its drawn properties (positions of
+    /// draped taxels, sensor gains). `seed` determines the noise of the readings; the plan's seed restores the original noise.
     pub fn reset(&mut self, seed: u64) {
         *self = Self::with_seed(self.plan, self.stepping, seed);
     }

@@ -1,4 +1,4 @@
-//! Mounts of patches, which are fixed to the world, to a robot's link, or to an object.
+//! Mounts of patches, by which patches are fixed to the world, to a robot's link, or to an object.
 
 use super::plan_robot::PlannedRobot;
 use super::reader::Reader;

@@ -297,7 +297,7 @@ fn check_rigid(
     Ok(())
 }
 
-/// Checks that each patch has at most one pressed object, and that a scene with pressed objects has no free ones.
+/// Checks that each patch has at most one pressed object, and that pressed and free objects do not occur together.
 fn check_presses(check: &Check, spec: &SceneSpec) -> Result<()> {
     let free = spec.objects.iter().find(|object| object.free.is_some());
     let mut seen: BTreeMap<&str, &str> = BTreeMap::new();

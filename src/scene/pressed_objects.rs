@@ -20,7 +20,7 @@ pub(super) struct PressedObjects {
 struct Pressed {
     object: usize,
     now: HeldForce,
-    /// Target of the total spring force of the patch, N.
+    /// Target of the patch's total spring force, N.
     wanted: f64,
     /// Contacts of the object with the patch, independent of the distance that the object travels.
     contacts: Vec<TaxelContact>,
@@ -95,7 +95,7 @@ impl PressedObjects {
             .flat_map(|pressed| &pressed.contacts)
     }
 
-    /// Writes the travel, force and target of each pressed object to the entry of `readings` with the object's scene number.
+    /// Writes the travel, force and target of each pressed object into `readings`, at the object's number in the scene.
     pub fn read(&self, readings: &mut [ObjectReading]) {
         for pressed in &self.all {
             readings[pressed.object].held = PoseControl::Pressed {

@@ -16,8 +16,8 @@ use crate::signal::SignalWorkspace;
 /// Rule that selects the time steps to compute between two frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stepping {
-    /// Computes only patches and steps on which later frames depend. Steps between frames are skipped if no later frame depends on them; otherwise only patches
-    /// with dampers or friction are computed.
+    /// Computes only the time steps and patches on which later frames depend. Steps between frames are skipped if no later frame depends on them; otherwise
+    /// only patches with dampers or friction are computed.
     AsNeeded,
     /// Computes all patches in all steps. The frames are equal but take longer to compute; used in tests.
     Always,
@@ -52,7 +52,7 @@ pub struct Simulation<'p> {
 }
 
 impl<'p> Simulation<'p> {
-    /// Creates a simulation that is before its first frame.
+    /// Creates a simulation in its state before the first frame.
     pub fn new(plan: &'p ScenePlan, stepping: Stepping) -> Self {
         Self::with_seed(plan, stepping, plan.spec.seed)
     }
@@ -251,7 +251,7 @@ impl<'p> Simulation<'p> {
         (n_frames / (self.plan.n_frames_uncut - 1).max(1) as f64).min(1.0)
     }
 
-    /// Computes all patches after a step of `dt` seconds and writes the frame.
+    /// Computes all patches after a step of `dt` seconds, and writes the results to the frame.
     fn read(&mut self, dt: f64) {
         let plan = self.plan;
         let share = self.share();

@@ -1,4 +1,4 @@
-//! State of a patch during a simulation: pose, contacts, damper state and friction state.
+//! State of a patch during a simulation: pose, contacts, dampers and friction.
 
 use super::frame::PatchReading;
 use super::mount::Mount;
@@ -174,8 +174,8 @@ impl SkinState {
         }
     }
 
-    /// Makes a step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. The tangential springs of free objects are in
-    /// `tips`.
+    /// Makes a time step of `dt` seconds to the current poses of the objects; an infinite `dt` gives the steady state. The tangential springs of free objects
+    /// are in `tips`.
     pub fn feel(
         &mut self,
         patch: &PlannedPatch,

@@ -15,7 +15,7 @@ pub(super) fn complete(schema: &mut Value) {
     schema["properties"]["axes"] = axes;
 }
 
-/// Returns the table `[test]`: the keys of other tables that may differ for test touches, none of which is required.
+/// Returns the schema of the table `[test]`: the keys of other tables that may differ for test touches, all optional.
 fn test_table(schema: &Value) -> Value {
     let tables = TABLES.iter().map(|&name| {
         let path = format!("#/properties/{name}");

@@ -136,7 +136,7 @@ fn last_allowed(allowed: f64, refused: f64, is_allowed: impl Fn(f64) -> bool) ->
     }))
 }
 
-/// Largest number up to which all whole numbers are exact.
+/// Largest number below which every integer is an exact f64.
 const MAX_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// Returns the last integer for which `is_inside` is true between `inside` (true) and `outside` (false), by bisection.

@@ -38,7 +38,7 @@ question = \"How many measurements are enough?\"
 [Taplo](https://taplo.tamasfe.dev) checks such files with `taplo lint`. In VS Code, the extension *Even Better TOML* reads the same line.
 ";
 
-/// Introduction of the study files.
+/// Introduction to the section of `guide/reference.md` about study files.
 const STUDIES: &str = "
 ## Study files
 
@@ -120,7 +120,7 @@ fn sentence(words: &str) -> String {
     format!("{}{}", first.unwrap_or_default(), letters.as_str())
 }
 
-/// Returns a link to the section with a heading in back quotes.
+/// Returns a link to the section with the given heading.
 fn link(heading: &str) -> String {
     let anchor = heading.to_lowercase();
     let anchor: String = anchor
@@ -134,7 +134,7 @@ fn link(heading: &str) -> String {
 struct FileKind<'s> {
     schema: &'s Value,
     accepted_keys: fn(toml::Value) -> Vec<String>,
-    /// Descriptions of the keys; empty for scenes, which have no axes.
+    /// Descriptions of the keys; empty for scene files, whose keys cannot be swept.
     keys: &'s [KeyAbout],
 }
 
@@ -287,7 +287,7 @@ impl<'s> Table<'s> {
             })
     }
 
-    /// Returns the tables that a key has as its value: one, or one for each variant.
+    /// Returns the tables that are the value of a key: a single table, or one for each variant.
     fn below(&self, name: &str, key: &'s Value) -> Vec<Self> {
         let is_list = key["type"] == "array";
         let value = if is_list { &key["items"] } else { key };

@@ -18,7 +18,7 @@ pub(super) struct KindSchema {
     pub words: &'static str,
     /// Schema of a file of this kind, without conditions.
     pub schema: Value,
-    /// Function that returns the keys that the reader accepts.
+    /// Function that returns all keys that the reader of a file accepts.
     pub accepted_keys: fn(toml::Value) -> Vec<String>,
     /// Descriptions of all keys.
     pub keys: Vec<KeyAbout>,

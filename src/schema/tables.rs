@@ -47,7 +47,7 @@ pub fn tables_page() -> String {
     page
 }
 
-/// Writes the section of a file. Columns with which a file before begins too are not repeated.
+/// Writes the section about a table file. Columns with which a file before begins too are not repeated.
 fn write_file(file: &FileAbout, presence: &str, before: &[FileAbout], page: &mut String) {
     let times = match file.repeats {
         true => "",

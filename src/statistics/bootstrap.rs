@@ -197,7 +197,7 @@ mod tests {
         holds.count() as f64 / n_draws as f64
     }
 
-    /// Returns the coverage of the bootstrap intervals for normal scores, and for accuracies of 0.9 and 0.98 at 100 test rows.
+    /// Returns the coverage of bootstrap intervals for normal scores, and for accuracies of 0.9 and 0.98 with 100 test rows.
     fn coverages(n_draws: usize, n_trials: usize) -> [f64; 3] {
         let of_accuracy = |p: f64| {
             let rows = Binomial::new(100, p).unwrap();

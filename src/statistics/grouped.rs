@@ -120,7 +120,7 @@ pub fn interval_of_groups(tests: &[GroupedTest], confidence: f64) -> Result<(Int
 struct Clustered {
     /// Mean accuracy over all tests.
     share: f64,
-    /// Effective number of rows: the number of independent rows that would give the accuracy an equal variance.
+    /// Effective number of rows: the number of independent rows that would give an equal variance of the accuracy.
     n_rows: f64,
     /// Number of distinct groups in all tests.
     n_groups: usize,

@@ -16,7 +16,7 @@ pub fn holm(p_values: &[f64]) -> Vec<f64> {
     corrected
 }
 
-/// Corrects the p-values of several tests with [`holm`]; tests without a p-value are ignored and stay `None`.
+/// Corrects the p-values of several tests with [`holm`]; missing p-values are ignored and stay `None`.
 pub fn holm_of_some(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
     let known: Vec<f64> = p_values.iter().flatten().copied().collect();
     let mut corrected = holm(&known).into_iter();

@@ -11,7 +11,7 @@ use crate::random::Seed;
 use bubbletouch_sim::statistics::interval::Interval;
 use rand::Rng;
 
-/// Number of bootstrap resamples of the configurations. With another random stream, the ends of the interval move by 1 % of its width.
+/// Number of bootstrap resamples over configurations. With another random stream, the ends of the interval move by 1 % of its width.
 const RESAMPLES: usize = 4000;
 
 /// Returns Kendall's rank correlation τ_b of two runs, given one pair of values per configuration. Returns `None` for fewer than two pairs, or if all values of

@@ -15,7 +15,7 @@ pub struct Component {
     pub degrees_of_freedom: usize,
     /// Mean square of the source in the analysis of variance.
     pub mean_square: f64,
-    /// Unbiased estimate of the variance that the source contributes; the estimate may be negative by chance if the variance is small.
+    /// Unbiased estimate of the variance that the source contributes; a small variance may give a negative estimate by chance.
     pub estimate: f64,
     /// Confidence interval of the variance that the source contributes, at least 0.
     pub interval: Interval,

@@ -1,4 +1,4 @@
-//! Type-erased studies, as used by all commands.
+//! Type-erased studies, which all commands use.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::journal_file::Journal;
@@ -28,7 +28,7 @@ pub trait AnyStudy: Send {
     /// Returns the number of work items in `part` that have no result in the journal.
     fn n_pending(&self, part: Part, journal: &Journal) -> usize;
 
-    /// For one part of a divided study, returns the number of work items that have no successful result in the journal (the file of finished work items).
+    /// Returns the number of work items in `part` without a successful result in the journal.
     fn n_without_success(&self, part: Part, journal: &Journal) -> usize;
 
     /// Runs the work items that have no result in the journal.

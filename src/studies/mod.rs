@@ -41,7 +41,7 @@ use crate::toml_text;
 use schemars::{Schema, SchemaGenerator};
 use std::path::Path;
 
-/// Entry of the registry: a kind of study without its type, so that all kinds are in one list.
+/// Registry entry of a kind of study, without static type, so that all kinds are in one list.
 struct Entry {
     about: About,
     load: fn(&Source) -> Result<Box<dyn AnyStudy>>,
@@ -60,7 +60,7 @@ const KINDS: &[Entry] = &[
     RECOGNITION,
 ];
 
-/// Kind of study for files that have no table of another kind: a recognition study.
+/// Default kind of study: a file without a table of another kind describes a recognition study.
 const RECOGNITION: Entry = entry::<recognition::study::RecognitionStudy>();
 
 const fn entry<K: Study>() -> Entry {
@@ -174,7 +174,7 @@ pub fn check_folder(study: &str, folder: &Path) -> Result<()> {
     OwnedFiles::read(folder, RUN)?.check_results(tables)
 }
 
-/// Reads all tables of a result folder, which may be of any kind of study; also returns the kind. Files to which the study refers are not loaded.
+/// Reads all tables of a result folder of any kind of study; also returns the description of the kind. Files to which the study refers are not loaded.
 ///
 /// # Errors
 /// If the folder has no study, or a table cannot be read or has other columns.
@@ -194,7 +194,7 @@ pub fn read_failures(folder: &Path) -> Result<Option<Table>> {
     Ok(found.filter(|failures| failures.n_rows > 0))
 }
 
-/// Names of the tables that identified kinds of studies which no longer exist, each with the name of what replaces it.
+/// Names of tables that identified removed kinds of studies, each with the name of its replacement.
 const REMOVED: [(&str, &str); 2] = [
     (
         "speed_accuracy",

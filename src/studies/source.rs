@@ -29,7 +29,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Creates a source from the text of a study; no option overrides the study.
+    /// Creates a source from the text of a study, without changes by command-line options.
     pub fn of_text(place: &str, text: &str) -> Self {
         Self {
             place: place.to_owned(),

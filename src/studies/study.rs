@@ -62,7 +62,7 @@ impl Facts {
         Self::of_toml(toml_text::write(spec), content)
     }
 
-    /// Creates the facts of a study from its TOML text with all defaults; question, expectation and seed are taken from the text.
+    /// Creates the facts of a study from its complete TOML text, which contains the question, the expectation and the seed.
     pub fn of_toml(toml: String, content: BTreeMap<String, String>) -> Self {
         let table = toml_text::table(&toml).unwrap_or_default();
         let words = |key| table.get(key).and_then(toml::Value::as_str);

@@ -69,7 +69,7 @@ fn columns_of(text: &str, header: &str) -> Option<String> {
     String::from_utf8(writer.into_inner().ok()?).ok()
 }
 
-/// Returns the number of bytes at the start of two rows that are equal. Rows begin with their configuration, so similar configurations have long equal starts.
+/// Returns the number of equal bytes at the start of two rows. Rows begin with their configuration, so similar configurations have long equal starts.
 fn n_alike(a: &str, b: &str) -> usize {
     let pairs = a.bytes().zip(b.bytes());
     pairs.take_while(|(a, b)| a == b).count()

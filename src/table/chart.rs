@@ -1,4 +1,4 @@
-//! Specification of a chart: the columns that it shows, and the form of its marks.
+//! Specification of a chart: its columns, and the type of its marks.
 
 use super::{Column, Table, Value, for_each_mark};
 
@@ -13,7 +13,7 @@ pub struct ChartSpec {
     pub note: String,
     /// File name of the table that the chart shows.
     pub table: &'static str,
-    /// Filters that select the drawn rows: only rows that pass all filters are drawn.
+    /// Filters of the drawn rows; a row is drawn if it passes all filters.
     pub shown: Vec<Shown>,
     /// Name of the column along the x axis; the column defines the scale of the axis.
     pub x: String,

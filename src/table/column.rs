@@ -7,7 +7,7 @@ use std::borrow::Cow;
 /// Text that is constant, or created at run time for the axes that a study defines.
 pub type Words = Cow<'static, str>;
 
-/// Role of a table column. Reports, pages, advice and comparisons depend only on roles.
+/// Role of a table column, such as choice, condition, value or cost. Reports, pages, advice and comparisons depend only on roles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Choice of the designer, such as pitch, ensemble or C. For each condition, advice selects the best choices.
@@ -129,7 +129,7 @@ impl Column {
         }
     }
 
-    /// Returns whether some numbers of the column have display names. A chart does not join the points of named numbers by lines.
+    /// Returns whether the column has display names for some numbers. A chart does not join the points of named numbers by lines.
     pub fn has_named_numbers(&self) -> bool {
         self.scale != Scale::Words && self.names.iter().any(|(code, _)| !code.is_empty())
     }

@@ -59,7 +59,7 @@ impl<R: Columns> File<R> {
         }
     }
 
-    /// Marks the table as a table of times, whose bytes differ between runs.
+    /// Marks the table as a table of computing times, which differ between runs.
     pub const fn of_times(mut self) -> Self {
         self.repeats = false;
         self

@@ -118,8 +118,8 @@ impl Table {
         self
     }
 
-    /// Returns whether the rows are choices with a value and a cost, and do not describe single subjects. Only columns that vary are considered; in a table of
-    /// one row, all columns except subjects.
+    /// Returns whether each row of the table describes a choice with a value and a cost, and not a single subject. Only columns that vary are considered; in a
+    /// table of one row, all columns except subjects.
     pub fn offers_choices(&self) -> bool {
         let columns = self.columns.iter().zip(&self.data);
         let counted = columns.filter(|(column, data)| match self.n_rows {
@@ -171,8 +171,8 @@ impl Table {
         table
     }
 
-    /// Returns a column of another table, arranged for the rows of this table. Rows correspond if both tables have an equal number in the column `key`. Values
-    /// are absent for rows that the other table lacks.
+    /// Returns a column of another table with its values arranged for the rows of this table. Rows correspond if both tables have an equal number in the column
+    /// `key`. Values are absent for rows that the other table lacks.
     pub fn look_up(&self, other: &Self, key: &str, column: &str) -> Option<(Column, Data)> {
         let ((_, known), (_, wanted)) = (other.column(key)?, self.column(key)?);
         let (column, data) = other.column(column)?;
@@ -251,7 +251,7 @@ impl Table {
     }
 }
 
-/// Returns the path of a file and a line number as text, for an error message.
+/// Returns a text with the path of a file and a line number, for error messages.
 pub(crate) fn csv_place(path: &Path, line: Option<u64>) -> String {
     match line {
         Some(line) => format!("{}: line {line}", path.display()),

@@ -71,7 +71,7 @@ pub fn check_features(features: ArrayView2<f64>) -> Result<()> {
 /// Returns whether all values are finite. The loop has no early exit, so that it runs in vector instructions.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub fn all_finite(values: &[f64]) -> bool {
-    /// Exponent bits of an f64; all of them are 1 only in NaN and in infinities.
+    /// Bits of the exponent of an f64; all are 1 only in NaN and infinities.
     const EXPONENT: u64 = 0x7ff << 52;
     let mut is_bad = 0;
     for value in values {
@@ -140,7 +140,7 @@ pub fn checked_classes(data: &Dataset) -> Result<Vec<usize>> {
     Ok(classes)
 }
 
-/// For each row, returns the position of its label in the ascending list `classes`, which contains every label.
+/// Returns the position of each row's label in the ascending list `classes`, which contains all labels.
 pub fn positions(labels: ArrayView1<usize>, classes: &[usize]) -> Vec<usize> {
     labels
         .iter()

@@ -17,7 +17,7 @@ pub enum Multiclass {
 }
 
 impl Multiclass {
-    /// Returns the binary problems of n classes as pairs (positive class, negative class); `None` as negative class means all other classes.
+    /// Returns the binary problems of n classes as pairs (positive class, negative class); the negative class `None` means all other classes.
     pub(crate) fn problems(self, n: usize) -> Vec<(usize, Option<usize>)> {
         match self {
             Self::OneVsOne => (0..n)

@@ -75,7 +75,7 @@ pub enum Side {
     LeftOut,
 }
 
-/// Stratified hold-out: of the n rows of each class, `test_fraction · n` (rounded, 1 to n − 1) are test rows.
+/// Stratified hold-out: among the n rows of each class, `test_fraction · n` rows (rounded, 1 to n − 1) become test rows.
 ///
 /// # Errors
 /// If the fraction is outside 0 < f < 1, or a class has a single row.

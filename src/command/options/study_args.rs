@@ -39,7 +39,7 @@ impl StudyArgs {
         self.study.parent().unwrap_or(Path::new("")).to_owned()
     }
 
-    /// The name of the study: its file's name without the ending.
+    /// Returns the name of the study: the name of its file without the extension.
     pub fn name(&self) -> Result<String> {
         let stem = self.study.file_stem().and_then(|stem| stem.to_str());
         stem.map(str::to_owned)
@@ -73,7 +73,7 @@ impl StudyArgs {
         shell_line(&words)
     }
 
-    /// Reads and checks the study and loads its objects; its results go to a folder, and it is to hold at most so many bytes.
+    /// Reads and checks the study and loads its objects, with a given result folder and memory limit in bytes.
     pub fn load(&self, results: &Path, memory: Option<u64>) -> Result<Box<dyn AnyStudy>> {
         kinds::load(&Source {
             memory,

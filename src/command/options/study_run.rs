@@ -74,7 +74,7 @@ pub struct StudyRun<'a> {
 }
 
 impl<'a> StudyRun<'a> {
-    /// Reads and checks the study and loads its objects; nothing is written yet. A `fresh` run sets the old folder aside.
+    /// Reads and checks the study and loads its objects; does not write any files. A `fresh` run sets the old folder aside.
     pub fn begin(args: &'a RunArgs, fresh: bool) -> Result<Self> {
         let started = SystemTime::now();
         let folder = args.results.folder()?;

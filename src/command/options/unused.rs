@@ -1,4 +1,4 @@
-//! One rule for all commands: an option that cannot act is an error.
+//! Check of unused options: an option that has no effect is an error in all commands.
 //!
 //! clap's `requires` is not enough: it is not checked for an option whose required one conflicts with another that is given.
 

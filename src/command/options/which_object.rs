@@ -81,7 +81,7 @@ impl WhichObject {
         Ok(())
     }
 
-    /// Few spheres within a tolerance (metres) of what spheres shall stand for.
+    /// Packs an object with few spheres, whose distance from its surface is at most `tolerance` metres.
     pub fn pack(&self, object: &Original, tolerance: f64) -> Result<SphereUnion> {
         let (surface, body) = match object {
             Original::Solid(solid) => {

@@ -72,7 +72,7 @@ impl Identity {
         }
     }
 
-    /// Returns the differences between the study that started a journal and this study, one line for each difference.
+    /// Returns the differences between this study and the study that started a journal, one line per difference.
     pub fn differences(&self, (begun, records): (&Self, &Records)) -> Vec<String> {
         let may_differ = self.same.may_differ(records);
         let [theirs, ours] = [begun, self].map(|identity| identity.facts(&may_differ));
@@ -86,7 +86,7 @@ impl Identity {
         names.into_iter().map(line).collect()
     }
 
-    /// Checks that this study may resume the journal at `place`.
+    /// Returns an error if this study must not resume the journal at `place`.
     ///
     /// # Errors
     /// If the journal was started by another study; the error lists the differences.

@@ -41,7 +41,7 @@ impl<'a, R: ItemRows> PendingItems<'a, R> {
         self.pending().count()
     }
 
-    /// Iterates over the numbers of the pending work items.
+    /// Returns the numbers of the pending work items.
     fn pending(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.items.len()).filter(|&number| self.is_pending[number])
     }

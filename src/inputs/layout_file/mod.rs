@@ -152,7 +152,7 @@ const MAX_LOOKED_AT: usize = 200;
 /// Minimum length of a normal or axis vector in a layout file. Files contain normals with four decimals; shorter vectors count as zero.
 const MIN_AXIS: f64 = 1e-3;
 
-/// Returns the vector scaled to length 1. A vector that already has length 1, up to rounding, is returned unchanged.
+/// Returns a vector of length 1 in the direction of `axis`. A vector that already has length 1, up to rounding, is returned unchanged.
 fn unit(axis: DVec3) -> DVec3 {
     match (axis.length() - 1.0).abs() < 1e-15 {
         true => axis,

@@ -12,7 +12,7 @@ use std::path::Path;
 /// Maximum deviation of an entry of RᵀR from the identity matrix if R is a rotation matrix in f32.
 const MAX_ROTATION_ERROR: f64 = 1e-3;
 
-/// Reads a layout of taxels from a `.npz` archive.
+/// Reads a layout of taxels from a `.npz` archive of NumPy arrays.
 pub(super) fn read(path: &Path) -> Result<LayoutFile> {
     let place = path.display().to_string();
     let names = crate::inputs::arrays::member_names(path)?;

@@ -102,7 +102,7 @@ fn levels(frames: ArrayView2<f64>) -> Vec<f64> {
     rows.map(|frame| frame.dot(&frame).sqrt()).collect()
 }
 
-/// Returns the index of the highest level; the first index if several levels are equal.
+/// Returns the index of the highest contact strength; the first index if several are equal.
 fn highest(levels: &[f64]) -> usize {
     let mut best = 0;
     for (frame, &level) in levels.iter().enumerate() {

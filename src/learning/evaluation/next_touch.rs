@@ -1,4 +1,4 @@
-//! Choice of the next pose in which to touch an unknown object: random, farthest from the previous touches, or most informative.
+//! Choice of the next pose for touching an unknown object: random, farthest from previous touches, or most informative.
 //!
 //! The robot can choose the pose, but the label of the touch is known only afterwards. A classifier assigns labels a₁ … a_t to touches in poses x₁ … x_t. The
 //! posterior probability (belief) of object o is
@@ -21,7 +21,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Policy that chooses the pose of each touch after the first one.
+/// Rule that chooses the pose of each touch after the first touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NextTouch {

@@ -24,7 +24,7 @@ pub(super) struct View<'a> {
     pub panels: Groups,
     pub x: Scale,
     pub y: Scale,
-    /// Whether points are joined by lines along x; words and named numbers are not joined.
+    /// Whether points are joined by lines along x; points at texts and named numbers are not joined.
     pub is_joined: bool,
     /// Title of each panel, such as `noise 10 %` or `RBF SVM`. A title is empty if there is one panel, and in later rows of tiles.
     pub titles: Vec<String>,
@@ -34,7 +34,7 @@ pub(super) struct View<'a> {
     pub places: Vec<Place>,
 }
 
-/// Position of a table row in its panel of a chart.
+/// Position of a table row within its panel of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// Index of the row in the table.
@@ -58,7 +58,7 @@ pub(super) struct Groups {
     pub heading: String,
     /// For each group, the values of the grouping columns as text; a single empty text if there are no such columns.
     pub names: Vec<String>,
-    /// For each group, its values as a title, in which numbers include the column's name.
+    /// Values of each group as a title; numbers are preceded by the name of their column.
     titles: Vec<String>,
     /// Index of the group of each table row; 0 for rows that are not shown.
     pub of: Vec<usize>,
@@ -204,7 +204,7 @@ impl<'a> View<'a> {
         column_of(self.spec, self.table, name)
     }
 
-    /// Draws the mark of a row inside an SVG group with its data: row number, and values along the axes with their units.
+    /// Draws the mark of a row in an SVG group with data attributes: row number, and axis values with units.
     pub fn draw_mark(&self, drawing: &mut Drawing, place: &Place, draw: impl FnOnce(&mut Drawing)) {
         let spec = self.spec;
         let words = |name: &str| {
@@ -304,7 +304,7 @@ impl<'a> View<'a> {
         rows
     }
 
-    /// Returns a text with the choices and conditions that are constant in the chart and not shown elsewhere in it.
+    /// Returns a text with the choices and conditions that are constant in the chart and that the chart does not show otherwise.
     pub fn constants(&self) -> String {
         let spec = self.spec;
         let mut rows: Vec<usize> = self.places.iter().map(|place| place.row).collect();

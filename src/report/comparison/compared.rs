@@ -37,7 +37,7 @@ pub fn sentences_text(sentences: &[String], width: usize) -> String {
     sentences.map(|said| paragraph(said, width)).collect()
 }
 
-/// Returns the HTML page that compares two named folders: the differences, and the agreement of both rankings of designs.
+/// Returns the HTML page that compares two folders: the differences, and the agreement of the two rankings of designs.
 ///
 /// # Errors
 /// Returns the errors of [`differences_text`], or an error if a chart cannot be drawn.
@@ -109,7 +109,7 @@ fn values(found: &[ColumnDifferences]) -> Result<Table> {
     table(&VALUES, found.iter().filter(|one| !is_cost(one)))
 }
 
-/// Returns the table of the differences in one column, the most significant rows first.
+/// Returns the table of the differences in one column, ordered from the most to the least significant row.
 fn table<'a>(
     file: &File<Difference>,
     columns: impl Iterator<Item = &'a ColumnDifferences>,
@@ -227,7 +227,7 @@ fn table_words(
     said
 }
 
-/// Maximum number of changes of an outcome, such as from `right` to `wrong`, that a sentence lists.
+/// Maximum number of changed outcomes that a sentence lists, such as `right` to `wrong`.
 const MAX_CHANGES: usize = 8;
 
 /// Returns a sentence about an outcome column, such as `stability.csv: outcome: 1279 the same, 226 changed (226 from right to not finite).`

@@ -21,7 +21,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 pub enum Significance {
     /// Significant difference: p < 0.05 after correction, or disjoint intervals.
     Significant,
-    /// Difference that could not be tested: there are no intervals, and no trials or too few.
+    /// Difference that was not tested, because there are no intervals and too few trials.
     Untested,
     /// Difference that is not significant, so that chance can explain it.
     NotSignificant,
@@ -131,8 +131,8 @@ struct Settings<'a> {
 }
 
 impl<'a> Settings<'a> {
-    /// Groups the rows of a table by setting. Returns `None` if the table identifies configurations by numbers, which differ between runs, or if several rows
-    /// of a table without trials have the same setting.
+    /// Groups the rows of a table by their setting. Returns `None` if the table identifies configurations by numbers, which differ between runs, or if several
+    /// rows of a table without trials have the same setting.
     fn new(table: &'a Table) -> Option<Self> {
         let columns = Setting::of_roles(table, &[Role::Choice, Role::Condition, Role::Subject]);
         let columns = columns.filter(|one| one.column.name != "trial");

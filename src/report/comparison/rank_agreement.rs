@@ -27,7 +27,7 @@ pub struct RankAgreement {
     pub tau: f64,
     /// Bootstrap confidence interval of the rank correlation over designs.
     pub interval: Interval,
-    /// For each choice, its description and two counts of pairs of designs that differ only in this choice. The first is the number of pairs that both studies
+    /// Description of each choice, with two counts of pairs of designs that differ only in this choice. The first is the number of pairs that both studies
     /// order alike; the second is the number of all pairs without a tie.
     pub choices: Vec<(String, usize, usize)>,
 }
@@ -131,7 +131,7 @@ impl<'a> Ranked<'a> {
         Self { table, ratios }
     }
 
-    /// Returns the entry of a row as text with its unit: empty if the setting does not apply, `None` if the table lacks the column.
+    /// Returns the entry of a row as text with its unit; empty for a setting that does not apply, `None` without such a column.
     fn value(&self, column: &str, row: usize) -> Option<String> {
         let (column, data) = self.table.column(column)?;
         Some(match data.value(row) {
@@ -248,7 +248,7 @@ mod tests {
     use crate::table::File;
 
     crate::row! {
-    /// Row of a test table: a design of a study and its accuracy.
+    /// Row of a test table, which contains a design of a study and its accuracy.
     pub struct DesignRow {
         /// Number of taxels.
         taxels: usize => Choice: Linear;
@@ -256,7 +256,7 @@ mod tests {
         ensemble: String => Choice;
         /// Compression ratio (taxels per measurement).
         ratio: f64 => Choice in ":1": Log;
-        /// Number of compressed measurements.
+        /// Number of measurements after compression.
         measurements: usize => Choice "m": Log;
         /// Standard deviation of the sensor noise.
         noise_std: f64 => Condition: Linear;

@@ -377,7 +377,7 @@ fn marker_outline(shape: usize, (x, y): Point, radius: f64) -> Vec<Point> {
 }
 
 impl Picture {
-    /// Copies a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
+    /// Draws a drawing of equal size onto the picture. White areas of the drawing leave the picture unchanged.
     pub(crate) fn print(&mut self, drawing: &Drawing) -> Result<()> {
         darken(&mut self.rgb, &drawing.pixels(1)?.rgb);
         Ok(())

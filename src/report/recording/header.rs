@@ -1,4 +1,4 @@
-//! Header of a recording: all data that do not change over time.
+//! Header of a recording, which contains all data that do not change over time.
 
 use crate::error::{Error, Result};
 use crate::signal::Quantity;

@@ -33,7 +33,7 @@ fn view_from(towards_eye: DVec3) -> DMat3 {
     upright(towards_eye, if is_above { DVec3::Y } else { DVec3::Z })
 }
 
-/// Returns the directions right, up and towards the viewer of a picture, given the up direction, which must not be parallel to the view.
+/// Returns a matrix of the directions right, up and towards the viewer; `up` must not be parallel to the viewing direction.
 fn upright(towards_eye: DVec3, up: DVec3) -> DMat3 {
     let right = up.cross(towards_eye).normalize();
     DMat3::from_cols(right, towards_eye.cross(right), towards_eye).transpose()

@@ -27,7 +27,7 @@ pub struct RecordingWriter {
     header: RecordingHeader,
     target: WholeFile,
     members: Vec<Member>,
-    /// For each array of the recording, its rows since the last complete block.
+    /// Rows of each array of the recording that were added after its last complete block.
     rows: Vec<Vec<u8>>,
     rows_per_block: usize,
     blocks: File,
@@ -159,7 +159,7 @@ fn start(zip: &mut ZipWriter<&mut BufWriter<File>>, name: &str) -> io::Result<()
     Ok(zip.start_file(format!("{name}.npy"), options)?)
 }
 
-/// Returns the archive members that do not change over time: `meta`, and the centres and axes of the taxels.
+/// Returns the archive members that are constant over time: `meta`, and the centres and axes of the taxels.
 fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
     let meta = header.meta();
     let code_points = meta.chars().flat_map(|c| u32::from(c).to_le_bytes());
@@ -176,7 +176,7 @@ fn constant_members(header: &RecordingHeader) -> Vec<(String, Vec<u8>)> {
     members
 }
 
-/// For each array of the recording, returns the numbers of one frame.
+/// Returns the numbers of one frame for each array of the recording.
 fn numbers(frame: &Frame) -> Vec<Vec<f64>> {
     let mut numbers = vec![vec![frame.time]];
     for patch in &frame.patches {

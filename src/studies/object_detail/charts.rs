@@ -109,7 +109,7 @@ fn learned(tables: &[Table]) -> Option<&Table> {
     tables.iter().find(|table| table.file == RECOGNITION.name())
 }
 
-/// Names of the methods that replace a mesh by spheres.
+/// Names of the methods that represent a mesh by spheres.
 const OF_SPHERES: [&str; 4] = [
     "packing",
     "vertex_spheres",

@@ -61,7 +61,7 @@ pub(super) struct Reading {
 
 /// Number of patch offsets on the coarse grid from which the search for the best offset starts. With a smaller value, the search may end in a local minimum.
 const N_OFFSETS: usize = 48;
-/// Approximate number of golden-section steps that refine the best offset of the coarse grid.
+/// Approximate number of golden-section steps that refine the best patch offset.
 const N_STEPS: usize = 30;
 /// Number of times that each touch is repeated to measure its computing time.
 const N_REPEATS: usize = 3;
@@ -133,7 +133,7 @@ impl Truth {
         least(start, (refined, cost(refined))).0
     }
 
-    /// Returns the median computing time of a touch on one thread, s; 0 if nothing was touched.
+    /// Returns the median computing time of a touch on one thread, s; 0 if there are no touches.
     pub fn seconds_per_touch(&self, model: &Model) -> f64 {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         let mut workspace = Workspace::new();

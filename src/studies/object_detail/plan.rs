@@ -48,7 +48,7 @@ pub fn object_detail_keys() -> Vec<KeyAbout> {
 }
 
 impl ObjectDetailPlan {
-    /// Creates the plan of a study and checks all keys.
+    /// Creates the plan of a study and checks all its keys.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.

@@ -68,7 +68,7 @@ fn summary_row((method, tolerance_mm): Level, of_level: &[&Row], rows: &[Row]) -
     }
 }
 
-/// For each method and tolerance, returns the computing time per touch.
+/// Returns the computing time per touch for each method and tolerance.
 pub(super) fn costs(
     summary: &[DetailSummary],
     timing: &[(DetailConfiguration, DetailTime)],

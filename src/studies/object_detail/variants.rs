@@ -13,8 +13,8 @@ use glam::DVec3;
 use std::path::Path;
 use std::time::Instant;
 
-/// Method and tolerance of a model (mm, as written in the study). A method without tolerances has the tolerance of the packing with the same number of spheres;
-/// `None` if there is none.
+/// Method and tolerance (mm, as written in the study file) of a model. A method without tolerances has the tolerance of the packing with the same number of
+/// spheres; `None` if there is none.
 pub(super) type Level = (DetailMethod, Option<f64>);
 
 /// Returns a tolerance as text, such as ` within 0.5 mm`; returns an empty text if there is no tolerance.

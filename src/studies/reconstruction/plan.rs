@@ -75,7 +75,7 @@ pub fn reconstruction_keys() -> Vec<KeyAbout> {
 }
 
 impl ReconstructionPlan {
-    /// Creates the plan of a study and checks all keys.
+    /// Creates the plan of a study and checks all its keys.
     ///
     /// # Errors
     /// If a key is out of its range; the error names `place` (the file) and the first such key.
@@ -159,7 +159,7 @@ impl ReconstructionPlan {
         self.array.shape()
     }
 
-    /// Returns a list with one empty slot per dictionary, in the order of the plan; each slot is computed once and shared by all threads.
+    /// Returns a list with one empty slot per dictionary; each slot is computed once and shared by all threads.
     pub(super) fn of_each_dictionary<T>(&self) -> Vec<Shared<T>> {
         let each = self.dictionaries.iter();
         each.map(|_| Shared::default()).collect()

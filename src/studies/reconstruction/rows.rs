@@ -64,7 +64,7 @@ row! {
 pub struct ReconstructionScore {
     /// Number of test frames that were reconstructed.
     n_frames: usize => Note "test frames": Linear;
-    /// Relative error √(Σ‖x̂ − x‖² / Σ‖x‖²) of the reconstructed frames x̂ with respect to the clean test frames x, dimensionless.
+    /// Relative error √(Σ‖x̂ − x‖² / Σ‖x‖²) of the reconstructed frames x̂ with respect to the noise-free test frames x, dimensionless.
     error: f64 => Value(Less): Log between [error_low, error_high];
     /// Lower end of the 95 % interval of `error`, which covers its variation over touches.
     error_low: f64 => Note "95 % interval over touches, lower end": Log;

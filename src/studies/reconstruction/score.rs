@@ -25,7 +25,7 @@ pub(super) struct Truth {
     full_scale: f64,
 }
 
-/// Result of reconstructing a block of test frames.
+/// Reconstructed frames of a block of test frames.
 pub(super) struct Found {
     /// Squared error ‖x̂ − x‖² of each frame: x̂ is the reconstructed frame, x the frame without noise.
     pub errors: Vec<f64>,
@@ -68,8 +68,8 @@ impl Truth {
         }
     }
 
-    /// Returns Σe / Σ‖x‖² and the half width of its 95 % interval over frames. Here e are the `errors` of single frames, and x are the clean frames. The
-    /// interval is computed by linearisation of the ratio of means (delta method).
+    /// Returns Σe / Σ‖x‖² for the given squared errors e, and the half width of its 95 % interval over frames x. Here e are the `errors` of single frames, and
+    /// x are the clean frames. The interval is computed by linearisation of the ratio of means (delta method).
     fn ratio(&self, errors: &[f64]) -> (f64, f64) {
         let n = errors.len() as f64;
         let mean = self.squares.iter().sum::<f64>() / n;

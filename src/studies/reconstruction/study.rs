@@ -1,4 +1,4 @@
-//! Reconstruction study: computes touches and dictionaries once, then every ensemble, m, noise, dictionary and solver.
+//! Reconstruction study: simulates touches and computes dictionaries once, then reconstructs frames with every configuration.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::pending::PendingItems;

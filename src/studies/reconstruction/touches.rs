@@ -1,4 +1,4 @@
-//! Frames of all touches (simulated once, split into training and test frames, with and without noise), and the dictionaries computed from the frames.
+//! Frames of all touches, divided into training and test frames, with and without noise, and the dictionaries computed from them.
 
 use crate::engine::progress::Progress;
 use crate::engine::work_items::shared::Shared;
@@ -126,7 +126,7 @@ fn read(
     Ok(measure(reading, &touches)?.0)
 }
 
-/// Selects a few objects that are spread evenly over the list of objects. For each, returns the row of its first test touch and its name.
+/// Selects a few objects that are evenly spread over the list of objects. For each, returns the row of its first test touch and its name.
 fn shown(touched: &[TouchedObject], labels: &Array1<usize>, split: &Split) -> Vec<(usize, String)> {
     let n = N_SAMPLES.min(touched.len());
     let objects = (0..n).map(|sample| sample * touched.len() / n);

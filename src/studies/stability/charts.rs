@@ -1,4 +1,4 @@
-//! Charts of a stability study: an outcome map for each part, and the computing time against the number of taxels.
+//! Charts of a stability study: outcomes for each part, and computing time against the number of taxels.
 
 use crate::dynamics::skin_sim::UNSTABLE_JOINTS;
 use crate::studies::stability::plan::StabilityPlan;

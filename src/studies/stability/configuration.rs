@@ -219,7 +219,7 @@ fn put_to_rest(scene: &ConfigurationScene, mass: f64, n_balls: usize) -> Result<
     })
 }
 
-/// With the quasi-static method, lowers a ball that can only move vertically until the springs of the taxels carry its weight.
+/// Lowers a ball that moves only vertically until the taxels' springs carry its weight, by the quasi-static method.
 fn press_to_weight(scene: &ConfigurationScene) -> Result<Answer> {
     let (cradle, weight) = (&scene.cradle, scene.force);
     let ball = from_ref(&cradle.ball);

@@ -67,7 +67,7 @@ pub struct StabilityScore {
     /// Relative error of the total contact force, |Σ f − expected| / expected, where f are the forces of the taxels; empty if the simulation failed.
     #[serde(with = "any_number")]
     force_imbalance: Option<f64> => Value(Less): Log;
-    /// Relative deflection error, Σ |δ − δ*| / Σ δ*, where δ are the computed and δ* the exact deflections; empty if the simulation failed.
+    /// Relative deflection error Σ |δ − δ*| / Σ δ* of the computed deflections δ with respect to the exact δ*; empty if the simulation failed.
     #[serde(with = "any_number")]
     deflection_error: Option<f64> => Value(Less): Log;
     /// Number of completed time steps.

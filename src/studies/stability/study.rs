@@ -1,4 +1,4 @@
-//! Stability study: simulates all configurations and makes the result tables.
+//! Stability study: simulates all configurations and computes the result tables.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;

@@ -28,7 +28,7 @@ pub(super) struct Posture<'a> {
     pub links: Vec<Pose>,
 }
 
-/// Motion of an object in the frame of a link.
+/// Motion of an object over the skin, in the frame of a robot link.
 #[derive(Clone, Copy)]
 pub(super) struct Path {
     /// Pose of the link in the world, `world_from_link`.
@@ -49,7 +49,7 @@ impl Path {
         self.starting_at(Pose::new(start.rotation, start.translation + by))
     }
 
-    /// Returns the path with another pose of the object at its start, `link_from_object`.
+    /// Returns a copy of the path with a different initial pose of the object, `link_from_object`.
     pub fn starting_at(&self, start: Pose) -> Self {
         Self {
             motion: Oscillation {

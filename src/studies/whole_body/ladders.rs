@@ -13,8 +13,8 @@ use crate::world::{Extrusion, Oscillation, Patch, Taxel};
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Numbers of patches around and along a cylindrical sleeve of skin, in the series of growing skins. With ten patches of 10,000 taxels each, 100,000 taxels are
-/// one sleeve. The series of growing touches and of growing objects need a larger area, as large as a trunk.
+/// Numbers of patches around and along a cylindrical sleeve of skin, in the scaling series of the skin. With ten patches of 10,000 taxels each, 100,000 taxels
+/// are one sleeve. The series of growing touches and of growing objects need a larger area, as large as a trunk.
 const SMALL: (usize, usize) = (5, 2);
 /// Numbers of patches around and along a cylindrical sleeve of skin, in the series of growing touches and of growing objects.
 const LARGE: (usize, usize) = (9, 4);

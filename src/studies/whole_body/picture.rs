@@ -13,7 +13,7 @@ use bubbletouch_sim::raster::{Canvas, Hit, Lighting, view_from};
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Contents of the picture of a scene, in the world frame.
+/// Contents of the picture of a scene, with all positions in the world frame.
 struct SceneView {
     /// Points on the skin, metres, a few millimetres apart. Each point has the mean pressure on its patch (force divided by area), Pa.
     skin: Vec<(DVec3, f64)>,
@@ -39,8 +39,7 @@ const AZIMUTH: f64 = 0.7;
 /// Elevation of the viewing direction above the horizontal plane, radians.
 const ELEVATION: f64 = 0.3;
 
-/// Returns the picture of the scene with the most touched patches; if several scenes have equally many, the last one is shown. Returns `None` if no scene has a
-/// touched taxel.
+/// Returns the picture of the scene with the most touched patches; the last scene if several have equally many. Returns `None` if no scene has a touched taxel.
 ///
 /// # Errors
 /// If the scene cannot be simulated.

@@ -248,7 +248,7 @@ fn scene_plan(
     })
 }
 
-/// Returns the target and approach direction of the objects that are recognised.
+/// Returns the target position and the approach direction of the objects for recognition.
 fn recognition_aim(reader: &Reader, wanted: &BodyRecognitionSpec, robot: &Robot) -> Result<Aim> {
     let key = |name: &str| format!("whole_body.recognition.{name}");
     let at = reader.vector(&key("at_mm"), wanted.at_mm, MM)?;

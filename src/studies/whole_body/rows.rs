@@ -120,7 +120,7 @@ pub enum Stage {
 row! {
 /// Stage of a step whose time is measured. A row of `timing.csv` is a [`BodyCase`], a `BodyStage` and a [`StepTime`].
 pub struct BodyStage {
-    /// Timed part of a step: press, compress, classify, or all three together.
+    /// Timed stage of a step: press, compress, classify, or all three together.
     stage: Stage => Note;
     /// Name of the compression; empty for the stage `press`.
     compression: String => Choice;

@@ -104,7 +104,7 @@ pub struct BodyRecognitionSpec {
     pub objects: Vec<String>,
     /// Name of the robot link in whose frame the approach of the objects is defined.
     pub link: String,
-    /// Position in the link's frame that the objects approach, mm.
+    /// Position in the frame of the link that the objects approach, mm.
     pub at_mm: [f64; 3],
     /// Direction from the target to the start of the approach, in the link's frame. Default: +x.
     #[serde(default = "default_from")]

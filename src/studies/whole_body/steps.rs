@@ -1,4 +1,4 @@
-//! Simulation and timing of the steps along an object's path.
+//! Simulation of the time steps along an object's path, with measured computing times.
 
 use crate::error::Result;
 use crate::geometry::Pose;
@@ -22,12 +22,12 @@ const WARM_UP: usize = 20;
 struct Step {
     contact: BodyContact,
     n_visited: usize,
-    /// Sum of the deflections of all taxels, metres.
+    /// Sum of the deflections of all taxels in a step, metres.
     deflection: f64,
     press_s: f64,
 }
 
-/// Result of compressing and classifying one step.
+/// Measurements and decision of one step.
 struct SensedStep {
     /// Sum of the absolute values of all measurements, metres.
     size: f64,

@@ -149,7 +149,7 @@ impl Classifier {
         }
     }
 
-    /// Chooses C and γ by cross-validation on the training rows, and returns the result of [`choose`].
+    /// Chooses C and γ by cross-validation on the training rows; see the function [`choose`].
     ///
     /// # Errors
     /// Returns the errors of [`choose`].

@@ -118,7 +118,7 @@ impl Parameter {
         value.expect("the default of the parameter is a number")
     }
 
-    /// Returns the value of this parameter; `None` if the default rule of the classifier determines it.
+    /// Returns the value of this parameter, or `None` if the classifier computes the value by its default rule.
     pub(crate) fn value(&self, parameters: &Parameters) -> Option<f64> {
         let given = parameters.get(self.key);
         given.or(self.default_number())

@@ -251,7 +251,7 @@ mod tests {
         growth.grow(&ranked, label, n_classes, rows, &(0))
     }
 
-    /// For each row, returns the most frequent class of its leaf; the first class if several are equally frequent.
+    /// Returns the most frequent class of the leaf that each row reaches; the first class if several are equally frequent.
     fn labels(tree: &Tree, features: &Array2<f64>) -> Vec<usize> {
         let label = |row| {
             let counts = tree.leaf(row).iter().rev();

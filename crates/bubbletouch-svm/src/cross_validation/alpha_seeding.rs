@@ -14,7 +14,7 @@ pub(crate) struct AlphaSeeding {
 }
 
 impl AlphaSeeding {
-    /// Creates the alpha seeding from one fold to the next; each slice contains the labels of all rows in one fold, 0 for held-out rows.
+    /// Creates the transfer from one fold to the next; each slice contains the labels of all rows in one fold, 0 for held-out rows.
     pub fn new((before, labels): (&[f64], &[f64]), positive: &Range<usize>) -> Self {
         let mut sides = [(); 2].map(|()| (Vec::new(), Vec::new()));
         for (at, (before, label)) in before.iter().zip(labels).enumerate() {

@@ -20,7 +20,7 @@ pub(crate) struct FoldPath {
     pub solutions: Vec<FoldSolution>,
 }
 
-/// Solution of a binary problem on one fold, for one C or for several consecutive values of C that share the solution.
+/// Solution of a binary problem on one fold, for one value of C or for several consecutive values with equal solutions.
 pub(crate) struct FoldSolution {
     /// Range of positions in the ascending list of C values for which this is the solution.
     pub numbers: Range<usize>,

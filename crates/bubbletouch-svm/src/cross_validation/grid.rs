@@ -37,7 +37,7 @@ pub(crate) struct Grid<'a, T> {
 
 /// Cross-validation fold that refers to the rows in their sorted order.
 struct Fold {
-    /// Whether each sorted row is a training row of the fold.
+    /// Whether each row, in sorted order, is a training row of the fold.
     is_training: Vec<bool>,
     /// Whether the fold has a training row of each class.
     is_class: Vec<bool>,
@@ -85,7 +85,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         }
     }
 
-    /// Solves all binary problems of some folds and scores the validation rows of these folds.
+    /// Solves all binary problems of some folds and counts their correctly classified validation rows.
     fn score(
         &self,
         folds: &[Fold],

@@ -1,4 +1,4 @@
-//! Scoring of a fold: determines which validation rows are classified correctly.
+//! Scoring of a cross-validation fold: counts the correctly classified validation rows.
 //!
 //! A row's own class is scored as soon as the problems of this class are solved. If the class wins all its pairs, the row is classified correctly, because
 //! every other class has lost a pair. The remaining rows are classified by the votes of all problems, with the matrix products of the module `predict`.

@@ -28,7 +28,7 @@ pub(crate) fn groups(ranges: &[Range<usize>]) -> Vec<Range<usize>> {
 pub(crate) struct Group<'a, T> {
     sorted: &'a Sorted<T>,
     rows: Range<usize>,
-    /// Kernel values between the rows of the group, row by row.
+    /// Kernel values between all rows of the group, stored row by row.
     own: Vec<T>,
 }
 

@@ -31,7 +31,7 @@ struct Kept<T> {
     values: Vec<T>,
 }
 
-/// Number of rows of the Gram matrix that are computed together when all rows are summed with weights.
+/// Number of rows of the Gram matrix that are computed together for a weighted sum of all rows.
 const BLOCK: usize = 256;
 
 impl<'a, T: Scalar> Cached<'a, T> {

@@ -11,7 +11,7 @@ const SMALLEST_CURVATURE: f64 = 1e-12;
 /// Maximum number of rows for which all inverse curvatures of a Gram matrix are stored (4 MB in f32); for larger matrices, one row is stored.
 const MAX_KEPT: usize = 1000;
 
-/// Returns the minimum curvature that is used in pairwise steps, given the diagonal of the Gram matrix.
+/// Returns the minimum curvature that pairwise steps use, given the diagonal of the Gram matrix.
 fn smallest<T: Scalar>(diagonal: &[T]) -> T {
     let largest = diagonal.iter().fold(T::zero(), |a, &b| a.max(b));
     (T::from_f64(SMALLEST_CURVATURE) * largest).max(T::min_positive_value())

@@ -1,4 +1,4 @@
-//! Interface of the solver to a Gram matrix: two rows at a time, the diagonal, weighted sums of rows, and submatrices.
+//! Interface of the solver to a Gram matrix: pairs of rows, the diagonal, weighted sums of rows, and submatrices.
 
 use ndarray::{ArrayView1, ArrayView2, ArrayViewMut2, s};
 
@@ -21,7 +21,7 @@ pub(crate) trait Gram<T> {
     fn inverse_curvatures(&mut self, i: usize) -> &[T];
     /// Returns the minimum curvature that a pairwise step assumes for a pair of variables.
     fn smallest_curvature(&self) -> T;
-    /// Returns the product of the Gram matrix K with the coefficients β, summed in f64 (n values).
+    /// Returns the product Kβ of the Gram matrix and the coefficients, summed in f64 (n values).
     fn times(&mut self, beta: &[f64]) -> Vec<f64>;
     /// Subtracts the product of the Gram matrix K with the coefficients β from the vector f.
     fn take_times(&mut self, beta: &[f64], f: &mut [f64]) {

@@ -2,7 +2,7 @@
 
 use crate::linalg::scalar::Scalar;
 
-/// Returns the sum of rows of a matrix, each multiplied by its weight: the first n values, summed in f64.
+/// Returns a weighted sum of matrix rows: its first n values, summed in f64.
 pub(crate) fn weighted_sum<'a, T: Scalar>(
     n: usize,
     beta: &[f64],

@@ -13,8 +13,8 @@ pub(crate) struct CenteredRow {
     pub along_centre: f64,
 }
 
-/// Writes a row minus the centre into `to`; returns its norm and projection. The function works on slices, because the compiler does not always vectorise
-/// ndarray views.
+/// Writes a row minus the centre into `to`; returns its squared norm and its projection onto the centre. The function works on slices, because the compiler
+/// does not always vectorise ndarray views.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn center_row<T: Scalar>(to: &mut [T], row: &[f64], centre: &[f64]) -> CenteredRow {
     let (to, last_to) = to.as_chunks_mut::<LANES>();

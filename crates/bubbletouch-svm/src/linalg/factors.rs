@@ -7,8 +7,8 @@
 pub(crate) const LANES: usize = 32;
 /// Number of unknowns of a triangular system that are solved as one block.
 const BLOCK: usize = 8;
-/// Diagonal entry from which a row counts as linearly independent, as a multiple of the ridge (constant added to the diagonal). After elimination, the diagonal
-/// entry of a linearly dependent row is about the ridge; the entry of a nearly dependent row is slightly larger.
+/// Minimum diagonal entry of a linearly independent row, as a multiple of the ridge (constant added to the diagonal). After elimination, the diagonal entry of
+/// a linearly dependent row is about the ridge; the entry of a nearly dependent row is slightly larger.
 const INDEPENDENT_FROM: f64 = 10.0;
 
 /// Block of 32 consecutive values of a matrix row.

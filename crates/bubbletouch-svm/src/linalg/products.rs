@@ -26,8 +26,8 @@ pub(crate) fn multiply<T: Scalar>(
     general_mat_mul(one, &right, &left.t(), zero, &mut to.reversed_axes());
 }
 
-/// Writes the inner products of a few rows with many rows, without copying rows. Returns `false`, and writes nothing, if the rows or the processor do not allow
-/// it.
+/// Writes the inner products of a few rows with many rows, without copying any rows. Returns `false`, and writes nothing, if the rows or the processor do not
+/// allow it.
 fn in_place<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,
@@ -51,7 +51,7 @@ fn slices<T>(rows: ArrayView2<'_, T>) -> Option<Vec<&[T]>> {
     (0..rows.nrows()).map(row).collect()
 }
 
-/// Returns the inner products `z_i · z_j` of all rows (n × m): a symmetric n × n matrix.
+/// Returns the inner products `z_i · z_j` between all rows (n × m), as a symmetric n × n matrix.
 pub(crate) fn own_products<T: Scalar>(rows: ArrayView2<T>) -> Array2<T> {
     with_each_other(rows, multiply)
 }

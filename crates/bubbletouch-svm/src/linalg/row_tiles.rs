@@ -238,7 +238,7 @@ mod avx2 {
         }
     }
 
-    /// Returns the inner products of N rows with M others. Each lane of a vector register has its own sum; the lanes are added at the end.
+    /// Returns the inner products of N rows with M other rows. Each lane of a vector register has its own sum; the lanes are added at the end.
     ///
     /// The code uses loops instead of closures, because closures called by the standard library are compiled without vector instructions.
     #[target_feature(enable = "avx2,fma")]

@@ -104,7 +104,7 @@ impl LinearSvm {
         &self.model
     }
 
-    /// For each class, returns the convergence of the solver on the problem of this class against all others.
+    /// Returns the convergence of the solver for each class, whose problem separates the class from all others.
     pub fn convergence(&self) -> &[Convergence] {
         &self.convergence
     }

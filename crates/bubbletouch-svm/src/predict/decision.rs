@@ -32,7 +32,7 @@ pub(crate) struct DecisionFunctions<T> {
 /// Data from which the sums of kernel values in all decision functions are computed.
 #[derive(Clone, Debug)]
 enum Sums<T> {
-    /// For a linear kernel, the normals of the hyperplanes, n_problems × m.
+    /// Normals of the hyperplanes of a linear kernel, n_problems × m.
     Hyperplanes(Array2<T>),
     /// Support vectors and their coefficients.
     Support(Support<T>),

@@ -32,7 +32,7 @@ impl Voting {
         self.multiclass
     }
 
-    /// Returns the predicted label for each row of decision values (n_rows × n_problems).
+    /// Returns the predicted label for each row of decision values, shape n_rows × n_problems.
     pub fn labels(&self, values: ArrayView2<f64>) -> Array1<usize> {
         let values = values.as_standard_layout();
         let mut votes = Vec::new();
@@ -58,7 +58,7 @@ impl Voting {
     }
 }
 
-/// Counter of the votes of binary problems for many rows, to which the problems are added one by one.
+/// Vote counter for many rows, to which the binary problems are added one after the other.
 #[derive(Clone, Debug)]
 pub(crate) enum VoteCounter {
     /// For one-vs-one: number of votes for each class and row, n_classes × n_rows.
@@ -127,7 +127,7 @@ impl VoteCounter {
         counter.winners()
     }
 
-    /// For each row, returns the position of the class with the most votes; the first class if several have equally many.
+    /// Returns the position of the class with the most votes for each row; the first class if several have equally many.
     pub fn winners(&self) -> Vec<usize> {
         match self {
             Self::Best(_, winners) => winners.clone(),

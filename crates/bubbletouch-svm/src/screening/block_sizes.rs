@@ -8,6 +8,6 @@ pub(crate) const FEW_DIMENSIONS: usize = 64;
 /// products exceed the cache; with a smaller value, the tiles of matrix products are incomplete.
 pub(crate) const CLASSES_AT_ONCE: usize = 8;
 
-/// Number of other classes per block of screening, with which [`CLASSES_AT_ONCE`] classes are paired. With a larger value, the rows near their margins exceed
+/// Number of classes per block with which each of [`CLASSES_AT_ONCE`] classes is paired in screening. With a larger value, the rows near their margins exceed
 /// the second-level cache; with a smaller value, there are more blocks.
 pub(crate) const OTHERS_AT_ONCE: usize = 4;

@@ -21,7 +21,7 @@ use crate::smo::SolverScalar;
 /// Number of rows per class with which the first solution in the subspace starts.
 const ROWS_ALONG_MEANS: usize = 16;
 
-/// Selection of the training rows near the margin, for each pair of classes; the pairs are solved block by block.
+/// Selection of the training rows near the decision boundary of each pair of classes, block by block.
 pub(crate) struct PairsNearMargin<'a, T> {
     few: Classes<'a, T>,
     all: Classes<'a, T>,
@@ -51,7 +51,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
         })
     }
 
-    /// Returns the unsolved problems of the given pairs of classes, each with the rows that are probably near its margin for this C.
+    /// Returns the unsolved problems of the given pairs of classes, with the rows that are probably near the decision boundary for this C.
     pub fn near(&self, pairs: &[(usize, usize)], c: f64) -> NearMargin<'_, 'a, T> {
         let mut ranked = Ranked::new();
         let rows = pairs.iter().map(|&pair| self.near_means(pair, &mut ranked));

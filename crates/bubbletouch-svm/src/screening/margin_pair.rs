@@ -51,7 +51,7 @@ pub(crate) struct PairWorkspace<'r, T> {
     across: Vec<T>,
     /// Rows ranked by their distance from the margin.
     pub ranked: Ranked,
-    /// Numbers of the rows of one class whose products are below a bound.
+    /// Numbers of the rows of one class whose inner products are below a bound.
     below: Vec<usize>,
 }
 
@@ -71,9 +71,9 @@ pub(crate) struct MarginPair<T> {
     classes: [usize; 2],
     /// Active rows of both classes, in the order in which they became active.
     rows: Sides,
-    /// For each row of the first and the second class, whether the row is active.
+    /// Whether each row of the first and of the second class is active.
     takes_part: [Vec<bool>; 2],
-    /// Inner products between the active rows of both classes: first class × second class, and second class × first class, row by row.
+    /// Inner products between active rows of the two classes, row by row: first × second class, and second × first class.
     across: [Vec<T>; 2],
     /// Coefficients (label times multiplier) of the active rows of the first class, then of the second class.
     beta: Vec<f64>,

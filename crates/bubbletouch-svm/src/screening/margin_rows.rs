@@ -38,7 +38,7 @@ impl RankedRow {
     }
 }
 
-/// Buffer of rows that are ranked by a distance, reused by all pairs of classes.
+/// Reusable list of rows that are ordered by a distance, shared by all pairs of classes.
 pub(crate) type Ranked = Vec<RankedRow>;
 
 /// Returns the n rows of each class that are nearest to the other class; `products` contains the inner product of each row with the hyperplane normal.

@@ -1,4 +1,4 @@
-//! Screening: one-vs-one linear problems are solved on the rows near their margins.
+//! Screening: one-vs-one linear problems are solved on the rows near their decision boundaries.
 
 pub(crate) mod block_sizes;
 pub(crate) mod first_rows;

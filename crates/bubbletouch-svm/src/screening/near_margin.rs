@@ -33,7 +33,7 @@ const ROWS_NEAR_MARGIN: usize = 24;
 /// Rows of all classes, with the inner products between the rows of each class.
 pub(crate) struct Classes<'a, T> {
     pub sorted: &'a Sorted<T>,
-    /// For each class, the inner products between its rows.
+    /// Inner products between all rows of each class.
     within: Vec<Within<T>>,
 }
 
@@ -80,7 +80,7 @@ struct Round<T> {
     normals: Vec<T>,
     /// Inner products of each pair's hyperplane normal with all rows of its two classes, class by class.
     products: Vec<T>,
-    /// For each pair, the ranges of its two classes in `products`.
+    /// Ranges of the two classes of each pair in `products`.
     places: Vec<[Range<usize>; 2]>,
 }
 
@@ -186,7 +186,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         results.into_iter().flatten().collect()
     }
 
-    /// Solves the given pairs on their active rows, and computes the inner products of their hyperplane normals with all rows of their classes.
+    /// Solves pairs of classes on their active rows, and computes the inner products of their hyperplane normals with all rows.
     fn solve_round(&mut self, pairs: &[usize], goal: PairGoal) {
         let n_features = self.classes.sorted.centre().len();
         let mut round = std::mem::take(&mut self.round);

@@ -50,9 +50,9 @@ pub(crate) fn run_plain<T: Scalar, G: Gram<T>>(
     run_with((gram, passes), variables, search, first_look)
 }
 
-/// Runs pairwise steps of the solver by two given functions. The function `select_down` finds the variable to decrease from f, marks, inverse curvatures, the
-/// highest f and scratch memory. The function `step_along` makes a step, given f, two rows, the step length and marks; it returns the next variable to
-/// increase.
+/// Runs the pairwise steps of the solver with two given functions for its passes. The function `select_down` finds the variable to decrease from f, marks,
+/// inverse curvatures, the highest f and scratch memory. The function `step_along` makes a step, given f, two rows, the step length and marks; it returns the
+/// next variable to increase.
 #[inline(always)]
 pub(super) fn run_with<T: Scalar, G: Gram<T>>(
     (gram, (select_down, step_along)): (

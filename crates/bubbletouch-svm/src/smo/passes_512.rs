@@ -1,4 +1,4 @@
-//! Passes of the solver over f32 variables, sixteen values at a time. The results equal the results of the generic passes, bit by bit.
+//! Passes of the solver over f32 variables, with vectors of sixteen values. The results equal the results of the generic passes, bit by bit.
 
 use std::arch::x86_64::{
     __m512, __m512i, _CMP_EQ_OQ, _CMP_GT_OQ, _mm512_add_epi32, _mm512_add_ps, _mm512_cmp_ps_mask,

@@ -34,7 +34,7 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Limits the solver to `max_iterations`; at the limit, the problem is reported as not solved.
+    /// Limits the solver to `max_iterations`; a problem that reaches the limit is reported as unsolved.
     pub fn with_max_iterations(self, max_iterations: u64) -> Self {
         Self {
             max_iterations,
@@ -70,7 +70,7 @@ impl<'a, G> Smo<'a, G> {
         rho(&self.beta, self.y, &self.f, c)
     }
 
-    /// Returns the coefficients β and the gradient f, and drops the problem.
+    /// Converts the problem to its coefficients β and its gradient f.
     pub fn into_variables(self) -> (Vec<f64>, Vec<f64>) {
         (self.beta, self.f)
     }

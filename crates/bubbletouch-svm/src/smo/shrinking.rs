@@ -5,7 +5,7 @@ use super::solver_scalar::SolverScalar;
 use super::variables::Variables;
 use crate::gram::matrix::{Dense, Gram};
 
-/// Solves the problem on a submatrix of the Gram matrix, which may be shrunk further. Returns pairs (index of a variable, its coefficient β).
+/// Solves the problem on a submatrix of the Gram matrix; the submatrix may be reduced further. Returns pairs (index of a variable, its coefficient β).
 pub(super) fn solve_part<T: SolverScalar>(
     mut part: Dense<T>,
     mut variables: Variables<T>,

@@ -10,8 +10,8 @@ use super::variables::Variables;
 use crate::dual::DualSolution;
 use crate::gram::matrix::Gram;
 
-/// Minimum number of pairwise steps before active-set steps. With a larger value, slowly converging problems take longer; with a smaller value, equations are
-/// solved without need.
+/// Minimum number of pairwise steps before the solver may use active-set steps. With a larger value, slowly converging problems take longer; with a smaller
+/// value, equations are solved without need.
 const MIN_PAIR_STEPS: u64 = 10_000;
 /// Minimum number of pairwise steps per row before active-set steps.
 const PAIR_STEPS_PER_ROW: u64 = 20;
@@ -46,7 +46,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Solves the problem from the better of two starts; returns only whether the solver converged, and its number of iterations.
+    /// Solves the problem from the better of two starts; returns whether the solver converged, and the number of iterations.
     pub fn reach<T: SolverScalar>(
         &mut self,
         c: f64,
@@ -76,7 +76,7 @@ impl<G> Smo<'_, G> {
         }
     }
 
-    /// Runs the solver until the tolerance is reached or the iterations are exhausted; returns whether the tolerance was reached.
+    /// Runs the solver until it reaches the tolerance or the maximum number of iterations; returns whether it reached the tolerance.
     fn search<T: SolverScalar>(&mut self, c: f64, search: &mut Search) -> bool
     where
         G: Gram<T>,

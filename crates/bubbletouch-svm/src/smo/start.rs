@@ -36,7 +36,7 @@ impl<G> Smo<'_, G> {
         self
     }
 
-    /// Multiplies the coefficients β by the factor with the best objective within the bounds of another C.
+    /// Multiplies the coefficients β by the factor that gives the best objective within the bounds for another C.
     pub(super) fn stretch(&mut self, c: f64) {
         let (linear, quadratic) = linear_and_quadratic(&self.beta, self.y, &self.f);
         if self.c > 0.0 && self.c != c && quadratic > 0.0 {

@@ -9,7 +9,7 @@ const LANES: usize = 8;
 /// vectorised loop; with 8, it unrolls the loop and inserts many shuffles.
 const EXTREMES_LANES: usize = 64;
 
-/// Returns a number that marks whether a variable can move: 0 if it can, otherwise −∞.
+/// Returns the mark of a variable: 0 if the variable can move, otherwise −∞.
 #[inline(always)]
 fn mark<T: Scalar>(can_move: bool) -> T {
     if can_move {

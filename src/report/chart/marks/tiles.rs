@@ -85,7 +85,7 @@ fn draw(view: &View) -> Result<Drawing> {
     Ok(drawing)
 }
 
-/// Draws the text of a tile on its own background, so that no reference line crosses it; a crossed minus would appear as a plus.
+/// Draws the text of a tile on its own background, so that reference lines do not cross the text.
 fn draw_sign(drawing: &mut Drawing, place: Area, colour: Rgb, sign: &str) {
     let width = text_width(sign, f64::from(SIGN)) + 4.0;
     let (x, y) = place.at(0.5, 0.5);

@@ -10,7 +10,7 @@ use crate::studies::recognition::charts::robustness::robustness_words;
 use crate::studies::recognition::charts::tables::CONFIGURATIONS;
 use crate::table::{Table, Value, short_number};
 
-/// Maximum number of values that a sentence lists, and maximum number of conditions (settings of the world, such as noise) for which sentences are written.
+/// Maximum number of values that a sentence lists; also the maximum number of conditions for which sentences are written.
 const MAX_LISTED: usize = 8;
 
 /// Returns the findings of a study as sentences: best and cheapest configurations under each condition, effects of settings, and remarks.

@@ -45,7 +45,7 @@ pub struct Robustness {
     chance: f64 => Note: Share;
     /// Accuracy half-way between the highest accuracy and chance, 0 to 1: `chance + (clean_accuracy − chance) / 2`.
     half_accuracy: f64 => Note "half-way to chance": Share;
-    /// Whether the accuracy falls to `half_accuracy` within the swept values, or the reason why it does not.
+    /// Whether the accuracy falls to `half_accuracy` within the swept values, or why it does not.
     status: HalfStatus => Outcome "half-way is";
     /// Value of the condition at which the accuracy falls to `half_accuracy`, in the unit of the condition; empty if the accuracy stays above.
     half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
@@ -88,8 +88,8 @@ const N_DRAWS: usize = 1000;
 /// Minimum number of values of a condition for which robustness is computed. With two values, the result would only reflect the straight line between them.
 const MIN_VALUES: usize = 3;
 
-/// Length of the range from zero to the smallest positive value of a condition on a logarithmic axis, in decades. With a larger value, this range takes most of
-/// the axis. With a smaller value, zero and the smallest positive value are hardly distinguishable.
+/// Length of the part of a logarithmic axis between zero and the smallest positive value of a condition, in decades. With a larger value, this range takes most
+/// of the axis. With a smaller value, zero and the smallest positive value are hardly distinguishable.
 const ZERO_DECADES: f64 = 0.5;
 
 /// Ratio of the largest to the smallest positive value of a condition above which its chart axis is logarithmic.
@@ -262,8 +262,7 @@ pub(super) fn robustness(summary: &Table, confusion: &Table) -> Result<Option<Ta
     }
 }
 
-/// For each direction from the highest accuracy in which the condition has further values, returns one row. `along` lists rows of the summary by ascending
-/// values of the condition.
+/// Returns one row for each direction, starting from the highest accuracy, in which the condition has further values.
 fn both_sides(
     summary: &Table,
     n_objects: &ObjectCounts,

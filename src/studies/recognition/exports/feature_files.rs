@@ -147,7 +147,7 @@ impl StudyPart {
         self.measure(group, [&frames, tested], (trial, n_measurements))
     }
 
-    /// For a group of configurations, computes the measurements of its training and test touches in a trial. Runs and exports share this function. Projections
+    /// Computes the measurements of the training and test touches of a group of configurations in one trial. Runs and exports share this function. Projections
     /// and image estimators are fitted to the training touches of the whole split, even if a configuration trains on fewer.
     pub(crate) fn measure(
         &self,

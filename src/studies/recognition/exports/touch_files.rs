@@ -83,7 +83,7 @@ struct Reading<'a> {
     depth: f64,
 }
 
-/// Deepest frame of every touch, as a configuration reads it in one trial: after the signal chain and before compression.
+/// Deepest frame of every touch in one trial, after the signal chain of a configuration and before compression.
 pub struct ReadFrames {
     /// Index of the array that the configuration uses, in the list of arrays of the plan.
     pub array: usize,
@@ -143,8 +143,7 @@ pub const TOUCH_FILES: [&str; 9] = [
 const FRAMES: &str = "frames.npy";
 const SHEAR: &str = "shear.npy";
 
-/// For each frame file, returns the quantity and the unit of each channel, as JSON. `is_force` is given only for frames as a configuration reads them, which
-/// form a single array.
+/// Returns the quantity and the unit of each channel in each frame file, as JSON.
 pub fn touch_units(
     array: &TaxelArray,
     is_force: Option<bool>,

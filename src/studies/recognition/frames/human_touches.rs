@@ -1,4 +1,4 @@
-//! Human touches of a study: drawn once and recorded on each array.
+//! Human touches of a study, which are drawn once and recorded with each array.
 
 use crate::contact::{Workspace, press_with_contacts};
 use crate::error::{Error, Result};

@@ -1,4 +1,4 @@
-//! Reading of touches: frames pass through the signal chain and are compressed to measurements.
+//! Reading of touches: frames pass through the signal chain and are compressed into measurements.
 
 use crate::error::Result;
 use crate::random::Seed;
@@ -17,7 +17,7 @@ const BLOCK: usize = 128;
 /// Skins whose frames are read, and the measurement matrix that compresses the frames.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
-    /// Skins that are touched; the frames of all skins have the same shape.
+    /// Skins that are touched; their frames have equal shapes.
     pub skins: &'a [ReadSkin<'a>],
     /// Measurement matrix Φ, by which each frame is multiplied.
     pub projection: &'a Projection,
@@ -105,7 +105,7 @@ struct Working {
     frames: Vec<f64>,
     /// Frames of one channel of a touch, after up to two frames of the preceding touch and of the released skin.
     with_history: Vec<f64>,
-    /// Deepest frame of the touch that precedes the current one.
+    /// Deepest frame of the preceding touch, which sensor errors with memory need.
     deepest: Vec<f64>,
     rates: Vec<f64>,
     scratch: SignalWorkspace,

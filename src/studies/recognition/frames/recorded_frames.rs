@@ -31,8 +31,8 @@ use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
-/// Fraction of missing readings (NaN) above which a taxel is masked, 0 to 1. With a larger value, recordings with an intermittently failing taxel are rejected;
-/// with a smaller value, a few missing readings mask a taxel.
+/// Fraction of missing (NaN) readings, 0 to 1, above which a taxel is masked. With a larger value, recordings with an intermittently failing taxel are
+/// rejected; with a smaller value, a few missing readings mask a taxel.
 const MASKED: f64 = 0.1;
 
 /// Touches that a real skin recorded.
@@ -56,13 +56,13 @@ pub struct RecordedFrames {
     zeros: Vec<f64>,
     /// Reading of a taxel whose deflection equals its stroke.
     full_scale: f64,
-    /// Reading above which a taxel counts as saturated.
+    /// Reading above which a taxel of the recording counts as saturated.
     saturation: f64,
     /// Number F of frames per touch.
     n_frames: usize,
     /// Number of taxels of the skin; a frame may contain several values per taxel.
     n_taxels: usize,
-    /// Group of each touch, in the order of `order`; `None` if the recording defines no groups.
+    /// Group of each touch, in the order of the field `order`; `None` if the recording defines no groups.
     groups: Option<Array1<usize>>,
     /// Side (training or test) of each touch; `None` if the data do not define the split.
     sides: Option<Vec<Side>>,
@@ -472,7 +472,7 @@ fn name_of(value: &KeyValue) -> String {
     }
 }
 
-/// For each value of a frame, returns whether its taxel is masked because too many readings are NaN.
+/// Returns whether each value of a frame belongs to a masked taxel, which has too many NaN readings.
 fn masked(files: &[&FramesOfFile], n_taxels: usize) -> Result<Vec<bool>> {
     let n_values = files[0].readings.ncols();
     let n_frames: usize = files.iter().map(|file| file.readings.nrows()).sum();

@@ -31,7 +31,7 @@ pub struct RecordedSkinFiles {
     pub grid: Option<[usize; 2]>,
     /// Selection of the recorded frames in which nothing touches the skin.
     pub untouched: UntouchedFrames,
-    /// File of the total force on the skin in each frame, newtons, shape (n,).
+    /// File with the total force on the skin in each frame, newtons, shape (n,).
     pub forces: Option<PathBuf>,
     /// Reading of a taxel that is not touched.
     pub zero: f64,

@@ -138,7 +138,7 @@ fn chains(plan: &Plan, group: &MeasurementGroup) -> Result<Vec<Chain>> {
     })
 }
 
-/// For a study that varies one sensor error at a time, returns the groups of configurations to show, each with a title. The first group has the first value of
+/// Returns the groups of configurations to show, each with a title, for a study that varies one sensor error at a time. The first group has the first value of
 /// each error. For each error, the group with its last value follows. Scan errors are omitted, because they do not change a touch that is read once.
 fn imperfect_groups<'a>(
     plan: &Plan,

@@ -16,7 +16,7 @@ use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::world::Spread;
 use glam::DVec3;
 
-/// Edge lengths of the box with which the shear error is measured, metres; similar to the objects of the built-in sets.
+/// Edge lengths of the box that is used to measure the shear error, metres.
 const BOX: DVec3 = DVec3::new(0.04, 0.04, 0.02);
 
 /// Statistics of the error in shear forces that occurs where packed spheres approximate a flat face. The shear error of a taxel is its shear reading along x

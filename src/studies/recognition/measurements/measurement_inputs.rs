@@ -50,7 +50,7 @@ pub struct MeasurementInputs<'a> {
 /// Measurement inputs of the test touches, where they differ from those of the training touches.
 #[derive(Clone, Debug)]
 pub struct TestInputs<'a> {
-    /// Array of taxels of the test touches; its frames have the shape of the training touches' frames.
+    /// Array of taxels of the test touches; its frames and those of the training touches have equal shapes.
     pub array: &'a TaxelArray,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,

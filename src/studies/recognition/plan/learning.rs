@@ -79,7 +79,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks `[recognition]`: each key is in its range, no keys contradict each other, and every key has an effect.
+    /// Checks `[recognition]`: keys must be in range, must not contradict each other, and must have an effect.
     pub fn recognition(&self, recognition: &RecognitionSpec) -> Result<()> {
         let given = self.table("recognition", recognition)?;
         for [first, second] in ONE_OF {
@@ -328,7 +328,7 @@ impl RecognitionSpec {
         }
     }
 
-    /// For decisions on `k` touches, returns the policies that choose all touches after the first. For k = 1, all policies are equal, and a single one is
+    /// Returns the rules that choose all touches after the first, for decisions on `k` touches. For k = 1, all policies are equal, and a single one is
     /// returned.
     pub fn next_touches(&self, k: usize) -> Vec<Option<NextTouch>> {
         match (k, &self.next_touch) {

@@ -78,7 +78,7 @@ impl KeepTogether {
         Ok(keys.into())
     }
 
-    /// Returns the grouping parameters whose values are drawn at random, each with its neighbour distance.
+    /// Returns the grouping parameters with randomly drawn values, each with the distance below which values are neighbours.
     fn drawn(&self, touches: &[Touch]) -> Result<Vec<(TouchAxis, f64)>> {
         let is_drawn = |axis: &&TouchAxis| {
             let mut indices = touches.iter().map(|touch| touch.indices[**axis as usize]);

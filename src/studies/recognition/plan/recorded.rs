@@ -1,4 +1,4 @@
-//! Checks of `[recorded]`, and the array that recorded the frames.
+//! Checks of the table `[recorded]`, and creation of the array that recorded the frames.
 
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};

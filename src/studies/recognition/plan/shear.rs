@@ -52,7 +52,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Returns the arrays of a study, each with the quantity that its taxels read and its slide along the object.
+    /// Returns the arrays of a study, each with its measured quantity and its slide along the object.
     pub fn touching_arrays(
         &self,
         skin: &SkinSpec,

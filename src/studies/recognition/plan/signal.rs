@@ -93,7 +93,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks `test_sensor`: another skin for test touches requires a sensor error that differs between skins.
+    /// Checks the key `test_sensor`: another skin for test touches requires a sensor error that differs between skins.
     pub fn check_test_sensor(&self, signal: &SignalSpec) -> Result<()> {
         let is_of_skin =
             |step: &StepSpec| matches!(step, StepSpec::Error(error) if error.about().is_of_skin);

@@ -18,7 +18,7 @@ use crate::world::Placement;
 use std::collections::HashSet;
 use std::sync::Arc;
 
-/// Rounds a converted number to the decimal that was written in the study: 30, not 29.999999999999996. A number that is no decimal of nine places stays
+/// Rounds a converted number to the decimal number in the study file, for example 29.999999999999996 to 30. A number that is no decimal of nine places stays
 /// unchanged.
 pub fn as_written(value: f64) -> f64 {
     let decimal = (value * 1e9).round() / 1e9;
@@ -41,7 +41,7 @@ pub struct Plan {
     pub speed: f64,
     /// Unit in which noise standard deviations are given.
     pub noise_unit: NoiseUnit,
-    /// Numbers of frames per touch (axis `touches.frames`).
+    /// Numbers of frames per touch that the study compares (axis `touches.frames`).
     pub frames: Vec<usize>,
     /// Rule that forms groups of touches, which are never divided by a split; `None` if touches are not grouped.
     pub group_by: Option<KeepTogether>,

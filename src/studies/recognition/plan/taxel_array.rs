@@ -12,7 +12,7 @@ use ndarray::Array2;
 use std::fmt;
 use std::sync::Arc;
 
-/// Number of picture cells per pitch of the taxels, for layouts other than the grid. With a smaller value, the offset of staggered rows is not visible.
+/// Number of picture cells per taxel pitch, for layouts other than the grid. With a smaller value, the offset of staggered rows is not visible.
 const PICTURE_CELLS: f64 = 3.0;
 
 /// Array of taxels: its layout, the quantity that its taxels read, and its slide along the object. Every layout has the density and size of a square grid.
@@ -203,8 +203,8 @@ impl TaxelArray {
         }
     }
 
-    /// For each cell of a picture, returns the taxel that it shows, shape (rows, columns). A grid has one cell per taxel. Other layouts are projected along the
-    /// axis of the middle, with three cells per pitch. Each cell shows the nearest taxel, or none if all taxels are far away.
+    /// Returns the taxel that each cell of a picture shows, shape (rows, columns). A grid has one cell per taxel. Other layouts are projected along the axis of
+    /// the middle, with three cells per pitch. Each cell shows the nearest taxel, or none if all taxels are far away.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
         let (ny, nx) = self.shape();
         if self.is_image() {

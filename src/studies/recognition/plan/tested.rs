@@ -34,7 +34,7 @@ pub(crate) const SHARED: [&str; 4] = [
 ];
 
 impl Check<'_> {
-    /// Returns the plan of the test touches; returns `None` if the study has no table `[test]`. `plan` is the plan of the study without `[test]`.
+    /// Returns the plan of the test touches, given the plan of the study without `[test]`; `None` if the study has no table `[test]`.
     ///
     /// # Errors
     /// If a key cannot differ for test touches or is out of its range, or if a taxel of the test touches has no counterpart in training touches.

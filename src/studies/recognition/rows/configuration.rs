@@ -75,7 +75,7 @@ pub struct Configuration {
     noise_std: f64 => always of "signal.noise_std_full_scale";
     /// Unit of `noise_std`: fraction of full scale, mm or N.
     noise_unit: NoiseUnit => always (Note, "noise unit", "", Words);
-    /// Standard deviation of the Gaussian that smooths the readings over the array, mm; 0 without smoothing.
+    /// Standard deviation of the Gaussian filter that smooths the readings over the array, mm; 0 without smoothing.
     smoothing_mm: f64 => always of "signal.smoothing_mm";
     /// Strength of each sensor error, such as the gain error. The study has one column for each strength that it sets.
     strengths: Strengths => each_strength;
@@ -112,7 +112,7 @@ pub struct Configuration {
     class_imbalance: Option<f64> => if_given of "recognition.class_imbalance";
     /// Number of test touches of an object that are combined into one decision. The scores of the combined touches are added.
     touches_per_decision: usize => always of "recognition.touches_per_decision";
-    /// Policy that chooses the touches of a decision after the first one, such as `random`. The column is present only if the study has the key.
+    /// Rule that chooses the touches of a decision after the first touch, such as `random`. The column is present only if the study has the key.
     next_touch: Option<NextTouch> => if_given of "recognition.next_touch";
     /// Values of the further axes in the table `[axes]`, one column per axis.
     variant: AxisValues => each_axis;

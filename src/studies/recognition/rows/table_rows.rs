@@ -28,7 +28,7 @@ pub struct TrialScore {
     n_train: usize => Note "training rows": Linear;
     /// Number of test rows of the trial. A test row is a group of `touches_per_decision` test touches.
     n_test: usize => Note "test rows": Linear;
-    /// Number of test touches, over all objects, that are left over because they do not fill a whole group of `touches_per_decision`.
+    /// Number of test touches, over all objects, that do not fill a complete group of `touches_per_decision` touches.
     n_left_out: usize => Note "test touches left out": Linear;
     /// Number of test rows whose object is recognised correctly.
     n_correct: usize => Note "test rows recognised": Linear;
@@ -116,7 +116,7 @@ pub struct Confusion {
     object: String => Subject;
     /// Name of the recognised object.
     predicted: String => Subject "recognised as";
-    /// Number of test rows of `object` that were recognised as `predicted`, over all trials.
+    /// Number of test rows of `object` that were recognised as `predicted`, summed over all trials.
     // A logarithmic scale makes rare confusions visible.
     count: usize => Value(Neither) "test rows": Log;
 } }
@@ -133,7 +133,7 @@ pub struct Confused {
     object: String => Subject;
     /// Name of the recognised object.
     predicted: String => Subject "recognised as";
-    /// Number of test rows of `object` that were recognised as `predicted`, over all trials.
+    /// Number of test rows of `object` that were recognised as `predicted`, summed over all trials.
     count: usize => Note "test rows": Log;
     /// Number of test rows of `object`, summed over all trials.
     n_test: usize => Note "test rows of the object": Linear;
@@ -263,7 +263,7 @@ pub struct Limit {
     limit: String => Subject;
     /// Number of touches or trained classifiers that reached the limit.
     count: u64 => Note: Log;
-    /// Total number of cases in which the limit could be reached.
+    /// Total number of touches or trained classifiers that could reach the limit.
     total: u64 => Note: Linear;
     /// Sentence that explains what the limit means for the results.
     meaning: String => Note;
@@ -333,6 +333,6 @@ pub struct Variance {
     accuracy_std_high: f64 => Note "standard deviation, upper end": Linear;
     /// Fraction of the variance of a trial's accuracy that is due to the source, 0 to 1; negative variance estimates count as zero. Empty if nothing varies.
     fraction: Option<f64> => Value(Less) "fraction of the variance": Share;
-    /// p-value of the F test of the hypothesis that the source contributes no variance; empty for `rest`.
+    /// p-value of an F test; null hypothesis: the source contributes no variance; empty for `rest`.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
 } }

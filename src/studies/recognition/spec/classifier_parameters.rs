@@ -142,7 +142,7 @@ impl<'de, K: DeserializeSeed<'de>> DeserializeSeed<'de> for KeySeed<'_, K> {
     }
 }
 
-/// Reader of the value of a classifier's parameter: an integer, or a number.
+/// Reader of the value of a classifier's parameter: an integer or a floating-point number.
 struct ValueSeed(&'static Parameter);
 
 impl<'de> DeserializeSeed<'de> for ValueSeed {

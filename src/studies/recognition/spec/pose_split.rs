@@ -21,11 +21,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Rule that decides which poses are held out for testing, and which are used for training.
+/// Rule that selects the poses for testing and the poses for training.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PoseSplit {
-    /// Randomly drawn touches are held out. On a grid of poses, most test touches then have neighbours among the training touches.
+    /// Test touches are drawn at random. On a grid of poses, most test touches then have neighbours among the training touches.
     #[default]
     Random,
     /// In each trial, one yaw is held out for testing; the next trial holds out the next yaw.

@@ -80,7 +80,7 @@ pub struct RecordedSpec {
     pub zero: ZeroSpec,
     /// Reading of a taxel at full scale, that is, when its deflection equals its stroke. Default: the largest reading.
     pub full_scale: Option<f64>,
-    /// File of the press depth of each touch, metres, shape (n,). Together with `speed_mm_per_s`, it determines the time between the frames of a touch.
+    /// File with the press depth of each touch, metres, shape (n,). Together with `speed_mm_per_s`, it determines the time between the frames of a touch.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
@@ -310,7 +310,7 @@ impl RecordedSpec {
         }
     }
 
-    /// For the array `frames` or `frames_test`, returns the file of its tangential forces, and the name of the array in this file.
+    /// Returns the file with the tangential forces of the array `frames` or `frames_test`, and the name of the array in this file.
     pub fn shear_of(&self, name: &str) -> Option<(&Path, &'static str)> {
         let (path, name) = match name {
             "frames" => (&self.shear, "shear"),

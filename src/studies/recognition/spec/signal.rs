@@ -23,7 +23,7 @@ pub struct SignalSpec {
     /// Numeric keys of the steps, such as the standard deviation of the noise and the strengths of sensor errors. Each key is an axis.
     #[serde(flatten)]
     pub axes: SignalAxes,
-    /// Axis: skin that the test touches use, `same_skin` (default, the skin of the training touches) or `another_skin`.
+    /// Axis: skin on which test touches are simulated, `same_skin` (default, the training skin) or `another_skin`.
     pub test_sensor: Option<Axis<TestSensor>>,
     /// Way in which the axes of `[signal]` are combined with each other: `all` (default) or `one_at_a_time`. The axes of `[signal]` are always combined with
     /// all other axes of the study.
@@ -31,7 +31,7 @@ pub struct SignalSpec {
     pub combine: CombineSpec,
 }
 
-/// Numeric axes of `[signal]`, each with the step to which it belongs.
+/// Numeric axes of `[signal]`, each with its step of the signal chain.
 ///
 /// The noise has one axis: its standard deviation as a fraction of the full scale, in millimetres of deflection or in newtons of force. The smoothing has the
 /// standard deviation of its Gaussian, mm. Each sensor error has its own strengths.
@@ -167,7 +167,7 @@ impl<'de> Deserialize<'de> for SignalSpec {
     }
 }
 
-/// Schema built from the list of sensor errors, which also defines the keys that are accepted.
+/// Schema of `[signal]`, built from the list of sensor errors that also defines the accepted keys.
 impl JsonSchema for SignalSpec {
     fn schema_name() -> Cow<'static, str> {
         "SignalSpec".into()

@@ -171,7 +171,7 @@ pub struct RecognitionSpec {
     /// test touches are grouped at random; a remainder of fewer than k touches is omitted. Default: 1.
     #[serde(default = "one_value")]
     pub touches_per_decision: Axis<usize>,
-    /// Axis: policy that chooses the touches of a decision after the first one. Values: `random` (default), `farthest` (the pose farthest from the previous
+    /// Axis: rule that chooses the touches of a decision after the first touch. Values: `random` (default), `farthest` (the pose farthest from the previous
     /// ones), or `most_informative` (the pose with the lowest expected entropy of the belief over objects). All test touches of the object are candidates, each
     /// at most once per decision.
     pub next_touch: Option<Axis<NextTouch>>,
@@ -322,7 +322,7 @@ impl StudySpec {
         self.axes.columns(|name| known.contains(&name))
     }
 
-    /// Returns the study as TOML, with all defaults written out.
+    /// Returns the study as TOML text that contains all default values.
     pub fn to_toml(&self) -> String {
         axes::to_toml(self, &self.axes)
     }

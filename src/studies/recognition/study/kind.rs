@@ -274,7 +274,7 @@ fn split_words(spec: &StudySpec) -> String {
     held_out.to_owned()
 }
 
-/// Returns pictures with a touch of every object. The sample pictures come first if they differ.
+/// Returns the pictures that show a touch of every object. The sample pictures come first if they differ.
 fn gallery(Samples { shown, each }: &Samples) -> Vec<Snapshots> {
     let is_like = |each: &Snapshots| each.caption == shown.caption;
     let shown = Some(shown).filter(|_| !each.as_ref().is_some_and(is_like));

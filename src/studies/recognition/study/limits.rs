@@ -7,7 +7,7 @@ use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::study::rows::TouchRow;
 
 impl RecognitionStudy {
-    /// For each limit of the model, returns how often touches and fits reached it, over all arrays.
+    /// Returns how often touches reached a limit of the simulation, and how often training reached a limit of the solver, over all arrays.
     pub(crate) fn limits(
         &self,
         fits: &[(Configuration, TrialScore)],

@@ -109,7 +109,7 @@ impl RecognitionStudy {
         jobs
     }
 
-    /// Computes the pending work items of one set of training touches, grouped by their test touches.
+    /// Computes the pending work items that use one set of training touches, grouped by their test touches.
     fn on_touches(
         &self,
         left: &PendingItems<RecognitionRows>,

@@ -36,7 +36,7 @@ pub struct RecognitionStudy {
     parts: Vec<StudyPart>,
     /// Size of the study: numbers of work items, memory and disk space.
     pub(crate) scale: Scale,
-    /// Sample touches for pictures, computed on first use.
+    /// Sample touches for pictures, computed at the first use.
     samples: Shared<Samples>,
     /// All different sets of touches that are simulated.
     pub(crate) touch_sets: Vec<Touches>,
@@ -416,7 +416,7 @@ impl RecognitionStudy {
     }
 }
 
-/// Returns the name of a stage for the table of stages. If touches have several frames, the number of frames per touch is added.
+/// Returns the name of a stage, as it is written in the table of stages. If touches have several frames, the number of frames per touch is added.
 pub(crate) fn in_frames(stage: &str, n_frames: usize) -> String {
     match n_frames {
         1 => stage.to_owned(),

@@ -70,7 +70,7 @@ pub struct Sweep {
     pub poses: Option<Hashed<Poses>>,
 }
 
-/// Part of a study: plan, touches and configurations of one combination of the values in `[axes]`.
+/// Part of a study: the plan, touches and configurations for one combination of axis values in `[axes]`.
 pub struct StudyPart {
     /// Plan of the study for this combination of axis values.
     pub plan: Plan,

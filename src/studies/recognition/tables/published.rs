@@ -75,8 +75,8 @@ fn is_about(claim: &PublishedSpec, configurations: &Table, row: usize) -> bool {
     keys.all(|(key, wanted)| configurations.has_setting(column_name(key), row, &setting(wanted)))
 }
 
-/// For each claim, returns the most accurate configuration to which it applies (the first in a tie). The result has one row for each condition of the matching
-/// configurations.
+/// Returns the most accurate configuration to which each claim applies; the first configuration if several are equal. The result has one row for each condition
+/// of the matching configurations.
 ///
 /// # Errors
 /// If a configuration cannot be written as a row of a table.

@@ -1,4 +1,4 @@
-//! Analysis of variance of each configuration's accuracy: splits, projections, and the rest.
+//! Analysis of variance of each configuration's accuracy, with the sources splits, projections and rest.
 
 use crate::error::Result;
 use crate::statistics::p_status::CONFIDENCE;

@@ -1,4 +1,4 @@
-//! All inputs that determine the evaluation of a family of configurations in a trial, apart from the measurements.
+//! Inputs that determine the evaluation of a family of configurations in a trial, without the measurements.
 //!
 //! The method `Trial::evaluate` receives these inputs and no plan, so it cannot depend on any other value of a study. The name of a work item is a hash of the
 //! `Debug` form of these inputs and of the inputs of its measurements. A new field therefore changes the name.
@@ -75,7 +75,7 @@ pub struct TrainingInputs {
     pub gamma_grid: Option<Vec<f64>>,
     /// Maximum number of training touches per object that are used to choose C and γ; `None` for all.
     pub cv_touches: Option<usize>,
-    /// Number of folds of the inner cross-validation; `None` if it is not needed.
+    /// Number of folds of the inner cross-validation; `None` if no inner cross-validation is needed.
     pub n_folds: Option<usize>,
 }
 
@@ -86,7 +86,7 @@ pub struct Decision {
     pub c: Option<f64>,
     /// Number of test touches of an object that are combined into one decision.
     pub touches_per_decision: usize,
-    /// Policy that chooses the touches of a decision after the first one.
+    /// Rule that chooses the touches of a decision after the first touch.
     pub next_touch: NextTouch,
 }
 

@@ -32,8 +32,8 @@ pub(super) fn answer_model<'a>(
     Ok(Some(AnswerModel::new(poses, &touches, trial.n_objects())))
 }
 
-/// Returns groups of k touches, each to be combined into one decision. A touch is given by its index among the test touches; groups are ordered by class. All
-/// touches of a group are random, or the first one is random and the others are chosen among all test touches of the object.
+/// Returns groups of k test touches; each group is combined into one decision. A touch is given by its index among the test touches; groups are ordered by
+/// class. All touches of a group are random, or the first one is random and the others are chosen among all test touches of the object.
 pub(super) fn choose_touches(
     (family, configuration): (&FamilyInputs, &Decision),
     answered: &AnsweredTouches,

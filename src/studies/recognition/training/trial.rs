@@ -31,7 +31,7 @@ pub struct Evaluation {
     pub time: TrialTime,
     /// Non-zero counts of the confusion matrix: (object, predicted object, number of test rows).
     pub confusion: Vec<(usize, usize, usize)>,
-    /// For each group of test touches, its counts of decisions; empty if no groups are held out.
+    /// Decision counts of each group of test touches; empty if no groups are held out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<GroupCount>,
 }
@@ -45,7 +45,7 @@ pub struct Trial<'a> {
     pub measurements: &'a Measurements,
 }
 
-/// Returns the function with which a trained classifier decides on groups of test touches.
+/// Returns the function by which a trained classifier decides on groups of test touches.
 fn decider<'a>(
     fitted: &'a Fitted,
     test: &Dataset,
@@ -68,7 +68,7 @@ fn decider<'a>(
 }
 
 impl Trial<'_> {
-    /// Trains and tests the configurations of a family in order. Configurations use the first m measurements of each frame.
+    /// Trains and tests all configurations of a family, in order. Configurations use the first m measurements of each frame.
     ///
     /// # Errors
     /// If rows of the family cannot be computed, or the training fails.

@@ -1,4 +1,4 @@
-//! Linear equations of the free variables (those between their bounds), with factors that are updated when variables become free or bound.
+//! Linear equations of the free variables; their factors are updated when a variable becomes free or reaches a bound.
 //!
 //! The equations `(K + δ) Δ + μ = f` on the free variables, with `Σ Δ = 0`, are solved by the factors `L D Lᵀ` of `K + δ`. Adding a variable adds a row by
 //! substitution. Removing a variable is a rank-one change [Gill, Golub, Murray, Saunders 1974]. The ridge δ separates rows that are linearly dependent within
@@ -8,7 +8,7 @@ use crate::gram::matrix::Gram;
 use crate::linalg::factors::{LANES, Lanes, add_product, eliminate, substitute, substitute_back};
 use crate::linalg::scalar::Scalar;
 
-/// Ridge δ (constant added to the diagonal) as a fraction of the largest diagonal kernel value; δ exceeds the rounding error of f32 kernel values.
+/// Ridge δ (constant added to the diagonal), relative to the largest diagonal kernel value; larger than the rounding error of f32.
 const RIDGE: f64 = 1e-5;
 /// Number of variables that can be added to the factors before the next complete factorisation of the matrix.
 const JOINING: usize = 64;
@@ -170,7 +170,7 @@ mod tests {
         rows.dot(&rows.t())
     }
 
-    /// Asserts that the solution Δ and its level μ satisfy `(K + δ) Δ + μ = f` and `Σ Δ = 0`.
+    /// Asserts that the solution Δ of the equations and its level μ satisfy `(K + δ) Δ + μ = f` and `Σ Δ = 0`.
     fn assert_solves(factor: &FreeFactor, kernel: &Array2<f64>) {
         let f: Vec<f64> = (0..N).map(|i| (i as f64 * 0.7).cos()).collect();
         let (steps, level) = factor.solve(&factor.values(&f)).unwrap();
