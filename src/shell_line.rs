@@ -1,12 +1,12 @@
 //! Functions that write command lines which can be pasted into a shell.
 
-/// Joins words to a line that a POSIX shell splits into the same words.
+/// Joins words to a command line that a POSIX shell splits into the given words.
 pub fn shell_line(words: &[impl AsRef<str>]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| quoted(word.as_ref())).collect();
     quoted.join(" ")
 }
 
-/// Quotes a word unless all of its characters are literal in every shell.
+/// Quotes a word, unless all its characters are literal in every shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

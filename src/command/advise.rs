@@ -167,7 +167,7 @@ impl Args {
         }
     }
 
-    /// Returns the limits of columns of costs, in the units of the columns.
+    /// Returns the upper bounds of cost columns, in the units of the columns.
     fn limits(&self) -> Vec<(String, f64)> {
         let wish = &self.wish;
         // Beside a value, the budget is one more filter.

@@ -1,4 +1,4 @@
-//! `bubbletouch calibrate`: the signal of a skin from what it has recorded.
+//! `bubbletouch calibrate`: estimates the signal chain of a skin from recorded frames.
 
 use crate::command::terminal::output::check_ending;
 use crate::command::terminal::streams::{note, write_out};

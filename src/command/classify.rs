@@ -111,7 +111,7 @@ pub struct Args {
     threads: Option<usize>,
 }
 
-/// Writes the values that stand for the predicted classes in the file of labels: integers, or texts.
+/// Writes the predicted classes with the values of the label file: integers or texts.
 fn write_predictions(path: &Path, classes: &[KeyValue], predicted: &Array1<usize>) -> Result<()> {
     let values = predicted.iter().map(|&class| &classes[class]);
     let integers = values.clone().map(|value| match value {

@@ -40,7 +40,7 @@ impl ParameterOptions {
     }
 }
 
-/// Reads a number; the word of the parameter's rule gives `None`.
+/// Parses a parameter value: a number, or the name of the default rule, which gives `None`.
 fn value(parameter: &Parameter, text: &str) -> std::result::Result<GivenValue, String> {
     let kind = match parameter.is_integer {
         true => "a whole number",

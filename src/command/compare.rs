@@ -1,4 +1,4 @@
-//! `bubbletouch compare`: two folders of results side by side.
+//! `bubbletouch compare`: compares two result folders.
 
 use crate::command::terminal::output::{check_ending, terminal_width};
 use crate::command::terminal::streams::{say, write_out};

@@ -164,7 +164,7 @@ mod tests {
         assert!(n_examples > 18, "{n_examples}");
     }
 
-    /// Clap asserts this itself, but only in builds with debug assertions.
+    /// Asserts that names are unique; clap checks this only in builds with debug assertions.
     fn names_are_unique(command: &Command) {
         let own = command.get_arguments().map(clap::Arg::get_id);
         let mut seen = BTreeSet::new();

@@ -11,7 +11,7 @@ use bubbletouch::report::fit_picture::Original;
 use std::path::PathBuf;
 
 const MM: f64 = 1e-3;
-/// Points of a mesh at which the error is measured.
+/// Number of points on a mesh at which the surface error is measured.
 const N_POINTS: usize = 100_000;
 /// Approximate maximum number of points of the box around a solid at which the distance to its surface is measured. Larger: gigabytes at tolerances of a
 /// micrometre.
@@ -52,7 +52,7 @@ pub fn pack(args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Refuses an option by a name that it has no more.
+/// Returns an error for an option that was renamed.
 pub fn renamed(_: &str) -> std::result::Result<f64, String> {
     Err("it is called --surface-error-mm, as in press and in studies".to_owned())
 }

@@ -63,7 +63,7 @@ pub fn plan(
     }
 }
 
-/// Runs the beginning of a study for `seconds`, keeps nothing, and returns what it did in words. The run goes on until the process ends.
+/// Runs a study for `seconds` without storing results, and returns a text that describes the completed work. The run goes on until the process ends.
 ///
 /// # Errors
 /// Those of the work items that ran.
@@ -90,7 +90,7 @@ fn sample(study: Box<dyn AnyStudy>, seconds: f64) -> Result<String> {
     Ok(sample.counts().describe(Instant::now(), seconds))
 }
 
-/// Listener that counts the work items, and the steps of the current stage.
+/// Progress listener that counts finished work items and the steps of the current stage.
 #[derive(Default)]
 struct Sample(Mutex<Counts>);
 
@@ -132,7 +132,7 @@ impl Progress for Sample {
 }
 
 impl Counts {
-    /// Returns the estimated time of the whole run and the sample behind it, in words.
+    /// Returns a text with the estimated time of the whole run and a description of the sample from which it was estimated.
     fn describe(&self, now: Instant, seconds: f64) -> String {
         let estimate = self.clock.as_ref().and_then(|clock| {
             let (n_finished, n_items) = clock.counts();

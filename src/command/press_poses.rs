@@ -47,7 +47,7 @@ impl Args {
     }
 }
 
-/// A row of the file.
+/// Row of the CSV file with the readings.
 #[derive(Deserialize)]
 struct Row {
     x: f64,
@@ -70,7 +70,7 @@ struct Reading {
     us: f64,
 }
 
-/// Presses to a goal at each of the poses of the file at `path`.
+/// Presses the object in each pose of the file at `path`.
 pub fn press_poses(
     args: &Args,
     path: &Path,

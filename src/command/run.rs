@@ -77,7 +77,7 @@ pub fn run(args: &Args) -> Result<()> {
     run.failures(&outcome)
 }
 
-/// The journal of the run's folder, for this process alone: no signal loses what it keeps.
+/// Opens the journal of the run's folder with exclusive access, and installs the signal handlers.
 fn open_journal(args: &Args, run: &StudyRun) -> Result<Arc<Journal>> {
     let (study, folder) = (run.study.as_ref(), &run.folder);
     if args.fresh
@@ -99,7 +99,7 @@ fn open_journal(args: &Args, run: &StudyRun) -> Result<Arc<Journal>> {
     Ok(journal)
 }
 
-/// Whether a journal is of this study and some of its work is left.
+/// Returns whether a journal belongs to this study and some of its work items are pending.
 fn is_interrupted(study: &dyn AnyStudy, journal: &Path) -> bool {
     let Ok(Some((begun, journal))) = Journal::read(journal) else {
         return false;

@@ -1,4 +1,4 @@
-//! `bubbletouch completions` and `bubbletouch man`: what a shell and `man` need to know of the command.
+//! `bubbletouch completions` and `bubbletouch man`: write shell completions and manual pages.
 
 use crate::command::terminal::output::output_folder;
 use crate::command::terminal::streams::{say, write_out};

@@ -84,7 +84,7 @@ pub fn slurm(args: &Args) -> Result<()> {
     ))
 }
 
-/// Whether all work items of a shard have succeeded, in the shard's journal or in the merged one.
+/// Returns whether all work items of a shard have succeeded, according to the shard's journal or the merged journal.
 fn is_done(study: &dyn AnyStudy, folder: &Path, shard: Shard) -> Result<bool> {
     let mut known = None::<Journal>;
     for name in [shard.file_name(JOURNAL_FILE), JOURNAL_FILE.to_owned()] {

@@ -1,4 +1,4 @@
-//! Jobs in the queue of Slurm.
+//! Jobs in the queue of the cluster manager Slurm.
 
 use bubbletouch::files::write_bytes;
 use bubbletouch::{Error, Result};

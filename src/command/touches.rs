@@ -46,7 +46,7 @@ pub struct Args {
     trial: usize,
 }
 
-/// Touches on one array, in one combination of the study's own axes.
+/// Touches on one array for one combination of axis values.
 struct DataSet<'a> {
     plan: &'a Plan,
     array: &'a TaxelArray,

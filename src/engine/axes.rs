@@ -565,7 +565,7 @@ impl StudyAxes {
     }
 }
 
-/// Returns a study as TOML without the keys of its axes, followed by the table `[axes]` in its original order.
+/// Returns a study as TOML without the keys of its axes, followed by its table `[axes]`.
 pub fn to_toml<S: Serialize>(study: &S, axes: &StudyAxes) -> String {
     const HAS_FORM: &str = "every field of a study has a TOML form";
     if axes.is_empty() {

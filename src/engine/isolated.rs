@@ -3,8 +3,7 @@
 use crate::error::Result;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Runs `work` and returns its result. An error or a panic is converted to a message, so that one failed work item does not end a long run. If `fail_fast` is
-/// true, a failure is returned as an error.
+/// Runs `work` and returns its result. An error or a panic is converted to a message, so that one failed work item does not end a long run. If `fail_fast` is true, a failure is returned as an error.
 pub fn run_isolated<T>(
     fail_fast: bool,
     work: impl FnOnce() -> Result<T>,

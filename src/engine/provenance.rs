@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Git commit of the source code from which the program was built: `…-changed` if the sources were modified after the commit, `unknown` outside a repository.
+/// Git commit of the program's source code: `…-changed` if sources were modified after the commit, `unknown` outside a repository.
 const COMMIT: &str = env!("BUBBLETOUCH_COMMIT");
 
 /// Compiler that built the program.
@@ -77,7 +77,7 @@ pub struct Manifest {
     pub n_configurations: usize,
     /// Number of trials per configuration; 1 if trials are part of a work item.
     pub n_trials: usize,
-    /// Number of configurations that failed, counted once per trial.
+    /// Number of pairs of configuration and trial that failed.
     pub n_failed: usize,
     /// SHA-256 hash of the file `study.toml`, which contains the study with all default values written out.
     pub study_sha256: String,
@@ -97,7 +97,7 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Returns the manifest of a run on this machine from `started` until now. Fields that describe the study's results are empty.
+    /// Returns the manifest of a run on this machine that began at `started` and ends now. Fields that describe the study's results are empty.
     pub fn ended(identity: &Identity, started: SystemTime) -> Self {
         Self {
             schema: SCHEMA,

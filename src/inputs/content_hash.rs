@@ -15,7 +15,8 @@ pub struct Hashed<T> {
 }
 
 impl<T> Hashed<T> {
-    /// Wraps a value so that the hash of its bytes represents it. The function `bytes` converts the value to bytes; different values must give different bytes.
+    /// Wraps a value, which is then represented by the hash of its bytes. The function `bytes` converts the value to bytes; different values must give
+    /// different bytes.
     pub fn new(value: T, bytes: fn(&T) -> Vec<u8>) -> Self {
         let hash = OnceLock::new();
         Self { value, bytes, hash }
@@ -56,7 +57,7 @@ pub fn short_hash(said: impl AsRef<[u8]>, n_digits: usize) -> String {
     digits
 }
 
-/// Converts whole numbers to bytes, preceded by how many numbers there are.
+/// Converts whole numbers to bytes, preceded by their count.
 pub fn bytes_of_counts<'a>(numbers: impl ExactSizeIterator<Item = &'a usize>) -> Vec<u8> {
     let n = numbers.len();
     let numbers = std::iter::once(n).chain(numbers.copied());

@@ -30,7 +30,7 @@ pub struct KeyAbout {
 /// Place at which a key may have a list of values that are swept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisPlace {
-    /// In the table of the key, or in `[axes]`.
+    /// The key may be swept in its own table or in `[axes]`.
     Table,
     /// The key may be swept only in the table `[axes]`.
     Axes,

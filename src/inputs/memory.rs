@@ -1,4 +1,4 @@
-//! Memory sizes in bytes: available, used and required memory, and their display.
+//! Memory sizes in bytes: available, used and required memory, and their text format.
 
 use std::{fmt, fs};
 

@@ -9,7 +9,7 @@ use ndarray_npy::WriteNpyExt;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-/// First bytes of a `.npy` file of version 1, which NumPy writes for all arrays of numbers and texts. The length of the header follows.
+/// First bytes of a `.npy` file of version 1, which NumPy writes for arrays of numbers and texts. The length of the header follows.
 const MAGIC: [u8; 8] = *b"\x93NUMPY\x01\x00";
 
 /// Returns the text of a `.npy` header that describes an array, such as `{'descr': '<f4', 'fortran_order': False, 'shape': (500, 64), }`.
@@ -58,7 +58,7 @@ pub(crate) fn check_npy_header(text: &str, descr: &str, shape: &[usize]) -> io::
     }
 }
 
-/// Array file in `.npy` format that is written element by element; the file appears at its path when it is complete.
+/// Array file in `.npy` format that is written element by element; the file appears at its path when all elements are written.
 pub(crate) struct NpyFile(WholeFile);
 
 impl NpyFile {

@@ -37,8 +37,8 @@ pub struct NamedMesh {
     pub mesh: TriangleMesh,
 }
 
-/// Builds the objects of a study: first the objects of the sets, in their order, then the meshes, sorted by file name. If the folder `packings` is given,
-/// packed meshes are read from it or written to it.
+/// Builds all objects of a study: first the objects of the sets in order, then the meshes sorted by file name. If the folder `packings` is given, packed meshes
+/// are read from it or written to it.
 ///
 /// # Errors
 /// If a set, name or file does not exist, an object is given twice, a mesh cannot be packed, or the selection is empty.
@@ -57,7 +57,7 @@ pub fn load_objects(spec: &ObjectsSpec, packings: Option<&Path>) -> Result<Vec<O
     Ok(objects)
 }
 
-/// Reads a TOML file of objects as a set, whose name is the name of the file.
+/// Reads a TOML file of objects as a set; the set has the name of the file.
 ///
 /// # Errors
 /// If the file cannot be read or does not describe objects.
@@ -181,7 +181,7 @@ pub fn load_mesh(path: &Path, spec: &ObjectsSpec, packings: Option<&Path>) -> Re
 /// Object that was built from a mesh file.
 struct BuiltMesh {
     object: Object,
-    /// Maximum distance between the mesh and the spheres around its vertices, metres; `None` for other models, and for files without faces.
+    /// Maximum distance between a mesh and the spheres around its vertices, metres; `None` for other models and for meshes without faces.
     vertex_error: Option<f64>,
 }
 

@@ -15,7 +15,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Version of the method that packs meshes; the version changes whenever [`pack_mesh`] returns other spheres for a mesh.
+/// Version of the packing method, which changes whenever [`pack_mesh`] returns different spheres for a mesh.
 const METHOD: &str = "packing 4";
 
 /// Length of the last line of a packing file, bytes, including the line break; the line contains the checksum of the file.
@@ -66,7 +66,7 @@ pub fn pack_within(
     })
 }
 
-/// Returns the path of the cache file for the spheres of a mesh within a tolerance (metres).
+/// Returns the path of the cache file with the spheres of a mesh for a tolerance in metres.
 pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathBuf {
     let made_from = [
         format!("{METHOD}{:?}", Body::Solid).into_bytes(),

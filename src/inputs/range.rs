@@ -40,13 +40,13 @@ pub enum Range {
     Between(f64, f64, &'static str),
     /// Zero, and the numbers between two positive bounds (inclusive), with a description in words.
     ZeroOrBetween(f64, f64, &'static str),
-    /// Numbers that a classifier declares for its parameter.
+    /// Range of numbers that a classifier declares for a parameter.
     Declared(&'static Parameter),
     /// Numbers for which a function returns true, with a description in words.
     Of(fn(f64) -> bool, &'static str),
     /// Any text or truth value is allowed. A list of them contains each value once.
     Any,
-    /// Values that the reader of the key checks: texts, files, vectors and tables.
+    /// Values that only the reader of the key checks, such as texts, files, vectors and tables.
     Unchecked,
 }
 

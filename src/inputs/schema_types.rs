@@ -33,7 +33,7 @@ pub fn names<T: DeserializeOwned>() -> &'static [&'static str] {
     found.err().map_or(&[], |Expected(names)| names)
 }
 
-/// Deserialisation error that stores the names that would have been accepted.
+/// Deserialisation error that contains the list of accepted names.
 #[derive(Debug)]
 struct Expected(&'static [&'static str]);
 

@@ -90,7 +90,7 @@ impl Strengths {
         all.find_map(|((_, strength), value)| value.filter(|_| strength.key == key))
     }
 
-    /// Returns a copy in which the strength with this key has another value.
+    /// Returns a copy in which the strength with this key has a different value.
     pub fn with(mut self, key: &str, value: Option<f64>) -> Self {
         let place = all_strengths().position(|(_, strength)| strength.key == key);
         if let Some(place) = place {
@@ -127,7 +127,7 @@ pub(crate) const NOISES: [(&str, NoiseUnit); 3] = [
     ("noise_std_n", NoiseUnit::N),
 ];
 
-/// Returns the description of the key that sets the noise in this unit.
+/// Returns the description of the key that sets the noise standard deviation in this unit.
 pub(crate) fn noise_words(unit: NoiseUnit) -> String {
     let unit = match unit {
         NoiseUnit::FullScale => "as a fraction of the full scale",

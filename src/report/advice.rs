@@ -14,7 +14,7 @@ struct ColumnSelector {
     /// Name of the default column, used if no name is given and at least one table has the column. Otherwise, the first column with the role is used.
     usual: &'static str,
     has_role: fn(Role) -> bool,
-    /// Names that select a column in every kind of study, each with the actual column names in the different kinds.
+    /// Column names that all kinds of studies accept, each with the actual names in the different kinds.
     shared: &'static [(&'static str, &'static [&'static str])],
 }
 
@@ -77,7 +77,7 @@ pub struct Candidate {
     pub cost: f64,
 }
 
-/// Advice for one condition: the advised choice and its alternatives.
+/// Advice under one condition: the advised choice and its alternatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Advice {
     /// Advised choice: the cheapest candidate with a sufficient value, or the best candidate within the budget.
@@ -483,7 +483,7 @@ fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>>
     }
 }
 
-/// Parses the value of a condition: a word, or a number with an optional unit (`0.5 mm`, `5 %`). Returns `None` if the unit differs from the column's unit.
+/// Parses the value of a condition: a text, or a number with an optional unit (`0.5 mm`, `5 %`). Returns `None` if the unit differs from the column's unit.
 fn given_value(text: &str, unit: &str) -> Option<Value> {
     if let Ok(number) = text.parse() {
         return Some(Value::Number(number));

@@ -11,7 +11,7 @@ pub struct Answer {
     pub advice: Result<Advice>,
 }
 
-/// Returns the advice for each condition, or the reason why no advice exists. If `worst` is true, returns a single answer that is based on the worst value of
+/// Returns the advice under each condition, or the reason why there is none. If `worst` is true, returns a single answer that is based on the worst value of
 /// each choice over all conditions.
 ///
 /// # Errors

@@ -11,7 +11,7 @@ use std::path::Path;
 /// File name of the table of failed work items.
 pub const FAILURES_FILE: &str = "failures.csv";
 
-/// File name of the table that counts how often each limit of the model was reached.
+/// File name of the table that counts how often each limit of the simulation and of the solver was reached.
 pub const LIMITS_FILE: &str = "limits.csv";
 /// Name of the row in [`LIMITS_FILE`] that counts the touches without any touched taxel.
 pub const MISSED_TOUCHES: &str = "touches that met nothing";

@@ -1,4 +1,4 @@
-//! Files of a simulated scene: a recording, a table of wrenches, and the resolved scene.
+//! Output files of a simulated scene: a recording, a table of wrenches, and the complete scene file.
 
 use super::recording::{ForceKind, RecordedPatch, RecordingHeader, RecordingWriter};
 use crate::error::Result;

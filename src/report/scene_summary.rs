@@ -1,4 +1,4 @@
-//! Summary of a scene as tables for the terminal.
+//! Summary of a scene as text tables.
 
 use crate::report::terminal::rows_text;
 use crate::scene::{Movement, PoseControl, ScenePlan, Summary};

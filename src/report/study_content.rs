@@ -20,7 +20,7 @@ pub struct NamedPicture {
 pub struct Found<'a> {
     /// All tables of the study.
     pub tables: &'a [Table],
-    /// Specifications of the charts, the most important first.
+    /// Specifications of the charts, with the most important chart first.
     pub charts: &'a [ChartSpec],
     /// Answers to the study's question, one sentence each.
     pub answers: &'a [String],

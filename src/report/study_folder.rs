@@ -92,7 +92,7 @@ pub fn words_of(tables: &[&Table], answers: &[String], width: usize) -> String {
     words
 }
 
-/// Returns the first table that has rows and a column of values or outcomes.
+/// Returns the first table that has rows and at least one column of values or outcomes.
 pub fn first_found(tables: &[Table]) -> Option<&Table> {
     let is_found = |role: Role| matches!(role, Role::Value(_) | Role::Outcome);
     let mut tables = tables.iter().filter(|table| table.n_rows > 0);

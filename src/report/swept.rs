@@ -43,8 +43,8 @@ pub struct Swept<'a> {
     pub free: Vec<Setting<'a>>,
     /// Varying settings whose values are determined by other settings.
     pub following: Vec<Setting<'a>>,
-    /// Independent settings of a study that changes one setting at a time. Each row changes at most one of them from its value in the first row. The list is
-    /// empty for other studies, or if there are fewer than two such settings.
+    /// Independent settings of a study in which single settings are changed, one at a time. Each row changes at most one of them from its value in the first
+    /// row. The list is empty for other studies, or if there are fewer than two such settings.
     pub one_at_a_time: Vec<Setting<'a>>,
     /// Settings that have equal values in all rows.
     pub fixed: Vec<Setting<'a>>,
@@ -73,7 +73,7 @@ impl<'a> Setting<'a> {
         self.data.varies(rows.iter().copied())
     }
 
-    /// Returns whether the setting has a value in every given row: a number, a word, or a named absent value.
+    /// Returns whether the setting has a value in every given row: a number, a text, or a named absent value.
     pub fn applies(&self, rows: &[usize]) -> bool {
         let has_name = !self.column.word("").is_empty();
         has_name || rows.iter().all(|&row| self.data.value(row).is_some())
@@ -110,7 +110,7 @@ impl<'a> Setting<'a> {
         }
     }
 
-    /// For each distinct value of the setting, returns one row: numbers ascending, words in the order of first occurrence.
+    /// Returns one row for each distinct value of the setting: numbers ascending, texts in the order of first occurrence.
     pub fn levels(&self, rows: &[usize]) -> Vec<usize> {
         let mut firsts = rows.to_vec();
         if let Data::Numbers(numbers) = self.data {
@@ -223,7 +223,7 @@ fn numbers_are_there(setting: &Setting, rows: &[usize]) -> bool {
     rows.iter().all(|&row| setting.data.value(row).is_some())
 }
 
-/// Returns all given settings except one.
+/// Returns the given settings without one of them.
 pub fn without<'a>(settings: &[Setting<'a>], one: &Setting) -> Vec<Setting<'a>> {
     let others = settings.iter().copied();
     others

@@ -36,7 +36,7 @@ pub struct PatchReading {
     pub signal: Option<Vec<f64>>,
     /// Number of taxels with a positive force.
     pub n_touched: usize,
-    /// Number of taxels at their stroke (maximum deflection) that an object would push further, or whose stop carries a free object.
+    /// Number of taxels at their stroke (maximum deflection) that an object pushes further or that support a free object.
     pub n_saturated: usize,
     /// Number of taxels whose contact is grazing: the contact normal is almost perpendicular to the taxel axis (`contact::GRAZING`).
     pub n_grazing: usize,
@@ -61,7 +61,7 @@ pub struct FrictionReading {
     pub n_slipping: usize,
 }
 
-/// Pose of an object, and the rule by which the pose is determined.
+/// Pose of an object at one time, and the rule that determines the pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectReading {
     /// Pose of the object, `world_from_object`; for an escaped object, the last pose before the escape.
@@ -78,7 +78,7 @@ pub enum PoseControl {
     /// The pose follows an imposed motion.
     #[default]
     Imposed,
-    /// The pose follows an imposed motion; in addition, the object travels along a line to control the force on a patch.
+    /// The pose follows an imposed motion, and the object also travels along a line to control the force on a patch.
     Pressed {
         /// Distance of the object from the pose of its imposed motion, metres.
         travel: f64,
@@ -91,7 +91,7 @@ pub enum PoseControl {
     AtRest,
     /// The object is free, but the solver reached its iteration limit before an equilibrium.
     NotConverged,
-    /// The object was free, left the skin and has no contact any more.
+    /// The object was free, left the skin and no longer has any contact.
     Escaped {
         /// Time of the escape, seconds.
         time: f64,

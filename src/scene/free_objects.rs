@@ -20,7 +20,7 @@ pub(super) struct FreeObjects {
     all: Vec<Free>,
     /// Numbers (indices in the scene) of the free objects that took part in the last equilibrium.
     there: Vec<usize>,
-    /// Numbers (indices in the scene) of the imposed and pressed objects, which act as obstacles.
+    /// Numbers (indices in the scene) of the imposed and pressed objects, which are obstacles for free objects.
     obstacles: Vec<usize>,
     balancer: EquilibriumSolver,
     /// Deflections of each patch that imposed and pressed objects cause, metres; empty if none of these objects touches the patch.
@@ -178,7 +178,7 @@ impl FreeObjects {
         })
     }
 
-    /// For objects that were just placed, attaches the tangential springs of all patches with friction.
+    /// Attaches tangential springs to objects that were just placed, for all patches with friction.
     fn hold_by_tips(&mut self, plan: &ScenePlan, skins: &mut [SkinState], objects: &PlacedObjects) {
         let has_friction = plan.patches.iter().any(PlannedPatch::has_friction);
         for free in self.all.iter_mut().filter(|free| free.is_put) {

@@ -160,7 +160,7 @@ fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
 
 type Facets = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// Returns the facets of a ball or capsule, whose hemispheres are shifted by `half` up and down along z.
+/// Returns the facets of a ball, or of a capsule whose hemispheres are shifted by ±`half` along z.
 fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
     let n = n_facets(radius, pitch);
     let n_rings = n.div_ceil(4).max(2);

@@ -50,7 +50,7 @@ impl Mount {
 }
 
 impl Reader<'_> {
-    /// Returns the body to which a patch is fixed: an object, a robot link or the world.
+    /// Returns the body to which a patch is fixed: an object, a robot link, or the world.
     pub fn mount_of_patch(
         &self,
         key: &str,

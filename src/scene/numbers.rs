@@ -9,7 +9,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Numbers {
-    /// One number that holds for all elements.
+    /// One number that applies to all elements.
     One(f64),
     /// List with one number for each element.
     Each(Vec<f64>),

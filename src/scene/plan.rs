@@ -151,7 +151,7 @@ impl ScenePlan {
         })
     }
 
-    /// Ends the scene at the time `until` (seconds) if it is longer. The remaining frames equal the first frames of the whole scene.
+    /// Ends the scene at `until` seconds if it would last longer. The remaining frames equal the first frames of the whole scene.
     ///
     /// # Errors
     /// If the time is negative or not finite.
@@ -199,7 +199,7 @@ impl ScenePlan {
         })
     }
 
-    /// Returns whether frames depend on time steps between them. This is the case if the scene has dampers, friction, free objects or pressed objects.
+    /// Returns whether the frames depend on time steps between them. This is the case if the scene has dampers, friction, free objects or pressed objects.
     pub fn needs_steps(&self) -> bool {
         let remembers = |object: &PlannedObject| {
             matches!(object.movement, Movement::Free { .. }) || object.press.is_some()

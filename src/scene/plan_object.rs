@@ -24,7 +24,7 @@ pub struct PlannedObject {
     pub name: String,
     /// Rule by which the pose of the object is determined: imposed, carried or free.
     pub movement: Movement,
-    /// Control of the force on a patch; `None` unless the motion is imposed and a target force is given.
+    /// Control of the force on a patch, for an object with imposed motion and a target force; otherwise `None`.
     pub press: Option<PlannedPress>,
     /// Bounding ball of the object (centre, radius), object frame, metres.
     pub(super) ball: (DVec3, f64),
@@ -223,7 +223,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Returns the solid of a built-in object, or the solid that the key `parts` describes.
+    /// Returns the solid of a built-in object, or the solid whose parts are given by the key `parts`.
     pub fn solid(&self, key: &str, spec: &ObjectSpec) -> Result<Solid> {
         let Some(name) = &spec.object else {
             let text = toml::to_string(&BTreeMap::from([("part", &spec.parts)]));

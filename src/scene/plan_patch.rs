@@ -16,7 +16,7 @@ use crate::random::Seed;
 use crate::world::{DrapeRegion, Grid, Layout, Patch, PerTaxel, Shears};
 use std::path::Path;
 
-/// Patch of a scene after its keys were checked, as input of a simulation.
+/// Patch of a scene, checked and ready for simulation.
 #[derive(Clone, Debug)]
 pub struct PlannedPatch {
     /// Taxels and layout of the patch.

@@ -9,7 +9,7 @@ use crate::world::{Joint, JointTrajectory, Motion, Robot};
 use ndarray::Array2;
 use std::path::{Path, PathBuf};
 
-/// Robot of a scene after its keys were checked, as input of a simulation.
+/// Robot of a scene, checked and ready for simulation.
 #[derive(Clone, Debug)]
 pub struct PlannedRobot {
     /// Name of the robot in the scene.

@@ -58,7 +58,7 @@ impl PlannedSignal {
 }
 
 impl Reader<'_> {
-    /// Checks the signal steps of a patch and returns the signal chain; returns `None` if there are no steps.
+    /// Checks the signal steps of a patch and returns its signal chain; `None` if there are no steps.
     pub fn signal(
         &self,
         key: &str,

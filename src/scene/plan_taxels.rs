@@ -1,4 +1,4 @@
-//! Taxel properties of a patch: one number for all taxels, a list, or a column of a CSV file.
+//! Taxel properties of a patch, given as one number for all taxels, as a list, or as a column of a CSV file.
 
 use super::numbers::Numbers;
 use super::reader::{MM, Reader};

@@ -1,4 +1,4 @@
-//! State of the pressed objects of a scene: travel and force.
+//! State of the pressed objects of a scene: their displacements and forces.
 
 use super::frame::{ObjectReading, PoseControl};
 use super::plan::ScenePlan;
@@ -108,7 +108,7 @@ impl PressedObjects {
 }
 
 impl Pressed {
-    /// Moves the object towards the target force by at most `way` metres. The object stays within `farthest` metres from the pose of its imposed motion.
+    /// Moves the object towards its target force by at most `way` metres. The object stays within `farthest` metres from the pose of its imposed motion.
     ///
     /// `poses` contains the pose of each object, `patch_from_object`; for the pressed object, the pose of its imposed motion.
     fn go(

@@ -1,4 +1,4 @@
-//! Allowed numbers of the keys of a scene, for its JSON Schema.
+//! Allowed numbers of the keys of a scene file, from which its JSON Schema is built.
 //!
 //! [`ScenePlan`](super::ScenePlan) checks the numbers where it uses them; a test compares both.
 

@@ -16,7 +16,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Millimetre in metres: factor that converts mm to m.
+/// One millimetre in metres, the factor that converts mm to m.
 pub(super) const MM: f64 = 1e-3;
 
 /// Reader that checks the values of a scene file and converts them to SI units.

@@ -10,7 +10,7 @@ pub(super) struct RobotState {
     positions: Vec<f64>,
     /// Whether a program has set the joint positions, which then no longer follow the scene file.
     are_set: bool,
-    /// Pose of the base that was set by the program, `world_from_base`; `None` if the base follows the scene.
+    /// Pose of the base that a program has set, `world_from_base`; `None` if the base follows the scene file.
     pub base: Option<Pose>,
     /// Pose of each link, `world_from_link`.
     pub world_from_link: Vec<Pose>,

@@ -19,7 +19,7 @@ pub enum Stepping {
     /// Computes only the time steps and patches on which later frames depend. Steps between frames are skipped if no later frame depends on them; otherwise
     /// only patches with dampers or friction are computed.
     AsNeeded,
-    /// Computes all patches in all steps. The frames are equal but take longer to compute; used in tests.
+    /// Computes all patches in all time steps. The frames are equal but take longer to compute; used in tests.
     Always,
 }
 
@@ -41,7 +41,7 @@ pub struct Simulation<'p> {
     scratch: SignalWorkspace,
     /// Time since the start of the scene, seconds.
     pub(super) time: f64,
-    /// Whether the program makes the steps instead of the scene's clock.
+    /// Whether a program makes the time steps, in place of the clock of the scene.
     pub(super) is_by_hand: bool,
     /// Duration of the last step, seconds, if the deflections of its patches have not been computed yet. The required computations depend on whether a frame is
     /// read next.
@@ -57,7 +57,7 @@ impl<'p> Simulation<'p> {
         Self::with_seed(plan, stepping, plan.spec.seed)
     }
 
-    /// Creates a simulation in which the seed of the sensor noise is given instead of taken from the scene.
+    /// Creates a simulation with a given seed of the sensor noise, in place of the seed of the scene.
     pub(super) fn with_seed(plan: &'p ScenePlan, stepping: Stepping, seed: u64) -> Self {
         let signals = Seed::new(seed).named("signal");
         let skins = plan.patches.iter();

@@ -69,7 +69,7 @@ pub(super) struct SkinState {
     /// Current pose of the patch, `world_from_patch`.
     pub pose: Pose,
     damper: DamperState,
-    /// Whether no object pushes the patch and all deflections are zero.
+    /// Whether no object touches the patch and all deflections are zero.
     is_idle: bool,
     workspace: Workspace,
     /// State of the friction contacts of the patch; `None` if the patch has no friction.

@@ -1,4 +1,4 @@
-//! Specification of a scene: the keys of its TOML file, in the units of the file.
+//! Specification of a scene: the keys of its TOML file, in the file's units.
 //!
 //! The specification checks only names and types. The scene plan checks the values.
 
@@ -108,7 +108,7 @@ impl SceneSpec {
         table.is_some_and(|table| is_old(&table.into()))
     }
 
-    /// Returns the scene as TOML, with all defaults written out.
+    /// Returns the scene as TOML text that contains all default values.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect("every field of a scene has a TOML form")
     }

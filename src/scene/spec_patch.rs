@@ -137,7 +137,7 @@ pub enum LayoutSpec {
         nx: usize,
         /// Number of rows, along the patch's y axis.
         ny: usize,
-        /// Distance between a taxel and its six neighbours, mm; the distance between rows is 0.866 times the pitch.
+        /// Distance between a taxel and its six neighbours, mm; rows are 0.866 times this distance apart.
         pitch_mm: f64,
     },
     /// Hexagonal lattice in a disc.

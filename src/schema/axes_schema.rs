@@ -116,7 +116,7 @@ impl<'s> Key<'s> {
         }
     }
 
-    /// Returns the keys of a table, or of a value that may be a table.
+    /// Returns the subkeys of a key whose value is, or may be, a table.
     fn inner(&self) -> Vec<(String, Self)> {
         let inner =
             |name: String, schema| Self::new(format!("{}/{name}", self.pointer), schema, self.root);
@@ -153,7 +153,7 @@ impl<'s> Key<'s> {
     }
 }
 
-/// Returns whether a key accepts a value or a list of values that are swept.
+/// Returns whether a key accepts a list of values to sweep.
 pub(super) fn is_axis(schema: &Value) -> bool {
     let choices = schema["anyOf"].as_array().map(Vec::as_slice);
     matches!(choices, Some([one, list]) if list["items"] == *one && list["uniqueItems"] == true)

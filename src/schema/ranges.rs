@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-/// Smallest positive number of a key; bounds below are shown as zero, which is excluded.
+/// Smallest positive number that a key may have; smaller bounds are shown as an excluded zero.
 const LEAST_POSITIVE: f64 = 1e-12;
 
 /// Adds the bounds of allowed numbers to the schema of a key: to single numbers, list elements, and axis values.
@@ -68,7 +68,7 @@ fn bound_numbers(schema: &mut Value, bounds: &Map<String, Value>) {
     }
 }
 
-/// Returns the keywords for the interval of allowed numbers around 0 or 1; no keywords if neither is allowed.
+/// Returns the schema keywords for the interval of allowed numbers around 0 or 1; no keywords if neither is allowed.
 fn bounds(is_allowed: impl Fn(f64) -> bool) -> Map<String, Value> {
     let mut keywords = Map::new();
     let Some(low) = [0.0, 1.0, 2.0, 0.5]

@@ -45,7 +45,7 @@ const STUDIES: &str = "
 The kind of a study follows from the table that only this kind has. A file without such a table is a recognition study.
 ";
 
-/// Description of `[test]` and `[axes]`, which repeat keys of other tables.
+/// Description of the tables `[test]` and `[axes]`, whose keys repeat keys of other tables.
 const AXES: &str = "
 ### `[test]` of recognition studies
 
@@ -111,7 +111,7 @@ fn words_of_kind(kind: &KindSchema, first: &KindSchema) -> String {
     words
 }
 
-/// Returns words with a capital letter at the start.
+/// Returns a text with a capital first letter.
 fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     let first = letters
@@ -138,7 +138,7 @@ struct FileKind<'s> {
     keys: &'s [KeyAbout],
 }
 
-/// Step from a table to a table below it.
+/// Step from a table to one of its subtables.
 #[derive(Clone)]
 struct Step {
     name: String,
@@ -430,7 +430,7 @@ fn default(schema: &Value) -> String {
     }
 }
 
-/// Describes where a key may have a list of values that are swept.
+/// Describes the tables in which a key may have a list of values to sweep.
 fn axis(about: Option<&KeyAbout>) -> &'static str {
     match about.map(|about| about.axis) {
         Some(AxisPlace::Table) => "list",

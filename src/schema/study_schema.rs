@@ -89,7 +89,7 @@ fn rules_of_kinds(kinds: &[KindSchema]) -> Value {
 }
 
 impl KindSchema {
-    /// Returns the condition that states which tables a file of this kind may have and must have.
+    /// Returns the condition that specifies the allowed and the required tables of a file of this kind.
     fn rules(&self) -> Value {
         let names: Vec<&String> = properties(&self.schema).map(|(name, _)| name).collect();
         json!({ "propertyNames": { "enum": names }, "required": self.schema["required"] })

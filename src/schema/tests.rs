@@ -6,7 +6,7 @@ use crate::inputs::schema_types::accepted_keys;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Reader of a kind of file: returns the keys that it accepts where a probe has the key `?`.
+/// Reader of a file kind: function that returns the keys accepted in the table that contains the probe key `?`.
 type Accepts = fn(toml::Value) -> Vec<String>;
 
 /// Returns the schema and the reader of each kind of file.
@@ -95,7 +95,7 @@ fn every_key_and_column_has_a_meaning_and_a_row() {
     assert!(without.is_empty(), "{without:?}");
 }
 
-/// With `BUBBLETOUCH_UPDATE=1` the pages are written.
+/// Tests that the pages of the guide are up to date; with `BUBBLETOUCH_UPDATE=1`, the test writes them.
 #[test]
 fn the_pages_of_the_guide_are_those_of_the_program() {
     for (file, page) in [

@@ -84,7 +84,7 @@ impl Bootstrap {
         }))
     }
 
-    /// Returns the resamples of `n` trials one after another, each a block of `n` trial indices.
+    /// Returns all resamples of `n` trials in sequence; each resample is a block of `n` trial indices.
     fn drawn(&mut self, what: &'static str, n: usize) -> &[u32] {
         self.drawn.entry((what, n)).or_insert_with(|| {
             let n_different = (n as u128).checked_pow(n as u32);
@@ -101,7 +101,7 @@ impl Bootstrap {
     }
 }
 
-/// Returns every possible resample of `n` trials once, one after another: all numbers with n digits in base n.
+/// Returns all possible resamples of `n` trials in sequence: all numbers with n digits in base n.
 fn all_of(n: usize) -> Vec<u32> {
     let digit = |number: usize, place: usize| (number / n.pow(place as u32) % n) as u32;
     (0..n.pow(n as u32))

@@ -10,7 +10,7 @@ use ndarray::ArrayView2;
 /// Comparison of the scores of two configurations in the trials that both have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Comparison {
-    /// Score of `a` minus score of `b`, averaged over the trials.
+    /// Mean of the score differences `a − b` over the trials.
     pub mean_difference: f64,
     /// Confidence interval of the mean difference.
     pub interval: Interval,
@@ -158,7 +158,7 @@ fn overlap(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| size.n_test as f64 / size.n_train as f64)
 }
 
-/// Returns the variance that rounding to multiples of 1 / (number of test rows) adds to a score, averaged over the trials.
+/// Returns the variance, averaged over trials, that a score gains by rounding to multiples of 1 / (number of test rows).
 fn rounding(sizes: &[TrialSize]) -> f64 {
     mean_of(sizes, |size| {
         let n_test = size.n_test as f64;

@@ -270,7 +270,7 @@ mod tests {
         }
     }
 
-    /// Draws G groups of m rows with correlated outcomes from a beta-binomial distribution.
+    /// Draws G groups of m rows each, whose outcomes are correlated within a group (beta-binomial distribution).
     fn draw(
         rng: &mut ChaCha8Rng,
         (n_groups, n_rows): (usize, usize),
@@ -294,7 +294,7 @@ mod tests {
         (0..n_groups).map(group).collect()
     }
 
-    /// Returns the coverage and the mean width of two kinds of intervals: over groups, and over single rows.
+    /// Returns the coverage and the mean width of two kinds of intervals: over groups of rows, and over single rows.
     fn coverage(sizes: (usize, usize), of: (f64, f64), rng: &mut ChaCha8Rng) -> [(f64, f64); 2] {
         let mut found = [(0.0, 0.0); 2];
         for _ in 0..N_DRAWS {

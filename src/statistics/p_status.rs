@@ -12,7 +12,7 @@ pub enum PStatus {
     /// The comparison has a p-value. Result tables of earlier versions contain no status and are read as this one.
     #[default]
     Tested,
-    /// The study has so few trials that hardly any difference could be significant.
+    /// The study has too few trials for significant differences.
     TooFewTrials,
     /// Some trials are missing because they failed, so the trials do not combine every split with every projection.
     TrialsMissing,

@@ -54,7 +54,7 @@ pub fn kendall_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<Interval>
     })
 }
 
-/// Returns the number of pairs of equal values in a sorted slice.
+/// Returns the number of pairs of equal values in a sorted list.
 fn ties<T>(sorted: &[T], is_same: impl Fn(&T, &T) -> bool) -> f64 {
     let runs = sorted.chunk_by(is_same).map(|run| run.len() as f64);
     runs.map(|n| 0.5 * n * (n - 1.0)).sum()

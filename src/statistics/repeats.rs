@@ -55,8 +55,8 @@ fn merged(trials: &[Repeat], place: impl Fn(usize) -> (usize, Option<usize>)) ->
     groups.collect()
 }
 
-/// Returns the scores of a configuration as a matrix. If the trials combine every split with every projection, the shape is splits × projections; the result is
-/// `None` if some trials are missing. Otherwise, the shape is (n_splits, 1), and repeated splits are averaged.
+/// Returns the scores of a configuration as a matrix of splits (rows) and projections (columns). If the trials combine every split with every projection, the
+/// shape is splits × projections; the result is `None` if some trials are missing. Otherwise, the shape is (n_splits, 1), and repeated splits are averaged.
 pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
     let mut ordered = merged(trials, |number| trials[number].place());
     if ordered.iter().any(|trial| trial.projection.is_none()) {
@@ -72,17 +72,17 @@ pub fn scores(trials: &[Repeat]) -> Option<Array2<f64>> {
 
 /// Result of a significance test of the difference between two configurations.
 pub struct Tested {
-    /// Whether the test has a p-value, or the reason why it is missing.
+    /// Whether the test has a p-value, or why the p-value is missing.
     pub p_status: PStatus,
     /// p-value of the null hypothesis that there is no difference; `None` if the test is not possible.
     pub p_value: Option<f64>,
     /// Confidence interval of the difference of the scores; `None` for a single trial.
     pub interval: Option<Interval>,
-    /// Number of trials that a p-value requires. For crossed trials, this is the required number of splits times the number of projections.
+    /// Number of trials that are needed for a p-value. For crossed trials, this is the required number of splits times the number of projections.
     pub n_needed: Option<usize>,
 }
 
-/// Scores of two configurations in their common trials; trials with equal split and projection are averaged.
+/// Scores of two configurations in the trials that both have; trials with equal split and projection are averaged.
 pub struct Paired {
     ours: Vec<Repeat>,
     theirs: Vec<Repeat>,

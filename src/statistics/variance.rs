@@ -37,7 +37,7 @@ pub struct Components {
     pub rows: Component,
     /// Variance component of the matrix columns (projections).
     pub columns: Component,
-    /// Residual component: independent noise of each score, and the interaction between splits and projections.
+    /// Residual component: noise of single scores, and the interaction of splits and projections.
     pub rest: Component,
 }
 

@@ -20,7 +20,7 @@ pub(super) fn grouped<'a, T, K: PartialEq>(
     groups
 }
 
-/// Returns two tables with the rows of the same configurations: one table with their results, the other with their costs.
+/// Returns two tables for the rows of the same configurations: one with their results, one with their costs.
 pub(super) fn found_and_cost<C, F, T>(
     found: &File<(C, F)>,
     cost: &File<(C, T)>,

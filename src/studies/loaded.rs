@@ -79,7 +79,7 @@ impl<K: Study> Loaded<K> {
         StudyRun::<K::Rows>::new(&self.items, &options).n_pending()
     }
 
-    /// Adds to each table the notes that the study has about it.
+    /// Adds the study's notes to its tables.
     fn note(&self, tables: &mut [Table]) {
         for (file, note) in &self.facts.notes {
             if let Some(table) = tables.iter_mut().find(|table| table.file == *file) {

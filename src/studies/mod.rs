@@ -80,7 +80,7 @@ pub(crate) struct KindFiles {
     pub about: About,
     /// JSON Schema of the kind's study files.
     pub schema: serde_json::Value,
-    /// Function that returns the keys that the reader of a study accepts; see [`accepted_keys`].
+    /// Function that returns the keys which the study reader accepts; see [`accepted_keys`].
     pub accepted_keys: fn(toml::Value) -> Vec<String>,
     /// Descriptions of all keys that a study file of the kind may have.
     pub keys: Vec<KeyAbout>,
@@ -108,7 +108,7 @@ pub(crate) fn failures_about() -> FileAbout {
 /// Name of the table that only recognition studies have.
 pub(crate) const RECOGNITION_TABLE: &str = RECOGNITION.about.table;
 
-/// Returns the kind of a study, given the text of its file. Returns `None` if the file has no table that identifies a kind.
+/// Returns the description of the kind of a study, given the text of the study file. Returns `None` if the file has no table that identifies a kind.
 pub fn about(text: &str) -> Option<About> {
     find(text).map(|entry| entry.about)
 }
@@ -119,7 +119,7 @@ pub fn keys(kind: &str) -> Option<Vec<KeyAbout>> {
     Some((entry.keys)())
 }
 
-/// Returns the names of the tables that identify the kinds of study, such as `stability`. Each name is a valid argument of [`keys`].
+/// Returns the names of the tables that identify the kinds of studies, such as `stability`. Each name is a valid argument of [`keys`].
 pub fn kinds() -> impl Iterator<Item = &'static str> {
     KINDS.iter().map(|entry| entry.about.table)
 }

@@ -7,7 +7,7 @@ use crate::studies::recognition::spec::recorded::RecordedSpec;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// Text of a study, and the command-line options that override it.
+/// Text of a study, and the command-line options that change the study.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
     /// Name of the study in error messages: the path of its file.

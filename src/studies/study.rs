@@ -19,7 +19,7 @@ use std::path::Path;
 /// Description of a kind of study, which is available before any study file is read.
 #[derive(Clone, Copy, Debug)]
 pub struct About {
-    /// Name of the table that a study file has only if it is of this kind.
+    /// Name of the table that identifies study files of this kind.
     pub table: &'static str,
     /// Phrase of the form `a study that …` that describes the purpose of this kind of study.
     pub words: &'static str,
@@ -40,7 +40,7 @@ pub enum Resumes {
 /// Content of the study file and of the files to which it refers.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
-    /// Study as TOML, with all defaults written out.
+    /// Study as TOML text that contains all default values.
     pub toml: String,
     /// Question that the study answers.
     pub question: String,
@@ -216,7 +216,7 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// other axes, in which the work item had another number.
     fn place(&self, _number: usize, _rows: &mut Self::Rows) {}
 
-    /// Describes the work item with the given number for failure messages.
+    /// Returns a description of the work item with the given number, for failure messages.
     fn item_words(&self, _number: usize, item: &WorkItem) -> String {
         item.name.clone()
     }

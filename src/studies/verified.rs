@@ -47,8 +47,8 @@ pub fn same_rows(folder: &Path, again: &[Table], is_whole: bool) -> Result<usize
     Ok(n_rows)
 }
 
-/// Returns a table restricted to the columns of `header`, or `None` if the table lacks one of them. The restriction is needed because some columns exist only
-/// if a row has a value. For example, a table without groups has no column of group counts.
+/// Returns a table with only the columns of `header`; `None` if the table lacks one of them. The restriction is needed because some columns exist only if a row
+/// has a value. For example, a table without groups has no column of group counts.
 fn columns_of(text: &str, header: &str) -> Option<String> {
     let mut reader = csv::ReaderBuilder::new();
     let mut reader = reader.has_headers(false).from_reader(text.as_bytes());

@@ -24,7 +24,7 @@ pub struct FileAbout {
     pub title: &'static str,
     /// Note that explains the table; may be empty.
     pub note: &'static str,
-    /// Whether a repeated run writes the same bytes.
+    /// Whether a repeated run writes identical bytes.
     pub repeats: bool,
     /// Columns of the table, including the optional ones.
     pub columns: Vec<Column>,

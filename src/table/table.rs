@@ -90,7 +90,7 @@ impl Data {
             .is_some_and(|first| keys.any(|key| key != first))
     }
 
-    /// Returns a number that identifies the value in a row: two rows have equal numbers if and only if their values are equal.
+    /// Returns a number that identifies the value in a row; numbers are equal exactly if the values are equal.
     pub fn key(&self, row: usize) -> u64 {
         match self {
             Self::Numbers(numbers) => numbers[row].to_bits(),

@@ -212,7 +212,8 @@ impl KernelFunction {
         }
     }
 
-    /// Returns an upper bound of `K(x, x)` over all rows x, given their largest squared distance from the centre. Returns `None` if f32 is not accurate enough.
+    /// Returns an upper bound of `K(x, x)` over all rows x for computation in f32, given their largest squared distance from the centre. Returns `None` if f32
+    /// is not accurate enough.
     pub fn largest_in_single(&self, farthest: f64) -> Option<f64> {
         match *self {
             Self::Linear => Some(farthest),
@@ -276,7 +277,7 @@ impl KernelFunction {
         }
     }
 
-    /// Converts the inner products (or L1 distances) of one row with other rows to kernel values; `norm` and `norms` are their squared norms.
+    /// Converts the inner products (or L1 distances) of one row with other rows to kernel values, given the squared norms of the rows.
     pub fn of_pairwise<T: Scalar>(&self, pairwise: &mut [T], norm: T, norms: &[T]) {
         match *self {
             Self::Linear => {}

@@ -9,7 +9,7 @@ pub trait Streams {
     /// Returns the stream name with this word appended.
     fn named(&self, word: &str) -> Box<dyn Streams>;
 
-    /// Returns the stream name with this number appended.
+    /// Returns the name of the stream with this number appended.
     fn numbered(&self, number: u64) -> Box<dyn Streams>;
 
     /// Returns a new random generator for this stream.

@@ -32,11 +32,11 @@ const SCREENING_FROM_ROWS: usize = 64;
 /// Solved binary problems of all classes for one value of C.
 pub(crate) struct Trained<T> {
     pub problems: Vec<BinaryProblem>,
-    /// Normals of the decision hyperplanes for rows minus their centre (n_problems × m); `None` if the solver did not compute them.
+    /// Normals of the decision hyperplanes for centred rows (n_problems × m); `None` if the solver did not compute them.
     pub normals: Option<Array2<T>>,
 }
 
-/// Inputs of training besides the rows: penalties C, tolerance and memory limit.
+/// Inputs of training other than the rows: penalties C, tolerance and memory limit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal<'a> {
     /// Penalties C, in the order of solution; each solution starts from the previous one.

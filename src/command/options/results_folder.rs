@@ -1,4 +1,4 @@
-//! A folder of results: whether its files are those that its run wrote, and the study that they are of.
+//! Result folder: checks that its files are those of its run, and reads the study to which they belong.
 
 use crate::command::terminal::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};
@@ -7,8 +7,8 @@ use bubbletouch::study::provenance::Manifest;
 use bubbletouch::{Error, Result};
 use std::path::Path;
 
-/// Checks the files of a folder that a run made beside tables: charts, pictures and the page. Returns the number of files that are missing: they are
-/// drawn from the tables again.
+/// Checks the files of a result folder other than tables: charts, pictures and the page. Returns the number of files that are missing: they are drawn from the
+/// tables again.
 pub fn check_page(folder: &Path, manifest: &Manifest) -> Result<usize> {
     let files = manifest.files_sha256.iter().flatten();
     let files = files.map(|(name, hash)| (folder.join(name), hash));
@@ -19,7 +19,7 @@ pub fn check_page(folder: &Path, manifest: &Manifest) -> Result<usize> {
     Ok(missing.len())
 }
 
-/// The manifest of a folder, whose study and tables are as it says; none if there is no manifest.
+/// Reads the manifest of a folder and checks that the study and the tables agree with it; returns `None` without a manifest.
 pub fn checked_manifest(folder: &Path) -> Result<Option<Manifest>> {
     let Some(manifest) = Manifest::read(folder)? else {
         return Ok(None);

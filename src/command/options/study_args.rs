@@ -1,4 +1,4 @@
-//! The study that a command is about: its file, and what replaces some of it.
+//! Study that a command uses: its file, and the values that options replace.
 
 use crate::command::terminal::output::packings_beside;
 use bubbletouch::kinds::{self, AnyStudy, Source};

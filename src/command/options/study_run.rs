@@ -1,4 +1,4 @@
-//! A run of a study from its file to its folder of results: how `run` and `merge` begin, and how they end.
+//! Start and end of a run of a study, which the commands `run` and `merge` share.
 
 use crate::command::classify::word;
 use crate::command::options::memory_limit::MemoryLimit;
@@ -67,7 +67,7 @@ impl RunArgs {
 pub struct StudyRun<'a> {
     pub study: Box<dyn AnyStudy>,
     pub folder: PathBuf,
-    /// Hears how far the run is; a message that ends no stage is a remark.
+    /// Receiver of progress reports; a message that does not end a stage is a remark.
     pub progress: Box<dyn Progress>,
     args: &'a RunArgs,
     started: SystemTime,
@@ -96,7 +96,7 @@ impl<'a> StudyRun<'a> {
         })
     }
 
-    /// Seconds since it began.
+    /// Returns the time since the start of the run, seconds.
     pub fn elapsed_s(&self) -> f64 {
         self.started.elapsed().unwrap_or_default().as_secs_f64()
     }

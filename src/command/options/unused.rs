@@ -4,7 +4,7 @@
 
 use bubbletouch::{Error, Result};
 
-/// Refuses an option that was given and cannot act; `user` names what would use it.
+/// Returns an error if an option is given but has no effect; `user` names the command or option that would use it.
 pub fn check_used(option: &str, is_given: bool, can_act: bool, user: &str) -> Result<()> {
     if !is_given || can_act {
         return Ok(());

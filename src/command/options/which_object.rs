@@ -69,7 +69,7 @@ impl WhichObject {
         Ok(Original::Mesh(Box::new(Surface::new(mesh)), body))
     }
 
-    /// Refuses options of meshes for an object that is none.
+    /// Returns an error if mesh options are given for an object that is not a mesh.
     fn check_used(&self) -> Result<()> {
         for (option, is_given) in [
             ("--unit", self.unit.is_some()),

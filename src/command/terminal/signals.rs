@@ -1,11 +1,11 @@
-//! Ctrl-C, and a scheduler that ends the process: nothing is half-written, and a line says how to go on.
+//! Handling of Ctrl-C and termination signals: files stay complete, and a message explains how to resume the run.
 
 use crate::command::terminal::streams::note;
 use bubbletouch::study::journal::Journal;
 use bubbletouch::{Error, Result};
 use std::sync::Arc;
 
-/// From now on a signal ends the process with all that the journal keeps on the disk.
+/// Installs signal handlers that write the journal to the disk before a signal ends the process.
 pub fn keep_journal_on_signals(journal: &Arc<Journal>) -> Result<()> {
     let journal = Arc::clone(journal);
     let set = ctrlc::set_handler(move || {

@@ -25,12 +25,12 @@ pub struct Identity {
     same: SameStudy,
 }
 
-/// Rule that decides which studies of the same program and objects may resume each other's runs.
+/// Rule that determines which studies of one program with equal objects may resume each other's runs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SameStudy {
-    /// Studies may share a journal if they differ only in these keys and the keys below them.
+    /// Studies may share a journal if they differ only in these keys and in keys of their subtables.
     ButFor(&'static [&'static str]),
-    /// Studies may share a journal that contains a result of one of these work items. The names of the items are derived from all inputs, so results cannot be
+    /// Studies may share a journal if it contains a result of one of these work items. The names of the items are derived from all inputs, so results cannot be
     /// confused. A study that shares no result is rejected, because its tables would replace all existing tables.
     SharesWork(Arc<[WorkItem]>),
 }
@@ -42,7 +42,7 @@ impl Default for SameStudy {
 }
 
 impl SameStudy {
-    /// Returns a function that tests whether two studies that share a journal may differ in a key of the study file.
+    /// Returns a function that returns whether a key of the study file may differ between two studies that share a journal.
     fn may_differ(&self, records: &Records) -> Box<dyn Fn(&str) -> bool> {
         match self {
             Self::ButFor(keys) => Box::new(|key| keys.iter().any(|name| is_at(key, name))),

@@ -18,8 +18,8 @@ pub const JOURNAL_FILE: &str = "journal.jsonl";
 /// Key of the first line of a journal, which identifies the study.
 const HEADER: &str = "study";
 
-/// Time between flushes of journal lines to the disk. When `keep` returns, the operating system has the line, so it survives the end of the process.
-/// With a larger value, a power failure loses more results; a flush after each line would take longer than a work item of a millisecond.
+/// Time between writes of journal lines to the disk. When `keep` returns, the operating system has the line, so it survives the end of the process. With a
+/// larger value, a power failure loses more results; a flush after each line would take longer than a work item of a millisecond.
 const SYNC_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Journal of a run: a file to which the result of each finished work item is appended. A journal may also store nothing.
@@ -140,8 +140,8 @@ impl Journal {
         kept.map_err(|e| Error::io(&self.path, "write", e))
     }
 
-    /// Copies the records of another journal of the same study that this journal did not contain when it was opened. If a work item failed in one journal and
-    /// succeeded in the other, the success is used.
+    /// Copies the records of another journal of this study that are missing in this journal. If a work item failed in one journal and succeeded in the other,
+    /// the success is used.
     ///
     /// # Errors
     /// If this journal cannot be written.

@@ -1,4 +1,4 @@
-//! Line of a journal: a checksum, a space and JSON.
+//! Lines of a journal, each of which consists of a checksum, a space and JSON.
 //!
 //! ```text
 //! 1c291ca3 {"key":"piece 0f3a, trial 0","record":{…}}
@@ -52,7 +52,7 @@ pub struct Decoded {
     pub header: Option<Box<RawValue>>,
     /// Checksum of the first line, which enters the checksums of all other lines.
     pub first: u32,
-    /// Records of all lines after the first line, by key.
+    /// Records of all lines except the first line, by key.
     pub records: Records,
     /// Number of bytes up to the end of the last complete line.
     pub n_whole: usize,

@@ -41,7 +41,7 @@ pub fn rename_old_results(folder: &Path) -> Result<Option<PathBuf>> {
     Ok(Some(free))
 }
 
-/// Checks that a folder can be renamed: it is missing, empty, or a result folder, and contains no file that this command reads.
+/// Checks that a folder may be renamed: it is missing, empty or a result folder, and contains no file that the command reads.
 ///
 /// # Errors
 /// If the folder cannot be renamed.

@@ -9,7 +9,7 @@ use crate::error::Result;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// Work items that a run still has to compute, identified by their numbers among all items of the study.
+/// Work items that a run has yet to compute, identified by their numbers among all items of the study.
 pub struct PendingItems<'a, R> {
     options: RunOptions<'a>,
     /// Receiver of progress reports; each finished item advances it by one step.

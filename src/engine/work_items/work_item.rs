@@ -5,7 +5,7 @@ use crate::inputs::content_hash::short_hash;
 /// Number of hexadecimal digits of the hash in a work item's key. With a smaller value, two items with one name may get equal keys.
 const CONTENT_DIGITS: usize = 16;
 
-/// Work item of a study: a named part that is computed, stored and repeated on its own.
+/// Work item of a study: a named part that is computed, stored and repeated independently of others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkItem {
     /// Name of the work item. Items with equal names have equal result rows.

@@ -110,7 +110,7 @@ impl FrameShape {
         }
     }
 
-    /// Arranges all recorded values as one row per frame: shape (touches · frames, values · rows · columns).
+    /// Arranges all recorded values with one row per frame: shape (touches · frames, values · rows · columns).
     ///
     /// # Panics
     /// If the axes of the numbers differ from the shape.

@@ -18,7 +18,7 @@ pub enum ElementKind {
 pub enum Elements {
     /// Numbers; false is stored as 0, and true as 1.
     Numbers(Vec<f64>),
-    /// Texts without the zeros that fill them to a common length.
+    /// Texts without the padding zeros of fixed-length texts.
     Texts(Vec<String>),
 }
 

@@ -163,7 +163,7 @@ fn format_of(path: &Path) -> Result<Format> {
     }
 }
 
-/// Opens a member of an archive and passes it to `read`: its place for error messages, its bytes, and the number of bytes.
+/// Opens a member of an archive and calls `read` with its name for error messages, its bytes, and its number of bytes.
 fn with_member<T>(
     path: &Path,
     name: &str,

@@ -5,7 +5,7 @@ use crate::inputs::arrays::file_array::{ElementKind, Elements, FileArray};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
-/// Limit up to which f64 represents every integer exactly: 2⁵³.
+/// Largest number below which f64 represents every integer exactly: 2⁵³.
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// Value in a file that identifies the class or the group of a touch.

@@ -39,7 +39,7 @@ pub struct LayoutFile {
     pub notes: Vec<String>,
 }
 
-/// Inputs that some formats of layout files need besides the file.
+/// Further inputs of the reader of layout files, which some formats need.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LayoutOptions<'a> {
     /// Surface from which the normals of the taxels are taken, if the file contains only positions.

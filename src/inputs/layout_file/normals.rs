@@ -8,7 +8,7 @@ use glam::DVec3;
 /// units.
 const MAX_DISTANCE: f64 = 5e-3;
 
-/// For each taxel, returns the outward unit normal at the nearest point of the mesh surface.
+/// Returns the outward unit normal of the mesh surface at the point nearest to each taxel.
 pub(super) fn surface_normals(
     place: &str,
     points: &[DVec3],

@@ -13,9 +13,9 @@ use crate::random::Seed;
 /// Groups of test rows; one decision is made for each group.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FusedRows {
-    /// For each group, the positions of its k rows. All rows of a group have the same class; groups are disjoint and ordered by class.
+    /// Positions of the k rows of each group. All rows of a group have the same class; groups are disjoint and ordered by class.
     pub groups: Vec<Vec<usize>>,
-    /// Number of rows that are left over because they do not fill a whole group.
+    /// Number of rows that do not fill a complete group.
     pub n_left_out: usize,
 }
 

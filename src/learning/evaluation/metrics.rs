@@ -60,13 +60,13 @@ impl ConfusionMatrix {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(0)))
     }
 
-    /// For each class, returns the recall: correct predictions of the class divided by all rows of the class; 0 if there are none.
+    /// Returns the recall of each class: correct predictions of the class divided by all its rows; 0 if there are none.
     pub fn recall(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(1)))
     }
 
-    /// For each class, returns the F1 score, the harmonic mean of precision and recall: `2 · correct / (true + predicted)`. The score is 0 if the class does
-    /// not occur.
+    /// Returns the F1 score (harmonic mean of precision and recall) of each class: `2 · correct / (true + predicted)`. The score is 0 if the class does not
+    /// occur.
     pub fn f1(&self) -> Array1<f64> {
         let occurrences = self.counts.sum_axis(Axis(0)) + self.counts.sum_axis(Axis(1));
         shares(self.counts.diag(), &occurrences) * 2.0

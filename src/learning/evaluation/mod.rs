@@ -1,4 +1,4 @@
-//! Evaluation of predicted labels: metrics, fusion of touches, and choice of the next touch.
+//! Evaluation of predicted labels: metrics, fusion of several touches, and choice of the next touch.
 
 pub mod fusion;
 pub mod metrics;

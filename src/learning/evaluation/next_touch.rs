@@ -71,7 +71,7 @@ impl Poses {
         along.map(|apart| apart * apart).sum()
     }
 
-    /// Returns the position in `left` of the touch whose pose is farthest from its nearest pose in `made`; the first if several are equal.
+    /// Returns the position in `left` of the touch whose pose is farthest from its nearest pose in `made`; the first of equals.
     ///
     /// # Panics
     /// If `made` or `left` is empty.
@@ -138,7 +138,7 @@ impl<'a> AnswerModel<'a> {
         *number(self) = values[first_greatest(likelihoods)];
     }
 
-    /// Returns the logarithm of the likelihood of all labels, where each label is predicted from all other touches (leave-one-out).
+    /// Returns the log-likelihood of all labels, where each label is predicted from all other touches (leave-one-out).
     fn log_likelihood(&self) -> f64 {
         let share = 1.0 / self.answered.len() as f64;
         let of_object = |answered: &Vec<(usize, usize)>| -> f64 {
@@ -213,8 +213,8 @@ impl PoseAnswers {
     }
 }
 
-/// Returns the position in `left` of the most informative touch; the first if several are equal. The lists `poses` and `answers` are indexed by touch. The
-/// belief is computed from the labels of the touches in `made`; the labels of the touches in `left` are not used.
+/// Returns the position in `left` of the most informative touch; the first if several are equally informative. The lists `poses` and `answers` are indexed by
+/// touch. The belief is computed from the labels of the touches in `made`; the labels of the touches in `left` are not used.
 pub fn most_informative(
     (poses, answers): (&[PoseAnswers], &[usize]),
     made: &[usize],

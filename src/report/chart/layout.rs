@@ -35,7 +35,7 @@ pub(super) struct Layout {
     pub width: f64,
     /// Lines of the title above each panel.
     titles: Vec<Vec<String>>,
-    /// Height above each row of panels, pixels; the first row has the additional height `above_first`.
+    /// Height above each row of panels, pixels; the first row has `above_first` in addition.
     above: f64,
     above_first: f64,
     labels: XLabels,

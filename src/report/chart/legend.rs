@@ -101,7 +101,7 @@ impl LegendEntry {
         }
     }
 
-    /// Creates the legend entry of a series, which readers of a page can click. A click hides or shows the groups whose `data-series` equals the text of the
+    /// Creates the legend entry of a series, which readers of the page can click. A click hides or shows the groups whose `data-series` equals the text of the
     /// entry.
     pub(super) fn series(text: String, mark: impl Fn(&mut Drawing, Area) + 'static) -> Self {
         Self {

@@ -20,7 +20,7 @@ use crate::report::pictures::drawing::Drawing;
 use crate::table::{ChartSpec, Table};
 use view::View;
 
-/// Draws a chart of one of the given tables.
+/// Draws a chart from one of the given tables.
 ///
 /// # Errors
 /// If the specification names a table or a column that does not exist, or no row has a place in the chart.
@@ -46,7 +46,7 @@ pub fn places(spec: &ChartSpec, tables: &[Table]) -> Result<Vec<Place>> {
     Ok(view.places)
 }
 
-/// Returns the chart's text about rows that are not drawn: their number and the reasons. The text is empty if all rows are drawn.
+/// Returns the text about table rows that a chart does not show: their number and the reasons. The text is empty if all rows are drawn.
 ///
 /// # Errors
 /// If the specification names a table or a column that does not exist.

@@ -3,7 +3,7 @@
 use crate::report::pictures::even_ticks::{even_ticks, tick_step};
 use crate::table::{Along, Column, Role, Scale as Spacing};
 
-/// Fraction of a logarithmic axis that is reserved for the value zero, which has no logarithm.
+/// Fraction of the length of a logarithmic axis that is reserved for the value zero.
 pub(super) const SHELF: f64 = 0.09;
 /// Maximum number of values of a swept setting for which the axis has a tick at each value. With more values, ticks are at round numbers.
 const MAX_SWEPT: usize = 40;
@@ -185,7 +185,7 @@ fn round_ends(values: &[f64]) -> (f64, f64) {
     )
 }
 
-/// Returns the first and the last of sorted values; if they are equal, the ends are moved apart.
+/// Returns the first and the last of sorted values, moved apart if they are equal.
 fn ends(values: &[f64]) -> (f64, f64) {
     let (Some(&low), Some(&high)) = (values.first(), values.last()) else {
         return (0.0, 1.0);
@@ -197,8 +197,8 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Returns the ticks of a logarithmic axis: the powers of ten in its range. If there are fewer than three, also 2 and 5 times powers of ten. If these are still
-/// too few, returns evenly spaced numbers.
+/// Returns the ticks of a logarithmic axis, which are the powers of ten in its range. If there are fewer than three, also 2 and 5 times powers of ten. If these
+/// are still too few, returns evenly spaced numbers.
 fn log_ticks(low: f64, high: f64) -> Vec<f64> {
     let multiples = |factors: &[u32]| -> Vec<f64> {
         let powers = low.floor() as i32..=high.ceil() as i32;

@@ -135,7 +135,7 @@ impl Panel<'_> {
         self.draw_numbers(drawing);
     }
 
-    /// Draws a part of a line inside an SVG group with the line's name; without a group if the chart has only one line.
+    /// Draws a part of a line in an SVG group with the name of the line; a chart with a single line has no group.
     fn draw_series(&self, drawing: &mut Drawing, line: usize, draw: impl FnOnce(&mut Drawing)) {
         match &self.view.lines.names[line][..] {
             "" => draw(drawing),

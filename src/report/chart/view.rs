@@ -1,4 +1,4 @@
-//! Data of a chart: rows, lines, panels, and the position of each row.
+//! Data of a chart: the groups that form lines and panels, and the position of each row.
 
 use super::scale::Scale;
 use crate::error::{Error, Result};
@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 
 /// Maximum number of lines for which confidence intervals are drawn as bands. More bands would hide each other, so error bars replace them.
 const MAX_BANDS: usize = 4;
-/// Maximum number of points with error bars; more bars would not be distinguishable.
+/// Maximum number of points with error bars; more error bars cannot be distinguished.
 const MAX_WHISKERS: usize = 80;
 
 /// Chart specification together with the table rows, groups and positions that it selects.
@@ -54,7 +54,7 @@ pub struct Place {
 /// Groups of table rows with equal values in some columns.
 #[derive(Default)]
 pub(super) struct Groups {
-    /// Names of the columns by which rows are grouped, such as `classifier`; empty if there are no such columns.
+    /// Names of the columns by which rows are grouped, such as `classifier`; empty if rows are not grouped.
     pub heading: String,
     /// For each group, the values of the grouping columns as text; a single empty text if there are no such columns.
     pub names: Vec<String>,
@@ -250,7 +250,7 @@ impl<'a> View<'a> {
         })
     }
 
-    /// Returns a text about the rows that are not drawn: their number and the reasons. The text is empty if all rows are drawn.
+    /// Returns a text about the rows that are not drawn in the chart: their number and the reasons. The text is empty if all rows are drawn.
     pub fn omitted(&self) -> String {
         let (n, n_shown) = (self.table.n_rows, self.rows.len());
         let drawn = self.drawn();

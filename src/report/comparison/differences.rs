@@ -123,7 +123,7 @@ pub fn differences(first: &[Table], second: &[Table]) -> Result<Vec<ColumnDiffer
 /// Settings that occur in a table, with the row numbers of each setting.
 struct Settings<'a> {
     table: &'a Table,
-    /// Columns whose values together identify a setting.
+    /// Columns whose values identify a setting.
     columns: Vec<Setting<'a>>,
     /// Table rows of each setting (one per trial), in the order of first occurrence.
     groups: Vec<Vec<usize>>,
@@ -193,7 +193,7 @@ impl<'a> Settings<'a> {
         repeats.filter(|repeat| !repeat.score.is_nan()).collect()
     }
 
-    /// Returns the numbers of training and test touches in the trial of a row; `None` if the table does not contain them.
+    /// Returns the numbers of training and test touches in the trial of a row; `None` if the table does not contain these numbers.
     fn trial_size(&self, row: usize) -> Option<TrialSize> {
         self.is_repeated.then_some(())?;
         Some(TrialSize {

@@ -13,7 +13,7 @@ use crate::table::{Column, Role, Table, Value, short_number};
 use bubbletouch_sim::statistics::interval::Interval;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Name of the column by whose values designs are ranked.
+/// Name of the column by which designs are ranked.
 const RANKED: &str = "accuracy";
 /// Minimum number of designs in both studies for which their rankings are compared.
 const FEWEST: usize = 5;
@@ -146,7 +146,7 @@ impl<'a> Ranked<'a> {
     }
 }
 
-/// Compression ratio, with the range of nominal ratios that round to its number of measurements.
+/// Compression ratio, and the range of ratios that would round to its number of measurements.
 #[derive(Clone, Copy, PartialEq)]
 struct NominalRatio {
     ratio: f64,
@@ -201,7 +201,7 @@ fn shared_choices<'a>(first: &Ranked<'a>, second: &Ranked) -> Vec<Choice<'a>> {
     choices.collect()
 }
 
-/// For each design whose choices occur in both tables, returns its mean accuracy.
+/// Returns the mean accuracy of each design whose choices occur in both tables.
 fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     let mut sums: BTreeMap<Design, (f64, f64)> = BTreeMap::new();
     for row in 0..ranked.table.n_rows {
@@ -222,7 +222,8 @@ fn designs(ranked: &Ranked, shared: &[Choice]) -> BTreeMap<Design, f64> {
     means.collect()
 }
 
-/// Counts pairs of designs that differ only in one choice and have no tie. Returns how many pairs both studies order alike, and the number of all such pairs.
+/// Counts pairs of designs that differ only in one choice and have no tie. Returns the number of pairs with the same order in both studies, and the number of
+/// all pairs.
 fn in_order(designs: &[(&Design, [f64; 2])], choice: usize) -> (usize, usize) {
     let without = |design: &Design| {
         let mut others = design.clone();

@@ -66,7 +66,7 @@ pub(crate) fn html(about: &StudyAbout, sections: &[Section], foot: &str) -> Stri
     })
 }
 
-/// Returns an entry of a definition list. The name is HTML, the value is plain text.
+/// Returns an HTML entry of a definition list with the given name and value. The name is HTML, the value is plain text.
 pub(crate) fn definition(name: &str, value: &str) -> String {
     let class = match value.len() > 60 {
         true => " class=\"long\"",
@@ -76,7 +76,7 @@ pub(crate) fn definition(name: &str, value: &str) -> String {
     format!("<div{class}><dt>{name}</dt><dd>{value}</dd></div>")
 }
 
-/// Returns sentences as HTML: the first sentence in large type, the others as a list. The HTML is empty if there are no sentences.
+/// Returns sentences as HTML: the first sentence in large type, the other sentences as a list. The HTML is empty if there are no sentences.
 pub(crate) fn sentences_html(sentences: &[String]) -> String {
     let Some((first, others)) = sentences.split_first() else {
         return String::new();
@@ -98,7 +98,7 @@ pub(crate) fn unbroken(text: &str) -> String {
     })
 }
 
-/// Replaces each `{{name}}` in a template by the text that `value` returns for the name. Inserted text is not searched for names.
+/// Replaces each `{{name}}` in a template by the text that `value` returns for this name. Inserted text is not searched for names.
 fn fill(template: &str, value: impl Fn(&str) -> String) -> String {
     let mut parts = template.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();

@@ -1,4 +1,4 @@
-//! HTML tables of a page. Each cell shows a rounded value with its unit and also contains the exact value from the file.
+//! Tables of a page, as HTML. Each cell shows a rounded value with its unit and also contains the exact value from the file.
 
 use crate::report::pictures::drawing::escape;
 use crate::table::{Better, Column, Data, Role, Table};
@@ -17,7 +17,7 @@ pub(crate) struct TableHtml {
 struct Shown<'a> {
     column: &'a Column,
     is_number: bool,
-    /// Indices of the result-table columns that each cell contains: the value, and the ends of its interval.
+    /// Indices of the result-table columns that each HTML cell contains: the value, and the ends of its interval.
     held: Vec<usize>,
     /// Whether any column in `held` has different values in different rows.
     varies: bool,

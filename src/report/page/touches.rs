@@ -1,4 +1,4 @@
-//! Sample touches as heat maps, side by side with one colour scale.
+//! Sample touches as heat maps side by side, with a common colour scale.
 
 use crate::error::Result;
 use crate::report::page::picture::png_element;

@@ -168,7 +168,7 @@ impl Scale {
         }
     }
 
-    /// Draws the colour bar below the third panel, labelled at its ends and its middle in millimetres.
+    /// Draws the colour bar below the third panel, with labels in millimetres at its ends and its middle.
     fn draw(&self, drawing: &mut Drawing, side: f64, style: TextStyle) {
         let corner = (2.25 * side, (13.0 / 14.0 * side).floor());
         let bar = Area::new(corner, (0.5 * side, (0.02 * side).max(4.0)));

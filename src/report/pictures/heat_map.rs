@@ -11,7 +11,7 @@ pub(crate) fn grid_sentence((nx, ny): (usize, usize), pitch_mm: f64) -> String {
     format!("{nx} × {ny} taxels, pitch {} mm", short_number(pitch_mm))
 }
 
-/// Returns a text that states that each cell shows `block` × `block` taxels; empty for single taxels.
+/// Returns a text that each cell shows `block` × `block` taxels; empty if each cell shows one taxel.
 pub(crate) fn block_sentence(block: usize) -> String {
     match block {
         1 => String::new(),

@@ -92,7 +92,7 @@ impl Picture {
     }
 }
 
-/// Converts an error of the PNG or drawing library to an error of this crate.
+/// Converts an error of the PNG library or the drawing library to an error of this crate.
 pub(crate) fn unfit(said: impl std::fmt::Display) -> Error {
     Error::input("picture", said, "a size that fits into a PNG file")
 }

@@ -10,10 +10,10 @@ use crate::signal::Quantity;
 use crate::table::short_number;
 use ndarray::Array2;
 
-/// Characters that represent values in a pressure map without colours, from zero to the largest value.
+/// Characters of a pressure map without colours, in order from zero to the largest value.
 const RAMP: &[u8] = b" .:-=+*#%@";
 
-/// Draws a frame as text, at most `width` columns wide, with the highest y at the top.
+/// Draws a frame as text with at most `width` columns; the top line has the highest y.
 ///
 /// With colours, half-block characters show two rows of taxels in each line. Without colours, ten ASCII characters from blank to `@` show the values. If the
 /// array is too wide, each character shows the largest value of a block of taxels, and the text states the block size.

@@ -1,4 +1,4 @@
-//! Picture of several frames side by side with one colour scale, as in Figure 4 of \[BT\].
+//! Picture of several frames side by side with a common colour scale, as in Figure 4 of \[BT\].
 
 use crate::error::{Error, Result};
 use crate::report::pictures::colours::{INK, MUTED};

@@ -43,7 +43,7 @@ pub struct ShownFrame {
     pub milliseconds: u64,
 }
 
-/// Selects the frames of an animation and their durations: the newest recorded frame at each tick of the playback, without repetitions.
+/// Selects the frames of an animation and their durations: for each picture, the latest recorded frame, without repetitions.
 ///
 /// The first and the last frame are always selected. If there would be more than [`MAX_SHOWN`] frames, ticks are further apart. A frame is shown until the
 /// recording time of the next one. The last frame is shown as long as the previous one; a single frame is shown for one second. `time` is in seconds,
@@ -171,7 +171,7 @@ fn add(
     film.write_image_data(&part)
 }
 
-/// Converts a delay to the form that APNG files use: a fraction of seconds with a 16-bit numerator and denominator.
+/// Converts a delay to the form in APNG files: a fraction of a second with 16-bit numerator and denominator.
 fn delay(milliseconds: u64) -> (u16, u16) {
     match u16::try_from(milliseconds) {
         Ok(milliseconds) => (milliseconds, 1000),

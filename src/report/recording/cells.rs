@@ -1,4 +1,4 @@
-//! Cells of a skin picture: adjacent squares for a grid, discs at the taxels for any other layout.
+//! Cells of a skin picture: adjacent squares for a grid, discs at the taxels for other layouts.
 
 use super::header::RecordedPatch;
 use super::unrolled::unroll;
@@ -39,7 +39,7 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// Paints all cells, each in its colour, onto a picture that is `fine` times as large as the drawing.
+    /// Paints each cell in its colour onto a picture that is `fine` times as large as the drawing.
     pub fn paint(&self, picture: &mut Picture, fine: f64, colours: &[Rgb]) {
         let places: Vec<DVec2> = self.places.iter().map(|&place| fine * place).collect();
         let rgb = (&mut picture.rgb[..], picture.width);
@@ -110,7 +110,7 @@ impl Cells {
         }
     }
 
-    /// Draws axes in millimetres if the taxels form a grid, or a scale bar for another layout.
+    /// Draws axes in millimetres if the taxels form a grid; otherwise draws a scale bar.
     pub fn draw_frame(&self, drawing: &mut Drawing, is_grid: bool) {
         let area = self.area;
         if is_grid {

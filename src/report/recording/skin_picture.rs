@@ -12,7 +12,7 @@ use crate::report::text_width::text_width;
 use crate::world::Grid;
 use ndarray::ArrayView2;
 
-/// Top, height and minimum width of the text line above the map, pixels; the text changes from frame to frame.
+/// Top, height and minimum width of the text line above the map, pixels; each frame has its own text.
 const NOTE: (f64, f64, f64) = (48.0, 18.0, 320.0);
 /// Number of image pixels for each drawing pixel along each side.
 const FINE: f64 = 2.0;
@@ -93,7 +93,7 @@ impl SkinPicture {
     }
 }
 
-/// Draws the background of the pictures: the title, the line below the title, and the colour bar.
+/// Draws the background of the pictures: the title, the text line below the title, and the colour bar.
 fn paper(name: &str, cells: &Cells, scale: ColourScale) -> Drawing {
     let (area, below) = (cells.area, &cells.sentence);
     let corner = (area.x + area.width + 18.0, area.y);

@@ -53,8 +53,8 @@ fn mean(vectors: &[DVec3]) -> DVec3 {
     vectors.iter().sum::<DVec3>() / vectors.len() as f64
 }
 
-/// Returns the radius of the sphere (or circle) to which all axes are normal; `None` if there is none. All places p and axes n then satisfy p = c + R n with a
-/// centre c and the radius R. A negative R means a concave surface.
+/// Returns the radius of the sphere (or circle) to which all axes are perpendicular; `None` if there is none. All places p and axes n then satisfy p = c + R n
+/// with a centre c and the radius R. A negative R means a concave surface.
 fn radius_of(places: &[DVec3], axes: &[DVec3]) -> Option<f64> {
     let (mean_place, mean_axis) = (mean(places), mean(axes));
     let pairs = || places.iter().zip(axes);

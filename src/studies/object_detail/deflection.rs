@@ -14,9 +14,9 @@ use crate::world::Placement;
 /// Summary of |δ − δ\*| over taxels, where δ is the deflection by a model and δ\* the deflection by the exact object.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct DeflectionError {
-    /// Mean of |δ − δ\*| over all taxels that the mesh or the model touches, mm, where δ is the deflection on the model and δ\* on the mesh.
+    /// Mean of |δ − δ\*| over all touched taxels, mm, where δ is the deflection on the model and δ\* on the mesh.
     pub mean_mm: f64,
-    /// 95th percentile of |δ − δ\*| over all taxels that the mesh or the model touches, mm, where δ is the deflection on the model and δ\* on the mesh.
+    /// 95th percentile of |δ − δ\*| over all touched taxels, mm, where δ is the deflection on the model and δ\* on the mesh.
     pub p95_mm: f64,
 }
 
@@ -146,8 +146,8 @@ impl Truth {
         median_s((0..N_REPEATS).flat_map(|_| &self.readings), press)
     }
 
-    /// Returns |δ − δ\*| in metres for each taxel that the mesh (deflection δ\*) or the model (δ) touches, over all touches. The patch is retracted by `offset`
-    /// metres.
+    /// Returns |δ − δ\*| in metres for each touched taxel of all touches, where δ is the deflection by the model and δ\* by the mesh. The patch is retracted by
+    /// `offset` metres.
     fn errors(&self, model: &Model, offset: f64) -> Vec<f64> {
         let (patch, object) = (self.array.patch(), std::slice::from_ref(model));
         self.errors_of(|pose, reading, workspace| {

@@ -38,7 +38,7 @@ impl<'a> Measured<'a> {
         })
     }
 
-    /// For each model of the object, returns its configuration and the result of `row`.
+    /// Returns the configuration of each model of the object, together with the result of `row`.
     fn rows<T>(&self, row: impl Fn(&Variant) -> T) -> Vec<(DetailConfiguration, T)> {
         let configuration = |variant: &Variant| DetailConfiguration {
             object: self.mesh.name.clone(),

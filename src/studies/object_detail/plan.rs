@@ -16,7 +16,7 @@ use std::path::PathBuf;
 /// Checked keys of an object-detail study, converted to SI units.
 #[derive(Clone, Debug)]
 pub struct ObjectDetailPlan {
-    /// Specification of the study: its keys with the values and units of the study file.
+    /// Specification of the study, with the keys, values and units of the study file.
     pub spec: ObjectDetailStudySpec,
     /// Folder of the objects' mesh files.
     pub meshes: PathBuf,

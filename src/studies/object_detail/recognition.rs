@@ -24,7 +24,7 @@ use std::ops::Range;
 
 /// Classifier that is trained on touches of models of one method and tolerance.
 pub(super) struct Learned {
-    /// Index of the method and tolerance of the models with which the classifier is trained.
+    /// Index of the method and tolerance of the models on which the classifier is trained.
     number: usize,
     level: Level,
     classifier: ClassifierKind,

@@ -108,13 +108,13 @@ pub struct DetailSummary {
     error_worst_mm: f64 => Value(Less) "deflection error of the worst object" in "mm": Log;
     /// Lower quartile, over all objects, of `error_after_offset_mm`, the deflection error after the best constant offset of the patch, mm.
     error_after_offset_q1_mm: f64 => Note "quartiles of deflection error after offset, lower" in "mm": Log;
-    /// Median, over all objects, of `error_after_offset_mm`: the deflection error with the best constant offset of the patch, mm.
+    /// Median, over all objects, of `error_after_offset_mm`, the deflection error after the best constant offset of the patch, mm.
     error_after_offset_median_mm: f64 => Value(Less) "deflection error after offset" in "mm": Log between [error_after_offset_q1_mm, error_after_offset_q3_mm];
-    /// Upper quartile, over all objects, of `error_after_offset_mm`: the deflection error with the best constant offset of the patch, mm.
+    /// Upper quartile, over all objects, of `error_after_offset_mm`, the deflection error after the best constant offset of the patch, mm.
     error_after_offset_q3_mm: f64 => Note "quartiles of deflection error after offset, upper" in "mm": Log;
     /// Largest value of `error_after_offset_mm` (deflection error with the best constant offset of the patch) of any object's model, mm.
     error_after_offset_worst_mm: f64 => Value(Less) "deflection error after offset of the worst object" in "mm": Log;
-    /// Median, over all objects, of `error_own_contact_mm`: the deflection error at equal depths past each model's own first contact, mm.
+    /// Median, over all objects, of `error_own_contact_mm`, the deflection error for equal depths past first contact, mm.
     error_own_contact_median_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
     /// Largest deflection error at equal depths past each model's own first contact (`error_own_contact_mm`) of any object, mm.
     error_own_contact_worst_mm: f64 => Value(Less) "deflection error past own contact of the worst object" in "mm": Log;

@@ -44,7 +44,7 @@ pub struct ObjectDetailSpec {
 pub struct DetailRecognitionSpec {
     /// Number of training touches per object, at least 1, drawn as in `[touches]`.
     pub training_touches: usize,
-    /// Number of additional touches per object for testing, at least 1.
+    /// Number of test touches per object, in addition to the training touches, at least 1.
     pub test_touches: usize,
     /// Ensemble of the measurement matrix that compresses the frames. Default: `sbhe`.
     #[serde(default = "default_ensemble")]
@@ -77,8 +77,7 @@ pub enum DetailMethod {
     /// One sphere at each of n evenly spread vertices of the mesh. For each packing, n is the number of its spheres; if the mesh has fewer vertices, n is their
     /// number.
     DecimatedVertexSpheres,
-    /// The largest spheres inside the mesh that touch it at n points (medial spheres). For each packing, n is the number of
-    /// its spheres.
+    /// Largest spheres inside the mesh that touch the mesh at n points (medial spheres). For each packing, n is the number of its spheres.
     MedialSpheres,
 }
 

@@ -1,4 +1,4 @@
-//! Object-detail study: computes models of every mesh and their errors on all threads, then their computing times on one thread.
+//! Object-detail study: computes models and their errors on all threads, and then computing times on one thread.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::scale::Scale;
@@ -33,7 +33,7 @@ pub struct ObjectDetailStudy {
     pub packings: Option<PathBuf>,
 }
 
-/// Results of work items: deflection errors of models, their computing costs, and accuracies of classifiers.
+/// Results of all work items: deflection errors of models, their computing costs, and accuracies of classifiers.
 pub type DetailRows = (
     Vec<(DetailConfiguration, DetailScore)>,
     Vec<(DetailConfiguration, DetailTime)>,
@@ -74,7 +74,7 @@ fn times_item(object: usize) -> usize {
 }
 
 impl ObjectDetailStudy {
-    /// Computes an object's models and stores their errors. If the computation fails, all work items that need these models fail, including those in
+    /// Computes all models of an object and stores their errors. If the computation fails, all work items that need these models fail, including those in
     /// `learners`.
     fn object(
         &self,

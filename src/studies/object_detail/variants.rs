@@ -17,7 +17,7 @@ use std::time::Instant;
 /// spheres; `None` if there is none.
 pub(super) type Level = (DetailMethod, Option<f64>);
 
-/// Returns a tolerance as text, such as ` within 0.5 mm`; returns an empty text if there is no tolerance.
+/// Returns a tolerance as text, such as ` within 0.5 mm`; empty without a tolerance.
 pub(super) fn within(tolerance_mm: Option<f64>) -> String {
     tolerance_mm.map_or(String::new(), |mm| format!(" within {mm} mm"))
 }

@@ -20,8 +20,8 @@ use std::time::Instant;
 /// different times.
 const BLOCK: usize = 64;
 
-/// Computes the pending configurations of one ensemble and one number m of measurements; the configurations are given by index. A dictionary is computed when
-/// the first work item needs it.
+/// Computes the pending configurations, given by index, of one ensemble and one number m of measurements. A dictionary is computed when the first work item
+/// needs it.
 pub(super) fn measure_cells(
     (plan, touches): (&ReconstructionPlan, &Touches),
     (group, configurations): (usize, &[ReconstructionConfiguration]),
@@ -111,8 +111,7 @@ fn reconstruct(
     ))
 }
 
-/// Returns the isometry statistics of the product of a measurement matrix and a dictionary: one row for each number of columns that are drawn together (support
-/// size).
+/// Returns the isometry statistics of a measurement matrix times a dictionary, with one row per support size (number of drawn columns).
 fn statistics(
     plan: &ReconstructionPlan,
     sensed: &SensedDictionary,

@@ -23,7 +23,7 @@ use crate::world::{Grid, Placement};
 /// Checked keys of a reconstruction study, converted to SI units.
 #[derive(Clone, Debug)]
 pub struct ReconstructionPlan {
-    /// Specification of the study: its keys with the values and units of the study file.
+    /// Specification of the study, with the keys, values and units of the study file.
     pub spec: ReconstructionStudySpec,
     /// Array of taxels that touches the objects.
     pub array: TaxelArray,

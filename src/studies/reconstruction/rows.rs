@@ -97,7 +97,7 @@ pub struct ReconstructionTime {
 row! {
 /// Error and computing time of a configuration. A row of `pareto.csv` is a [`ReconstructionConfiguration`] followed by a `ReconstructionPareto`.
 pub struct ReconstructionPareto {
-    /// Relative reconstruction error, dimensionless, equal to the column `error` of `reconstruction.csv`.
+    /// Relative reconstruction error, dimensionless; the value of the column `error` in `reconstruction.csv`.
     error: f64 => Value(Less): Log;
     /// Reconstruction time per frame on one core, µs; the value of the column `us_per_frame` in `timing.csv`.
     us_per_frame: f64 => Cost "time of a frame on one core" in "us": Log;
@@ -127,7 +127,7 @@ pub struct EnsembleStatistics {
     /// Mutual coherence of the measured atoms, 0 to 1: the largest absolute cosine of the angle between two atoms. Atoms that the measurement matrix maps to
     /// zero are excluded.
     coherence: f64 => Value(Less) "mutual coherence": Share;
-    /// Welch bound, 0 to 1: the smallest mutual coherence that this number of atoms can have in m dimensions (m measurements).
+    /// Welch bound, 0 to 1: the smallest possible mutual coherence of this number of atoms with m measurements.
     welch_bound: f64 => Note "Welch bound": Share;
     /// Number of atoms that the measurement matrix Φ maps to zero.
     n_invisible: usize => Note "invisible atoms": Linear;

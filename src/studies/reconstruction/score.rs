@@ -29,7 +29,7 @@ pub(super) struct Truth {
 pub(super) struct Found {
     /// Squared error ‖x̂ − x‖² of each frame: x̂ is the reconstructed frame, x the frame without noise.
     pub errors: Vec<f64>,
-    /// Number of non-zero dictionary coefficients, summed over the frames of the block.
+    /// Number of non-zero dictionary coefficients, summed over a block of frames.
     pub n_atoms: usize,
     pub n_capped: usize,
     pub seconds: f64,
@@ -81,7 +81,7 @@ impl Truth {
     }
 }
 
-/// Marks the Pareto-optimal configurations of one noise level: no other configuration has a smaller error and a higher rate of frames.
+/// Marks the configurations of one noise level for which no other configuration has a smaller error and a higher frame rate.
 pub(super) fn pareto(
     rows: &[ReconstructionRow],
     levels: &[f64],

@@ -33,8 +33,7 @@ pub struct ReconstructionStudySpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ReconstructionSpec {
-    /// Axis: solver that computes the dictionary coefficients of a frame, `omp` (orthogonal matching pursuit), `l1` (ℓ1 minimisation) or `lmmse` (linear
-    /// minimum mean square error).
+    /// Axis: solver for the dictionary coefficients of a frame: `omp` (matching pursuit), `l1` (ℓ1 minimisation) or `lmmse` (linear estimation).
     #[schemars(with = "Axis<Names<Solver>>")]
     pub solver: Axis<Solver>,
     /// Axis: dictionary (set of atoms that represent frames), `dct`, `haar`, `daubechies4` or `pca`.

@@ -174,7 +174,7 @@ impl Study for ReconstructionStudy {
     }
 }
 
-/// Returns the configurations in groups; all configurations of a group reconstruct from equal measurements.
+/// Returns the configurations in groups; the configurations of a group reconstruct frames from equal measurements.
 fn on_measured(
     configurations: &[ReconstructionConfiguration],
 ) -> impl Iterator<Item = &[ReconstructionConfiguration]> {

@@ -36,7 +36,7 @@ pub(super) struct Touches {
     pub shown: Vec<(usize, String)>,
 }
 
-/// Test frames to which noise of one level is added.
+/// Test frames with noise of one standard deviation.
 pub(super) struct Noisy {
     pub level: f64,
     /// Noise standard deviation σ of a taxel, in the unit of the frame.

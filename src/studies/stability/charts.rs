@@ -51,7 +51,7 @@ impl StabilityPlan {
     }
 }
 
-/// Returns the outcome map of one part of the study: a chart of outcomes by time step and taxel mass.
+/// Returns the outcome chart of one part of the study: outcomes for each time step and taxel mass.
 fn map(configurations: &Table, rows: &[usize]) -> ChartSpec {
     let scene = configurations.word("scene", rows[0]);
     let what = match scene {
@@ -98,7 +98,7 @@ fn tiles(sign: &str) -> Mark {
     }
 }
 
-/// Returns the columns, among `columns`, that have several values in the given rows.
+/// Returns those of the given columns that have several values in the given rows.
 fn varying(table: &Table, columns: &[&str], rows: &[usize]) -> Vec<String> {
     let varies = |column: &str| table.groups(&[column], rows.iter().copied()).len() > 1;
     let varying = columns.iter().filter(|column| varies(column));

@@ -29,13 +29,14 @@ struct Answer {
     force_imbalance: f64,
     /// Deflections of all taxels at the time of evaluation, metres, shape (n_taxels,).
     deflection: Vec<f64>,
-    /// Sum of |δ| over all taxels after the ball has been lifted again, metres, where δ is a deflection. 0 if the ball is not lifted.
+    /// Sum of |δ| of all taxels after the ball has been lifted again, metres, where δ is the deflection; 0 if the ball is not lifted.
     left_over: f64,
     /// Number of time steps; 0 if the method does not step through time.
     n_steps: usize,
 }
 
-/// Duration of a simulation below which it is repeated, and the median time is used, seconds. In a single short run, other load of the machine would dominate.
+/// Duration of a simulation, seconds, below which the simulation is repeated to measure the median time. In a single short run, other load of the machine would
+/// dominate.
 const SHORT: f64 = 5e-3;
 /// Number of repetitions of a short simulation, from which its computing time is determined.
 const N_REPEATS: usize = 9;

@@ -5,8 +5,8 @@ use crate::report::csv_tables::read_rows;
 use crate::studies::stability::plan::StabilityPlan;
 use crate::studies::stability::rows::{PeerSource, StabilityConfiguration, StabilityRow};
 
-/// Returns the rows of other programs whose configuration differs from the plan only in the method, and their source, such as `MuJoCo 4.0.0, 2026-11-22`. The
-/// result is empty if there is no file.
+/// Returns the results of other programs for the configurations of the plan, and their source, such as `MuJoCo 4.0.0, 2026-11-22`. The result is empty if there
+/// is no file.
 ///
 /// # Errors
 /// If the file is not a table of such rows; the error names the file and the line.

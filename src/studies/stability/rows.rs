@@ -98,7 +98,7 @@ pub struct StabilitySummary {
     n_configurations: usize => Note "configurations": Linear;
     /// Number of configurations whose result is correct.
     n_correct: usize => Value(More) "right": Linear;
-    /// Number of configurations that ended with an inaccurate result.
+    /// Number of configurations whose simulation ended with an inaccurate result.
     n_inaccurate: usize => Value(Less) "inaccurate": Linear;
     /// Number of configurations in which the simulation missed the contact.
     n_missed_contact: usize => Value(Less) "missed contact": Linear;
@@ -123,7 +123,7 @@ pub struct Joints {
     taxel_mass_kg: f64 => Condition "taxel mass" in "kg": Log;
     /// Duration Δt of a time step, s.
     dt_s: f64 => Choice "time step" in "s": Log;
-    /// Number of joints that the method simulates: one per taxel of the array, because each taxel is a body on a joint.
+    /// Number of joints in the simulation, which is the number of taxels: each taxel is a body on a joint.
     joints: usize => Condition: Log;
     /// Load of a taxel, kg: the mass M of the ball divided by the number of taxels.
     load_kg: f64 => Note "load of a taxel" in "kg": Log;
@@ -136,7 +136,7 @@ pub struct Joints {
 /// Configuration of a work item, with its result and computing time.
 pub type StabilityRow = (StabilityConfiguration, StabilityScore, StabilityTime);
 
-/// Program, version and date of a result that another program computed: the last columns of its row.
+/// Program, version and date of a result computed by another program: the last columns of its row.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PeerSource {
     /// Name of the other program, such as MuJoCo.
@@ -159,7 +159,7 @@ pub enum Outcome {
     MissedContact,
     /// The energy of the simulation exceeds four times the energy that was supplied to the scene.
     EnergyGrowth,
-    /// A number of the simulated state became infinite or NaN.
+    /// The simulated state contains an infinite or NaN value.
     NotFinite,
 }
 

@@ -18,17 +18,17 @@ const SPEED: f64 = 0.5;
 const APPROACH: f64 = 2e-3;
 /// Minimum duration for which a ball with imposed motion rests at its deepest point, seconds.
 const LEAST_HOLD: f64 = 0.2;
-/// Exponent of the decay that ends a hold or a run: its slowest motion has then decayed by the factor e^−10 = 5e-5.
+/// Exponent of decay at the end of a pause or run: the slowest motion has then decayed by the factor e^−10 = 5e-5.
 const DECAY: f64 = 10.0;
 /// Minimum number of time steps for which a ball with imposed motion stays at its deepest point.
 const LEAST_HOLD_STEPS: f64 = 5.0;
-/// Travel of the ball within which taxels may be touched, as a multiple of the stroke. The ball reaches all taxels within 1.25 strokes. If the value is much
+/// Travel of the ball within which it may touch taxels, as a multiple of the stroke. The ball reaches all taxels within 1.25 strokes. If the value is much
 /// larger, the ball could be behind the substrate.
 const REACH: f64 = 1.5;
 /// Minimum simulated time for a ball that moves freely, seconds.
 const LEAST_TIME: f64 = 0.5;
 
-/// Array of taxels under a ball that touches all of them nearly at once.
+/// Array of taxels below a ball that touches all taxels nearly at the same time.
 #[derive(Clone, Debug)]
 pub(super) struct TestBed {
     pub patch: Patch,
@@ -48,7 +48,7 @@ pub(super) struct ConfigurationScene {
     pub truth: Rest,
     /// Exact total force Σ f at the time of evaluation, newtons.
     pub force: f64,
-    /// Time at which the result is evaluated, seconds: the end of the hold, or of the simulation.
+    /// Time at which the result is evaluated, seconds: the end of the pause at the deepest point, or of the simulation.
     judged: f64,
     /// Time at which the simulation ends, seconds.
     end: f64,
@@ -103,7 +103,7 @@ impl TestBed {
             .map(move |number| Pose::from_translation(self.pose.translation + above(number)))
     }
 
-    /// Returns the walls of a tube that keeps a stack of balls upright: half-spaces that the balls touch without force.
+    /// Returns the walls of a tube that keeps a stack of balls upright, as half-spaces that touch the balls without force.
     pub fn tube(&self) -> Vec<HalfSpace> {
         let radius = self
             .ball
@@ -157,8 +157,7 @@ impl ConfigurationScene {
         self.cradle.system(configuration, &self.drive, reach)
     }
 
-    /// Returns the numbers of steps, from 1, after which the state is evaluated: at the time of evaluation, and at the end if it is later. A step takes `dt`
-    /// seconds.
+    /// Returns the step numbers (from 1) after which the state is evaluated: at the evaluation time and at a later end. A step takes `dt` seconds.
     pub fn frames(&self, dt: f64) -> Vec<usize> {
         let end = (self.end / dt).ceil() as usize;
         match self.judged < self.end {

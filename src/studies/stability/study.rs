@@ -134,7 +134,7 @@ impl Study for StabilityPlan {
     }
 }
 
-/// For each scene, method and number of iterations, returns one row that counts the outcomes, in the order of first occurrence.
+/// Returns one row for each scene, method and number of iterations, with counts of the outcomes, in the order of first occurrence.
 fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     let settings = grouped(rows, |(configuration, ..)| {
         (

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// Numbers of patches around and along a cylindrical sleeve of skin, in the scaling series of the skin. With ten patches of 10,000 taxels each, 100,000 taxels
 /// are one sleeve. The series of growing touches and of growing objects need a larger area, as large as a trunk.
 const SMALL: (usize, usize) = (5, 2);
-/// Numbers of patches around and along a cylindrical sleeve of skin, in the series of growing touches and of growing objects.
+/// Numbers of patches around and along a cylindrical sleeve of skin, in the scaling series of the touch and of the object.
 const LARGE: (usize, usize) = (9, 4);
 /// Maximum fraction of a sleeve's taxels that the touching spheres may cover, 0 to 1. With a larger fraction, the square of spheres might not fit around the
 /// sleeve.

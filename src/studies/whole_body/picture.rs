@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Contents of the picture of a scene, with all positions in the world frame.
 struct SceneView {
-    /// Points on the skin, metres, a few millimetres apart. Each point has the mean pressure on its patch (force divided by area), Pa.
+    /// Points on the skin with a spacing of a few millimetres, metres. Each point has the mean pressure on its patch (force divided by area), Pa.
     skin: Vec<(DVec3, f64)>,
     /// Positions of all touched taxels, metres.
     touched: Vec<DVec3>,

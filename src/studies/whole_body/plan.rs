@@ -25,7 +25,7 @@ pub struct WholeBodyPlan {
     pub place: String,
     /// Folder to which paths in the study file are relative.
     pub folder: PathBuf,
-    /// Specification of the study: its keys with the values and units of the study file.
+    /// Specification of the study, with the keys, values and units of the study file.
     pub spec: WholeBodyStudySpec,
     /// Robot that is covered with skin.
     pub robot: Robot,
@@ -186,7 +186,7 @@ impl WholeBodyPlan {
     }
 }
 
-/// Value of the key `robot` of an object in a scene: the name of the robot that is covered with skin.
+/// Value of the key `robot` of an object, which refers to the robot that is covered with skin.
 const ROBOT: &str = "robot";
 
 fn scene_plan(

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 pub enum Series {
     /// Scenes in which an object touches the robot.
     Scene,
-    /// Scaling series in which the number of taxels of the skin grows while the touch stays constant.
+    /// Scaling series in which the number of taxels of the skin grows, while the touch stays constant.
     Skin,
-    /// Scaling series in which the number of touched taxels grows while the skin stays constant.
+    /// Scaling series in which the number of touched taxels grows, while the skin stays constant.
     Touch,
     /// Scaling series in which the object's number of spheres grows while skin and touch stay constant.
     Spheres,
@@ -51,7 +51,7 @@ pub struct BodyCount {
     patches_touched_mean: f64 => Value(Neither) "patches touched": Linear;
     /// Number of pairs of a patch and a sphere for which the deflections of taxels were computed, averaged over steps.
     spheres_evaluated_mean: f64 => Value(Neither) "spheres evaluated": Linear;
-    /// Number of pairs of a patch near the object and a sphere that were rejected before deflections were computed, averaged over steps.
+    /// Number of pairs of patch and sphere, near the object, that were rejected before deflections were computed, averaged over steps.
     spheres_rejected_mean: f64 => Value(Neither) "spheres rejected": Linear;
     /// Sum of all deflections over taxels and steps, mm.
     deflection_sum_mm: f64 => Note "sum of deflections" in "mm": Linear;
@@ -66,7 +66,7 @@ pub struct BodySensed {
     scene: String => Subject;
     /// Name of the compression (measurement matrix).
     compression: String => Choice;
-    /// Sum of the magnitudes of all measurements over steps, mm.
+    /// Sum of the absolute values of all measurements over all steps, mm.
     measurement_sum_mm: f64 => Note "sum of measurements" in "mm": Linear;
     /// Most frequent decision of the classifier over all steps: the name of an object. If two are equally frequent, the one that comes first in the study.
     decision: String => Outcome;
@@ -83,7 +83,7 @@ pub struct BodyRecognition {
     n_measurements: usize => Choice "measurements": Linear;
     /// Number of non-zero entries of the measurement matrix Φ, divided by the number of taxels.
     entries_per_taxel: f64 => Cost "entries of a taxel": Log;
-    /// Fraction of the taxels whose readings enter at least one measurement, 0 to 1.
+    /// Fraction of the taxels whose readings affect at least one measurement, 0 to 1.
     read_fraction: f64 => Note "share of the taxels read": Share;
     /// Memory of the measurement matrix Φ (stored by columns) divided by the number of taxels, bytes.
     bytes_per_taxel: f64 => Cost "memory of a taxel" in "bytes": Log;
@@ -111,7 +111,7 @@ pub enum Stage {
     Press,
     /// Compression of the touched taxels' readings into measurements.
     Compress,
-    /// Classification of the measurements by a support vector machine (SVM).
+    /// Classification of the measurements by a support vector machine.
     Classify,
     /// All three stages of a step: press, compression and classification.
     Whole,
@@ -164,5 +164,5 @@ pub struct Driven {
     pub sensed: Vec<BodySensed>,
 }
 
-/// Results of work items: recognition accuracies of compressions, and results of scenes and scaling series.
+/// Results of all work items: recognition accuracies of compressions, and results of scenes and scaling series.
 pub type WholeBodyRows = (Vec<BodyRecognition>, Vec<Driven>);

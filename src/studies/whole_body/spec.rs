@@ -67,8 +67,8 @@ pub struct WholeBodySpec {
 pub struct BodySceneSpec {
     /// Name of the scene in tables and charts.
     pub name: String,
-    /// Joint positions of the robot, which stay constant, with the keys of `[robots.joints]` in a scene file and a single time. A joint that is not listed is
-    /// at 0, or at its limit nearest to 0.
+    /// Constant joint positions of the robot, given by the keys of `[robots.joints]` of a scene file with a single time. A joint that is not listed is at 0, or
+    /// at its limit nearest to 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
     /// Object that touches the skin, with the keys of `[[objects]]` in a scene file. The key `link` is a link of the covered robot. The key `motion` can only
@@ -123,7 +123,7 @@ pub struct BodyRecognitionSpec {
     pub test_touches: usize,
 }
 
-/// Keys of `[whole_body.ladders]`: series of growing skins, touches and objects for the measurement of computing time.
+/// Keys of `[whole_body.ladders]`: scaling series of skin, touch and object, whose computing times are measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LaddersSpec {
@@ -133,12 +133,12 @@ pub struct LaddersSpec {
     pub touched_at_taxels: Vec<usize>,
     /// Approximate numbers of touched taxels in the series of growing touches.
     pub touched: Vec<usize>,
-    /// Number of spheres of each object in the series of growing objects; half of the spheres are on the side away from the skin. The series of growing skins
-    /// and of growing touches use the first number.
+    /// Numbers of spheres of the object in the scaling series of the object; half of the spheres are on the side away from the skin. The series of growing
+    /// skins and of growing touches use the first number.
     pub spheres: Vec<usize>,
     /// Approximate number of touched taxels in the series in which the object's number of spheres grows.
     pub touched_at_spheres: usize,
-    /// Number of taxels of the skin in the series of growing touches and of growing objects.
+    /// Number of taxels of the skin in the scaling series of the touch and of the object.
     pub taxels_at_touch: usize,
 }
 

@@ -15,7 +15,7 @@ use glam::DVec3;
 use ndarray::ArrayView2;
 use std::time::Instant;
 
-/// Number of steps that are simulated before the measurement, to allocate memory and fill the caches.
+/// Number of steps that are simulated before times are measured, so that memory is allocated and caches are filled.
 const WARM_UP: usize = 20;
 
 /// Result of simulating one step of the skin.

@@ -53,7 +53,7 @@ pub struct Classifier {
     pub multiclass: Multiclass,
     /// Solver that trains an SVM.
     pub solver: Solver,
-    /// Penalty C: a fixed value, or candidates to choose from.
+    /// Penalty C: a fixed value, or candidate values from which it is chosen.
     pub c: Cost,
     /// Values of the parameters that the kind of classifier declares; see [`with`](Self::with).
     pub parameters: Parameters,
@@ -229,7 +229,7 @@ impl Classifier {
             .collect())
     }
 
-    /// Returns the fitted scaling and the scaled training rows; the rows are borrowed if the scaling is the identity.
+    /// Returns the fitted scaling and the scaled training rows, which are borrowed if the scaling changes nothing.
     fn scaled<'a>(&self, training: &'a Dataset) -> Result<(FittedScaling, Cow<'a, Dataset>)> {
         let scaling = self.scaling.fit(training.records.view())?;
         if scaling.changes_nothing() {

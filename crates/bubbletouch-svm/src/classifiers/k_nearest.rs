@@ -33,7 +33,7 @@ pub struct KNearest {
 }
 
 impl KNearest {
-    /// Stores the labelled training rows; `n_neighbours` of them vote on each prediction.
+    /// Stores the labelled training rows; the `n_neighbours` nearest rows vote on each prediction.
     ///
     /// # Errors
     /// If `n_neighbours` is not in 1 to the number of rows. If the data are empty, or a feature is NaN, infinite or too large to square. If the number of

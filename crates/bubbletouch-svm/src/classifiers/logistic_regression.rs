@@ -139,8 +139,8 @@ fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayVi
     (weights.expect("a slice of n_classes × m"), bias)
 }
 
-/// Returns the regularised loss of all training rows divided by their number, and its gradient. With C, labels y and weights w: `(1/n) Σ_i −ln p(y_i | x_i) + ½
-/// penalty Σ_k |w_k|²`.
+/// Returns the mean regularised loss of the training rows, and its gradient. With C, labels y and weights w: `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k
+/// |w_k|²`.
 fn mean_loss(
     features: ArrayView2<f64>,
     label: &[usize],

@@ -1,4 +1,4 @@
-//! Nearest-centroid classifier: predicts the class whose mean of the training rows has the smallest Euclidean distance.
+//! Nearest-centroid classifier: predicts the class whose mean training row has the smallest Euclidean distance.
 //!
 //! The classifier equals scikit-learn's `NearestCentroid`. The model stores n_classes × m numbers and has no parameters. A decision requires one distance per
 //! class. Scores are −½|x − μₖ|², which equals `ln p(x | k)` for normal classes of variance 1, up to a constant per row. Scores of several touches of one

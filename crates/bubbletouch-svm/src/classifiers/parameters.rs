@@ -21,7 +21,7 @@ pub struct Parameter {
     pub range: [f64; 2],
     /// Default value of the parameter, used if no value is given.
     pub default: DefaultValue,
-    /// Whether a study that is written with all defaults contains the parameter even if none of its classifiers uses it.
+    /// Whether a study file with all default values contains the parameter even if no classifier of the study uses it.
     pub is_always_written: bool,
 }
 
@@ -76,7 +76,7 @@ impl Parameter {
         }
     }
 
-    /// Declares that a study written with all defaults always contains this parameter.
+    /// Declares that a study file with all default values always contains this parameter.
     pub(crate) const fn always_written(self) -> Self {
         Self {
             is_always_written: true,
@@ -125,7 +125,7 @@ impl Parameter {
     }
 }
 
-/// Formats a number, with an exponent if it would have many zeros.
+/// Formats a number, in exponential notation if it would have many zeros.
 fn short(number: f64) -> String {
     match number == 0.0 || (1e-3..1e4).contains(&number.abs()) {
         true => format!("{number}"),

@@ -27,7 +27,7 @@ pub struct RandomForest {
 }
 
 impl RandomForest {
-    /// Grows `n_trees` trees until every leaf contains a single class, or to the depth `max_depth`. Tree t uses the random stream
+    /// Grows `n_trees` trees, each until all leaves contain a single class or the depth `max_depth` is reached. Tree t uses the random stream
     /// `seed.named("tree").numbered(t)`, so a larger forest contains the trees of a smaller forest.
     ///
     /// # Errors

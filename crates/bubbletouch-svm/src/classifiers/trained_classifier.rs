@@ -37,7 +37,7 @@ impl Model {
         }
     }
 
-    /// Returns the number of optimisation problems of the training that stopped at their iteration cap.
+    /// Returns the number of optimisation problems in training that stopped at the maximum number of iterations.
     pub(crate) fn n_capped(&self) -> usize {
         match self {
             Self::Svm(model) => model.n_capped(),

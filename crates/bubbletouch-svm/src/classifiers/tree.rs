@@ -76,7 +76,7 @@ struct Split {
     score: f64,
 }
 
-/// State of the growth of a tree: the training data and reused buffers.
+/// State during the growth of a tree: the training data and reusable memory.
 struct Grower<'a> {
     ranked: &'a Ranked,
     label: &'a [usize],

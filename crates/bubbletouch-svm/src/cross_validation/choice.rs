@@ -84,7 +84,7 @@ pub fn choose(
     Ok(Chosen::new(tried.collect(), n_capped))
 }
 
-/// Chooses C by cross-validation for any classifier. The function `train` trains a classifier on given rows with a given C. The result of `train` is a
+/// Chooses the penalty C of a classifier by cross-validation. The function `train` trains a classifier on given rows with a given C. The result of `train` is a
 /// prediction function and the number of solver runs that stopped at the iteration cap.
 ///
 /// # Errors
@@ -153,7 +153,7 @@ fn ascending(values: &[f64]) -> Vec<f64> {
     values
 }
 
-/// For each candidate γ in ascending order, returns the kernel with this γ.
+/// Returns the kernels with the candidate values of γ, in ascending order of γ.
 fn kernels(
     params: &SvmParams,
     (training, statistics): (&Dataset, &RowStatistics),
@@ -303,7 +303,7 @@ mod tests {
         (0..k).map(fold).collect()
     }
 
-    /// Computes the reference result by training a model for each fold and candidate.
+    /// Computes the reference result by training one model for each fold and candidate.
     fn one_by_one(
         params: &SvmParams,
         training: &Dataset,

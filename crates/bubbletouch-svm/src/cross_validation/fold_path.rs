@@ -64,9 +64,9 @@ impl FoldPath {
         }
     }
 
-    /// Solves the problem of one class against all others on all folds, and passes each solved fold to a callback. If a class is not separable from the rest,
-    /// several decision values can be equal within the tolerance. The starting point then determines the predicted class, so each fold starts from zero, as in
-    /// training.
+    /// Solves the problem of one class against all others on all cross-validation folds; passes each solved fold to a callback. If a class is not separable
+    /// from the rest, several decision values can be equal within the tolerance. The starting point then determines the predicted class, so each fold starts
+    /// from zero, as in training.
     pub fn of_class<T: SolverScalar>(
         gram: &mut Dense<T>,
         folds: Vec<Vec<f64>>,

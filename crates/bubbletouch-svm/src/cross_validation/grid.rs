@@ -17,8 +17,8 @@ use crate::smo::SolverScalar;
 use crate::split::Split;
 use crate::training::Goal;
 
-/// Maximum number of folds whose solutions are in memory together. With a larger value, more memory is used; with a smaller value, five or ten folds need
-/// several passes.
+/// Maximum number of folds whose solutions are kept in memory at the same time. With a larger value, more memory is used; with a smaller value, five or ten
+/// folds need several passes.
 const FOLDS_AT_ONCE: usize = 8;
 
 /// Number of classes per block of the kernel matrix in one-vs-one cross-validation. The pairs between two blocks of classes are solved together and share
@@ -39,14 +39,14 @@ pub(crate) struct Grid<'a, T> {
 struct Fold {
     /// Whether each row, in sorted order, is a training row of the fold.
     is_training: Vec<bool>,
-    /// Whether the fold has a training row of each class.
+    /// Whether the fold has at least one training row of each class.
     is_class: Vec<bool>,
     validation: Vec<usize>,
 }
 
 impl<T: SolverScalar> Grid<'_, T> {
-    /// For each kernel and C, returns the number of correctly classified validation rows over all folds (kernels.len() × path.len()). Also returns the number
-    /// of solver runs that stopped at the iteration cap.
+    /// Returns the number of correctly classified validation rows over all folds for each kernel and C (kernels.len() × path.len()). Also returns the number of
+    /// solver runs that stopped at the iteration cap.
     pub fn n_correct(&self, kernels: &[KernelFunction], goal: Goal) -> (Array2<usize>, usize) {
         let rows = (self.sorted.points(), self.sorted.ranges());
         // The kernels differ only in γ, so they share the pairwise numbers.
@@ -134,7 +134,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         ValidationScorer::new((known, &fold.is_class), ranges, self.multiclass, n_path)
     }
 
-    /// Returns the number and the two classes of every binary problem, ordered so that neighbouring pairs of classes share kernel values in the cache.
+    /// Returns the number and the classes of every binary problem, in an order in which neighbouring problems share cached kernel values.
     fn problems(&self) -> Vec<(usize, (usize, Option<usize>))> {
         let problems = self.multiclass.problems(self.sorted.ranges().len());
         let mut problems: Vec<_> = problems.into_iter().enumerate().collect();
@@ -143,7 +143,7 @@ impl<T: SolverScalar> Grid<'_, T> {
         problems
     }
 
-    /// For each fold, returns the labels of the rows of a binary problem; held-out rows have the label 0.
+    /// Returns the labels of a binary problem's rows for each fold; held-out rows have the label 0.
     fn labels(
         &self,
         (positive, negative): (usize, Option<usize>),

@@ -96,8 +96,7 @@ impl<T: Scalar> ValidationScorer<T> {
         }
     }
 
-    /// Records the validation rows of one class that a binary problem assigns to its other class; `f` contains the negative decision values without the offset
-    /// ρ.
+    /// Records the validation rows of one class that a binary problem assigns to its other class.
     fn look(
         &mut self,
         number: usize,
@@ -171,7 +170,7 @@ mod tests {
         Array2::from_shape_fn((N, N), |(i, j)| (-(at(i) - at(j)).powi(2)).exp())
     }
 
-    /// For each C, returns irregular coefficients β of all rows, with 0 for held-out rows; some values of C repeat the previous coefficients.
+    /// Returns irregular coefficients β of all rows for each C, with 0 for held-out rows; some consecutive C have equal coefficients.
     fn path(members: &[usize], own: &Range<usize>, is_training: &[bool]) -> Vec<Vec<f64>> {
         let beta = |c: f64, at: usize| {
             let size = (c * (0.6 + (at as f64 * 2.3 + c).sin())).clamp(0.0, c);

@@ -53,7 +53,7 @@ impl<'a, T: Scalar> Group<'a, T> {
         (squares + largest * largest) * size_of::<T>()
     }
 
-    /// Computes the kernel values between the rows of another group and the rows of this group, row by row, into `values`.
+    /// Writes the kernel values between rows of another group and rows of this group into `values`, row by row.
     pub fn with(&self, other: &Self, values: &mut Vec<T>) {
         let size = (other.rows.len(), self.rows.len());
         values.resize(size.0 * size.1, T::zero());

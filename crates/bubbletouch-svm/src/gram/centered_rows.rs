@@ -66,7 +66,7 @@ impl<T: Scalar> CenteredRows<T> {
         Self { values, norms }
     }
 
-    /// Returns the rows projected onto k directions (k × m), with shape n × k.
+    /// Returns the rows projected onto k directions (k × m), shape n × k.
     pub fn along(&self, directions: ArrayView2<T>) -> Self {
         let mut values = Array2::zeros((self.len(), directions.nrows()));
         multiply(self.values.view(), directions, values.view_mut());

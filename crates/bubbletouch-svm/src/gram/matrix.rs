@@ -173,7 +173,7 @@ impl<T: Scalar> Gram<T> for Dense<T> {
     }
 }
 
-/// Copies the entries of a row at the given column numbers.
+/// Copies the entries of a row with the given column indices.
 pub(crate) fn gather<T: Copy>(to: &mut [T], from: &[T], columns: &[usize]) {
     for (to, &column) in to.iter_mut().zip(columns) {
         *to = from[column];

@@ -172,7 +172,7 @@ impl<T: Scalar> Sorted<T> {
             .zip(self.ranges.iter().cloned())
     }
 
-    /// For each class, returns the range of its rows in sorted order.
+    /// Returns the range of each class's rows in the sorted order.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.ranges
     }

@@ -1,4 +1,4 @@
-//! Lanes of vector instructions, and rows padded to a multiple of their number.
+//! Lanes of vector instructions, and rows that are padded to a multiple of the number of lanes.
 
 /// Number of values computed in parallel: two vector registers with eight f32 each, or four with four f64 each.
 pub(crate) const LANES: usize = 16;

@@ -12,7 +12,7 @@ pub(crate) const FEW_ROWS: usize = 4;
 /// Number of rows and columns that are mirrored together, so that they fill a cache line of f32.
 const TILE: usize = 16;
 
-/// Writes the inner products `x_i · z_j` of rows x (n_left × m) and rows z (n × m): shape n_left × n.
+/// Writes the inner products `x_i · z_j` of rows x (n_left × m) and rows z (n × m) into an array of shape n_left × n.
 pub(crate) fn multiply<T: Scalar>(
     left: ArrayView2<T>,
     right: ArrayView2<T>,

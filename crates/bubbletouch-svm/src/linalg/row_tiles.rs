@@ -33,8 +33,8 @@ pub(crate) fn products_in_place(_: &[&[f32]], _: &[&[f32]], _: &mut [f32]) -> bo
 #[cfg(target_arch = "x86_64")]
 const DEPTH: usize = 1024;
 
-/// Computes the inner products of all rows with all others in tiles of N rows and M others, by the function `tile`. An incomplete tile is filled with copies of
-/// its last row. The code uses loops instead of iterators, because closures passed to the standard library are not always inlined.
+/// Computes the inner products of every row in `rows` with every row in `others` by the function `tile`, N × M products at a time. An incomplete tile is filled
+/// with copies of its last row. The code uses loops instead of iterators, because closures passed to the standard library are not always inlined.
 #[cfg(target_arch = "x86_64")]
 fn by_tiles<'r, const N: usize, const M: usize>(
     (rows, others): (&[&'r [f32]], &[&'r [f32]]),
@@ -92,7 +92,7 @@ mod avx512 {
 
     /// Number of f32 values in a vector register (AVX-512).
     const LANES: usize = 16;
-    /// Number of rows of a tile, and number of other rows; the four sums of a row are combined in one register.
+    /// Number of rows of a tile, and number of other rows; one register combines the four sums of a row.
     const N: usize = 4;
 
     #[target_feature(enable = "avx512f")]

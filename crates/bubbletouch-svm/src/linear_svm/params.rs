@@ -2,7 +2,7 @@
 
 use crate::{Error, Result};
 
-/// Default maximum number of passes over the rows: scikit-learn's default for LinearSVC.
+/// Default maximum number of passes over the rows, as in scikit-learn's LinearSVC.
 pub const MAX_PASSES: usize = 1000;
 
 /// Parameters of a linear SVM that is trained by coordinate descent.

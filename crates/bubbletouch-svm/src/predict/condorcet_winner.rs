@@ -1,4 +1,4 @@
-//! Condorcet winner: the class that wins all its pairs, found without evaluating every pair of classes.
+//! Condorcet winner: the class that wins all its pairs; the search does not evaluate every pair of classes.
 //!
 //! One-vs-one predicts the class with the most votes. If one of n classes wins all its n − 1 pairs, it has the most votes, because every other class has lost a
 //! pair. A knock-out finds the only possible winner of n − 1 pairs. The winner of the knock-out must then win its remaining pairs. At most 2 (n − 1) of n (n −
@@ -112,7 +112,7 @@ pub(crate) fn condorcet_winners_by_hyperplanes<'a, T: Scalar>(
     (0..rows.len()).map(of_row).collect()
 }
 
-/// Interface to the decision functions of all pairs of classes for one row.
+/// Interface to the decision functions of all pairs of classes for one feature row.
 trait Decides<T> {
     fn n_classes(&self) -> usize;
 
@@ -297,7 +297,7 @@ fn product_and_size<T: Scalar>(normal: &[T], row: &[T]) -> (T, T) {
     (sum, size)
 }
 
-/// Returns the sum of coefficients times kernel values, and the sum of the absolute values of all terms.
+/// Returns two sums over the terms (coefficient times kernel value): of the values, and of their absolute values.
 #[inline(always)]
 fn sum_and_size<T: Scalar>(terms: &[(u32, T)], kernel_values: &[T]) -> (T, T) {
     let (mut sum, mut size) = ([T::zero(); LANES], [T::zero(); LANES]);

@@ -1,4 +1,4 @@
-//! Decision functions of all binary problems, by matrix products.
+//! Decision functions of all binary problems, which are evaluated by matrix products.
 
 use std::borrow::Cow;
 

@@ -43,7 +43,7 @@ impl Voting {
             .collect()
     }
 
-    /// Returns the predicted label for one row of decision values; `votes` is scratch memory.
+    /// Returns the predicted label for one row of decision values, using `votes` as temporary memory.
     fn label(&self, values: &[f64], votes: &mut Vec<u32>) -> usize {
         let winner = match self.multiclass {
             Multiclass::OneVsRest => first_maximum(values),
@@ -140,8 +140,8 @@ impl VoteCounter {
     }
 }
 
-/// Adds the votes of one row as LIBSVM does: a positive value is a vote for the positive class, any other value for the negative class. The values are in the
-/// order of all pairs of classes, so the pairs of a class with all later classes are contiguous.
+/// Adds the votes of one row, as in LIBSVM: a positive value is a vote for the positive class, other values for the negative class. The values are in the order
+/// of all pairs of classes, so the pairs of a class with all later classes are contiguous.
 fn count(values: &[f64], votes: &mut [u32]) {
     let mut rest = values;
     for class in 0..votes.len() {

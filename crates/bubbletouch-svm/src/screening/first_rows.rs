@@ -18,7 +18,7 @@ use crate::screening::margin_rows::{Ranked, Sides, nearest};
 use crate::screening::near_margin::{Classes, NearMargin};
 use crate::smo::SolverScalar;
 
-/// Number of rows per class with which the first solution in the subspace starts.
+/// Number of rows per class in the first solution in the low-dimensional subspace.
 const ROWS_ALONG_MEANS: usize = 16;
 
 /// Selection of the training rows near the decision boundary of each pair of classes, block by block.
@@ -72,7 +72,7 @@ impl<'a, T: SolverScalar> PairsNearMargin<'a, T> {
     }
 }
 
-/// Returns the pairs of the classes in `own` with later classes in `others`. Their order alternates, so that the rows of the last class are still in the cache.
+/// Returns all pairs of a class in `own` with a later class in `others`. Their order alternates, so that the rows of the last class are still in the cache.
 fn to_and_fro(own: Range<usize>, others: Range<usize>) -> Vec<(usize, usize)> {
     let mut all = Vec::new();
     for a in own {
@@ -91,7 +91,7 @@ pub(crate) fn few_dimensions<T: SolverScalar>(sorted: &Sorted<T>) -> Sorted<T> {
     sorted.along(directions.view())
 }
 
-/// Returns the inner product of each row with the mean of each class: n_rows × n_classes.
+/// Returns the inner product of each row with the mean of each class, n_rows × n_classes.
 fn along_means<T: SolverScalar>(sorted: &Sorted<T>) -> Array2<T> {
     let mut means = Array2::zeros((sorted.ranges().len(), sorted.centre().len()));
     for (range, mut mean) in sorted.ranges().iter().zip(means.rows_mut()) {

@@ -13,7 +13,7 @@ use crate::smo::SolverScalar;
 use crate::smo::reached::Reached;
 use crate::smo::variables::extremes;
 
-/// Minimum number of rows that are added to the reduced problem of a pair per round, while rows violate the optimality conditions.
+/// Minimum number of rows that each round adds to the reduced problem of a pair while rows violate the optimality conditions.
 const MIN_JOINING: usize = 24;
 /// Maximum fraction of a pair's rows in its reduced problem; if it is exceeded, all rows of the pair are used.
 const MAX_SHARE: f64 = 0.6;
@@ -66,7 +66,7 @@ impl<T> Default for PairWorkspace<'_, T> {
     }
 }
 
-/// Problem of a pair of classes, reduced to active rows near the margin, with its solution; the first class is positive.
+/// Binary problem of two classes, reduced to active rows near the decision boundary, with its solution; the first class is positive.
 pub(crate) struct MarginPair<T> {
     classes: [usize; 2],
     /// Active rows of both classes, in the order in which they became active.

@@ -41,7 +41,7 @@ impl RankedRow {
 /// Reusable list of rows that are ordered by a distance, shared by all pairs of classes.
 pub(crate) type Ranked = Vec<RankedRow>;
 
-/// Returns the n rows of each class that are nearest to the other class; `products` contains the inner product of each row with the hyperplane normal.
+/// Returns the n rows of each class that are nearest to the other class, given the inner products of all rows with the hyperplane normal.
 pub(crate) fn nearest<T: Scalar>(products: [&[T]; 2], n: usize, ranked: &mut Ranked) -> Sides {
     [0, 1].map(|side| {
         let products = products[side].iter().enumerate();

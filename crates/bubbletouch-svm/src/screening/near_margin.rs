@@ -1,4 +1,4 @@
-//! One-vs-one linear SVMs solved on the rows near their margins.
+//! One-vs-one linear SVMs, solved on the rows near their decision boundaries.
 //!
 //! If classes are well separated, a hyperplane depends on few rows. With many features, the products of all rows with each other dominate the training time.
 //! Each pair of classes is therefore solved on a few rows of each class. The optimality conditions of all rows are then checked. Rows that violate the
@@ -27,7 +27,7 @@ const FEW_ROUNDS: usize = 2;
 const ROUGH_TOLERANCE: f64 = 0.1;
 /// Maximum number of solver iterations on rows projected to a low-dimensional subspace, where classes may not be separable.
 const ROUGH_ITERATIONS: u64 = 1000;
-/// Number of rows per class with which the first round with all features starts.
+/// Number of rows per class in the first round of screening that uses all features.
 const ROWS_NEAR_MARGIN: usize = 24;
 
 /// Rows of all classes, with the inner products between the rows of each class.
@@ -70,13 +70,13 @@ pub(crate) struct NearMargin<'c, 'a, T> {
     round: Round<T>,
 }
 
-/// Result of a round for one pair: the normal of the hyperplane, and the inner product of the normal with each row of both classes.
+/// Result of a screening round for one pair: the hyperplane normal, and its inner products with the rows of both classes.
 type Found<'f, T> = (&'f [T], [&'f [T]; 2]);
 
 /// Results of one screening round for several pairs of classes.
 #[derive(Default)]
 struct Round<T> {
-    /// Normals of the hyperplanes of all pairs in the round.
+    /// Normals of the hyperplanes of all pairs of classes in the round.
     normals: Vec<T>,
     /// Inner products of each pair's hyperplane normal with all rows of its two classes, class by class.
     products: Vec<T>,
@@ -228,7 +228,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         self.round = round;
     }
 
-    /// Adds the hyperplane normal of a pair (the sum of its active rows times their coefficients) to `sums`.
+    /// Adds the hyperplane normal of a pair (its active rows multiplied by their coefficients) to `sums`.
     fn add_normal(&self, pair: usize, sums: &mut [f64]) {
         let starts = self.classes.starts(self.pairs[pair].classes());
         let rows = self.pairs[pair].weighing();

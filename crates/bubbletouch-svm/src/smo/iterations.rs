@@ -5,12 +5,12 @@ use super::variables::Variables;
 use crate::gram::matrix::Gram;
 use crate::linalg::scalar::Scalar;
 
-/// Number of iterations after which the solver checks whether variables can be omitted (shrinking).
+/// Number of iterations between two checks of whether variables can be omitted (shrinking).
 pub(super) const SHRINK_PERIOD: u64 = 1000;
 /// Minimum number of rows for shrinking (omitting variables that probably stay at their bounds). With fewer rows, copying the submatrix takes longer than it
 /// saves.
 const SHRINK_ROWS: usize = 400;
-/// Maximum fraction of variables that remain after shrinking; with a larger fraction, copying the submatrix is not worthwhile.
+/// Maximum fraction of variables that shrinking may leave; otherwise, copying the submatrix costs more time than it saves.
 const SHRINK_SHARE: f64 = 0.7;
 
 /// Limits of a solver run, and its number of iterations so far.

@@ -97,10 +97,10 @@ pub(crate) fn step_along<T: Scalar>(
 
 /// Second variable of a pairwise step (the variable that decreases), with the violation of the optimality conditions.
 pub(crate) struct Down<T> {
-    /// Variable to decrease while `i` increases; `None` if no pair violates the optimality conditions. The variable has the largest second-order gain of the
-    /// dual objective [Fan, Chen, Lin 2005].
+    /// Variable to decrease while variable `i` increases; `None` if no pair violates the optimality conditions. The variable has the largest second-order gain
+    /// of the dual objective [Fan, Chen, Lin 2005].
     pub j: Option<usize>,
-    /// Violation of the optimality conditions: the largest gradient of variables that can increase minus the smallest gradient of variables that can decrease.
+    /// Violation of the optimality conditions: largest gradient of the variables that can increase minus smallest gradient of those that can decrease.
     pub violation: T,
 }
 

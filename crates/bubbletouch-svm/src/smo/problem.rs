@@ -60,7 +60,7 @@ impl<'a, G> Smo<'a, G> {
         }
     }
 
-    /// Returns the coefficients β and the gradient f.
+    /// Returns the coefficients β and the gradient f of the problem.
     pub fn variables(&self) -> (&[f64], &[f64]) {
         (&self.beta, &self.f)
     }

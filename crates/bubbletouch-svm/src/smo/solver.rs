@@ -28,7 +28,7 @@ impl<G> Smo<'_, G> {
         self.solve_or_from(c, tolerance, |_| None)
     }
 
-    /// Solves the problem from the last solution, or from another start (coefficients β and their gradient f) if that start has a higher objective.
+    /// Solves the problem from the last solution or, if its objective is higher, from another start (coefficients β and gradient f).
     pub fn solve_or_from<T: SolverScalar>(
         &mut self,
         c: f64,

@@ -7,7 +7,7 @@ use super::variables::Variables;
 use crate::gram::matrix::Gram;
 use crate::linalg::scalar::Scalar;
 
-/// Floating-point type of a Gram matrix that the solver supports.
+/// Floating-point type of Gram matrices that the solver supports.
 pub(crate) trait SolverScalar: Scalar {
     /// Runs the [pairwise steps](run_plain) of the solver in this precision.
     fn run<G: Gram<Self>>(

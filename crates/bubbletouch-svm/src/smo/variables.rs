@@ -183,7 +183,7 @@ fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
-/// Returns the two terms of the dual objective, `Σ y β` and `β K β` with the Gram matrix K. The objective is the first term minus half of the second.
+/// Returns the two terms `Σ y β` and `β K β` of the dual objective, with the Gram matrix K. The objective is the first term minus half of the second.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(super) fn linear_and_quadratic(beta: &[f64], y: &[f64], f: &[f64]) -> (f64, f64) {
     let (beta, last_beta) = beta.as_chunks::<LANES>();

@@ -1,4 +1,4 @@
-//! Tile charts: a tile for each x and y, coloured by an outcome or a number.
+//! Tile charts: one tile for each pair of x and y, coloured by an outcome or a number.
 
 use super::MarkAbout;
 use crate::error::Result;

@@ -145,7 +145,8 @@ fn effects(configurations: &Table) -> Option<Vec<String>> {
     Some(swept.free.iter().filter_map(effect).collect())
 }
 
-/// Returns remarks on omitted touches and on fits that stopped at a limit. If there are too few trials for a p-value, a remark gives the required number.
+/// Returns remarks on omitted touches, and on trained classifiers whose solver stopped at a limit. If there are too few trials for a p-value, a remark gives
+/// the required number.
 fn remarks(tables: &[Table]) -> Vec<String> {
     let numbers = |file: &str, column: &str| -> &[f64] {
         let numbers = filled(tables, file).and_then(|table| table.numbers(column));

@@ -29,13 +29,13 @@ pub(super) const ROBUSTNESS: File<Robustness> = File::new(
 row! {
 /// Robustness of a design to one condition: a row of `robustness.csv`; the design consists of all settings except the condition.
 pub struct Robustness {
-    /// Number of the most accurate configuration of the design among all values of the condition; the number refers to a row of `summary.csv`.
+    /// Number of the most accurate configuration of the design over all values of the condition, as in `summary.csv`.
     configuration: usize => Subject: Linear;
     /// Settings by which the design differs from all other designs.
     design: String => Subject;
     /// Column name of the condition whose effect is described, for example `noise_std`.
     condition: String => Subject;
-    /// Direction in which the condition is followed, starting from its most accurate value: towards larger or smaller values.
+    /// Direction, from the most accurate value of the condition, in which its values change: larger or smaller.
     direction: Direction => Subject "towards";
     /// Value of the condition at which the accuracy of the design is highest, in the unit of the condition.
     clean_at: f64 => Note "most accurate at": Linear;
@@ -47,9 +47,9 @@ pub struct Robustness {
     half_accuracy: f64 => Note "half-way to chance": Share;
     /// Whether the accuracy falls to `half_accuracy` within the swept values, or why it does not.
     status: HalfStatus => Outcome "half-way is";
-    /// Value of the condition at which the accuracy falls to `half_accuracy`, in the unit of the condition; empty if the accuracy stays above.
+    /// Value of the condition at which the accuracy falls to `half_accuracy`, in its unit; empty if the accuracy stays above.
     half_accuracy_at: Option<f64> => Value(Neither) "half-way at": Linear between [half_accuracy_at_low, half_accuracy_at_high];
-    /// Lower end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it lies beyond the last value of the condition.
+    /// Lower end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it exceeds the last value of the condition.
     half_accuracy_at_low: Option<f64> => Note "95 % interval of the place, lower end": Linear;
     /// Upper end of the 95 % interval of `half_accuracy_at`, in the unit of the condition; empty if it exceeds the last value of the condition.
     half_accuracy_at_high: Option<f64> => Note "95 % interval of the place, upper end": Linear;
@@ -59,7 +59,7 @@ pub struct Robustness {
     accuracy_at_end: f64 => Note "accuracy at the last value": Share;
 } }
 
-/// Direction in which the values of a condition are followed.
+/// Direction in which the values of a condition change: larger or smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
@@ -81,8 +81,8 @@ pub enum HalfStatus {
     AllAtChance,
 }
 
-/// Number of random draws from which an interval is computed. With a larger value, intervals vary less, but reports of many configurations take longer. With
-/// 1,000 draws, the standard error of an interval's end is about a tenth of its half width.
+/// Number of random draws from which a confidence interval is computed. With a larger value, intervals vary less, but reports of many configurations take
+/// longer. With 1,000 draws, the standard error of an interval's end is about a tenth of its half width.
 const N_DRAWS: usize = 1000;
 
 /// Minimum number of values of a condition for which robustness is computed. With two values, the result would only reflect the straight line between them.
@@ -105,7 +105,7 @@ struct Curve {
 }
 
 impl Curve {
-    /// Returns the index of the highest accuracy; if several accuracies are equal, the first index.
+    /// Returns the index of the highest accuracy; the first index if several accuracies are equal.
     fn best(&self) -> usize {
         let accuracy = &self.accuracy;
         let backwards = (0..accuracy.len()).rev();
@@ -195,7 +195,7 @@ impl Curve {
     }
 }
 
-/// Returns the number of test rows, at least 1, whose 95 % Wilson interval around `accuracy` has the given width.
+/// Returns the number of test rows (at least 1) for which the 95 % Wilson interval around `accuracy` has the given width.
 fn rows_of_interval(accuracy: f64, width: f64) -> f64 {
     // With a = z² / n and q = p (1 − p): width² (1 + a)² = 4 a q + a².
     const Z: f64 = 1.959_963_984_540_054;

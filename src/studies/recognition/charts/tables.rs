@@ -32,7 +32,7 @@ const SUMMARY: File<(Configuration, ConfigurationScore)> = File::new(
     "Means over trials.",
 )
 .summary();
-/// Text for a study without held-out groups and without folds: the test rows over which the intervals in `summary.csv` are computed.
+/// Note for studies without held-out groups and folds: the test rows from which the intervals in `summary.csv` are computed.
 pub(crate) const OVER_TRIAL: &str =
     "Intervals are 95 % Wilson intervals at the test decisions of one trial.";
 /// Note for studies with folds but without held-out groups: the test rows from which the intervals in `summary.csv` are computed.
@@ -80,7 +80,7 @@ pub const TABLES: &[&dyn AnyFile] = &[
     &LIMITS,
 ];
 
-/// Table files of studies with several projections per split, and of studies that sweep a condition.
+/// Table files that only some studies write: those with several projections per split, and those that sweep a condition.
 pub const TABLES_OF_PARTS: &[&dyn AnyFile] = &[&VARIANCE, &ROBUSTNESS];
 
 /// Returns all tables of a run in the order of their files, followed by [`CONFIGURATIONS`].
@@ -241,8 +241,8 @@ fn note_of_few_trials(table: &Table) -> Option<String> {
 /// Name of the column in [`CONFIGURATIONS`] that contains the chance level. The column is present only if configurations differ in it.
 pub(crate) const CHANCE: &str = "chance";
 
-/// Returns the column of chance levels: for each configuration, one divided by its number of objects. Returns `None` if all configurations have equal levels,
-/// or if a confusion matrix is not stored.
+/// Returns the column of chance levels, which is one divided by the number of objects of each configuration. Returns `None` if all configurations have equal
+/// levels, or if a confusion matrix is not stored.
 fn chance_of_cells(summary: &Table, confusion: &Table) -> Option<(Column, Data)> {
     let n_objects = ObjectCounts::new(confusion);
     let chance = (0..summary.n_rows).map(|row| {

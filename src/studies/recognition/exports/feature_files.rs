@@ -34,7 +34,7 @@ use serde::Serialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Names of all files of exported features, except the manifest.
+/// Names of all exported feature files, except the manifest.
 pub const FEATURE_FILES: [&str; 7] = [
     "features.npy",
     "labels.npy",
@@ -48,7 +48,7 @@ pub const FEATURE_FILES: [&str; 7] = [
 /// Labelled feature rows of touches, with the training and test rows of one trial.
 #[derive(Clone, Debug)]
 pub struct FeatureSet {
-    /// Measurements of every touch before scaling, shape (n_touches, m), with the number of the touched object as label.
+    /// Measurements of every touch before scaling, shape (n_touches, m), and the object numbers as labels.
     pub data: Dataset,
     /// Row numbers of the trial's training and test touches.
     pub split: Split,
@@ -232,7 +232,8 @@ pub fn read_features(folder: &Path) -> Result<FeatureSet> {
     })
 }
 
-/// Returns the path of the file that contains an array. If several files exist, the order is `.npy`, `.npz`, `.csv`, and the archive `features.npz`.
+/// Returns the path of the file that contains an array of a feature folder. If several files exist, the order is `.npy`, `.npz`, `.csv`, and the archive
+/// `features.npz`.
 fn array_file(folder: &Path, name: &str) -> PathBuf {
     let usual = folder.join(format!("{name}.npy"));
     let others = [

@@ -1,4 +1,4 @@
-//! Exported touches of a study: NumPy arrays and CSV files, written as a stream.
+//! Export of the touches of a study as NumPy arrays and CSV files, written block by block.
 //!
 //! | file | content |
 //! |---|---|
@@ -349,7 +349,7 @@ pub fn write_human_touches(
     Ok(labels.len())
 }
 
-/// Returns one letter per axis of the frame file, and the lengths of those axes that a single touch has.
+/// Returns the letters of the axes of a frame file, and the lengths of the axes for a single touch.
 fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (String, Vec<usize>) {
     let (ny, nx) = array.shape();
     let axes = [("t", n_frames), ("c", n_channels), ("y", ny), ("x", nx)];

@@ -1,4 +1,4 @@
-//! Frames stored in memory in a compressed encoding.
+//! Store of frames in memory, in a compressed encoding.
 
 use bubbletouch_sim::frame_coding::decode;
 use ndarray::{Array2, Axis};
@@ -16,7 +16,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Creates an empty set of frames with `n_frames` frames per touch.
+    /// Creates an empty store for frames, with `n_frames` frames per touch.
     pub fn new((n_values, n_frames): (usize, usize)) -> Self {
         let facts = FrameFacts {
             n_frames,
@@ -29,7 +29,7 @@ impl Frames {
         }
     }
 
-    /// Appends frames to the store that are already encoded.
+    /// Appends encoded frames to the store.
     pub(crate) fn put(&mut self, encoded: Vec<Box<[u8]>>) {
         self.encoded.extend(encoded);
     }

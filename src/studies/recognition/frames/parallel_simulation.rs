@@ -24,9 +24,9 @@ fn made_at_once(n_frames: usize) -> usize {
 }
 
 impl Frames {
-    /// Simulates the frames of touches on all threads, each with its own workspace; the result does not depend on the number of threads. For each touch,
-    /// `press` writes F frames of n_values values. The function `press` returns whether the touch missed the object, and whether it saturated a taxel at its
-    /// deepest point.
+    /// Simulates the frames of touches on all threads, each of which has a workspace; results do not depend on the number of threads. For each touch, `press`
+    /// writes F frames of n_values values. The function `press` returns whether the touch missed the object, and whether it saturated a taxel at its deepest
+    /// point.
     pub fn make<T: Sync, W>(
         &mut self,
         touches: &[T],

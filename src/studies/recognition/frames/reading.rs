@@ -14,7 +14,7 @@ use std::time::Instant;
 /// Number of frames that are measured together by one matrix product. A fixed number makes results independent of the number of threads.
 const BLOCK: usize = 128;
 
-/// Skins whose frames are read, and the measurement matrix that compresses the frames.
+/// Skins whose frames are read, with the measurement matrix that compresses the frames.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
     /// Skins that are touched; their frames have equal shapes.
@@ -101,7 +101,7 @@ pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>
 /// Memory that a thread reuses for each block of touches.
 #[derive(Debug, Default)]
 struct Working {
-    /// Frames of the current block of touches, one after the other.
+    /// Frames of the current block of touches, stored one after the other.
     frames: Vec<f64>,
     /// Frames of one channel of a touch, after up to two frames of the preceding touch and of the released skin.
     with_history: Vec<f64>,

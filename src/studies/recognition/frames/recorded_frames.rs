@@ -1,4 +1,4 @@
-//! Recorded frames of a study; they replace simulated touches and are read once.
+//! Recorded frames of a study, which replace simulated touches; the files are read once.
 //!
 //! A reading v corresponds to the deflection `stroke · (v − zero) / (full_scale − zero)`. Noise and sensor errors of a study are fractions of the full scale,
 //! so they have the same effect as on a simulated skin. Readings of tangential forces are in newtons.
@@ -562,8 +562,8 @@ impl TouchSet for RecordedFrames {
         frames
     }
 
-    /// For each touch, returns its timing and its preceding touch. Touches are read at the study's speed or frame rate. Each touch follows a randomly drawn
-    /// touch or no touch, depending on the study's keys.
+    /// Returns the timing and the preceding touch of each touch. Touches are read at the study's speed or frame rate. Each touch follows a randomly drawn touch
+    /// or no touch, depending on the study's keys.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead> {
         let streams = self.streams.iter().map(String::as_str);
         let mut touches = touches_to_read(streams.zip(self.counts.iter().copied()), seed);

@@ -20,7 +20,7 @@ pub enum UntouchedFrames {
     Among(Vec<Range<usize>>),
 }
 
-/// Paths of a skin's recorded frames, and how their readings are converted to deflections.
+/// Paths of the files that a skin recorded, and the conversion of their readings to deflections.
 #[derive(Clone, Debug)]
 pub struct RecordedSkinFiles {
     /// Frames in temporal order, shape (n, rows, columns) or (n, F, rows, columns).

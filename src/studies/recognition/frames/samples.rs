@@ -1,4 +1,4 @@
-//! Sample pictures: noisy readings of an array for a few objects.
+//! Sample pictures, which show noisy readings of an array for a few objects.
 
 use crate::engine::axes::CombineSpec;
 use crate::engine::progress::Silent;
@@ -86,8 +86,8 @@ pub fn sample_frames(
     Ok(Samples { shown, each })
 }
 
-/// Returns the reading of each object's first touch along the taxels' axes, shape (ny, nx). If the skin has memory, the touch of another object precedes each
-/// touch.
+/// Returns the reading along the taxel axes for the first touch of each object, shape (ny, nx). If the skin has memory, the touch of another object precedes
+/// each touch.
 fn read(
     plan: &Plan,
     group: &MeasurementGroup,
@@ -127,7 +127,7 @@ fn read(
     Ok(values.outer_iter().map(frame).collect())
 }
 
-/// Returns a signal chain for each channel, without the step that smooths the readings. Smoothing would hide the effect of the other steps.
+/// Returns a signal chain for each channel, without the smoothing step. Smoothing would hide the effect of the other steps.
 fn chains(plan: &Plan, group: &MeasurementGroup) -> Result<Vec<Chain>> {
     let array = &plan.arrays[group.array];
     let skin = skin(&Seed::new(plan.spec.seed), array);
@@ -176,7 +176,7 @@ fn imperfect_groups<'a>(
     chosen
 }
 
-/// Among the groups of configurations with the most taxels, returns the one with the largest noise.
+/// Returns the group of configurations with the largest noise, among those with the most taxels.
 fn loudest_group<'a>(plan: &Plan, groups: &'a [MeasurementGroup]) -> Option<&'a MeasurementGroup> {
     let n_taxels = |group: &MeasurementGroup| plan.arrays[group.array].n_taxels();
     groups.iter().max_by(|a, b| {

@@ -1,4 +1,4 @@
-//! Simulation of all touches on an array; all configurations share the result.
+//! Simulation of all touches on an array, whose result all configurations share.
 
 use crate::contact::Contact;
 use crate::engine::progress::Progress;

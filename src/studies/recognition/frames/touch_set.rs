@@ -38,7 +38,7 @@ pub trait TouchSet: Sync {
         Ok((0..self.labels().len()).collect())
     }
 
-    /// Returns the pose of every touch; returns an empty list if the touches have no poses.
+    /// Returns the pose of every touch, or an empty list if the touches have no poses.
     fn poses(&self) -> Vec<&Touch> {
         Vec::new()
     }
@@ -53,7 +53,7 @@ pub trait TouchSet: Sync {
         None
     }
 
-    /// Returns the number of masked taxels (excluded because of missing readings) and the total number of taxels.
+    /// Returns the number of masked taxels (with too many missing readings) and the total number of taxels.
     fn n_masked(&self) -> (usize, usize) {
         (0, 0)
     }
@@ -64,7 +64,7 @@ pub trait TouchSet: Sync {
     /// Simulates all touches on an array with the given number of frames per touch; the result does not depend on the number of threads.
     fn simulate(&self, on: (&TaxelArray, usize), progress: &dyn Progress) -> Frames;
 
-    /// For each touch in a trial, returns how it is read: its seed, timing and preceding touch. All random numbers are derived from `seed`. Pressed objects are
+    /// Returns the random seed, the timing and the preceding touch of each touch in a trial. All random numbers are derived from `seed`. Pressed objects are
     /// read at a speed (m/s, 0 at rest), each touch after another randomly drawn touch.
     fn to_read(&self, speed: f64, n_frames: usize, seed: &Seed) -> Vec<TouchToRead>;
 

@@ -23,12 +23,12 @@ pub struct Images {
     /// Mapping from taxels to pixels; `None` if each taxel is a pixel.
     chart: Option<Chart>,
     full_scale: f64,
-    /// Image estimators, each with the number m of measurements from which it estimates.
+    /// Image estimators, each with its number m of measurements.
     estimates: Vec<(usize, ImageEstimate)>,
 }
 
 impl Images {
-    /// Fits an image estimator for each projection of an array. `full_scale` is the reading of a taxel at its stroke.
+    /// Fits one image estimator for each projection (measurement matrix) of an array.
     ///
     /// # Errors
     /// If an estimator cannot be fitted.

@@ -89,7 +89,7 @@ impl Measurements {
         rows.map(|row| n_read + row).collect()
     }
 
-    /// Writes the features of the given touches: the first m measurements of each of their F frames, one frame after the other, shape (n, F·m).
+    /// Writes the features of the given touches, shape (n, F·m): the first m measurements of each of their F frames.
     fn read_into(&self, inputs: &RowInputs, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
         let m = inputs.measurements;
         if let Some(wanted) = inputs.of_images() {

@@ -1,4 +1,4 @@
-//! All inputs that determine the measurements of a group of configurations, apart from the frames of its touches.
+//! Inputs that determine the measurements of a group of configurations, without the frames of its touches.
 //!
 //! The function `measure_group` receives these inputs and no plan, so it cannot depend on any other value of a study. Groups whose inputs have equal keys share
 //! their measurements. The key is the derived `Debug` form of all fields, so a new field becomes part of the key.

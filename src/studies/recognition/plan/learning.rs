@@ -147,7 +147,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks that image features are used only if each taxel reads one value.
+    /// Checks that each taxel reads a single value if a study uses image features.
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
         let mut features = recognition.features.values().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
@@ -337,13 +337,13 @@ impl RecognitionSpec {
         }
     }
 
-    /// Returns those policies for the next touch that are not random.
+    /// Returns the rules for the next touch that do not choose it at random.
     pub fn chosen_next(&self) -> impl Iterator<Item = NextTouch> {
         let all = self.next_touch.iter().flat_map(Axis::values);
         all.filter(|next| *next != NextTouch::Random)
     }
 
-    /// Returns whether a policy for the next touch uses the classifier's decisions on training touches.
+    /// Returns whether a rule for the next touch uses the classifier's decisions on training touches.
     pub fn is_informed(&self) -> bool {
         let mut chosen = self.chosen_next();
         chosen.any(|next| next == NextTouch::MostInformative)

@@ -13,7 +13,7 @@ use ndarray::Array1;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Rule that forms groups of touches; a split into training and test touches does not divide a group.
+/// Rule that forms groups of touches; all touches of a group are on one side of a split into training and test touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepTogether {
     /// Rule that lists the pose parameters whose values define a group.
@@ -144,7 +144,7 @@ fn are_neighbours(a: &Touch, b: &Touch, drawn: &[(TouchAxis, f64)]) -> bool {
     drawn.iter().all(|&(axis, distance)| apart(axis) < distance)
 }
 
-/// Returns the root of the component that contains a touch, and shortens the path to the root (union-find).
+/// Returns the representative of the group of neighbouring touches to which a touch belongs (root in a union-find structure).
 fn root(first: &mut [usize], mut number: usize) -> usize {
     while first[number] != number {
         first[number] = first[first[number]];

@@ -12,7 +12,7 @@ use crate::world::Shear;
 use glam::DVec2;
 
 impl Check<'_> {
-    /// Checks the keys of skins that read shear and of touches that slide.
+    /// Checks the keys of skins that read shear forces and of touches that slide.
     pub fn shear(&self, spec: &StudySpec) -> Result<()> {
         self.of_sensed(spec)?;
         let touches = &spec.touches;

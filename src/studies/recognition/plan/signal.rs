@@ -23,7 +23,7 @@ pub struct Condition {
 }
 
 impl Check<'_> {
-    /// Returns the unit and the values of the noise standard deviation, for the quantity that the taxels read.
+    /// Returns the unit and the values of the noise standard deviation, for the quantity that the taxels measure.
     pub fn noise(
         &self,
         signal: &SignalSpec,
@@ -80,7 +80,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Returns an error that names `key` if the press stands still while frames are read.
+    /// Returns an error that names `key` if the array does not move while frames are read.
     fn moves(&self, key: &str, touches: &TouchesSpec) -> Result<()> {
         if touches.frames.values().iter().all(|&frames| frames < 2) {
             let given = "given, but every touch is read once, at rest";

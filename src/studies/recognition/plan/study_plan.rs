@@ -45,7 +45,7 @@ pub struct Plan {
     pub frames: Vec<usize>,
     /// Rule that forms groups of touches, which are never divided by a split; `None` if touches are not grouped.
     pub group_by: Option<KeepTogether>,
-    /// Plan of the study with the keys of `[test]`, which gives the test touches and their signal; `None` unless the study has `[test]`.
+    /// Plan that contains the keys of `[test]` and gives the test touches and their signal; `None` without a table `[test]`.
     pub tested: Option<Arc<Plan>>,
 }
 

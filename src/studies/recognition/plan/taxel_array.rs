@@ -128,8 +128,8 @@ impl TaxelArray {
         (!self.is_image()).then(chart)
     }
 
-    /// Returns the positions of the taxels mapped to a plane, metres. On a sphere, distance along the surface and direction from the middle are preserved
-    /// (azimuthal equidistant projection).
+    /// Returns the positions of the taxels after projection onto a plane, metres. On a sphere, distance along the surface and direction from the middle are
+    /// preserved (azimuthal equidistant projection).
     fn chart_places(&self) -> Vec<DVec2> {
         let place = |center: &DVec3| self.layout.place_on_plane(*center, self.radius);
         self.patch.layout().centers().iter().map(place).collect()
@@ -181,7 +181,7 @@ impl TaxelArray {
         self.say("×", "")
     }
 
-    /// Returns a description of the array that contains the word taxels, such as `64 × 64 taxels at 2 mm`.
+    /// Returns a description of the array that contains the word "taxels", such as `64 × 64 taxels at 2 mm`.
     pub fn describe_taxels(&self) -> String {
         self.say(" × ", " taxels")
     }

@@ -25,7 +25,7 @@ use toml::{Table, Value};
 pub(crate) const TABLES: &[&str] = &["objects", "skin", "touches", "signal"];
 const TABLES_OF_OTHERS: &[&str] = &["signal"];
 
-/// Keys whose values test touches always share with training touches.
+/// Keys that `[test]` must not contain, because test touches and training touches share their values.
 pub(crate) const SHARED: [&str; 4] = [
     "touches.per_object",
     "touches.frames",
@@ -151,7 +151,7 @@ impl Check<'_> {
 }
 
 impl Plan {
-    /// Returns those signal axes whose values `[test]` sets.
+    /// Returns the signal axes whose values the table `[test]` sets.
     fn own_signal<'a>(&'a self, test: &'a Table) -> impl Iterator<Item = &'a SignalAxis> {
         let own = test.get("signal").and_then(Value::as_table);
         let given = self.spec.signal.axes.given();

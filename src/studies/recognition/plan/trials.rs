@@ -1,4 +1,4 @@
-//! Numbering of splits and projections over the trials.
+//! Numbers of the splits and projections that the trials of a study use.
 
 use crate::error::Result;
 use crate::inputs::check::Check;
@@ -7,7 +7,7 @@ use crate::studies::recognition::spec::study::StudySpec;
 /// Methods that assign a split t and a projection (measurement matrix) t to each trial t. With P = `projections_per_split`, trial t has split t / P and
 /// projection t mod P, so that each split is combined with P projections. All other random numbers are drawn anew in each trial.
 impl StudySpec {
-    /// Returns the number of the split into training and test touches that a trial uses.
+    /// Returns the number of the split into training and test touches that is used in a trial.
     pub fn split_of(&self, trial: usize) -> usize {
         trial / self.projections_per_split.unwrap_or(1)
     }

@@ -17,8 +17,8 @@ use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::borrow::Cow;
 
-/// Declares a configuration: each parameter has a type, a condition under which its column exists, and the key that describes the column (or the column itself). The struct, the columns and the file format
-/// are generated from this list, in its order.
+/// Declares a configuration: each parameter has a type, a condition for the existence of its column, and the key or column that describes it. The struct, the
+/// columns and the file format are generated from this list, in its order.
 macro_rules! configuration {
     ($(#[$of_cell:meta])* pub struct $configuration:ident {
         $($(#[$($of_field:tt)*])* $field:ident: $type:ty => $how:ident $(($role:ident, $words:literal, $unit:literal, $scale:ident))? $(of $key:literal)?;)*
@@ -144,7 +144,7 @@ impl Configuration {
     }
 }
 
-/// Parameters of a configuration that have a column in every study.
+/// Parameters of a configuration with a column in the tables of every study.
 mod always {
     use super::*;
 

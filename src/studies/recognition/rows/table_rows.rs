@@ -20,8 +20,8 @@ pub struct TrialScore {
     /// Number of the projection (measurement matrix) that the trial uses. The column is present only if the study has `projections_per_split`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     projection: Option<usize> => Note: Linear, optional;
-    /// Number of the first trial with the same training and test touches; with `projections_per_split`, number of the first such split. The column is present
-    /// only if trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count all trials of a split once.
+    /// Number of the first trial (with `projections_per_split`: of the first split) with the same training and test touches. The column is present only if
+    /// trials repeat splits, as splits by pose do if there are more trials than parts. Statistical tests count all trials of a split once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     distinct_split: Option<usize> => Note "same split as": Linear, optional;
     /// Number of training rows (readings of training touches) of the trial.
@@ -153,7 +153,7 @@ pub struct Confused {
 } }
 
 row! {
-/// Comparison of a published accuracy with the accuracy in this study. A row of `published.csv` is a [`Configuration`] followed by a `Published`.
+/// Comparison of a published accuracy with the accuracy of this study. A row of `published.csv` is a [`Configuration`] followed by a `Published`.
 ///
 /// The [`Configuration`] is the most accurate one to which the claim applies. For each condition of the matching configurations, a claim has one row.
 pub struct Published {
@@ -192,14 +192,14 @@ pub struct Comparison {
     difference_high: Option<f64> => Note "difference, upper end": Linear;
     /// Two-sided p-value of the null hypothesis that the mean difference is zero; empty if there are too few trials.
     p_value: Option<f64> => Value(Neither) "p-value": Linear;
-    /// `p_value` after Holm's correction for the number of comparisons: all configurations except the best ones. Empty for the best ones.
+    /// `p_value` after Holm's correction for the number of comparisons, which is the number of configurations that are not the best. Empty for the best ones.
     #[serde(default)]
     p_holm: Option<f64> => Value(Neither) "p-value, Holm": Linear;
     /// Reason why the row has a p-value or has none.
     #[serde(default)]
     p_status: PStatus => Outcome "test";
-    /// Minimum number of trials with which the row has a p-value; with `projections_per_split`, the minimum number of splits. Empty if no number suffices,
-    /// because too many rows are tested or further trials repeat the same splits.
+    /// Minimum number of trials for a p-value; with `projections_per_split`, the minimum number of splits. Empty if no number suffices, because too many rows
+    /// are tested or further trials repeat the same splits.
     #[serde(default)]
     n_trials_needed: Option<usize> => Note "trials needed": Linear;
 } }
@@ -209,7 +209,7 @@ row! {
 pub struct TrialTime {
     /// Number of the trial, from 0.
     trial: usize => Subject: Linear;
-    /// Time to train the classifier, s, including scaling and the choice of C and γ. Configurations that differ only in `touches_per_decision` share one fit.
+    /// Time to train the classifier, including scaling and the choice of C and γ, s. Configurations that differ only in `touches_per_decision` share one fit.
     fit_s: f64 => Cost "time to train" in "s": Log;
     /// Time to score all test touches and to decide all test rows, s. Configurations that differ only in `touches_per_decision` share the scores.
     predict_s: f64 => Cost "time to predict" in "s": Log;
@@ -231,7 +231,7 @@ pub struct Pareto {
     fit_us_per_touch: f64 => Cost "time to train, of a training touch" in "µs": Log;
     /// Time of one decision on `touches_per_decision` touches, averaged over trials, µs.
     predict_us_per_decision: f64 => Cost "time of a decision" in "µs": Log;
-    /// Whether the configuration is on the Pareto front of accuracy against `fit_s`: no other one dominates it in these two values.
+    /// Whether the configuration is on the Pareto front of accuracy against `fit_s`.
     on_training_front: bool => Note;
     /// Whether the configuration is on the Pareto front of accuracy against `predict_us_per_decision`.
     on_prediction_front: bool => Note;
@@ -278,7 +278,7 @@ pub struct Tables {
     pub summary: Vec<(Configuration, ConfigurationScore)>,
     /// Rows of `confusion.csv`: non-zero counts, ordered by configuration.
     pub confusion: Vec<Confusion>,
-    /// Rows of `comparison.csv`: one per configuration, which is compared with the best one of its condition.
+    /// Rows of `comparison.csv`: one per configuration, compared with the best configuration under the same condition.
     pub comparison: Vec<Comparison>,
     /// Rows of `timing.csv`: one per configuration and trial.
     pub timing: Vec<(Configuration, TrialTime)>,
@@ -294,7 +294,7 @@ pub struct Tables {
     pub variance: Vec<Variance>,
     /// Rows of `limits.csv`: number of times that each limit of the simulation and of the solver was reached.
     pub limits: Vec<Limit>,
-    /// Whether the trials are the folds of a cross-validation.
+    /// Whether the trials are the folds of a k-fold split.
     pub has_folds: bool,
 }
 

@@ -28,19 +28,19 @@ pub enum PoseSplit {
     /// Test touches are drawn at random. On a grid of poses, most test touches then have neighbours among the training touches.
     #[default]
     Random,
-    /// In each trial, one yaw is held out for testing; the next trial holds out the next yaw.
+    /// One yaw angle per trial is held out for testing; each trial holds out the next yaw angle.
     LeaveOneYawOut,
     /// The touches with the larger half of the yaw angles are test touches in one trial; those with the smaller half in the next trial.
     HalfOfYaws,
     /// One eighth of the offsets and yaws is held out for testing; the opposite eighth is used for training.
     OppositeBlocks,
-    /// In each trial, one tilt is held out for testing; the next trial holds out the next tilt.
+    /// One tilt per trial is held out for testing; each trial holds out the next tilt.
     UnseenTilt,
-    /// In each trial, one depth is held out for testing; the next trial holds out the next depth.
+    /// One depth per trial is held out for testing; each trial holds out the next depth.
     UnseenDepth,
 }
 
-/// Pose parameters whose values a block divides into halves.
+/// Pose parameters whose values are divided into two halves to form blocks of poses.
 const BLOCK: [TouchAxis; 3] = [TouchAxis::OffsetX, TouchAxis::OffsetY, TouchAxis::Yaw];
 
 impl PoseSplit {
@@ -96,7 +96,7 @@ impl PoseSplit {
         }
     }
 
-    /// For each touch, returns its side in a trial: training, test, or left out.
+    /// Returns the side of each touch in a trial: training, test, or left out.
     ///
     /// # Errors
     /// If a required axis has drawn values or fewer than two listed values.
@@ -127,8 +127,8 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the sides of touches for a split by blocks. Each bit of `trial` selects the tested half of one axis; 0 selects the larger values. Touches in the
-    /// tested half of all axes are test touches. Touches in the tested half of no axis are training touches.
+    /// Returns the side (training, test or left out) of each touch for a split by blocks. Each bit of `trial` selects the tested half of one axis; 0 selects
+    /// the larger values. Touches in the tested half of all axes are test touches. Touches in the tested half of no axis are training touches.
     fn blocks(self, touches: &[&Touch], axes: &[TouchAxis], trial: usize) -> Result<Vec<Side>> {
         let block = axes.len();
         // For each touch, the number of its values that lie in the tested halves.

@@ -223,7 +223,7 @@ impl RecordedSpec {
         files.chain(others.into_iter().flatten())
     }
 
-    /// Returns the paths of all files that the recording consists of.
+    /// Returns the paths of all files of the recording.
     pub fn files(&self) -> Vec<&Path> {
         let labels = Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty());
         let others = [
@@ -244,7 +244,7 @@ impl RecordedSpec {
         files.into_iter().flatten().chain(others).collect()
     }
 
-    /// Returns the file that contains the array `name`: the file given by its key, or the archive of the frames if that contains the array.
+    /// Returns the file that contains the array `name`: the file given by its key, or the archive with the frames.
     pub fn file_of(&self, name: &str) -> Option<&Path> {
         let given = match name {
             "frames" => Some(self.frames.as_path()),

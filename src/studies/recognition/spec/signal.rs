@@ -25,8 +25,8 @@ pub struct SignalSpec {
     pub axes: SignalAxes,
     /// Axis: skin on which test touches are simulated, `same_skin` (default, the training skin) or `another_skin`.
     pub test_sensor: Option<Axis<TestSensor>>,
-    /// Way in which the axes of `[signal]` are combined with each other: `all` (default) or `one_at_a_time`. The axes of `[signal]` are always combined with
-    /// all other axes of the study.
+    /// Rule that combines the axes of `[signal]`: `all` (default) or `one_at_a_time`. The axes of `[signal]` are always combined with all other axes of the
+    /// study.
     #[serde(skip_serializing_if = "is_default")]
     pub combine: CombineSpec,
 }

@@ -115,7 +115,7 @@ pub struct RecognitionSpec {
     /// Axis: depth window of the image features, as a fraction of the full scale. Image features use only deflections that are within the window below the
     /// largest deflection of a frame, so that the features do not depend on the press depth. Default: the whole image.
     pub depth_window_full_scale: Option<Axis<f64>>,
-    /// Axis: number of additional copies of each training touch, whose images are tilted at random. The copies make recognition robust to tilts that do not
+    /// Axis: number of additional copies of each training touch, whose images are randomly tilted. The copies make recognition robust to tilts that do not
     /// occur in training. Copies require image features. Default: 0.
     pub tilt_augmentation: Option<Axis<usize>>,
     /// Maximum tilt of a copy about the array's x and y axes, degrees; tilts are distributed uniformly. Default: 5.
@@ -230,8 +230,8 @@ pub struct PublishedSpec {
     pub accuracy: f64,
     /// Publication that contains the claim.
     pub source: String,
-    /// Further keys, which select the configurations to compare with. Each key is the name of a column of [`Configuration`] with its value (`noise` is short
-    /// for `noise_std`).
+    /// Further keys that select the configurations to compare with the claim. Each key is the name of a column of [`Configuration`] with its value (`noise` is
+    /// short for `noise_std`).
     #[serde(flatten)]
     #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     pub at: toml::Table,
@@ -244,7 +244,7 @@ impl Serialize for RecognitionSpec {
     }
 }
 
-/// Reads the fields by the derived function, and the keys of parameters by their declarations.
+/// Deserialises the fields by the derived function, and the parameters of classifiers by their declarations.
 impl<'de> Deserialize<'de> for RecognitionSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
         deserializer.deserialize_map(RecognitionVisitor)
@@ -289,7 +289,7 @@ impl StudySpec {
         self.human_touch.is_none() && self.recorded.is_none()
     }
 
-    /// For each key that is an axis, returns the number of its values. Keys of the signal are excluded, because they may be combined differently.
+    /// Returns the number of values of each key that is an axis. Keys of the signal are excluded, because they may be combined differently.
     pub(crate) fn axis_lengths(&self) -> impl Iterator<Item = (&'static str, usize)> {
         // TOML integers have 63 bits; a seed from the command line may be larger.
         let without_seed = Self {

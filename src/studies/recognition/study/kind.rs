@@ -172,7 +172,7 @@ impl Study for RecognitionStudy {
         }
     }
 
-    /// Describes the family of configurations by the settings of its first configuration.
+    /// Returns a description of a family of configurations: the settings of its first configuration.
     fn item_words(&self, number: usize, item: &WorkItem) -> String {
         if number >= self.touches_item(0) {
             return item.name.clone();

@@ -120,7 +120,7 @@ impl RecognitionStudy {
 /// smaller value, short waits are announced.
 const MANY_SPLITS: f64 = 7e7;
 
-/// Returns a message if the split of the touches into training and test touches takes a noticeable time.
+/// Returns a message if splitting the touches into training and test touches takes a noticeable time.
 fn slow_splits(n_touches: f64, n_trials: usize) -> Option<String> {
     (n_touches * n_trials as f64 >= MANY_SPLITS)
         .then(|| format!("splitting {n_touches} touches in {n_trials} trials"))

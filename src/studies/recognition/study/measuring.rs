@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Measurement to compute: a group of configurations in one trial, and the group's pending families.
 pub(crate) struct Job<'a> {
     study: &'a RecognitionStudy,
-    /// Index of the group; if several groups have equal measurements, index of the first one.
+    /// Index of the group; among groups with equal measurements, the index of the first group.
     group: usize,
     trial: usize,
     n_measurements: usize,

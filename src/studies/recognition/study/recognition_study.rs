@@ -38,7 +38,7 @@ pub struct RecognitionStudy {
     pub(crate) scale: Scale,
     /// Sample touches for pictures, computed at the first use.
     samples: Shared<Samples>,
-    /// All different sets of touches that are simulated.
+    /// All distinct sets of touches that are simulated.
     pub(crate) touch_sets: Vec<Touches>,
     /// Groups of configurations of all parts, ordered by part.
     pub(crate) groups: Vec<PlacedGroup>,
@@ -95,7 +95,7 @@ impl RecognitionStudy {
         Self::of_variants(vec![(AxisValues::default(), plan, touched)])
     }
 
-    /// Creates a study from all combinations of the values in `[axes]`, each with its training and test touches.
+    /// Creates a study from all combinations of axis values in `[axes]`, each with training and test touches.
     ///
     /// # Errors
     /// If there are too few objects or touches, or a sample object does not exist.
@@ -136,7 +136,7 @@ impl RecognitionStudy {
         Ok(study)
     }
 
-    /// Lists all groups and families of configurations, and finds groups with equal touches or measurements.
+    /// Lists all groups and families of configurations, and determines groups with equal touches or measurements.
     fn place_groups(&mut self) {
         let mut known_touches: HashMap<String, usize> = HashMap::new();
         let mut known_groups: HashMap<String, usize> = HashMap::new();
@@ -194,7 +194,7 @@ impl RecognitionStudy {
         &self.parts
     }
 
-    /// Returns the part of the study that contains the configuration with this number; if no part contains it, returns the last part.
+    /// Returns the part of the study that contains the configuration with this number; the last part if no part contains it.
     pub fn part_of(&self, configuration: usize) -> &StudyPart {
         let has_it = |part: &&StudyPart| {
             part.sweep
@@ -268,7 +268,7 @@ impl RecognitionStudy {
         (part, &part.sweep.groups[place])
     }
 
-    /// Returns the configurations of a family, and the part of the study to which they belong.
+    /// Returns the configurations of a family, and the part of the study that contains them.
     pub(crate) fn family(&self, family: usize) -> (&StudyPart, &[Configuration]) {
         let Family {
             group,

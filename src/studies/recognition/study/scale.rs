@@ -1,4 +1,4 @@
-//! Memory estimate of a recognition study: frames, measurements, and the rows and matrices of training.
+//! Memory estimate of a recognition study: frames, measurements, and data of the training.
 
 use crate::engine::work_items::scale::Scale;
 use crate::sensing::N_COMPONENTS;
@@ -19,7 +19,7 @@ const CELL_BYTES: f64 = 4e3;
 const TRAINING_BYTES: f64 = 32.0;
 /// Memory per feature value of the test rows, bytes. The memory covers three copies of a value: original, scaled, and in the format of the kernel.
 const TEST_BYTES: f64 = 20.0;
-/// Memory of a score, and of its contribution to decisions on several touches, bytes.
+/// Memory of a score and of its share in decisions on several touches, bytes.
 const SCORE_BYTES: f64 = 16.0;
 
 /// Returns the size of a recognition study: numbers of work items, memory and disk space.
@@ -69,8 +69,7 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     }
 }
 
-/// Returns the memory of learned ensembles and image estimators, bytes: the frames to which they are fitted (n values each, original and centred), and the
-/// results of the fit.
+/// Returns the memory of learned ensembles and image estimators, bytes: the frames for fitting (n values each), and the fitted results.
 fn learned_bytes(group: &MeasurementGroup, n: f64) -> f64 {
     let frames = (2 * WITH_COPIES + UNTOUCHED) as f64;
     let estimates: f64 = group.counts_of_images().iter().map(|&m| m as f64).sum();
@@ -80,8 +79,7 @@ fn learned_bytes(group: &MeasurementGroup, n: f64) -> f64 {
     }
 }
 
-/// Returns the memory to evaluate a family of configurations, bytes: its training and test rows, their scores, and the kernel values of its solver. `n_read` is
-/// the number of readings of one touch per class.
+/// Returns the memory for evaluating a family of configurations, bytes: training and test rows, scores, and kernel values.
 fn family_bytes(
     plan: &Plan,
     configuration: &Configuration,

@@ -58,7 +58,7 @@ macro_rules! push_each {
 pub struct Sweep {
     /// Groups of configurations, ordered by array.
     pub groups: Vec<MeasurementGroup>,
-    /// For each trial, the split of all touches into training and test touches.
+    /// Split of all touches into training and test touches for each trial.
     pub splits: Vec<Hashed<Split>>,
     /// For each trial, the number of the first trial with the same split: the trial's own number if no earlier one has it.
     pub first_equal: Vec<usize>,
@@ -66,7 +66,7 @@ pub struct Sweep {
     pub labels: Hashed<Array1<usize>>,
     /// For each touch, the number of its group; `None` if the split may divide groups.
     pub group_keys: Option<Hashed<Array1<usize>>>,
-    /// For each touch, its pose; `None` unless the study chooses touches by their poses.
+    /// Pose of each touch; `None` if the study does not select touches by their poses.
     pub poses: Option<Hashed<Poses>>,
 }
 
@@ -170,7 +170,7 @@ impl Sweep {
             .sum()
     }
 
-    /// Checks that a learned ensemble has enough frames of training touches: the frames minus their mean must span more directions than there are measurements.
+    /// Checks that a learned ensemble has enough training frames: their variations must span more directions than there are measurements.
     fn check_learned(&self, plan: &Plan, group: &MeasurementGroup) -> Result<()> {
         if !group.ensemble.is_learned() {
             return Ok(());

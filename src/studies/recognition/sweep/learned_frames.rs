@@ -1,6 +1,6 @@
 //! Numbers of training frames to which learned ensembles and image features are fitted.
 
-/// Returns the maximum number of training touches to which ensembles and image estimators are fitted, if each touch has `n_frames` frames.
+/// Returns the maximum number of training touches with `n_frames` frames each to which ensembles and image estimators are fitted.
 pub(crate) fn learned_touches(n_frames: usize) -> usize {
     LEARNED_FRAMES.div_ceil(n_frames.max(1))
 }

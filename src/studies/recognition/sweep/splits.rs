@@ -119,7 +119,7 @@ pub fn train_touches(plan: &Plan, splits: &[Split], labels: &Array1<usize>) -> R
     Ok(train_touches)
 }
 
-/// For each set of touches, counts the touches of each object; returns the smallest number over all sets and objects.
+/// Returns the smallest number of touches per object, over all sets of touches and all objects.
 fn fewest_per_object<'a>(
     sets: impl Iterator<Item = &'a Vec<usize>>,
     labels: &Array1<usize>,

@@ -271,7 +271,7 @@ pub fn pareto(
     Ok(table)
 }
 
-/// For each condition, marks the configurations that no other configuration dominates.
+/// Marks the configurations that no other configuration under the same condition dominates.
 fn mark_fronts(table: &mut [(Configuration, Pareto)]) -> Result<()> {
     for alike in by_condition(table.iter().map(|(configuration, _)| configuration))? {
         let on_front = |cost: fn(&Pareto) -> f64| {

@@ -92,8 +92,8 @@ pub fn tabulate(
     Ok(())
 }
 
-/// Gives all rows the optional columns that any row has. If a combination of axis values holds out no groups, each test row counts as a group. If a split has
-/// no earlier equal split, its first equal split is itself.
+/// Adds optional columns to all rows if at least one row has them. If a combination of axis values holds out no groups, each test row counts as a group. If a
+/// split has no earlier equal split, its first equal split is itself.
 pub fn share_columns(mut scores: Vec<&mut TrialScore>) {
     let has_groups = scores.iter().any(|score| score.n_groups.is_some());
     let has_repeats = scores.iter().any(|score| score.distinct_split.is_some());

@@ -5,7 +5,7 @@ use crate::world::{Placement, Spread, Touch, TouchAxis};
 use ndarray::Array2;
 use std::f64::consts::TAU;
 
-/// Returns the poses of touches, reduced to those pose parameters that have more than one value. Each parameter is divided by its range.
+/// Returns the poses of touches, restricted to the pose parameters that have more than one value. Each parameter is divided by its range.
 pub fn scaled_poses(placement: &Placement, touches: &[&Touch]) -> Poses {
     let spreads = placement.spreads().into_iter();
     let ranges = spreads.map(|(axis, spread)| (axis, range(spread)));

@@ -41,7 +41,7 @@ pub struct TrialInputs<'a> {
     pub tested_block: Option<usize>,
     /// For each touch, the number of the touched object.
     pub labels: &'a Hashed<Array1<usize>>,
-    /// For each touch, the number of its group; `None` if the split may divide groups.
+    /// Group number of each touch; `None` if the split may divide groups.
     pub group_keys: Option<&'a Hashed<Array1<usize>>>,
 }
 
@@ -54,7 +54,7 @@ pub struct FamilyInputs<'a> {
     pub train_touches: Option<usize>,
     /// Fraction of the training touches that are labelled as another object, 0 to 1; `None` if all labels are correct.
     pub mislabelled_fraction: Option<f64>,
-    /// Number of training touches of the most frequent object, divided by the number of the least frequent one, at least 1; `None` for equal numbers.
+    /// Number of training touches of the most frequent object divided by that of the least frequent, at least 1; `None` without imbalance.
     pub class_imbalance: Option<f64>,
     /// Classifier, and the candidate values from which its C and γ are selected.
     pub training: TrainingInputs,
@@ -136,7 +136,7 @@ impl TrialInputs<'_> {
         Ok(labels)
     }
 
-    /// For each test touch, returns its group; returns `None` unless whole groups are held out.
+    /// Returns the group of each test touch; `None` if the split does not hold out whole groups.
     pub fn test_groups(&self, test: &[usize]) -> Option<Vec<usize>> {
         match (self.tested_block, self.group_keys) {
             (Some(block), _) => Some(vec![block; test.len()]),
@@ -187,7 +187,7 @@ impl<'a> FamilyInputs<'a> {
 }
 
 impl Decision {
-    /// Returns whether a policy for the next touch uses the classifier's decisions on training touches.
+    /// Returns whether a rule for the next touch uses the classifier's decisions on training touches.
     pub fn is_informed(&self) -> bool {
         self.next_touch == NextTouch::MostInformative
     }
@@ -245,7 +245,7 @@ pub fn family_name(
 }
 
 impl Sweep {
-    /// Returns the inputs that all families of the trial with this number share.
+    /// Returns the inputs of the trial with this number, which all families of configurations share.
     ///
     /// # Errors
     /// If the study has no trial with this number.

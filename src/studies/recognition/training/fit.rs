@@ -1,4 +1,4 @@
-//! Training of a family of configurations on common features: one fit for each C.
+//! Training of a family of configurations on common features, with one classifier for each C.
 
 use crate::error::Result;
 use crate::learning::classifiers::classifier::{Classifier, Cost};
@@ -165,7 +165,7 @@ impl Training<'_> {
         Ok(Some(number(classifier.gamma()).unwrap_or_else(scale)))
     }
 
-    /// Returns the training rows for the choice of C and γ: first readings only, and at most the given number per object. With further readings, a fold could
+    /// Returns the training rows that are used to choose C and γ: first readings only, with a maximum number per object. With further readings, a fold could
     /// train on another reading of a held-out touch.
     fn choosing_rows(&self) -> Vec<usize> {
         let most = self.inputs.cv_touches.unwrap_or(usize::MAX);

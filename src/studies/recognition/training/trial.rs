@@ -41,7 +41,7 @@ pub struct Evaluation {
 pub struct Trial<'a> {
     /// Inputs of the trial: its labels, split and groups.
     pub inputs: TrialInputs<'a>,
-    /// Measurements of all touches. Each frame has at least as many measurements as any configuration needs.
+    /// Measurements of all touches in the trial. Each frame has at least as many measurements as any configuration needs.
     pub measurements: &'a Measurements,
 }
 

@@ -18,9 +18,9 @@ use crate::smo::variables::bounds;
 const MAX_FREE: usize = 384;
 /// Maximum number of variables at bounds that become free in one step.
 const MAX_ENTERING: usize = 8;
-/// Minimum violation of the optimality conditions at which a variable becomes free, as a fraction of the largest violation.
+/// Minimum violation of the optimality conditions for a variable to become free, relative to the largest violation.
 const SHARE_OF_FARTHEST: f64 = 0.5;
-/// Maximum number of repeated solutions if linearly dependent rows leave the gradient unequal on the free variables.
+/// Maximum number of repeated solutions of the equations, which linearly dependent rows can require.
 const MAX_REPEATS: u64 = 8;
 
 /// Stopping criteria of the active-set method.
@@ -61,7 +61,7 @@ pub(crate) fn solve_by_active_set<T: Scalar, G: Gram<T>>(
     n_ways
 }
 
-/// State of the active-set method: coefficients, gradient and factors of the equations.
+/// State of the active-set method: coefficients, gradient, and factors of the linear equations.
 struct ActiveSet<'a> {
     labels: &'a [f64],
     beta: &'a mut [f64],
@@ -144,7 +144,8 @@ impl<'a> ActiveSet<'a> {
         most_ways
     }
 
-    /// Returns the fraction of the given steps up to the first bound, at most 1. If a variable blocks the step, returns its position and the bound.
+    /// Returns the fraction of the given steps at which the first variable reaches a bound, at most 1. If a variable blocks the step, returns its position and
+    /// the bound.
     fn step_fraction(&self, steps: &[f64]) -> (f64, Option<(usize, f64)>) {
         let (mut share, mut blocked) = (1.0, None);
         for (place, variable) in self.factor.variables() {
@@ -168,7 +169,7 @@ impl<'a> ActiveSet<'a> {
         violation(self.beta, self.labels, self.f, self.c)
     }
 
-    /// Returns the variables at bounds with the largest violations of the optimality conditions, if they exceed the violations of all free variables.
+    /// Returns the variables at bounds that violate the optimality conditions most, if they violate them more than all free variables.
     fn entering(&self) -> Vec<usize> {
         let mut beyond = vec![0.0; self.beta.len()];
         let mut farthest = [0.0_f64; 2];
@@ -249,7 +250,7 @@ mod tests {
         }
     }
 
-    /// Asserts that active-set steps from `start` reach the objective that pairwise steps reach.
+    /// Asserts that active-set steps from `start` reach the same objective as pairwise steps.
     fn assert_settles((kernel, labels): &(Array2<f64>, Vec<f64>), start: Vec<f64>, c: f64) {
         let mut gram = Dense::<f64>::default();
         gram.of_whole(kernel.view());
