@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Times of each pose that are kept, at most: their median needs no more.
+/// Maximum number of stored times per pose, from which the median is computed.
 const MAX_REPEATS: usize = 1_000_000;
 
 #[derive(clap::Args)]

@@ -12,7 +12,7 @@ use bubbletouch::study::{Shard, sha256};
 use bubbletouch::{Error, Result};
 use std::path::Path;
 
-/// Jobs of an array, at most: what Slurm can be set to.
+/// Maximum number of jobs in a job array, which is the largest value that Slurm can be configured to allow.
 const MAX_JOBS: usize = 4_000_000;
 
 /// Digits of the hash in a job's name. Fewer: two runs may share a name; more: squeue cuts the name.

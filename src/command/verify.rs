@@ -1,4 +1,4 @@
-//! `bubbletouch verify`: whether a folder of results comes out again.
+//! `bubbletouch verify`: checks that a result folder can be reproduced.
 
 use crate::command::options::memory_limit::MemoryLimit;
 use crate::command::options::results_folder::{check_page, checked_manifest, load_study};

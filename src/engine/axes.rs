@@ -53,7 +53,8 @@ pub struct StudyAxes {
 pub struct StudyAxis {
     /// Path of the key, such as `touches.depth_mm`, or `touches.offset_{x,y}_mm` for two keys.
     pub key: String,
-    /// Description of the varied key, or of the first key if several are varied together. For keys of test touches, the description of the key without `test.`.
+    /// Description of the key that is varied; of the first key if several keys are varied together. For keys of test touches, the description of the key
+    /// without `test.`.
     pub about: Option<&'static KeyAbout>,
     /// Whether result tables already contain a column with the values of this key.
     pub has_column: bool,
@@ -360,7 +361,7 @@ impl StudyAxis {
         path.strip_suffix(".within").unwrap_or(&path).to_owned()
     }
 
-    /// Returns the preferred name of the axis's table column: the last part of the key path, with the prefix `test_` for keys of test touches.
+    /// Returns the preferred name of the axis's table column: the last part of the key path, with `test_` before keys of test touches.
     fn name(&self) -> String {
         let path = self.path();
         let last = path.rsplit('.').next().unwrap_or(&path);

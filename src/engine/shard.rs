@@ -1,4 +1,4 @@
-//! Shard of a study: the part of its work that one process computes, independently of other processes.
+//! Shard of a study: the part of the work items that one process computes, independently of other processes.
 
 use crate::error::{Error, Result};
 use std::fmt::{self, Display};

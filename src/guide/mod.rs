@@ -1,4 +1,4 @@
-//! Guide: the chapters of `guide/`, in three groups: how to do it, what it means, why to believe it.
+//! The chapters of `guide/` in three groups: how to use the program, what its terms mean, and how it was verified.
 
 #[doc = include_str!("../../guide/first_study.md")]
 pub mod first_study {}

@@ -302,7 +302,7 @@ pub fn load_named_meshes(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<NamedM
     Ok(meshes)
 }
 
-/// Returns the objects with the given names of a built-in set or of a TOML file; without names, returns all objects of the set.
+/// Returns the objects of a built-in set or of a TOML file that have the given names; all objects if no names are given.
 pub(crate) fn set_entries(set: &SetName, names: Option<&[String]>) -> Result<Vec<Entry>> {
     let mut entries: Vec<Entry> = match set {
         SetName::File(path) => load_catalogue(path)?.entries().to_vec(),

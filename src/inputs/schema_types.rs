@@ -112,7 +112,7 @@ pub fn with_mesh_unit(schema: &mut Schema) {
     also_named("unit", "mesh_unit", schema.ensure_object());
 }
 
-/// Adds the key `other` with an equal meaning to all tables of a JSON schema that have the key `name`.
+/// Adds the key `other`, with the meaning of the key `name`, to all tables of a JSON schema that have `name`.
 fn also_named(name: &str, other: &str, schema: &mut Map<String, Value>) {
     if let Some(keys) = schema.get_mut("properties").and_then(Value::as_object_mut)
         && let Some(mut own) = keys.get(name).cloned()

@@ -82,7 +82,7 @@ pub struct Candidate {
 pub struct Advice {
     /// Advised choice: the cheapest candidate with a sufficient value, or the best candidate within the budget.
     pub choice: Candidate,
-    /// Cheapest choice whose whole confidence interval meets the requirement; `None` if there is none or if `choice` already does.
+    /// Cheapest choice whose whole confidence interval meets the requirement; `None` if there is none or if it equals `choice`.
     pub certain: Option<Candidate>,
     /// Cheapest candidate with a better value than `choice`.
     pub next_up: Option<Candidate>,

@@ -44,7 +44,7 @@ pub fn answers(offers: &Candidates, wish: Requirement, worst: bool) -> Result<Ve
     })
 }
 
-/// Returns the answers as JSON: the table, its value and cost columns, and for each condition the advised choices with all columns by name.
+/// Returns the answers as JSON: the table, its value and cost columns, and the advised choices for each condition.
 pub fn answers_json(offers: &Candidates, answers: &[Answer]) -> serde_json::Value {
     let in_json = |offer: &Candidate| offers.json(offer);
     let answers = answers

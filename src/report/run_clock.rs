@@ -35,8 +35,8 @@ impl RunClock {
         now.duration_since(self.start).as_secs_f64()
     }
 
-    /// Returns the estimated time until the last work item is finished, s: the mean time of finished items times the number of pending ones. Returns `None` if
-    /// no item is finished.
+    /// Returns the estimated time until all work items are finished, s: mean time per finished item times number of pending items. Returns `None` if no item is
+    /// finished.
     pub fn left_s(&self, now: Instant) -> Option<f64> {
         let n_pending = self.n_items.saturating_sub(self.n_finished);
         match (n_pending, self.n_finished) {

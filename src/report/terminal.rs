@@ -1,4 +1,4 @@
-//! Text output for the terminal: tables that fit the terminal's width.
+//! Text output on the terminal: tables that fit the width of the terminal.
 
 use crate::report::pictures::colours::Rgb;
 use crate::report::swept::{Setting, Swept, without};

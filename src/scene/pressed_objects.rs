@@ -79,7 +79,7 @@ impl PressedObjects {
         }
     }
 
-    /// For the patch with the given index, iterates over its contacts with the objects that are pressed onto it.
+    /// Returns the contacts of a patch, given by its index, with the objects that are pressed onto the patch.
     pub fn contacts_on<'a>(
         &'a self,
         plan: &'a ScenePlan,

@@ -96,7 +96,7 @@ pub struct PressSpec {
     pub direction: [f64; 3],
     /// Target of the patch's total spring force from all objects, N, at least 0: one number, or one number for each time in `time_s`.
     pub force_n: Numbers,
-    /// Times at which the target forces hold, s. Between the times, forces are interpolated linearly; outside, they are constant.
+    /// Times of the target forces since the start of the scene, s. Between the times, forces are interpolated linearly; outside, they are constant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub time_s: Vec<f64>,
     /// Maximum speed of the object along the direction, mm/s, positive.

@@ -22,7 +22,7 @@ use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 
-/// Address of the JSON Schema version.
+/// Address of the JSON Schema version that the schemas use.
 const DIALECT: &str = "https://json-schema.org/draft/2020-12/schema";
 
 /// Returns the JSON Schema of scene files.

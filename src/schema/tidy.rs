@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-/// Removes nulls, formats of Rust numbers, and links from a schema.
+/// Removes nulls, number formats of Rust, and links from a schema.
 pub(super) fn tidy(schema: &mut Value) {
     match schema {
         Value::Object(keys) => tidy_object(keys),

@@ -70,7 +70,7 @@ pub fn compare(
     estimate.test(n_trials, confidence).map(Some)
 }
 
-/// Tests the difference between the scores of two configurations whose trials combine every split with every projection. Splits are the rows of `a` and `b`,
+/// Tests whether the scores of two configurations differ, if their trials combine every split with every projection. Splits are the rows of `a` and `b`,
 /// projections the columns. Returns `None` for fewer than two splits or two projections, or if `a` and `b` differ in shape.
 ///
 /// With S splits, P projections, and the mean squares of the differences by splits, projections and residual, the variance of the mean difference is

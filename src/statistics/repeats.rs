@@ -93,7 +93,7 @@ pub struct Paired {
 }
 
 impl Paired {
-    /// Pairs the trials of two configurations by trial number.
+    /// Creates pairs of trials of two configurations that have equal trial numbers.
     pub fn new(all_ours: &[Repeat], theirs: &[Repeat]) -> Self {
         let pairs = all_ours.iter().filter_map(|ours| {
             let theirs = theirs.iter().find(|theirs| theirs.trial == ours.trial);

@@ -274,7 +274,7 @@ fn write_results(
 }
 
 impl<K: Study> Loaded<K> {
-    /// Returns the numbers of `n` work items, drawn at random with `seed` from those that did not fail.
+    /// Returns the numbers of `n` work items that are drawn at random, with the given seed, from those that did not fail.
     pub(crate) fn drawn(&self, folder: &Path, (n, seed): (usize, u64)) -> Result<BTreeSet<usize>> {
         let failed: Vec<ItemFailure> = read_rows(&folder.join(FAILURES_FILE))?;
         let has_failed = |number: usize| {

@@ -79,7 +79,7 @@ impl Source {
         }
     }
 
-    /// Checks that no command-line option replaces the objects; `why` explains what the study has in place of objects.
+    /// Returns an error if a command-line option replaces the objects; `why` states what the study has in place of objects.
     ///
     /// # Errors
     /// If an option replaces the objects.

@@ -172,7 +172,7 @@ impl Column {
         }
     }
 
-    /// Returns the display name of a word that the column contains.
+    /// Returns the display name of a text that the column contains.
     pub fn word(&self, code: &str) -> String {
         let name = self.name_of(code);
         name.map_or_else(|| code.replace('_', " "), str::to_owned)

@@ -4,7 +4,7 @@ use super::{Column, Data, Role, Scale, Shown, Table, Value};
 use std::collections::HashMap;
 
 impl Table {
-    /// Groups the given rows by their values in some columns, in the order in which the values first occur. Missing columns are ignored.
+    /// Groups the given rows by their values in some columns; the groups are in the order in which the values first occur. Missing columns are ignored.
     pub fn groups(
         &self,
         columns: &[&str],

@@ -66,7 +66,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// Relative tolerance within which two settings are equal, with respect to the larger number. A ratio of 100 on 4,096 taxels, for example, gives 41
+/// Relative difference, with respect to the larger number, up to which two settings are considered equal. A ratio of 100 on 4,096 taxels, for example, gives 41
 /// measurements, which is a ratio of 99.90. With a larger value, neighbouring settings are merged; with a smaller value, this ratio is rejected.
 const SAME_SETTING: f64 = 1e-3;
 

@@ -18,7 +18,7 @@ pub fn dataset(features: Array2<f64>, labels: Array1<usize>) -> Result<Dataset> 
     Ok(DatasetBase::new(features, labels))
 }
 
-/// Returns a copy of the rows at the given indices, in the given order.
+/// Returns a data set with copies of the rows at the given indices, in the given order.
 ///
 /// # Errors
 /// If an index is beyond the last row.

@@ -358,7 +358,7 @@ fn absolute_differences<T: Scalar>(
     }
 }
 
-/// Writes the L1 distance `|x − z|₁` between one row x and each of several consecutive rows z.
+/// Writes the L1 distance `|x − z|₁` between a row x and each of several consecutive rows z.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn absolute_differences_of<T: Scalar>(left: &[T], rows: &[T], to: &mut [T]) {
     let (left_lanes, left_last) = left.as_chunks::<16>();

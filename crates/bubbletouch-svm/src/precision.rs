@@ -12,7 +12,7 @@ pub trait Precision: linfa::Float {
     /// Returns the data set in `f64`; `f32` features are converted, `f64` features are borrowed.
     fn double(data: &DatasetBase<Array2<Self>, Array1<usize>>) -> Cow<'_, Dataset>;
 
-    /// Returns the features (n_rows × m) in `f64`; `f32` features are converted, `f64` features are borrowed.
+    /// Returns the features (n_rows × m) in `f64`: `f32` features are converted, and `f64` features are borrowed.
     fn double_features<D: Data<Elem = Self>>(
         features: &ArrayBase<D, Ix2>,
     ) -> CowArray<'_, f64, Ix2>;

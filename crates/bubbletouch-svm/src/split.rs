@@ -214,7 +214,7 @@ pub fn group_k_fold(
     )
 }
 
-/// Returns an error if a class has rows in fewer than k groups, because some fold would have no test row of the class.
+/// Returns an error if a class has rows in fewer than k groups, so that a fold would lack test rows of the class.
 fn check_groups_of_classes(
     labels: ArrayView1<usize>,
     groups: ArrayView1<usize>,

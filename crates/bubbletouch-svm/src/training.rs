@@ -39,7 +39,7 @@ pub(crate) struct Trained<T> {
 /// Inputs of training other than the rows: penalties C, tolerance and memory limit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Goal<'a> {
-    /// Penalties C, in the order of solution; each solution starts from the previous one.
+    /// Penalties C in the order in which they are solved; each solution starts from the previous solution.
     pub path: &'a [f64],
     /// Largest allowed violation of the optimality conditions, in units of the decision value.
     pub tolerance: f64,

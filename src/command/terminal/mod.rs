@@ -1,4 +1,4 @@
-//! What the command prints, and signals.
+//! Terminal output of the command, and handling of signals.
 
 pub(crate) mod output;
 pub(crate) mod signals;

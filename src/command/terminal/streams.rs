@@ -28,7 +28,7 @@ pub fn written(result: io::Result<()>) -> Result<()> {
     }
 }
 
-/// Says a line on standard error; nobody may be left to read it.
+/// Prints a line on standard error; errors of printing are ignored.
 pub fn note(line: impl Display) {
     let _ = writeln!(io::stderr(), "{line}");
 }

@@ -1,4 +1,4 @@
-//! Journal of a run: one file with one writer at a time.
+//! Journal of a run: a single file with one writer at a time.
 
 use crate::engine::journal::identity::Identity;
 use crate::engine::journal::line::{Decoded, NO_STUDY, Records, decode, encode};

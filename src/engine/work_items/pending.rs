@@ -1,4 +1,4 @@
-//! Pending work items: the items that a run has to compute.
+//! Pending work items, which a run has yet to compute.
 
 use crate::engine::isolated::run_isolated;
 use crate::engine::progress::Progress;

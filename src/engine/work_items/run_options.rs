@@ -25,7 +25,7 @@ pub struct RunOptions<'a> {
     pub fail_fast: bool,
     /// Whether work items that failed in an earlier run are computed again.
     pub retries: bool,
-    /// Selection of the work items that the run computes.
+    /// Selection of the work items that the run has to compute.
     pub part: Part<'a>,
     /// Receiver of progress reports.
     pub progress: &'a dyn Progress,

@@ -1,4 +1,4 @@
-//! Work item: a named, independent part of a study's work.
+//! Work item: a named, independent part of the work of a study.
 
 use crate::inputs::content_hash::short_hash;
 

@@ -30,7 +30,7 @@ pub enum NextTouch {
     Random,
     /// Pose with the largest distance to the nearest previous touch.
     Farthest,
-    /// Pose after which the expected entropy (uncertainty) of the belief over the objects is lowest.
+    /// Pose after which the expected entropy (uncertainty) of the probabilities of the objects is lowest.
     MostInformative,
 }
 
@@ -201,7 +201,7 @@ impl PoseAnswers {
         }
     }
 
-    /// After the label `answer` is observed, updates the belief (the probability of each object) by Bayes' rule.
+    /// Updates the belief (the probability of each object) by Bayes' rule after the label `answer` is observed.
     pub fn believe(&self, belief: &mut Array1<f64>, answer: usize) {
         *belief *= &self.given.column(answer);
         *belief /= belief.sum();

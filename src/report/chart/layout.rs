@@ -154,7 +154,7 @@ impl Layout {
     }
 }
 
-/// Draws the axes, grid lines at the ticks, and a dashed line between zero and the decades of a logarithmic axis.
+/// Draws the axes, the grid lines at the ticks, and a dashed line between the value zero and a logarithmic axis.
 fn draw_grid(drawing: &mut Drawing, view: &View, frame: Area) {
     let grid = Stroke::new(GRID, 1.0);
     let shelf = Stroke {

@@ -43,7 +43,7 @@ pub struct Difference {
     table: String => Subject;
     /// Name of the column that contains the number.
     column: String => Subject;
-    /// Choices, conditions and subjects of the compared rows that vary in the table, as text.
+    /// Settings of the compared rows (choices, conditions and subjects) that vary in the table, as text.
     setting: String => Subject;
     /// Index of the first row with this setting in the second folder's table, from 0.
     row: usize => Note: Linear;
@@ -241,7 +241,7 @@ fn explained(is_by_chance: bool) -> Significance {
 
 type Rows<'a> = (&'a Settings<'a>, &'a [usize]);
 
-/// Compares the numbers of one setting in both folders; returns `None` if a number is absent.
+/// Compares the numbers of one setting in the two folders; returns `None` if a number is missing.
 fn of_setting(
     column: &Column,
     (first, theirs): Rows,

@@ -64,7 +64,7 @@ pub fn entries(first: &[Table], second: &[Table]) -> Vec<TableEntries> {
     found.collect()
 }
 
-/// Returns the names of the table files that the first list contains and the second list lacks.
+/// Returns the names of the table files that exist in the first list but not in the second.
 pub fn files_of_one<'a>(one: &'a [Table], other: &[Table]) -> Vec<&'a str> {
     let files = one.iter().filter(|table| !table.csv.is_empty());
     let alone = files.filter(|table| other.iter().all(|known| known.file != table.file));

@@ -1,4 +1,4 @@
-//! Vector drawing: text, lines and areas at pixel positions, written as SVG and as PNG.
+//! Vector drawing: text, lines and areas at pixel positions, written as SVG or PNG.
 //!
 //! The crate kuva provides the primitives, the font and both writers. The complete plots of kuva are not used for two reasons. First, they place ticks at
 //! powers of ten, but a sweep needs ticks at its own values. Second, the plots number clip paths per process, so that equal tables could give different bytes.
@@ -325,7 +325,7 @@ impl Drawing {
     }
 }
 
-/// Escapes characters that have a meaning in HTML and SVG.
+/// Escapes the characters that have a special meaning in HTML and SVG.
 pub fn escape(text: &str) -> String {
     let is_forbidden = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
     text.replace('&', "&amp;")

@@ -124,7 +124,7 @@ pub fn write_animation(
     Ok(shown)
 }
 
-/// Returns the line of text above a frame: its index and its time, with as many digits as the time steps of the recording need.
+/// Returns the text line above a frame: its index and its time, with the digits that the time steps require.
 pub fn frame_note(time: &[f64], frame: usize) -> String {
     let n = time.len();
     let step = (time[n - 1] - time[0]) / n.saturating_sub(1).max(1) as f64;

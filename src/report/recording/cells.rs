@@ -21,7 +21,7 @@ const TOP: f64 = 76.0;
 /// Maximum radius of the disc that represents a taxel, pixels.
 const LARGEST_DISC: f64 = 24.0;
 
-/// Cells of a picture of a patch (one per taxel or block of taxels), in pixels from the top left corner of the drawing.
+/// Cells of a patch's picture (one per taxel or block of taxels), in pixels from the top left corner of the drawing.
 pub(crate) struct Cells {
     /// Area that contains all cells, pixels.
     pub area: Area,

@@ -1,4 +1,4 @@
-//! Deflections on a model, compared with the deflections on the exact mesh.
+//! Deflections on a model, and their comparison with the deflections on the exact mesh.
 
 use crate::contact::{Workspace, first_contact, press_to_depth, press_to_travel};
 use crate::error::Result;

@@ -44,9 +44,9 @@ pub struct DetailScore {
     n_missed: usize => Note "touches that met nothing": Linear;
     /// Number of taxels that the mesh touches, summed over all touches with the mesh.
     n_taxels: usize => Note "touched taxels": Linear;
-    /// Deflection error, mm: mean of |δ − δ*| over taxels that the mesh (δ*) or the model (δ) touches.
+    /// Deflection error, mm: mean of |δ − δ*| over touched taxels, where δ is the deflection by the model and δ* by the mesh.
     error_mm: f64 => Value(Less) "deflection error" in "mm": Log;
-    /// 95th percentile of |δ − δ*| over the taxels that the mesh (δ*) or the model (δ) touches, mm.
+    /// 95th percentile of |δ − δ*| over touched taxels, mm, where δ is the deflection by the model and δ* by the mesh.
     error_p95_mm: f64 => Value(Less) "deflection error, 95th percentile" in "mm": Log;
     /// Distance by which the patch is retracted to minimise `error_after_offset_mm`, mm; negative if the patch is advanced.
     offset_mm: f64 => Note "best constant offset" in "mm": Linear;

@@ -68,7 +68,7 @@ fn models_item(object: usize) -> usize {
     2 * object
 }
 
-/// Returns the number of the work item that measures the computing times of an object's models.
+/// Returns the number of the work item that measures the computing times of all models of an object.
 fn times_item(object: usize) -> usize {
     models_item(object) + 1
 }

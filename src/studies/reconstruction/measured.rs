@@ -1,4 +1,4 @@
-//! Reconstruction of frames: all configurations that use the same measurements.
+//! Reconstruction of frames by all configurations that use equal measurements.
 
 use crate::engine::work_items::pending::PendingItems;
 use crate::engine::work_items::shared::Shared;

@@ -18,7 +18,7 @@ pub(super) fn square_errors(a: ArrayView2<f64>, b: ArrayView2<f64>) -> Vec<f64> 
 
 /// Test frames without noise, with which reconstructed frames are compared.
 pub(super) struct Truth {
-    /// Squared norm ‖x‖² of each clean test frame x.
+    /// Squared norm ‖x‖² of each test frame x without noise.
     squares: Vec<f64>,
     n_taxels: usize,
     /// Largest value that a taxel reading can have.

@@ -13,7 +13,7 @@ pub enum Series {
     Skin,
     /// Scaling series in which the number of touched taxels grows, while the skin stays constant.
     Touch,
-    /// Scaling series in which the object's number of spheres grows while skin and touch stay constant.
+    /// Scaling series in which the object's number of spheres grows, while skin and touch stay constant.
     Spheres,
 }
 

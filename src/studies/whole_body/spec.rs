@@ -45,7 +45,7 @@ pub struct WholeBodySpec {
     /// Duration of a simulated step, ms, positive. Default: 1.
     #[serde(default = "number::<1>")]
     pub step_ms: f64,
-    /// Number of steps that are measured for each scene and for each size of a scaling series, at least 1. Default: 1000.
+    /// Number of measured steps of each scene and of each size of a scaling series, at least 1. Default: 1000.
     #[serde(default = "count::<1000>")]
     pub steps: usize,
     /// Maximum distance between the surface of an object and the surface of its sphere model, mm, at least 1e-6. Default: 0.25.
@@ -131,7 +131,7 @@ pub struct LaddersSpec {
     pub taxels: Vec<usize>,
     /// Approximate numbers of touched taxels in the series in which the skin grows. Each skin is timed with each number that it is large enough for.
     pub touched_at_taxels: Vec<usize>,
-    /// Approximate numbers of touched taxels in the series of growing touches.
+    /// Approximate numbers of touched taxels in the scaling series of the touch.
     pub touched: Vec<usize>,
     /// Numbers of spheres of the object in the scaling series of the object; half of the spheres are on the side away from the skin. The series of growing
     /// skins and of growing touches use the first number.

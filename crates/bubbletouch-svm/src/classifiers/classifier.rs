@@ -27,7 +27,7 @@ use crate::{Error, Result};
 
 pub use crate::classifiers::trained_classifier::TrainedClassifier;
 
-/// Penalty C of a soft-margin SVM or a logistic regression: a fixed value, or chosen by cross-validation on the training rows.
+/// Penalty C of a soft-margin SVM or logistic regression: fixed, or chosen by cross-validation on the training rows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Cost {
@@ -184,7 +184,7 @@ impl Classifier {
         }
     }
 
-    /// Trains the classifier with its fixed penalty C, or without C if the kind of classifier does not use one.
+    /// Trains the classifier with its fixed penalty C, or without C if this kind of classifier has none.
     fn train_without_choice(
         &self,
         training: &Dataset,

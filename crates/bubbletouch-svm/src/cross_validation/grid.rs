@@ -35,7 +35,7 @@ pub(crate) struct Grid<'a, T> {
     pub multiclass: Multiclass,
 }
 
-/// Cross-validation fold that refers to the rows in their sorted order.
+/// Cross-validation fold, given by row positions in the sorted order.
 struct Fold {
     /// Whether each row, in sorted order, is a training row of the fold.
     is_training: Vec<bool>,

@@ -1,4 +1,4 @@
-//! Kernel values between classes, computed for groups of classes.
+//! Kernel values between the rows of classes, computed for groups of classes.
 
 use std::ops::Range;
 

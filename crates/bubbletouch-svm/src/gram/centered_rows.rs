@@ -1,4 +1,4 @@
-//! Feature rows minus a centre, in the precision of the kernel values, and the kernel values between them.
+//! Feature rows minus a centre, and the kernel values between them, in the precision of the kernel values.
 
 use std::ops::Range;
 
@@ -105,7 +105,7 @@ impl<T: Scalar> CenteredRows<T> {
         }
     }
 
-    /// Keeps only the rows with the given ascending numbers, without allocating memory.
+    /// Removes all rows except those with the given ascending numbers, without allocating memory.
     pub fn keep(self, rows: &[usize]) -> Self {
         let n_features = self.values.ncols();
         let norms = self.norms.select(Axis(0), rows);

@@ -17,7 +17,8 @@ pub(crate) struct Rows<'a, T> {
 }
 
 impl<'a, T: Scalar> Rows<'a, T> {
-    /// Adds some rows, given as pairs (row number, weight), to `sums`. Sums are in f64, because large weights may nearly cancel.
+    /// Adds the given rows, multiplied by their weights, to `sums`; each row is a pair (row number, weight). Sums are in f64, because large weights may nearly
+    /// cancel.
     pub fn add_weighted(self, sums: &mut [f64], rows: impl Iterator<Item = (usize, f64)>) {
         let rows = rows.filter(|(_, weight)| *weight != 0.0);
         let mut weighing: Vec<(&[T], f64)> =

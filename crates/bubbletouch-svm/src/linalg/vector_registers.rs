@@ -1,4 +1,4 @@
-//! Conversion between arrays and vector registers of 16 f32 values, without pointers.
+//! Conversion between arrays and vector registers of 16 f32 values, without raw pointers.
 
 use std::arch::x86_64::{
     __m128, __m512, _mm_cvtss_f32, _mm_shuffle_ps, _mm512_extractf32x4_ps, _mm512_setr_ps,

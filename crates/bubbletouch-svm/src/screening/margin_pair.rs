@@ -87,7 +87,7 @@ pub(crate) struct MarginPair<T> {
 }
 
 impl<T: SolverScalar> MarginPair<T> {
-    /// Creates a pair of classes that have the given numbers of rows; no row is active.
+    /// Creates a pair of classes with the given numbers of rows, none of which is active.
     pub fn new(classes: [usize; 2], sizes: [usize; 2]) -> Self {
         Self {
             classes,
@@ -168,8 +168,8 @@ impl<T: SolverScalar> MarginPair<T> {
         (self.beta, self.f) = (beta, f);
     }
 
-    /// Solves the pair on its active rows, starting from the last solution. The argument `within` contains the inner products within each class; the Gram
-    /// matrix reuses the memory of `workspace`.
+    /// Solves the problem of the pair on its active rows, starting from the last solution. The argument `within` contains the inner products within each class;
+    /// the Gram matrix reuses the memory of `workspace`.
     pub fn solve(&mut self, within: &[Within<T>], workspace: &mut Workspace<T>, goal: PairGoal) {
         let (beta, f) = (std::mem::take(&mut self.beta), std::mem::take(&mut self.f));
         let [first, second] = &self.rows;

@@ -5,7 +5,7 @@ use crate::linalg::scalar::Scalar;
 /// Number of inner products processed in parallel.
 const LANES: usize = 32;
 
-/// Labels of rows in a pair of classes: 1 for the first class, −1 for the second.
+/// Labels of rows in the problem of a pair of classes: 1 for the first class, −1 for the second class.
 pub(crate) const SIGNS: [f64; 2] = [1.0, -1.0];
 
 /// Row numbers within the first and the second class of a pair.

@@ -148,7 +148,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         })
     }
 
-    /// Solves all pairs in rounds, until no row violates the optimality conditions or the maximum number of rounds is reached. Returns a result for each
+    /// Solves the problems of all pairs in rounds, until the optimality conditions hold or the maximum number of rounds is reached. Returns a result for each
     /// pair, computed after its last round.
     fn solve_rounds<R>(
         &mut self,
@@ -237,7 +237,7 @@ impl<'c, 'a, T: SolverScalar> NearMargin<'c, 'a, T> {
         points.in_place().add_weighted(sums, rows);
     }
 
-    /// Adds rows of both classes to the reduced problem of a pair; `number` is the pair's number in the last round.
+    /// Adds rows of both classes to the reduced problem of a pair; `number` is the number of the pair in the last round.
     fn join(&mut self, pair: usize, joining: &Sides, number: Option<usize>) {
         let classes: &'c Classes<'a, T> = self.classes;
         let starts = classes.starts(self.pairs[pair].classes());

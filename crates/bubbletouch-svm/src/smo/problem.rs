@@ -17,7 +17,7 @@ pub(crate) struct Smo<'a, G> {
     pub(super) beta: Vec<f64>,
     /// Gradient `y − Kβ` of the dual objective, where y are the labels and K is the Gram matrix.
     pub(super) f: Vec<f64>,
-    /// Penalty C for which the coefficients β were computed; 0 before the first solution.
+    /// Penalty C for which the coefficients β were computed; 0 if the problem has not been solved.
     pub(super) c: f64,
     /// Whether the gradient f was recomputed in f64 from the coefficients β; otherwise it was updated step by step.
     pub(super) is_summed: bool,

@@ -111,8 +111,8 @@ fn best(offers: &Candidates, choices: &[Candidate]) -> Option<Vec<String>> {
     Some(sentences)
 }
 
-/// For each setting, returns a sentence on its effect: the mean accuracy at each value. The mean extends over those combinations of other settings that were
-/// run with all values.
+/// Returns a sentence on the effect of each setting: the mean accuracy at each of its values. The mean extends over those combinations of other settings that
+/// were run with all values.
 fn effects(configurations: &Table) -> Option<Vec<String>> {
     let rows: Vec<usize> = (0..configurations.n_rows).collect();
     let swept = Swept::new(configurations, &rows);

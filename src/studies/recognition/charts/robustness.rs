@@ -118,7 +118,7 @@ impl Curve {
         self.chance + 0.5 * (accuracy - self.chance)
     }
 
-    /// Returns the indices of the condition's values from the highest accuracy to the last value in a direction.
+    /// Returns the indices of the values of the condition, from the most accurate value to the last value in a direction.
     fn outwards(&self, direction: Direction) -> Vec<usize> {
         match direction {
             Direction::Smaller => (0..=self.best()).rev().collect(),
@@ -431,7 +431,7 @@ mod tests {
         }
     }
 
-    /// Returns the table of configurations that differ in C and noise, with ten objects.
+    /// Returns test tables of configurations that differ in C and noise, with ten objects.
     fn tables_of(accuracies: &[(f64, f64, f64)]) -> (Table, Option<Table>) {
         let n_test = 1000;
         let configurations = accuracies.iter().enumerate();

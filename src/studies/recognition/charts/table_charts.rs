@@ -16,8 +16,8 @@ use std::cmp::Reverse;
 /// Minimum number of classifiers with which a study counts as a comparison of classifiers, and charts accuracy against time.
 const MANY_CLASSIFIERS: usize = 3;
 
-/// Returns the charts of a study: accuracy by each varying setting, the confusions of the best configuration, and possibly accuracy against time. Accuracy
-/// against time is included if classifiers are compared or `pareto` is `Some(true)`.
+/// Returns the charts of a study: accuracy by each varying setting, confusions of the best configuration, and accuracy against time. Accuracy against time is
+/// included if classifiers are compared or `pareto` is `Some(true)`.
 pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
     let Some(configurations) = filled(tables, CONFIGURATIONS) else {
         return Vec::new();
@@ -236,7 +236,7 @@ fn time_charts(configurations: &Table, chart: &ChartSpec) -> [ChartSpec; 2] {
     })
 }
 
-/// Returns a chart that shows which objects the best configuration confuses.
+/// Returns a chart of the confusions between objects in the best configuration.
 fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpec> {
     let accuracy = configurations.numbers("accuracy")?;
     let best = (0..accuracy.len()).reduce(|a, b| if accuracy[b] > accuracy[a] { b } else { a })?;

@@ -96,7 +96,7 @@ pub fn tables_of(tables: &Tables) -> Result<Vec<Table>> {
     From::Rows(tables).all(axes.collect(), tables.has_folds)
 }
 
-/// Reads every table of a folder, in the order of their files, followed by [`CONFIGURATIONS`].
+/// Reads all tables of a folder in the order of their files, followed by [`CONFIGURATIONS`].
 ///
 /// # Errors
 /// If a table cannot be read; the error names its file, line and column.

@@ -77,7 +77,7 @@ struct Settings<'a> {
 }
 
 impl StudyPart {
-    /// Computes the measurements of one configuration in one trial, exactly as the classifier receives them in a run.
+    /// Computes the measurements of one configuration in one trial, exactly as its classifier receives them.
     ///
     /// # Errors
     /// If the study does not have the configuration or the trial, or a signal step or projection is invalid.

@@ -358,7 +358,7 @@ fn frames_shape(array: &TaxelArray, n_frames: usize, n_channels: usize) -> (Stri
     (format!("n {}", letters.join(" ")), shape)
 }
 
-/// For the exported frames of an array, returns the table `[recorded]` of a study that reads them, with paths relative to the folder.
+/// Returns the table `[recorded]` of a study that reads the exported frames of an array; paths are relative to the folder.
 fn recorded(
     array: &TaxelArray,
     n_frames: usize,

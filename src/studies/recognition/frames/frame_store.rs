@@ -4,8 +4,8 @@ use bubbletouch_sim::frame_coding::decode;
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 
-/// Frames of all touches on an array: F frames per touch with n_values values each (deflections in metres, or more channels). Frames are ordered by object and
-/// touch; the last frame of a touch is the deepest. Only touched taxels are stored.
+/// Frames of all touches on an array, with F frames per touch and n_values values per frame. Frames are ordered by object and touch; the last frame of a touch
+/// is the deepest. Only touched taxels are stored.
 #[derive(Debug)]
 pub struct Frames {
     /// Counts of missed and saturated touches, and processor time of the simulation.

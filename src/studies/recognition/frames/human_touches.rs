@@ -11,7 +11,7 @@ use ndarray::ArrayViewMut2;
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Human touches of a study, ordered by kind of touch, such as a stroke.
+/// Human touches of a study, sorted by kind of touch, such as a stroke.
 #[derive(Clone, Debug)]
 pub struct HumanTouches {
     /// Kinds of touch to distinguish, and settings of the recording.

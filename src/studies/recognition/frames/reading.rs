@@ -103,7 +103,7 @@ pub fn measure(reading: Reading, touches: &[TouchToRead]) -> Result<(Array2<f64>
 struct Working {
     /// Frames of the current block of touches, stored one after the other.
     frames: Vec<f64>,
-    /// Frames of one channel of a touch, after up to two frames of the preceding touch and of the released skin.
+    /// Frames of one channel of a touch, preceded by up to two frames of the preceding touch and of the released skin.
     with_history: Vec<f64>,
     /// Deepest frame of the preceding touch, which sensor errors with memory need.
     deepest: Vec<f64>,

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Selection of the recorded frames in which nothing touches the skin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum UntouchedFrames {
-    /// The recording does not state in which frames nothing touches the skin.
+    /// The recording does not specify frames in which nothing touches the skin.
     None,
     /// Separate file of frames in which nothing touches the skin. The untouched frames are recorded at even intervals over the session of the main file, in
     /// order of time.

@@ -41,7 +41,7 @@ pub struct Measurements {
     pub cpu_s: f64,
 }
 
-/// Measurement matrix of a group of configurations in a trial, with the image estimators that are fitted to training touches.
+/// Measurement matrix of a group of configurations in a trial, and the image estimators fitted to its training touches.
 #[derive(Clone, Debug)]
 pub struct SensedBy {
     /// Measurement matrix Φ, by which each frame is multiplied.

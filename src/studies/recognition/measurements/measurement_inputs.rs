@@ -155,7 +155,7 @@ impl SignalInputs {
     }
 }
 
-/// Returns the signal inputs of a plan under a given condition (the strengths of noise and sensor errors).
+/// Returns the signal inputs of a plan for a given signal condition (strengths of noise and sensor errors).
 fn signal_inputs(plan: &Plan, condition: Condition) -> SignalInputs {
     let is_active = |step: &&StepSpec| match step {
         StepSpec::Force => true,

@@ -257,7 +257,7 @@ impl fmt::Debug for TaxelArray {
     }
 }
 
-/// Returns the seed for the sensor errors of an array's skin. The seed is equal in all touches and trials.
+/// Returns the random seed for the sensor errors of an array's skin. The seed is equal in all touches and trials.
 pub(crate) fn skin(study: &Seed, array: &TaxelArray) -> Seed {
     let (ny, nx) = array.shape();
     let sides = study.named("skin").numbered(nx as u64);

@@ -25,7 +25,7 @@ pub(crate) fn projection_of(projections_per_split: Option<usize>, trial: usize) 
 }
 
 impl Check<'_> {
-    /// Checks `projections_per_split`: the number of trials must be a multiple of it.
+    /// Checks that the number of trials is a multiple of the key `projections_per_split`.
     pub fn repeats(&self, spec: &StudySpec) -> Result<()> {
         const KEY: &str = "projections_per_split";
         let Some(n_projections) = spec.projections_per_split else {

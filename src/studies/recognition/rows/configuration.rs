@@ -161,7 +161,7 @@ mod always {
     }
 }
 
-/// Parameters of a configuration that have a column only in studies with their key.
+/// Parameters of a configuration that have a column only if the study sets their key.
 mod if_given {
     use super::*;
 

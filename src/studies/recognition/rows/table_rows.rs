@@ -240,7 +240,7 @@ pub struct Pareto {
 row! {
 /// Processor time of one stage before recognition, for one array: a row of `stages.csv`.
 pub struct StageTime {
-    /// Name of the stage: `simulate`, or `measure` (signal chain and measurement matrix). If touches have several frames, their number is added.
+    /// Name of the stage: `simulate`, or `measure` (signal chain and compression). If touches have several frames, their number is added.
     stage: String => Subject;
     /// Pitch of the array's taxels, mm: side of the square area per taxel.
     pitch_mm: f64 => Subject "pitch" in "mm": Linear;
@@ -257,9 +257,9 @@ pub struct StageTime {
 } }
 
 row! {
-/// Limit of the model and how often it was reached: a row of `limits.csv`.
+/// Limit of the simulation or of the solver, with the number of times that it was reached: a row of `limits.csv`.
 pub struct Limit {
-    /// Name of the limit of the model, such as `saturated taxels`.
+    /// Name of the limit, such as `saturated taxels`.
     limit: String => Subject;
     /// Number of touches or trained classifiers that reached the limit.
     count: u64 => Note: Log;
@@ -311,7 +311,7 @@ pub enum Source {
 }
 
 row! {
-/// Variance of a configuration's accuracy due to one source: a row of `variance.csv`, for studies with `projections_per_split`.
+/// Variance of a configuration's accuracy that is due to one source: a row of `variance.csv`.
 pub struct Variance {
     /// Number of the configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;

@@ -78,7 +78,7 @@ pub struct RecordedSpec {
     /// Reading of an untouched taxel: one number, or a file with one number per taxel. Default: 0.
     #[serde(default)]
     pub zero: ZeroSpec,
-    /// Reading of a taxel at full scale, that is, when its deflection equals its stroke. Default: the largest reading.
+    /// Reading of a taxel at full scale, where the deflection equals the stroke. Default: the largest reading.
     pub full_scale: Option<f64>,
     /// File with the press depth of each touch, metres, shape (n,). Together with `speed_mm_per_s`, it determines the time between the frames of a touch.
     #[serde(
@@ -93,7 +93,7 @@ pub struct RecordedSpec {
     /// Time between the frames of a touch, s, for sensor errors that depend on time; replaces `speed_mm_per_s`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frame_interval_s: Option<f64>,
-    /// Touch before each touch, for sensor errors with memory. Values: `random` (default) or `none`.
+    /// Rule that determines the preceding touch of each touch, for sensor errors with memory. Values: `random` (default) or `none`.
     #[serde(default, skip_serializing_if = "is_usual")]
     pub previous_touch: PreviousTouch,
     /// Number of values per taxel in the frames. The plan sets it, not the study file; 0 counts as 1.
@@ -164,7 +164,7 @@ impl<'de> Deserialize<'de> for ZeroSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PreviousTouch {
-    /// Another touch of the study, drawn at random in each trial, as in studies of pressed objects.
+    /// The preceding touch is another touch of the study, drawn at random in each trial.
     #[default]
     Random,
     /// No touch precedes any touch of the recording.

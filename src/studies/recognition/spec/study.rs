@@ -118,7 +118,7 @@ pub struct RecognitionSpec {
     /// Axis: number of additional copies of each training touch, whose images are randomly tilted. The copies make recognition robust to tilts that do not
     /// occur in training. Copies require image features. Default: 0.
     pub tilt_augmentation: Option<Axis<usize>>,
-    /// Maximum tilt of a copy about the array's x and y axes, degrees; tilts are distributed uniformly. Default: 5.
+    /// Maximum tilt of a copy about the array's x and y axes, degrees; the tilts are uniformly distributed. Default: 5.
     pub tilt_augmentation_deg: Option<f64>,
     /// Axis: method that combines the frames of a touch into features. Values: `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in
     /// time), `moments` of each measurement, `course` of the touch, or `summarised` (moments and course). Default: all frames are concatenated.

@@ -1,4 +1,4 @@
-//! Loading of a recognition study. All combinations of axis values that share objects or touches use one copy of them.
+//! Loading of a recognition study: its plans, objects and touches. All combinations of axis values that share objects or touches use one copy of them.
 
 use crate::engine::axes::AxisValues;
 use crate::error::{Error, Result};

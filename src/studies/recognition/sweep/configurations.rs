@@ -62,7 +62,7 @@ pub struct Sweep {
     pub splits: Vec<Hashed<Split>>,
     /// For each trial, the number of the first trial with the same split: the trial's own number if no earlier one has it.
     pub first_equal: Vec<usize>,
-    /// For each touch, the number of the touched object.
+    /// Number of the touched object for each touch.
     pub labels: Hashed<Array1<usize>>,
     /// For each touch, the number of its group; `None` if the split may divide groups.
     pub group_keys: Option<Hashed<Array1<usize>>>,

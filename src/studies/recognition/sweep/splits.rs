@@ -56,7 +56,7 @@ pub fn draw_split(
     Ok(folds.swap_remove(trial % n_folds))
 }
 
-/// For each split, returns the index of the first split that has the same training touches and the same test touches, in any order.
+/// Returns the index of the first split with equal training touches and equal test touches, for each split, in any order.
 pub fn first_equal(splits: &[Split]) -> Vec<usize> {
     let mut known: HashMap<&[usize], Vec<usize>> = HashMap::new();
     let trained = |place: usize| splits[place].train.iter().collect::<HashSet<_>>();

@@ -18,7 +18,7 @@ pub fn scaled_poses(placement: &Placement, touches: &[&Touch]) -> Poses {
     }
 }
 
-/// Returns the difference between the largest and the smallest value of a pose parameter.
+/// Returns the largest value of a pose parameter minus its smallest value.
 fn range(spread: &Spread) -> f64 {
     match spread {
         Spread::Uniform { low, high } => high - low,

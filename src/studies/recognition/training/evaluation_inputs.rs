@@ -31,7 +31,7 @@ pub struct TrialInputs<'a> {
     pub seed: u64,
     /// Number of the trial, from 0.
     pub number: usize,
-    /// Number of the split and number of the projection, if each split is combined with several projections; `None` otherwise.
+    /// Numbers of the split and of the projection, if each split is combined with several projections; otherwise `None`.
     pub crossed: Option<(usize, usize)>,
     /// Split of all touches into training and test touches.
     pub split: &'a Hashed<Split>,

@@ -78,7 +78,7 @@ pub(super) fn choose_touches(
     chosen.concat()
 }
 
-/// Test touches with the decisions of a classifier on each of them.
+/// Test touches with a classifier's decision on each touch.
 pub(super) struct AnsweredTouches<'a> {
     pub(super) fitted: &'a Fitted,
     pub(super) test: &'a Dataset,

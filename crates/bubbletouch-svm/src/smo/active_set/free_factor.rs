@@ -63,7 +63,7 @@ impl FreeFactor {
         self.ridge
     }
 
-    /// Iterates over the free variables: position in the factors, and variable.
+    /// Returns the free variables as pairs (position in the factors, variable).
     pub fn variables(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let places = self.places.iter().enumerate();
         places.filter_map(|(place, variable)| Some((place, (*variable)?)))
