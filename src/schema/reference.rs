@@ -194,8 +194,8 @@ impl FileKind<'_> {
             if key["deprecated"] == true || REPEATED.contains(&&name[..]) && table.path.is_empty() {
                 continue;
             }
-            let below = table.below(&name, key);
-            let values = match &below[..] {
+            let nested = table.nested_tables(&name, key);
+            let values = match &nested[..] {
                 [] => values(key),
                 tables => self.links(tables, written),
             };
@@ -288,7 +288,7 @@ impl<'s> Table<'s> {
     }
 
     /// Returns the tables that are the value of a key: a single table, or one for each variant.
-    fn below(&self, name: &str, key: &'s Value) -> Vec<Self> {
+    fn nested_tables(&self, name: &str, key: &'s Value) -> Vec<Self> {
         let is_list = key["type"] == "array";
         let value = if is_list { &key["items"] } else { key };
         let name = name.to_owned();
@@ -398,7 +398,7 @@ fn range(schema: &Value) -> String {
     let least = own("minimum").map(|number| format!("≥ {number}"));
     let above = own("exclusiveMinimum").map(|number| format!("> {number}"));
     let most = own("maximum").map(|number| format!("≤ {number}"));
-    let below = own("exclusiveMaximum").map(|number| format!("< {number}"));
+    let nested = own("exclusiveMaximum").map(|number| format!("< {number}"));
     let ends: Vec<String> = [least.or(above), most.or(below)]
         .into_iter()
         .flatten()

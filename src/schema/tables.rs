@@ -72,7 +72,7 @@ fn write_file(file: &FileAbout, presence: &str, before: &[FileAbout], page: &mut
     let n = shared.map_or(0, |(n, other)| {
         let last = &other.columns[n - 1].name;
         page.push_str(&format!(
-            "The first columns, up to `{last}`, are those of `{}`. They are followed by:\n\n",
+            "This table begins with the columns of `{}`, up to `{last}`. Further columns:\n\n",
             other.name
         ));
         n
