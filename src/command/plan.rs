@@ -1,4 +1,4 @@
-//! `bubbletouch plan`: the size of a study, without a run of it.
+//! `bubbletouch plan`: prints the size of a study without running it.
 
 use crate::command::options::memory_limit::MemoryLimit;
 use crate::command::options::study_args::StudyArgs;

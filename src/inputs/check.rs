@@ -1,4 +1,4 @@
-//! Checks of the values of keys. Each error contains the file, the key, the given value, and the allowed values.
+//! Checks of the values of keys in study files. Each error contains the file, the key, the given value, and the allowed values.
 
 use crate::error::{Error, Result};
 use crate::inputs::keys::{AxisPlace, KeyAbout};

@@ -312,7 +312,7 @@ impl<'a> Candidates<'a> {
         value == wanted || self.is_better(value, wanted)
     }
 
-    /// Returns the worse end of the confidence interval of a candidate's value, or NaN if the value has no interval.
+    /// Returns the worse end of the confidence interval of a candidate's value; NaN without an interval.
     fn worse_end(&self, offer: &Candidate) -> f64 {
         let ends = self.table.interval(self.value, offer.row);
         ends.map_or(

@@ -1,4 +1,4 @@
-//! Swept settings: columns that vary over the rows of a table.
+//! Swept settings: columns whose values vary between the rows of a table.
 //!
 //! Charts, sentences and terminal tables show the columns that vary and state the others once. A column is dependent if other varying columns determine its
 //! value; for example, m and the array determine the compression ratio. Dependent columns are not shown separately.

@@ -202,7 +202,7 @@ pub enum LayoutSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum FileLayoutSpec {
-    /// Path of the layout file, if its format needs nothing else.
+    /// Path of the layout file, for formats that need no further information.
     Path(#[schemars(with = "String")] FilePath),
     /// Path of the layout file, and the further information that its format needs.
     Parts(FileLayoutParts),

@@ -37,7 +37,7 @@ pub struct ObjectSummary {
     pub n_off: usize,
 }
 
-/// Receiver of frames that computes the summary of a scene and stores no frames.
+/// Frame receiver that computes the summary of a scene without storing frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
     /// Number of frames received so far.

@@ -129,7 +129,7 @@ pub struct TableFiles {
 }
 
 impl TableFiles {
-    /// Creates a list of table files without files of optional parts: every study of the kind writes all files.
+    /// Creates a list of table files that every study of the kind writes; there are no optional files.
     pub const fn always(always: &'static [&'static dyn AnyFile]) -> Self {
         Self {
             always,

@@ -157,7 +157,7 @@ fn people_get_lines() {
     }
 }
 
-/// Runs the command on a folder; asserts that it is refused with all of `words`.
+/// Runs the command on a folder, and asserts that it fails with a message that contains all `words`.
 fn refused(case: &Case, arguments: &[&str], words: &[&str]) {
     let all = [&["classify", "."], arguments].concat();
     let output = case.run(&[&all[..], &["--predictions", "out.npy"]].concat());
@@ -226,7 +226,7 @@ fn arrays_of_any_type_that_numpy_writes_are_read_as_the_same_numbers() {
     assert_eq!(asked("bool"), expected);
 }
 
-/// All commands read labels in the same way: texts, integers from any start, one column per class, and archives.
+/// Tests that all commands read labels in the same way: texts, integers from any start, one column per class, and archives.
 #[test]
 fn labels_of_every_form_are_answered_in_their_own_values() {
     let case = folder();

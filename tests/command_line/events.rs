@@ -48,7 +48,7 @@ fn events(text: &str) -> Vec<Value> {
         .collect()
 }
 
-/// Asserts that every field of an event is in the guide with its type.
+/// Asserts that the guide lists every field of an event with its type.
 fn check(event: &Value, schema: &BTreeMap<String, BTreeMap<String, String>>) {
     let fields = &schema[event["event"].as_str().unwrap()];
     for (name, value) in event.as_object().unwrap() {

@@ -1,4 +1,4 @@
-//! `bubbletouch features` writes exactly the rows on which a study's configuration is trained and tested.
+//! Test that `bubbletouch features` writes exactly the rows with which a configuration is trained and tested.
 
 use crate::command::Case;
 use bubbletouch::random::Seed;
@@ -10,7 +10,7 @@ use ndarray::{Array1, Array2, Axis};
 use ndarray_npy::read_npy;
 use std::fs;
 
-/// Study with two noise levels, a nested and another ensemble, two m and two training sizes: 16 configurations with two trials each.
+/// Study with two noise levels, two ensembles, two m and two training sizes: 16 configurations with two trials each.
 const STUDY: &str = r#"
 question = "What does a configuration learn from?"
 trials = 2

@@ -1,5 +1,5 @@
-//! All sets of vector instructions on one machine: the program runs on emulated processors, which determine the instructions of all kernels including
-//! `matrixmultiply`. There is no emulator of AVX-512; it is tested if the machine supports it.
+//! Test of all vector instruction sets on one machine: the program runs on emulated processors. There is no emulator of AVX-512; it is tested if the machine
+//! supports it.
 
 use crate::command::Case;
 use crate::reference_data::folder;
@@ -65,7 +65,7 @@ fn succeeds(case: &Case, emulated: Option<(&Path, &str)>, arguments: &[&str]) ->
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Results on one processor.
+/// Results of a run on one emulated processor.
 struct Found {
     /// Vector instructions that the processor supports.
     instructions: Instructions,

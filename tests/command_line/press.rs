@@ -194,7 +194,7 @@ fn spheres_are_read_where_they_are_unless_a_depth_is_asked_for() {
 /// Arguments for a small object well inside 40 × 40 taxels of 2 mm.
 const PADLOCK: &str = "--object padlock --taxels 40x40 --depth-mm 2";
 
-/// Returns whether a frame equals another one shifted by whole taxels.
+/// Returns whether a frame equals another frame that is shifted by whole taxels.
 fn is_moved(frame: &Array2<f64>, by: (isize, isize), original: &Array2<f64>) -> bool {
     let (rows, columns) = frame.dim();
     frame.indexed_iter().all(|((row, column), &value)| {

@@ -42,7 +42,7 @@ fn blocks(text: &str, language: &str) -> Vec<String> {
     blocks
 }
 
-/// Returns the commands of a shell block that can run here, without slow ones and without those that need the reader's meshes.
+/// Returns the commands of a shell block that can run in the test, without slow commands and those that need the reader's meshes.
 fn commands(block: &str) -> Vec<String> {
     block
         .replace("\\\n", " ")

@@ -9,7 +9,7 @@ const SUBCOMMANDS: [&str; 8] = [
     "run", "merge", "slurm", "compare", "verify", "plan", "simulate", "press",
 ];
 
-/// Returns whether a program accepts a file; prints a message and returns `None` if the program does not exist.
+/// Returns whether a program accepts a file; prints a message and returns `None` if the program is not installed.
 fn accepted(program: &str, arguments: &[&str], input: &[u8]) -> Option<(bool, String)> {
     let child = Command::new(program)
         .args(arguments)

@@ -15,7 +15,7 @@ use std::path::Path;
 /// Table with choices, with its value column and its cost column.
 type Choices = (&'static str, &'static str, &'static str);
 
-/// Checks all laws; `choices` is `None` for a kind without choices that have a cost.
+/// Checks all laws for a kind of study; `choices` is `None` for a kind without choices that have a cost.
 fn obeys_all_laws(kind: Kind, choices: Option<Choices>) {
     let whole = Faults::new(kind);
     let case = &whole.case;
@@ -167,7 +167,7 @@ fn advice(case: &Case, arguments: &[&str]) -> Value {
     serde_json::from_str(&said).unwrap()
 }
 
-/// Asserts that `advise` finds the choices by the roles of the columns, and returns the best of each condition.
+/// Asserts that `advise` finds the choices by the roles of the columns; returns the best choice under each condition.
 fn is_advised(case: &Case, (file, value, cost): Choices) {
     let columns = ["--value", value, "--cost", cost];
     let all = advice(case, &[&columns[..], &["--budget", "1e12"]].concat());
@@ -257,7 +257,7 @@ const TRIED: &str = r#"
     return [...document.querySelectorAll("table[data-table]")].map(tried);
 "#;
 
-/// Sorts and searches tables in a browser; skipped without a browser.
+/// Sorts and searches tables in a browser; does nothing if no browser is installed.
 fn has_tables_that_sort_and_can_be_searched(case: &Case) {
     let Some(browser) = Browser::start() else {
         return;
@@ -290,7 +290,7 @@ fn csv_rows(path: &Path) -> Vec<HashMap<String, String>> {
     rows.map(Result::unwrap).collect()
 }
 
-/// Asserts ascending order in one case and descending order in the other, with rows without a number last in both.
+/// Asserts that rows are sorted in ascending and in descending order, with rows without a number last in both cases.
 fn check_sorted(file: &str, sort: &Value, rows: Option<&[HashMap<String, String>]>) {
     let column = sort["column"].as_str().unwrap();
     let turns = sort["turns"].as_array().unwrap();

@@ -319,7 +319,7 @@ fn wrong(answer: &Answer, is_unchanged: bool) -> Option<String> {
     }
 }
 
-/// Returns every file and folder below a folder.
+/// Returns all files and folders in a folder and its subfolders.
 fn all_names(folder: &Path) -> Vec<String> {
     let mut names = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::thread::sleep;
 use std::time::Duration;
 
-/// Study that has run once, in the folder `whole`.
+/// Study that has been run once, with results in the folder `whole`.
 pub struct Faults {
     pub kind: Kind,
     pub case: Case,
@@ -237,7 +237,7 @@ impl Faults {
         self.assert_same_tables("below");
     }
 
-    /// Asserts that charts and page made from a folder's files equal those of the run.
+    /// Asserts that charts and page made from the files of a folder equal those of the run.
     fn is_reported_again_from_its_tables(&self) {
         let drawn = || -> BTreeMap<String, Vec<u8>> {
             let files = fs::read_dir(self.case.path("whole")).unwrap();
@@ -259,7 +259,7 @@ impl Faults {
     }
 }
 
-/// Returns the number of kills of each kind: few on every change, more in long runs.
+/// Returns the number of times that a run is killed in each way: few in short test runs, more in long ones.
 fn n_kills_wanted() -> usize {
     match std::env::var_os("BUBBLETOUCH_LONG") {
         None => 3,

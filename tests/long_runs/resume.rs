@@ -10,7 +10,7 @@ use std::fs;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Study with two arrays and 64 fits; less than a second of work.
+/// Study with two arrays that trains 64 classifiers in less than a second.
 const STUDY: &str = Kind::RECOGNITION.study;
 
 /// Tables without times.
@@ -179,7 +179,7 @@ fn lines_of(case: &Case, folder: &str) -> Vec<String> {
     text.split_inclusive('\n').map(str::to_owned).collect()
 }
 
-/// Returns a journal line with a replacement and the correct checksum.
+/// Returns a journal line in which a text is replaced and the checksum is corrected.
 fn forged(line: &str, old: &str, new: &str) -> String {
     let json = line.trim_end().split_once(' ').unwrap().1;
     assert!(json.contains(old), "{json}");

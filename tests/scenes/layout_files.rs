@@ -16,7 +16,7 @@ const ICUB: &str = "name palm\nspatial_sampling taxel\ntaxel2Repr ( 0 0 1 -2 )\n
 const URDF: &str = "<robot name='pad'><link name='base'/><sensor name='pad_tactile'><parent link='base'/>\
                     <origin xyz='0 0 0.01' rpy='0 0 0'/><tactile channel='pad'>TAXELS</tactile></sensor></robot>";
 
-/// Three prismatic joints for each of two taxels, as XELA's files have them.
+/// Three prismatic joints for each of two taxels, as in XELA's files.
 const XELA: &str = "<robot name='u'><link name='finger'/><link name='ax'/><link name='ay'/><link name='az'/><link name='bx'/><link name='by'/><link name='bz'/>\
     <joint name='j0' type='prismatic'><parent link='finger'/><child link='ax'/><origin xyz='0.001 0 0.002'/><axis xyz='1 0 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>\
     <joint name='j1' type='prismatic'><parent link='ax'/><child link='ay'/><axis xyz='0 1 0'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>\

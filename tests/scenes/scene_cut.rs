@@ -1,4 +1,4 @@
-//! A scene that ends early gives the first frames of the whole scene, for any memory of its skin and its objects.
+//! Test that a scene with an early end gives the first frames of the complete scene, with and without damping and friction.
 
 use bubbletouch::scene::{Frame, ScenePlan, SceneSpec, Simulation, Stepping};
 use std::path::Path;

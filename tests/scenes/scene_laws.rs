@@ -284,7 +284,7 @@ fn a_mug_on_a_bed_is_where_the_balance_of_one_object_puts_it_and_rises_with_the_
     assert!((rise - 0.02).abs() < 1e-6, "{rise}");
 }
 
-/// Returns a scene with a tennis ball at x = ±`apart` on a bed, each with keys of its own.
+/// Returns a scene with two balls at x = ±`apart` on a bed of taxels, each with additional keys.
 fn two_balls(apart: f64, one: &str, other: &str) -> ScenePlan {
     // A scene that is read must have free objects apart; they are moved together afterwards.
     let read = apart.max(33.0);

@@ -57,7 +57,7 @@ fn with(touches: &str, recognition: &str) -> String {
 
 const ALL_FEATURES: &str = r#"features = ["raw", "centred", "unit_norm", "centred_unit_norm"]"#;
 
-/// Computes the feature rows of a configuration in a trial, one touch, one frame and one number after the other.
+/// Computes the feature rows of a configuration in a trial with plain loops over touches, frames and numbers.
 fn slow_rows(study: &Study, configuration: &Configuration, trial: u64) -> Array2<f64> {
     let array = &study.plan.arrays[0];
     let seed = Seed::new(study.plan.spec.seed);

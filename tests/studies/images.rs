@@ -85,7 +85,7 @@ fn features_of_a_whole_frame_are_those_of_the_frame() {
     }
 }
 
-/// Image estimators fitted to test touches would depend on the other test touches.
+/// Tests that image estimators do not depend on test touches.
 #[test]
 fn what_is_learned_for_images_does_not_know_test_touches() {
     let sensed = "ensemble = \"principal_components\"\nmeasurements = 8";
@@ -150,7 +150,7 @@ fn shear_has_no_image() {
     }
 }
 
-/// Flat layouts have equal density; only the positions of the taxels differ. Slightly curved layouts are equivalent.
+/// Tests that images and invariant features of all layouts give the accuracies of the grid. Slightly curved layouts are equivalent.
 #[test]
 fn every_layout_has_images_and_their_invariants_recognise_as_those_of_the_grid() {
     let skin = "stroke_mm = 5.0\ncurvature_radius_mm = 2000.0";

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 /// Second name of a key.
 const ALIAS: &str = "objects.mesh_unit";
 
-/// Collects the keys below a table. A key with a description is not searched for further keys.
+/// Collects the keys of a table and its subtables. A key with a description is not searched for further keys.
 fn collect(table: &Value, path: &str, described: &BTreeSet<&str>, found: &mut BTreeSet<String>) {
     for (name, inner) in table["properties"].as_object().into_iter().flatten() {
         let path = match path {

@@ -110,7 +110,7 @@ fn n_correct(set: &FeatureSet) -> usize {
         .count()
 }
 
-/// Projections are fitted to the whole split, even if a configuration trains on fewer touches.
+/// Tests that exported rows give the answers of the run, also if a configuration trains on few touches.
 #[test]
 fn exported_rows_classified_elsewhere_give_the_answers_of_the_run() {
     let signal = "noise_std_full_scale = 0.1";

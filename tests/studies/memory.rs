@@ -71,7 +71,7 @@ train_touches = 30
 solver_memory_gib = 0.01
 "#;
 
-/// Returns the minimum memory limit of a study, as stated in its refusal.
+/// Returns the minimum memory limit of a study, as stated in the error message.
 fn least_gib(case: &Case, study: &str) -> String {
     let output = case.run(&["plan", study, "--memory-gib", "0.01"]);
     assert_eq!(output.status.code(), Some(2));
@@ -166,7 +166,7 @@ ratio = 4
 classifier = "k_nearest"
 "#;
 
-/// Asserts that the command is refused as fast as a plan, with exit code 2 and this text.
+/// Asserts that the command fails as quickly as a plan, with exit code 2 and the given text.
 fn assert_refused_at_once(case: &Case, arguments: &[&str], said: &[&str]) {
     let start = Instant::now();
     let output = case.run(arguments);

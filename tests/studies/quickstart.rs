@@ -1,4 +1,4 @@
-//! The first trial of the quickstart's committed results, computed again.
+//! Test that recomputes the first trial of the quickstart study and compares it with the committed results.
 
 use crate::study::Study;
 use bubbletouch::report::csv_tables::read_rows;

@@ -117,7 +117,7 @@ fn without_noise_a_touch_is_learned_once() {
     assert_eq!(features(&once).data.records.len_of(Axis(0)), 120);
 }
 
-/// With another reading of a held-out touch in training, any C would seem good.
+/// Tests that the choice of C does not use other readings of held-out touches in training.
 #[test]
 fn tilted_copies_come_after_all_readings_and_are_of_the_first() {
     let tilted = "features = \"descriptors\"\ntilt_augmentation = 2";

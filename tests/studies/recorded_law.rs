@@ -76,7 +76,7 @@ fn is_the_same(touched: &str, skin: &str, rest: &str) {
 
 const SKIN: &str = "[skin]\npitch_mm = 4.0\ntaxels = 8\nstroke_mm = 5.0\n";
 
-/// Every sensor error is tested alone and after noise, with one frame and with several.
+/// Tests every sensor error alone and after noise, with one frame and with several frames per touch.
 #[test]
 fn recorded_touches_give_the_results_of_the_simulated_ones_for_every_sensor_error() {
     let mut steps = Vec::new();
@@ -146,7 +146,7 @@ fn recorded_touches_of_skins_that_read_shear_and_of_other_layouts_give_the_resul
     is_the_same(PRESSED, &format!("{SKIN}layout = \"hexagonal\"\n"), &rest);
 }
 
-/// A minimal recording of the same touches has the history of the simulated touches.
+/// Tests that a minimal recording has the same touch history as the simulated touches.
 #[test]
 fn recorded_touches_come_after_others_as_simulated_ones_do() {
     let case = Case::new();

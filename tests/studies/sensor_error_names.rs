@@ -21,7 +21,7 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns the names of single errors in a line of code: enum variants, and words and keys of study files as literals.
+/// Returns the names in a line of code that belong to single errors: enum variants, and literals with words and keys of study files.
 fn names_in(line: &str) -> Vec<String> {
     let abouts = SENSOR_ERRORS.iter().map(|error| (error, error.about()));
     let names = abouts.flat_map(|(error, about)| {

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 /// Name of a random stream, extended by words and numbers, such as `tree 3 rows`. Functions take `&dyn Streams`, so that training is compiled once for every
 /// type of name.
 pub trait Streams {
-    /// Returns the stream name with this word appended.
+    /// Returns the name of the stream with this word appended.
     fn named(&self, word: &str) -> Box<dyn Streams>;
 
     /// Returns the name of the stream with this number appended.

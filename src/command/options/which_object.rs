@@ -11,7 +11,7 @@ use bubbletouch::report::progress::to_stderr;
 use bubbletouch::study::{load_catalogue, read_mesh};
 use std::path::{Path, PathBuf};
 
-/// Surface errors of solids that are smaller than this share of their size may take minutes.
+/// Surface error relative to the size of a solid below which packing may take minutes.
 const FINE: f64 = 1e-4;
 
 #[derive(clap::Args)]

@@ -12,7 +12,7 @@ pub enum Part<'a> {
     All,
     /// Only the work items of one shard are computed.
     Shard(Shard),
-    /// Work items with the given numbers.
+    /// Only the work items with the given numbers are computed.
     Only(&'a BTreeSet<usize>),
 }
 

@@ -1,4 +1,4 @@
-//! Stability studies: the range of masses and time steps for which each method of contact simulation gives right results.
+//! Stability studies: the masses and time steps for which each contact simulation method gives correct results.
 //!
 //! A file with a `[stability]` table is a stability study: [`StabilityStudySpec`] (as written) → [`StabilityPlan`] (checked, SI) →
 //! [`run_whole`](crate::studies::study::run_whole) → [its tables](rows).

@@ -155,7 +155,7 @@ pub enum Outcome {
     Right,
     /// The simulation ended, but the force imbalance or the deflection error exceeds [`TOLERANCE`].
     Inaccurate,
-    /// Contact was missed: the sum of all deflections is below half or above twice the exact sum, or nothing supports the ball.
+    /// The contact was missed: the sum of deflections is below half or above twice the exact sum, or nothing supports the ball.
     MissedContact,
     /// The energy of the simulation exceeds four times the energy that was supplied to the scene.
     EnergyGrowth,

@@ -167,7 +167,7 @@ fn summary(rows: &[StabilityRow]) -> Vec<StabilitySummary> {
     settings.into_iter().map(summarise).collect()
 }
 
-/// Minimum number of array sizes with equal load per taxel that form a series of growing arrays.
+/// Minimum number of array sizes, with equal load per taxel, in a series of growing arrays.
 const LEAST_RUNGS: usize = 3;
 
 /// Returns the results of the plunger scene for the load per taxel that was simulated on the most array sizes. Returns no rows if fewer than three array sizes

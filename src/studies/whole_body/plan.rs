@@ -31,7 +31,7 @@ pub struct WholeBodyPlan {
     pub robot: Robot,
     /// Path of the robot's URDF file.
     pub robot_file: PathBuf,
-    /// Parameters that all taxels have in common.
+    /// Parameters that all taxels of the skin share.
     pub taxel: Taxel,
     /// Distance between neighbouring taxels, metres.
     pub pitch: f64,

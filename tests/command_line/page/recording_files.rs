@@ -193,7 +193,7 @@ fn single_rows_are_those_of_the_whole_and_vectors_have_lengths() {
     assert!(said.ends_with("touch.npz: frame 40; 0 to 39"), "{said}");
 }
 
-/// ndarray-npy is independent of our reader.
+/// Tests that ndarray-npy, which is independent of the project's reader, reads equal arrays.
 #[test]
 fn another_reader_of_npz_reads_the_same_arrays() {
     let folder = tempfile::tempdir().unwrap();

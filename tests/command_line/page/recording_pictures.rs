@@ -49,7 +49,7 @@ fn tube() -> RecordedPatch {
     }
 }
 
-/// Returns the mean position of the pixels of a colour, and their number.
+/// Returns the mean position and the number of the pixels of a colour.
 fn blob(picture: &Picture, colour: [u8; 3]) -> ([f64; 2], usize) {
     let (mut sum, mut n) = ([0.0; 2], 0);
     for (index, pixel) in picture.rgb.as_chunks::<3>().0.iter().enumerate() {

@@ -11,7 +11,7 @@ use bubbletouch::studies::recognition::charts::{answers, charts, read_tables, ta
 use bubbletouch::study::table::{Configuration, Limit};
 use bubbletouch::table::{ChartSpec, Mark, Table};
 
-/// Returns configurations of a linear SVM with three values of C, and of a k-NN classifier without C.
+/// Returns configurations of a linear SVM with three values of C, and of a k-nearest-neighbours classifier without C.
 fn with_k_nearest() -> Vec<Configuration> {
     let of_svm = [0.1, 1.0, 10.0].map(|c| Configuration {
         c: Some(c),

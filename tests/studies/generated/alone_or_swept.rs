@@ -57,7 +57,7 @@ fn accuracy_rows(study: &GeneratedStudy) -> bubbletouch::Result<Vec<Row>> {
     Ok(rows(&run(&study.load()?)?["accuracy.csv"]))
 }
 
-/// Checks one study, swept over two keys; returns the number of compared configurations.
+/// Checks one study in which two keys are swept; returns the number of compared configurations.
 fn check(
     generator: &mut Generator,
     first_axis: Option<(&str, Vec<Value>)>,

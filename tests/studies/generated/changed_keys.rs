@@ -1,4 +1,4 @@
-//! Law: a changed key changes some byte of the results, or is refused.
+//! Law: a changed key changes some byte of the results, or the study is rejected.
 
 use super::generator::{GeneratedStudy, Generator, is_sample};
 use super::outcome::{Row, rows, run};
@@ -8,7 +8,7 @@ use bubbletouch::study::table::TrialScore;
 use bubbletouch::table::Columns;
 use toml::Value;
 
-/// Number of studies in which a key is tried before it counts as having no effect; a small study may give the same results by chance.
+/// Number of studies in which a key is tried before the key counts as having no effect.
 const MAX_STUDIES: u64 = 12;
 
 /// Results of a study: scores and predictions, without the columns that repeat settings.
@@ -21,7 +21,7 @@ struct Results {
     learned: Vec<u64>,
 }
 
-/// Returns the results of a study; `None` if it is refused.
+/// Returns the results of a study; `None` if the study is rejected.
 fn results(study: &GeneratedStudy) -> Option<Results> {
     let loaded = study.load().ok()?;
     let tables = run(&loaded).ok()?;

@@ -60,8 +60,7 @@ fn edited(csv: &[u8], generator: &mut Generator) -> Option<(String, Vec<u8>)> {
     Some((what, writer.into_inner().unwrap()))
 }
 
-/// Runs studies, edits a table of each several times, and checks that a command reports each edit. `is_noticed` runs the command on the edited folder
-/// `results`.
+/// Edits the tables of studies several times, and checks that a command reports each edit.
 fn check(law: &str, with_times: bool, is_noticed: impl Fn(&Case, &str) -> Result<(), String>) {
     for number in 0..n_folders() {
         let case = Case::new();

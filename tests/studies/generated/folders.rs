@@ -104,7 +104,7 @@ fn a_run_that_lost_the_end_of_its_journal_gives_the_tables_of_a_fresh_one() {
     }
 }
 
-/// Keys that change between two runs, in addition to keys of the signal.
+/// Keys that change between two runs, without the keys of the signal.
 const CHANGED: &[&str] = &[
     "seed",
     "trials",

@@ -28,7 +28,7 @@ pub fn is_sample() -> bool {
 /// Number of studies per law in `cargo test`. With a larger value, the tests take longer than a few seconds.
 const SAMPLE: u64 = 3;
 
-/// Generated study: the text of its file by the path of each key.
+/// Generated study: the TOML text of each key's value, by key path.
 #[derive(Clone, Debug)]
 pub struct GeneratedStudy {
     pub table: Table,

@@ -71,7 +71,7 @@ fn the_order_of_objects_changes_no_touch() {
     }
 }
 
-/// Returns the study of three balls with these names and listed poses, so that nothing is drawn by an object's name.
+/// Returns the study of three balls with the given names and listed poses, so that no random draw depends on an object's name.
 fn of_own_balls(case: &Case, study: &GeneratedStudy, names: [&str; 3]) -> GeneratedStudy {
     let balls = names.iter().zip([40.0, 44.0, 60.0]).map(|(name, diameter)| {
         format!(

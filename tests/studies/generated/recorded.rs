@@ -71,7 +71,7 @@ fn of_folder(study: &GeneratedStudy, folder: &Path) -> GeneratedStudy {
     study
 }
 
-/// Returns the tables without times; of limits only the counts that recorded and simulated touches have in common.
+/// Returns the tables without times, and only those limits that recorded and simulated touches share.
 fn found(study: &GeneratedStudy) -> Option<Tables> {
     let mut tables = without_times(run(&study.load().ok()?).ok()?);
     let limits = rows(&tables["limits.csv"]).into_iter();

@@ -64,8 +64,8 @@ pub(crate) fn smallest(rows: &mut [RankedRow], n: usize) -> &[RankedRow] {
     rows
 }
 
-/// Finds the products that are below `bound` after multiplication by `sign`, and writes their positions into `places`. Whole chunks are tested first, because
-/// most chunks contain no such product.
+/// Writes the positions of all products that are below `bound` after multiplication by `sign` into `places`. Whole chunks are tested first, because most chunks
+/// contain no such product.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn find_below<T: Scalar>(products: &[T], sign: T, bound: T, places: &mut Vec<usize>) {
     places.clear();

@@ -620,7 +620,7 @@ fn candidates() -> Candidates {
     }
 }
 
-/// Returns the accuracies of [`choose`] by definition: a separate model for every fold and candidate.
+/// Returns the accuracies that [`choose`] must return, computed with a separate model for every fold and candidate.
 fn accuracies(params: SvmParams, data: &Dataset, folds: &[Split], chosen: &Chosen) -> Vec<f64> {
     let of = |c: f64, gamma: Option<f64>| {
         let gamma = gamma.map(Gamma::Value);

@@ -1,5 +1,4 @@
-//! SVMs with extreme C on rows that no hyperplane separates: the solution is optimal according to an independent program, or counted as capped. `guide::limits`
-//! states this limit.
+//! SVMs with extreme C on rows that no hyperplane separates: the solution is optimal or counted as capped.
 
 use crate::svm_conditions::Worth;
 use bubbletouch_svm::dataset::{Dataset, dataset};
@@ -11,7 +10,7 @@ const RBF: Kernel = Kernel::Rbf {
     gamma: Gamma::Value(0.5),
 };
 
-/// Returns eighteen points of a lattice in three classes; no hyperplane separates any two of them.
+/// Returns eighteen points of a lattice in three classes, such that no hyperplane separates two classes.
 fn lattice() -> Dataset {
     let features = Array2::from_shape_fn((18, 2), |(row, column)| match column {
         0 => ((row * 7) % 5) as f64 - 2.0,

@@ -44,7 +44,7 @@ struct Case {
     n_capped: usize,
     /// Predicted labels of the probe rows.
     labels: Vec<usize>,
-    /// Decision values, probes × problems; `None` if their error is not small.
+    /// Decision values, probes × problems; `None` if the error of these values is not small.
     decision: Option<Vec<Vec<f64>>>,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::table::Table;
 
-/// Returns the table with the given file name; returns `None` if there is no such table or it has no rows.
+/// Returns the table with the given file name; `None` if there is no such table or if it has no rows.
 pub(crate) fn filled<'a>(tables: &'a [Table], file: &str) -> Option<&'a Table> {
     let mut tables = tables.iter();
     tables.find(|table| table.file == file && table.n_rows > 0)

@@ -179,7 +179,7 @@ fn title(
     title
 }
 
-/// Returns the form of a column name that is used in the file names of charts.
+/// Returns a column name in the form that the file names of charts use.
 fn word(column: &str) -> &str {
     match column {
         "pitch_mm" | "size_mm" | "smoothing_mm" => column.trim_end_matches("_mm"),

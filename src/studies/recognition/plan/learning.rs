@@ -210,7 +210,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Checks a split that is defined by poses; no other key may then define the split.
+    /// Checks a split that is defined by poses; no other key may define the split in addition.
     pub fn split(&self, spec: &StudySpec) -> Result<()> {
         let recognition = &spec.recognition;
         if recognition.split == PoseSplit::Random {

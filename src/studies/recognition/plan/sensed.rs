@@ -1,4 +1,4 @@
-//! Quantities that the taxels of an array read.
+//! Quantities that the taxels of an array measure.
 
 use crate::random::Seed;
 use crate::world::Shear;

@@ -57,7 +57,7 @@ macro_rules! configuration {
 }
 
 configuration! {
-/// Configuration of a study: one value of every axis.
+/// Configuration of a study, which has one value for every axis.
 pub struct Configuration {
     /// Number of the configuration in sweep order, from 0.
     configuration: usize => always (Note, "configuration", "", Linear);

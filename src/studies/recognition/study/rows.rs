@@ -20,7 +20,7 @@ pub struct ConfigurationRow {
 /// Result of simulating or measuring a set of touches on an array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TouchRow {
-    /// Index of the set of touches in the list of the current study.
+    /// Index in the list of all sets of touches of the current study.
     #[serde(skip)]
     pub on: usize,
     /// Whether the row describes the simulation of touches; otherwise it describes the computation of measurements.

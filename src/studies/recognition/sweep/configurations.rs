@@ -60,7 +60,7 @@ pub struct Sweep {
     pub groups: Vec<MeasurementGroup>,
     /// Split of all touches into training and test touches for each trial.
     pub splits: Vec<Hashed<Split>>,
-    /// For each trial, the number of the first trial with the same split: the trial's own number if no earlier one has it.
+    /// Number of the first trial with an equal split, for each trial; the trial's own number if no earlier trial has an equal split.
     pub first_equal: Vec<usize>,
     /// Number of the touched object for each touch.
     pub labels: Hashed<Array1<usize>>,
