@@ -215,7 +215,7 @@ impl FileKind<'_> {
                 meaning(key),
             ));
             lists.push_str(&meanings_of_values(&name, key));
-            inner.extend(below);
+            inner.extend(nested);
         }
         page.push_str(&lists);
         for table in inner {
@@ -398,7 +398,7 @@ fn range(schema: &Value) -> String {
     let least = own("minimum").map(|number| format!("≥ {number}"));
     let above = own("exclusiveMinimum").map(|number| format!("> {number}"));
     let most = own("maximum").map(|number| format!("≤ {number}"));
-    let nested = own("exclusiveMaximum").map(|number| format!("< {number}"));
+    let below = own("exclusiveMaximum").map(|number| format!("< {number}"));
     let ends: Vec<String> = [least.or(above), most.or(below)]
         .into_iter()
         .flatten()
