@@ -170,7 +170,7 @@ impl Args {
     /// Returns the upper bounds of cost columns, in the units of the columns.
     fn limits(&self) -> Vec<(String, f64)> {
         let wish = &self.wish;
-        // Beside a value, the budget is one more filter.
+        // Together with a required value, the budget is an additional filter.
         let has_value = wish.accuracy.or(wish.reach).is_some();
         let cost = self.cost.as_deref().unwrap_or("decision_time");
         let limits = [
@@ -199,7 +199,7 @@ impl Args {
     fn advice_in_words(&self, offers: &Candidates, advice: &Advice) -> String {
         let choice = &advice.choice;
         let mut text = offers.setting(choice);
-        // That of the worst of several conditions says which.
+        // With several conditions, the answer for the worst one names the condition.
         let condition = offers.condition(choice);
         if self.worst && !condition.is_empty() {
             text += &format!("\n  worst with {condition}");

@@ -135,46 +135,46 @@ fn write_predictions(path: &Path, classes: &[KeyValue], predicted: &Array1<usize
 struct Findings {
     program: &'static str,
     classifier: ClassifierKind,
-    /// `None` for what is no SVM.
+    /// Multi-class strategy; `None` for classifiers other than kernel SVMs.
     multiclass: Option<Multiclass>,
     scaling: Scaling,
-    /// `None` for what is no SVM.
+    /// Solver that trained the SVM; `None` for classifiers other than kernel SVMs.
     solver: Option<Solver>,
-    /// C that was used; `None` for what has none.
+    /// Penalty C that was used; `None` for classifiers without C.
     c: Option<f64>,
-    /// What C, and γ, was chosen from.
+    /// Result of the cross-validated choice of C and γ; `None` if both were given.
     chosen: Option<Chosen>,
-    /// How training and test rows are told apart, and what the interval comes from: "rows" or "groups".
+    /// Unit of the split and of the confidence interval: "rows" or "groups".
     split_by: &'static str,
     n_train: usize,
     n_test: usize,
-    /// Groups of the training rows; `None` without groups.
+    /// Number of groups of training rows; `None` without groups.
     n_train_groups: Option<usize>,
-    /// Groups of the test rows, from which the interval comes; `None` without groups.
+    /// Number of groups of test rows, over which the interval is computed; `None` without groups.
     n_test_groups: Option<usize>,
     n_measurements: usize,
     n_correct: usize,
     accuracy: f64,
     accuracy_low: f64,
     accuracy_high: f64,
-    /// Seconds to fit, scaling included; one a repeat.
+    /// Training time of each repetition, including scaling, s.
     fit_s: Vec<f64>,
     fit_median_s: f64,
-    /// Seconds to predict all test rows, scaling included; one a repeat.
+    /// Time of each repetition to predict all test rows, including scaling, s.
     predict_s: Vec<f64>,
     predict_median_s: f64,
-    /// `None` for what is no SVM.
+    /// Results that only kernel SVMs have; `None` for other classifiers.
     svm: Option<SvmFindings>,
 }
 
 #[derive(Serialize)]
 struct SvmFindings {
-    /// Training rows with a multiplier above 0 in some problem.
+    /// Number of training rows that have a multiplier above 0 in at least one binary problem.
     n_support_vectors: usize,
     n_problems: usize,
-    /// Problems that stopped at the solver's cap, short of its tolerance.
+    /// Number of binary problems that stopped at the maximum number of iterations before reaching the tolerance.
     n_capped: usize,
-    /// Sum over the problems of `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i`, which training minimises.
+    /// Objective that training minimises, summed over the binary problems: `½ Σ_ij a_i a_j y_i y_j K(x_i, x_j) − Σ_i a_i`.
     dual_objective: f64,
 }
 
@@ -340,7 +340,7 @@ fn svm_findings(trained: &TrainedClassifier) -> Option<SvmFindings> {
         n_support_vectors: support.len(),
         n_problems: problems.len(),
         n_capped: trained.n_capped(),
-        // What training minimises is the dual objective with the other sign.
+        // Training minimises the dual objective with the opposite sign.
         dual_objective: -problems.iter().map(|p| p.solution.objective).sum::<f64>(),
     })
 }

@@ -48,7 +48,7 @@ pub fn compare(args: &Args) -> Result<()> {
     let place = format!("{first_name} and {second_name}: ");
     let ranks = rank_agreement(&first, &second);
     let found = match (differences(&first, &second), &ranks) {
-        // A simulated and a recorded study share no setting, but an order of designs.
+        // A simulated and a recorded study have no common setting, but their rankings of designs can be compared.
         (Err(_), Some(_)) if args.out.is_none() => Vec::new(),
         (found, _) => found.map_err(|error| error.under(place))?,
     };

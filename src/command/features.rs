@@ -41,7 +41,7 @@ pub struct Args {
 }
 
 pub fn features(args: &Args) -> Result<()> {
-    // Before objects are packed; again below, once it is known which files the study reads.
+    // Checked before objects are packed, and again below when the files that the study reads are known.
     DataFolder::claim(&args.out, "features", FEATURE_FILES)?;
     let loaded = load_study(&args.study.source(&args.out)?)?;
     let (part, which) = (

@@ -63,7 +63,7 @@ fn shard_journals(folder: &Path) -> Result<Vec<PathBuf>> {
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        // As Shard::file_name has it.
+        // The file name has the form of `Shard::file_name`.
         if name.starts_with("journal.") && name.contains("-of-") && name.ends_with(".jsonl") {
             paths.push(path);
         }

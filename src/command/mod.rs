@@ -70,7 +70,7 @@ pub fn dispatch() -> Result<()> {
     bubbletouch::files::protect_inputs();
     let line = match CommandLine::try_parse() {
         Ok(line) => line,
-        // --help and --version.
+        // Handles --help and --version.
         Err(asked) if !asked.use_stderr() => return terminal::streams::written(asked.print()),
         Err(wrong) => wrong.exit(),
     };

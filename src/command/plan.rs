@@ -73,7 +73,7 @@ fn sample(study: Box<dyn AnyStudy>, seconds: f64) -> Result<String> {
     let progress = sample.clone();
     thread::spawn(move || {
         let outcome = study.run(&RunOptions::whole(progress.as_ref()));
-        // Nobody listens any more once the sample is over.
+        // After the sample, progress reports are ignored.
         let _ = sender.send(outcome.map(drop));
     });
     match ended.recv_timeout(Duration::from_secs_f64(seconds)) {

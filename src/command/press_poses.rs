@@ -47,7 +47,7 @@ impl Args {
     }
 }
 
-/// Row of the CSV file with the readings.
+/// Row of the CSV file of poses: position in metres, and unit quaternion.
 #[derive(Deserialize)]
 struct Row {
     x: f64,
@@ -62,11 +62,11 @@ struct Row {
 /// Values that are printed about a pose.
 #[derive(Serialize)]
 struct Reading {
-    /// How far the patch travelled, mm.
+    /// Travel of the patch, mm.
     travel_mm: f64,
     n_touched: usize,
     n_saturated: usize,
-    /// Median over repetitions.
+    /// Computing time of the press, median over repetitions, µs.
     us: f64,
 }
 
@@ -98,7 +98,7 @@ pub fn press_poses(
         let read = ArrayView2::from_shape(frame.dim(), workspace.deflections());
         frame.assign(&read.expect("a press gives one deflection a taxel"));
     }
-    // Round after round: a pose that is pressed again at once is nearer to the processor than a new one.
+    // All poses are pressed in turn, because an immediate repetition of one pose would use warm caches.
     let mut times = vec![Vec::new(); poses.len()];
     for _ in 0..args.repeat.unwrap_or(1) {
         for (pose, times) in poses.iter().zip(&mut times) {

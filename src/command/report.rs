@@ -41,7 +41,7 @@ pub fn report(args: &Args) -> Result<()> {
         _ => {
             let study = folder.join("study.toml").display().to_string();
             let name = folder_name(folder)?;
-            // A run reads the study and cannot write over it.
+            // A run reads this study file, so it must not overwrite it.
             let again = folder.with_file_name(format!("{name}.again"));
             let again = again.display().to_string();
             let words = ["bubbletouch", "run", &study, "--out", &again];

@@ -76,7 +76,7 @@ pub fn slurm(args: &Args) -> Result<()> {
             (Some(id), say(said))
         }
     };
-    // Whatever became of the line: shards without a merge would be lost work.
+    // Submitted even if the first submission failed: shards without a merge would be lost.
     let merge = args.submit_merge(shards.as_deref(), &folder)?;
     said?;
     say(format_args!(
@@ -122,7 +122,7 @@ impl Args {
         let threads = self.results.study.threads.unwrap_or(1);
         let mut options = self.options(threads);
         options.push(format!("--array={}", missing.join(",")));
-        // A job that is pre-empted goes back into the queue, and on where it stopped.
+        // A pre-empted job returns to the queue and later continues where it stopped.
         options.push("--requeue".to_owned());
         let shard = format!("\"$SLURM_ARRAY_TASK_ID\"/{}", self.array);
         let line = self.line("run", folder)?;
@@ -132,7 +132,7 @@ impl Args {
 
     fn submit_merge(&self, shards: Option<&str>, folder: &Path) -> Result<String> {
         let mut options = self.options(1);
-        // After any end: the merge says which cells are missing, if some are.
+        // Runs after any end of the shards: the merge lists the missing configurations.
         options.extend(shards.map(|id| format!("--dependency=afterany:{id}")));
         let line = self.line("merge", folder)?;
         submit(&self.name("merge")?, &options, &line, folder)

@@ -18,7 +18,7 @@ pub fn submit(name: &str, options: &[String], line: &str, results: &Path) -> Res
     sbatch.args(["--parsable", "--job-name", name]);
     sbatch.arg("--output").arg(said).args(options).arg(&script);
     let answer = answer(&mut sbatch)?;
-    // With several clusters it is `number;cluster`.
+    // With several clusters, the output is `number;cluster`.
     let number = answer.split(';').next().unwrap_or_default();
     Ok(number.trim().to_owned())
 }
@@ -26,7 +26,7 @@ pub fn submit(name: &str, options: &[String], line: &str, results: &Path) -> Res
 /// Returns the shards whose cluster jobs with this name are waiting or running.
 pub fn queued_shards(name: &str) -> Result<Vec<usize>> {
     let mut squeue = Command::new("squeue");
-    // One line for each job of an array: its number in the array.
+    // The output has one line for each job of an array: the job's number in the array.
     squeue.args(["--noheader", "--array", "--name", name, "--format", "%K"]);
     let answer = answer(&mut squeue)?;
     let numbers = answer.lines().map(|line| line.trim().parse());

@@ -52,7 +52,7 @@ struct DataSet<'a> {
     array: &'a TaxelArray,
     n_frames: usize,
     axes: &'a AxisValues,
-    /// Whether only test touches are made so.
+    /// Whether only test touches are simulated in this way.
     is_tested: bool,
     /// Folder below the output folder; empty if there is one data set.
     folder: String,
@@ -64,7 +64,7 @@ pub fn touches(args: &Args) -> Result<()> {
     let (plans, read) = match args.configuration {
         None => (read_plans(&source)?, None),
         Some(configuration) => {
-            // Before objects are packed; again below, once all files are known.
+            // Checked before objects are packed, and again below when all files are known.
             DataFolder::claim(&args.out, "touches", TOUCH_FILES)?;
             let study = load_study(&source)?;
             let part = study.part_of(configuration);

@@ -23,7 +23,7 @@ use std::path::Path;
 /// Maximum number of steps of a scene; a larger number indicates a time step in the wrong unit.
 const MAX_STEPS: f64 = 1e9;
 
-/// Scene after all its keys were checked, as input of a simulation: robots, skin, objects and the times of the frames.
+/// Scene that is checked and ready for simulation: robots, skin, objects and the times of the frames.
 #[derive(Clone, Debug)]
 pub struct ScenePlan {
     /// File name of the scene, for error messages.

@@ -7,7 +7,7 @@ use crate::studies::recognition::plan::tested::{SHARED, TABLES};
 use crate::studies::recognition::spec::keys::recognition_keys;
 use serde_json::{Map, Value, json};
 
-/// Completes the schema of a recognition study with `[test]` and `[axes]`.
+/// Adds the tables `[test]` and `[axes]` to the schema of a recognition study.
 pub(super) fn complete(schema: &mut Value) {
     let test = test_table(schema);
     schema["properties"]["test"] = test;

@@ -1,6 +1,6 @@
 //! Check of unused options: an option that has no effect is an error in all commands.
 //!
-//! clap's `requires` is not enough: it is not checked for an option whose required one conflicts with another that is given.
+//! The attribute `requires` of clap is not sufficient: clap does not check it if the required option conflicts with a given option.
 
 use bubbletouch::{Error, Result};
 

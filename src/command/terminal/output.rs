@@ -1,4 +1,4 @@
-//! Where results go.
+//! Output folders and files of the commands.
 
 use bubbletouch::files::check_single_output;
 use bubbletouch::{Error, Result};
@@ -11,7 +11,7 @@ pub fn output_folder(folder: &Path) -> Result<()> {
         return Err(Error::input(folder.display(), "a file", allowed));
     }
     std::fs::create_dir_all(folder).map_err(|e| match e.kind() {
-        // Some parent is a file.
+        // A parent folder in the path is a file.
         std::io::ErrorKind::NotADirectory | std::io::ErrorKind::AlreadyExists => {
             let allowed = "a path where a folder can be made";
             Error::input(folder.display(), "below a file", allowed)

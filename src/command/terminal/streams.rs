@@ -1,7 +1,7 @@
-//! Output of the command: results on standard output, notes on standard error. Nothing else here writes to either.
+//! Output of the command: results on standard output, notes on standard error. No other module writes to these streams.
 //!
-//! A reader that closes its pipe has read enough: what is said after that is dropped, the work goes on to its end, and the exit code is
-//! that of the work. A standard output that takes no more for another reason (a full disk) is an error. Notes are never one.
+//! If the reader closes the pipe, further output is discarded, the work is completed, and the exit code is the result of the work. Any other failure of
+//! standard output (such as a full disk) is an error. Failures of notes are ignored.
 
 use bubbletouch::{Error, Result};
 use std::fmt::Display;

@@ -128,7 +128,7 @@ impl ReconstructionPlan {
         steps.collect()
     }
 
-    /// Returns the quantity of the frames to which noise is added: deflection or force.
+    /// Returns the physical quantity of the noisy frames: deflection or force.
     pub fn quantity(&self) -> Quantity {
         match self.spec.signal.steps.contains(&StepSpec::Force) {
             true => Quantity::Force,

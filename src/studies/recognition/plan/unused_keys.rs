@@ -15,13 +15,13 @@ use crate::world::{Spread, TouchAxis};
 /// A key whose values have an effect only together with other keys.
 struct KeyUse {
     key: &'static str,
-    /// Returns the value of the key, if some value of the key has no effect without the other keys.
+    /// Function that returns the value of the key, if this value may have no effect without other keys.
     given: fn(&Plan) -> Option<f64>,
-    /// Returns whether the other keys let the value have an effect.
+    /// Function that returns whether the value has an effect with the other keys of the plan.
     has_effect: fn(&Plan) -> bool,
-    /// The other keys, or their tables. If one of these keys is an axis, the value may have an effect in another configuration.
+    /// Names of the other keys that are needed, or of their tables. If one of these keys is an axis, the value may have an effect in another configuration.
     beside: &'static [&'static str],
-    /// Why the value has no effect.
+    /// Reason why the value has no effect, for the error message.
     reason: &'static str,
     allowed: &'static str,
 }
@@ -148,7 +148,7 @@ fn groups_drawn(plan: &Plan, is_selected: fn(TouchAxis) -> bool) -> bool {
     drawn.any(|(axis, _)| is_selected(*axis) && axes.contains(axis))
 }
 
-/// Returns whether one of these keys, or a key of one of these tables, is an axis.
+/// Returns whether a key in `names`, or a key of a table in `names`, is an axis.
 fn has_axis(axes: &StudyAxes, names: &[&str]) -> bool {
     let keys = axes.axes.iter().flat_map(|axis| axis.keys());
     let mut keys = keys.into_iter();

@@ -32,7 +32,7 @@ pub enum PoseSplit {
     LeaveOneYawOut,
     /// The touches with the larger half of the yaw angles are test touches in one trial; those with the smaller half in the next trial.
     HalfOfYaws,
-    /// One eighth of the offsets and yaws is held out for testing; the opposite eighth is used for training.
+    /// Test touches are in one eighth of the ranges of offsets and yaws; training touches are in the opposite eighth.
     OppositeBlocks,
     /// One tilt per trial is held out for testing; each trial holds out the next tilt.
     UnseenTilt,
