@@ -76,7 +76,7 @@ pub fn slurm(args: &Args) -> Result<()> {
             (Some(id), say(said))
         }
     };
-    // Submitted even if the first submission failed: shards without a merge would be lost.
+    // Submitted even if the message could not be printed: shards without a merge would be lost.
     let merge = args.submit_merge(shards.as_deref(), &folder)?;
     said?;
     say(format_args!(

@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3};
 use ndarray::ArrayD;
 use std::path::Path;
 
-/// Maximum deviation of an entry of RᵀR from the identity matrix if R is a rotation matrix in f32.
+/// Maximum deviation of an entry of RᵀR from the identity matrix for which R is accepted as a rotation matrix in f32.
 const MAX_ROTATION_ERROR: f64 = 1e-3;
 
 /// Reads a layout of taxels from a `.npz` archive of NumPy arrays.

@@ -26,7 +26,7 @@ pub(super) struct Scale {
     pub title: String,
 }
 
-/// Position on an axis that may have a label.
+/// Tick of an axis: a position that may have a label.
 #[derive(Clone, Debug)]
 pub(super) struct Tick {
     /// Position of the tick as a fraction of the axis length, from the start of the axis.

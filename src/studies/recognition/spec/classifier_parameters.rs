@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Values of the [declared] parameters that a study gives, by key, and defaults of parameters that are always written.
+/// Values of [declared] classifier parameters, by key: those given in the study, and defaults that are always written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClassifierParameters(BTreeMap<&'static str, f64>);
 
