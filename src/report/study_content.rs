@@ -26,7 +26,7 @@ pub struct Found<'a> {
     pub answers: &'a [String],
 }
 
-/// Additional content of a study's result folder, besides tables and charts.
+/// Additional content of a study's result folder, which is neither a table nor a chart.
 #[derive(Default)]
 pub struct Beyond {
     /// Pictures that are not charts, for example of frames or objects.

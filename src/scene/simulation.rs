@@ -31,7 +31,7 @@ pub struct Simulation<'p> {
     pub(super) robots: Vec<RobotState>,
     skins: Vec<SkinState>,
     objects: PlacedObjects,
-    /// For each imposed object, the pose `world_from_object` that a program set; `None` for objects that follow their motions.
+    /// Pose `world_from_object` of each imposed object that a program set; `None` for objects that follow their motions.
     pub(super) put: Vec<Option<Pose>>,
     pressed: PressedObjects,
     pub(super) free: FreeObjects,
@@ -169,7 +169,7 @@ impl<'p> Simulation<'p> {
         if are_needed { self.plan.n_substeps } else { 1 }
     }
 
-    /// Computes the initial state of the scene, unless a step has already been made.
+    /// Computes the initial state of the scene if no step has been made before.
     pub(super) fn begin(&mut self) -> Result<()> {
         match self.n_steps {
             0 => self.advance(0.0, f64::INFINITY),

@@ -88,7 +88,7 @@ pub struct Paired {
     theirs: Vec<Repeat>,
     /// Numbers of rows in the paired trials of the first configuration, or in all its trials if none are paired; `None` if unknown.
     sizes: Option<Vec<TrialSize>>,
-    /// Whether several trials of a configuration use the same split.
+    /// Whether a configuration has several trials with equal splits.
     has_repeats: bool,
 }
 

@@ -33,7 +33,7 @@ pub enum Resumes {
     /// Two studies may resume each other's runs if they differ only in these keys or in keys of their subtables. Keys in this list are texts, or select work
     /// items without changing their results.
     ButFor(&'static [&'static str]),
-    /// Two studies may resume each other's runs if they have work items in common. The name of a work item is derived from all inputs of the item.
+    /// Two studies may resume each other's runs if they have common work items. The name of a work item is derived from all inputs of the item.
     SharedWork,
 }
 

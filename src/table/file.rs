@@ -82,7 +82,7 @@ impl<R: Columns> File<R> {
         self.of_columns(R::columns(), rows)
     }
 
-    /// Creates a table from rows with the given columns, for studies with axes of their own.
+    /// Creates a table from rows with the given columns; used by studies that define additional axes.
     ///
     /// # Errors
     /// If a row cannot be serialised as CSV, or has other columns.

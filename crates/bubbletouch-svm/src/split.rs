@@ -248,7 +248,8 @@ fn draw_rows(labels: ArrayView1<usize>, seed: &dyn Streams) -> BTreeMap<usize, V
     drawn
 }
 
-/// Returns the groups of each stratum; all groups of a stratum contain the same classes. Strata of a single group are pooled into the last stratum.
+/// Returns the groups of rows in each stratum; a stratum consists of groups that contain equal sets of classes. Strata of a single group are pooled into the
+/// last stratum.
 fn strata(labels: ArrayView1<usize>, groups: ArrayView1<usize>) -> Vec<Vec<usize>> {
     let mut classes_of = BTreeMap::<usize, Vec<usize>>::new();
     for (&class, &group) in labels.iter().zip(groups) {

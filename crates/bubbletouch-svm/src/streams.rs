@@ -1,4 +1,4 @@
-//! Named random streams: each class or tree has a stream of its own, so that its draws do not depend on other models.
+//! Named random streams; separate streams for each class or tree make its draws independent of other models.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

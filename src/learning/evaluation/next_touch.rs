@@ -39,7 +39,7 @@ pub enum NextTouch {
 pub struct Poses {
     /// Coordinates of the poses, n_touches × n_axes, each axis in units of its range.
     pub coordinates: Array2<f64>,
-    /// For each axis that is a periodic angle, the size of a full turn in units of the axis range; `None` for other axes.
+    /// Size of a full turn on each axis, in units of the axis range, if the axis is a periodic angle; otherwise `None`.
     pub turns: Vec<Option<f64>>,
 }
 

@@ -158,7 +158,7 @@ fn distinct(values: &[f64]) -> Vec<f64> {
     distinct
 }
 
-/// Returns the lower and upper end of a logarithmic axis, with margins of at least a twelfth of a decade beside the values.
+/// Returns the lower and upper end of a logarithmic axis, which includes margins of at least a twelfth of a decade.
 fn log_ends(values: &[f64]) -> (f64, f64) {
     let mut positive = values.iter().copied().filter(|&v| v > 0.0);
     let (low, high) = match (positive.next(), values.last()) {

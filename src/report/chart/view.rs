@@ -56,7 +56,7 @@ pub struct Place {
 pub(super) struct Groups {
     /// Names of the columns by which rows are grouped, such as `classifier`; empty if rows are not grouped.
     pub heading: String,
-    /// For each group, the values of the grouping columns as text; a single empty text if there are no such columns.
+    /// Values of the grouping columns as text, for each group; a single empty text if rows are not grouped.
     pub names: Vec<String>,
     /// Values of each group as a title; numbers are preceded by the name of their column.
     titles: Vec<String>,

@@ -18,7 +18,7 @@ const MAX_CHART_BYTES: usize = 1_200_000;
 /// Maximum total size of all tables on a page, bytes. With a larger value, the page is slow; with a smaller value, tables of some hundred rows are truncated.
 const MAX_TABLE_BYTES: usize = 1_200_000;
 
-/// Parts of a study's HTML page besides its tables and answers.
+/// Parts of a study's HTML page that are neither tables nor answers.
 #[derive(Default)]
 pub(crate) struct Beside {
     /// Charts as SVG files that contain the data of their marks, in the order of the chart specifications.

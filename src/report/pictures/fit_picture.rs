@@ -151,7 +151,7 @@ fn march(solid: &Solid, start: DVec3, direction: DVec3, length: f64) -> Option<(
 struct Scale {
     lowest: f64,
     highest: f64,
-    /// Largest absolute distance that the colours show: they cover −`end` to `end`.
+    /// Largest absolute distance on the colour scale, which covers −`end` to `end`.
     end: f64,
 }
 

@@ -43,7 +43,7 @@ pub(crate) fn draw_axis(
     drawing.text(at, title, style.align(Align::Middle).angle(angle));
 }
 
-/// Draws an axis in millimetres beside a map whose centre is the origin: x below, y on the left. The length of the map is `length`, mm.
+/// Draws an axis in millimetres along the lower or left edge of a map; the origin is the centre of the map. The length of the map is `length`, mm.
 pub(crate) fn draw_map_axis(drawing: &mut Drawing, area: Area, side: Side, length: f64) {
     let title = match side {
         Side::Below => "x (mm)",

@@ -118,8 +118,8 @@ pub struct DetailSummary {
     error_own_contact_median_mm: f64 => Value(Less) "deflection error past own contact" in "mm": Log;
     /// Largest deflection error at equal depths past each model's own first contact (`error_own_contact_mm`) of any object, mm.
     error_own_contact_worst_mm: f64 => Value(Less) "deflection error past own contact of the worst object" in "mm": Log;
-    /// Error of this method divided by that of the packing with equal tolerance (values of `error_after_offset_mm`), median over all objects, dimensionless.
-    /// Empty if there is no such packing.
+    /// Error of this method divided by the error of the packing with equal tolerance (`error_after_offset_mm`), median over all objects, dimensionless. Empty
+    /// if there is no such packing.
     times_packing: Option<f64> => Value(Less) "times the error of the packing": Log;
 } }
 

@@ -140,7 +140,7 @@ impl Sleeve {
         }
     }
 
-    /// Returns the radius of the sleeve: the distance from its axis to the rest centres of the taxels, metres.
+    /// Returns the radius of the sleeve: distance from the axis of the sleeve to the rest centres of the taxels, metres.
     fn radius(&self) -> f64 {
         self.n_around as f64 * self.side / TAU
     }

@@ -16,7 +16,7 @@ pub(crate) trait Gram<T> {
     fn rows(&mut self, i: usize, j: usize) -> (&[T], &[T]);
     /// Returns row i and the diagonal of the Gram matrix, both padded to whole lanes.
     fn row_and_diagonal(&mut self, i: usize) -> (&[T], &[T]);
-    /// For each j, returns the inverse curvature `1 / (K_ii + K_jj − 2 K_ij)` of the pair (i, j) of variables. Smaller curvatures are replaced by the minimum
+    /// Returns the inverse curvatures `1 / (K_ii + K_jj − 2 K_ij)` of the pairs (i, j) of variables, for all j. Smaller curvatures are replaced by the minimum
     /// curvature.
     fn inverse_curvatures(&mut self, i: usize) -> &[T];
     /// Returns the minimum curvature that a pairwise step assumes for a pair of variables.

@@ -111,7 +111,7 @@ impl<T: Scalar> DecisionFunctions<T> {
         values
     }
 
-    /// For each row of features, returns the position of the class with the most votes.
+    /// Returns the position of the class with the most votes for each row of features.
     pub fn winners(&self, features: ArrayView2<f64>, between: (usize, Multiclass)) -> Vec<usize> {
         let elect = |sums: Array2<T>| VoteCounter::elect(&sums, self.rho.view(), between, |_| true);
         let mut room = self.allocate_kernel_values(features.nrows());

@@ -1,4 +1,4 @@
-//! Feature files of one configuration, with which other programs can train on exactly the same rows.
+//! Feature files of one configuration, with which other programs can train on exactly the rows that a run uses.
 //!
 //! | file | content |
 //! |---|---|

@@ -96,7 +96,7 @@ impl KeepTogether {
     }
 }
 
-/// Returns the group number of each touch; touches with neighbouring poses belong to the same group. For each touch, returns the first touch of its connected
+/// Returns the group number of each touch; touches with neighbouring poses are in one group. For each touch, returns the first touch of its connected
 /// component.
 fn connected(touches: &[Touch], listed: &[Vec<usize>], drawn: &[(TouchAxis, f64)]) -> Vec<usize> {
     let mut first: Vec<usize> = (0..touches.len()).collect();

@@ -107,7 +107,7 @@ pub struct ConfigurationScore {
 } }
 
 row! {
-/// Number of test rows of one object that were recognised as one object, summed over all trials of a configuration: a row of `confusion.csv`. Zero counts are
+/// Number of test rows of one object that were recognised as a particular object, over all trials of a configuration: a row of `confusion.csv`. Zero counts are
 /// omitted.
 pub struct Confusion {
     /// Number of the configuration, as in `summary.csv`.
@@ -180,7 +180,7 @@ row! {
 pub struct Comparison {
     /// Number of the configuration, as in `summary.csv`.
     configuration: usize => Subject: Linear;
-    /// Number of the configuration with the highest mean accuracy in the same condition.
+    /// Number of the configuration with the highest mean accuracy under the same condition.
     best_configuration: usize => Note "best configuration": Linear;
     /// Number of trials that both configurations have; all trials with the same split count as one.
     n_trials: usize => Note "trials of both": Linear;

@@ -1,4 +1,4 @@
-//! Descriptions of the keys of a recognition study; other kinds of studies share some of its tables.
+//! Descriptions of the keys of recognition studies; other kinds of studies use some of these keys.
 
 use crate::error::Result;
 use crate::inputs::check::Check;

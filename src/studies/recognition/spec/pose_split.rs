@@ -206,7 +206,7 @@ pub enum GroupSpec {
     Yaw,
     /// Touches with equal tilts about x and y form a group.
     Tilt,
-    /// Touches with the object in the same stable resting pose form a group.
+    /// Touches whose objects lie in equal stable resting poses form a group.
     Rest,
     /// Touches with equal press depth form a group.
     Depth,

@@ -162,7 +162,7 @@ pub struct RecognitionSpec {
     pub solver_memory_gib: Option<f64>,
     /// Axis: maximum number of training touches per object, at least 1. Default: all touches of the training split.
     pub train_touches: Option<Axis<usize>>,
-    /// Axis: fraction of each object's training touches whose label is replaced by that of another, randomly drawn object, 0 to 1. Default: 0.
+    /// Axis: fraction of each object's training touches that are labelled as a randomly drawn other object, 0 to 1. Default: 0.
     pub mislabelled_fraction: Option<Axis<f64>>,
     /// Axis: number of training touches of the most frequent object, divided by the number of the least frequent object, at least 1. The numbers of all objects
     /// form a geometric sequence, in an order drawn for each trial. The numbers of test touches are unchanged. Default: 1.

@@ -64,7 +64,7 @@ pub struct Sweep {
     pub first_equal: Vec<usize>,
     /// Number of the touched object for each touch.
     pub labels: Hashed<Array1<usize>>,
-    /// For each touch, the number of its group; `None` if the split may divide groups.
+    /// Number of the group of each touch; `None` if the split may divide groups.
     pub group_keys: Option<Hashed<Array1<usize>>>,
     /// Pose of each touch; `None` if the study does not select touches by their poses.
     pub poses: Option<Hashed<Poses>>,

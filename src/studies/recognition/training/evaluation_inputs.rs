@@ -35,11 +35,11 @@ pub struct TrialInputs<'a> {
     pub crossed: Option<(usize, usize)>,
     /// Split of all touches into training and test touches.
     pub split: &'a Hashed<Split>,
-    /// Number of the first trial split with the same training and test touches; `None` if this split is the first.
+    /// Number of the first split with the same training and test touches as this split; `None` if this split is the first.
     pub distinct_split: Option<usize>,
     /// Number of the block of poses on which the trial is tested; `None` if the split does not hold out blocks of poses.
     pub tested_block: Option<usize>,
-    /// For each touch, the number of the touched object.
+    /// Number of the touched object for each touch.
     pub labels: &'a Hashed<Array1<usize>>,
     /// Group number of each touch; `None` if the split may divide groups.
     pub group_keys: Option<&'a Hashed<Array1<usize>>>,
