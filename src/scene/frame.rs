@@ -84,7 +84,7 @@ pub enum PoseControl {
         travel: f64,
         /// Total spring force of the patch, newtons.
         force: f64,
-        /// Target of the patch's total spring force, newtons.
+        /// Target of the patch's total spring force, N.
         wanted: f64,
     },
     /// The object moves freely and is in equilibrium.

@@ -77,7 +77,7 @@ pub struct ColumnDifferences {
     pub column: Column,
     /// Differences of all settings that have a number in both folders.
     pub rows: Vec<Difference>,
-    /// Number of settings that both folders contain; the column may be empty.
+    /// Number of settings that both folders contain, even if the column is empty.
     pub n_both: usize,
     /// Number of settings that only the first folder contains.
     pub n_first_only: usize,

@@ -145,8 +145,8 @@ impl Sleeve {
         self.n_around as f64 * self.side / TAU
     }
 
-    /// Returns a skin of about `n_taxels` taxels that covers cylindrical sleeves, which are parallel to the z axis and form rows of twenty. The first sleeve is
-    /// at the origin, and the last one may have fewer patches.
+    /// Returns a skin of about `n_taxels` taxels on cylinders (sleeves), which are parallel to the z axis and stand in rows of twenty. The first sleeve is at
+    /// the origin, and the last one may have fewer patches.
     fn body(&self, n_taxels: usize, taxel: Taxel, pitch: f64) -> Result<(WholeBody, Vec<Pose>)> {
         let (radius, length) = (self.radius(), self.side - pitch);
         let part = Extrusion::cylinder(radius, length, length / radius, pitch)?;

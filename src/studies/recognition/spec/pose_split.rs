@@ -127,7 +127,7 @@ impl PoseSplit {
         }
     }
 
-    /// Returns the side (training, test or left out) of each touch for a split by blocks. Each bit of `trial` selects the tested half of one axis; 0 selects
+    /// Returns the side (training, test or left out) of each touch for a split by blocks of poses. Each bit of `trial` selects the tested half of one axis; 0 selects
     /// the larger values. Touches in the tested half of all axes are test touches. Touches in the tested half of no axis are training touches.
     fn blocks(self, touches: &[&Touch], axes: &[TouchAxis], trial: usize) -> Result<Vec<Side>> {
         let block = axes.len();

@@ -63,7 +63,7 @@ impl RecognitionStudy {
         self.parts().len() > 1
     }
 
-    /// Returns the sets of touches that pending work items need, each with the measurements to compute from its frames.
+    /// Returns each set of touches that pending work items need, with the measurements to compute from its frames.
     fn jobs_left(&self, left: &PendingItems<RecognitionRows>) -> Vec<(usize, Vec<Job<'_>>)> {
         let touches = 0..self.touch_sets.len();
         let jobs = touches.map(|touches| (touches, self.jobs(left, touches)));

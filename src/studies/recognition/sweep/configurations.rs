@@ -29,7 +29,7 @@ use bubbletouch_svm::split::Split;
 use ndarray::Array1;
 use std::sync::Arc;
 
-/// Nested loops over several variables; the last variable changes fastest.
+/// Runs nested loops over several variables; the last variable changes fastest.
 macro_rules! nested {
     ($name:pat in $values:expr; $($rest:tt)*) => {
         for $name in $values {
