@@ -209,7 +209,7 @@ impl Reader<'_> {
                     let given = format!("a sensor of link `{}` on link `{link}`", sensor.link);
                     return Err(self.check.error(key, given, "the link of the sensor"));
                 }
-                LayoutFile::of_sensor(&self.check.place.to_owned(), sensor)?
+                LayoutFile::of_sensor(self.check.place, sensor)?
             }
             _ => return Ok(None),
         };

@@ -117,6 +117,9 @@ impl<R: Columns> AnyFile for File<R> {
     }
 }
 
+/// Function that reads the tables of a folder.
+type ReadTables = fn(&Path) -> Result<Vec<Table>>;
+
 /// Table files that studies of a kind write.
 #[derive(Clone, Copy)]
 pub struct TableFiles {
@@ -125,7 +128,7 @@ pub struct TableFiles {
     /// Table files that are written only if the study has certain optional parts.
     pub of_parts: &'static [&'static dyn AnyFile],
     /// Function that reads all tables of a folder, for tables whose columns depend on the study.
-    pub read: Option<fn(&Path) -> Result<Vec<Table>>>,
+    pub read: Option<ReadTables>,
 }
 
 impl TableFiles {

@@ -7,6 +7,7 @@ use crate::geometry::Pose;
 use crate::world::{JointKind, Robot};
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// Reads a layout of taxels from the text of a URDF file. The name of a tactile sensor, or of the link that carries the taxels' prismatic joints, is `sensor`.
 /// The name may be omitted if there is only one.
@@ -17,13 +18,13 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
         all.insert(sensor.name.clone(), LayoutFile::of_sensor(place, sensor)?);
     }
     for (link, taxels) in prismatic_taxels(&robot) {
-        if !all.contains_key(&link) {
+        if let Entry::Vacant(place_of_link) = all.entry(link.clone()) {
             let rows: Vec<usize> = (1..=taxels.len()).collect();
             let file = LayoutFile {
-                link: Some(link.clone()),
+                link: Some(link),
                 ..LayoutFile::new(place, taxels, &rows)?
             };
-            all.insert(link, file);
+            place_of_link.insert(file);
         }
     }
     let names = all

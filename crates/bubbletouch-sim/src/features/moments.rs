@@ -1,7 +1,7 @@
 //! Moments of an image that are invariant to shifts and rotations.
 //!
-//! Let μ_pq = Σ w (x − x̄)ᵖ (y − ȳ)^q / Σ w be moments about the centroid of the weights w. The complex moments C_pq use the coordinates z = x + iy: C₁₁ = μ₂₀
-//! + μ₀₂, C₂₀ = μ₂₀ − μ₀₂ + 2i μ₁₁, C₃₀ = Σ w z³ / Σ w, C₂₁ = Σ w z² z̄ / Σ w. A rotation by φ multiplies C_pq by exp(i (p − q) φ). The following nine numbers
+//! Let μ_pq = Σ w (x − x̄)ᵖ (y − ȳ)^q / Σ w be moments about the centroid of the weights w. The complex moments C_pq use the coordinates z = x + iy:
+//! C₁₁ = μ₂₀ + μ₀₂, C₂₀ = μ₂₀ − μ₀₂ + 2i μ₁₁, C₃₀ = Σ w z³ / Σ w, C₂₁ = Σ w z² z̄ / Σ w. A rotation by φ multiplies C_pq by exp(i (p − q) φ). The following nine numbers
 //! are therefore invariant, and roots convert each of them to a length:
 //!
 //! √C₁₁, the standard deviations along both principal axes √((C₁₁ ± |C₂₀|) / 2), √|C₂₀|, |C₃₀|^⅓, |C₂₁|^⅓, and

@@ -186,8 +186,11 @@ impl Parameters {
     }
 }
 
-/// Keys of `[recognition]` that several kinds of classifiers share; the function returns whether a kind uses the key.
-const SHARED: [(&str, fn(ClassifierKind) -> bool); 7] = [
+/// Function that returns whether a kind of classifier uses a key.
+type Uses = fn(ClassifierKind) -> bool;
+
+/// Keys of `[recognition]` that several kinds of classifiers share.
+const SHARED: [(&str, Uses); 7] = [
     ("tolerance", ClassifierKind::has_c),
     ("c", ClassifierKind::has_c),
     ("c_grid", ClassifierKind::has_c),

@@ -21,8 +21,10 @@ const N_FRAMES: usize = 4;
 const N_LOOKED_AT: usize = 10;
 
 /// Returns film strips of the kinds of touch that the study lists for its picture; of all kinds if it lists none. Each strip shows the strongest of the first
-/// touches of its kind at four times, evenly spaced between its first and its last contact. The study's finest array is used, without noise. # Errors If the
-/// study has no configurations, lists an unknown kind of touch, or has an invalid skin.
+/// touches of its kind at four times, evenly spaced between its first and its last contact. The study's finest array is used, without noise.
+///
+/// # Errors
+/// If the study has no configurations, lists an unknown kind of touch, or has an invalid skin.
 pub fn human_samples(plan: &Plan, touches: &HumanTouches) -> Result<Samples> {
     let n_taxels = |array: &&TaxelArray| array.n_taxels();
     // In a tie, the first array.

@@ -91,7 +91,8 @@ impl<'a> Reconstructor<'a> {
     /// where τ is the mean square of this part in training frames. Matching pursuit and the ℓ1 problem multiply this noise by the root mean square norm of a
     /// row of Φ to obtain the noise of a measurement. The linear estimate uses ΦΦᵀ itself.
     ///
-    /// # Errors If the linear estimate cannot be prepared. The limits in `effort` are checked by `reconstruct`.
+    /// # Errors
+    /// If the linear estimate cannot be prepared. The limits in `effort` are checked by `reconstruct`.
     pub fn new(
         solver: Solver,
         sensed: &'a SensedDictionary<'a>,
