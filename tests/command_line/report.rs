@@ -369,8 +369,8 @@ fn with_too_few_trials_there_is_no_p_value_and_with_enough_there_is() {
     case.succeeds(&["run", "other.toml", "--out", "other"]);
     let (said, _) = case.succeeds(&["compare", "few", "other"]);
     assert!(
-        said.contains("No p-values: 2 trials a setting are too few")
-            && said.contains("4 are needed"),
+        said.contains("No p-values: 2 trials per setting")
+            && said.contains("at least 4 are needed"),
         "{said}"
     );
     assert!(!said.contains("One trial"), "{said}");
