@@ -90,7 +90,24 @@ pub fn reference_page() -> String {
         keys: &[],
     };
     file.write(&mut Vec::new(), &mut page);
-    page
+    with_plain_sources(&page)
+}
+
+/// Returns the page with each source, such as `[BT]`, escaped. Markdown would read the brackets as a link.
+fn with_plain_sources(page: &str) -> String {
+    let mut parts = page.split('[');
+    let mut plain = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let source = part.split_once(']').filter(|(tag, rest)| {
+            let is_tag = !tag.is_empty() && tag.bytes().all(|byte| byte.is_ascii_uppercase());
+            is_tag && !rest.starts_with('(')
+        });
+        match source {
+            Some((tag, rest)) => plain.push_str(&format!("\\[{tag}\\]{rest}")),
+            None => plain.push_str(&format!("[{part}")),
+        }
+    }
+    plain
 }
 
 /// Returns the heading and description of a kind of study, and links to tables that earlier sections describe.

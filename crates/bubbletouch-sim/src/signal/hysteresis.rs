@@ -1,6 +1,6 @@
 //! Hysteresis: during unloading, a taxel reads a higher value than during loading at equal depth.
 //!
-//! A Prandtl–Ishlinskii model, as fitted to tactile sensors \[GPI\]: y = (1 − 4w) x + w Σⱼ Pⱼ[x], the sum over eight play
+//! A Prandtl–Ishlinskii model, as fitted to tactile sensors \[GPI\]: y = (1 − 4w) x + w Σⱼ Pⱼ(x), the sum over eight play
 //! operators of thresholds rⱼ = (j − ½) X/8, X the full scale. A play operator follows its input at a distance of at most r,
 //! Pⱼ ← max(x − rⱼ, min(x + rⱼ, Pⱼ)), and starts at 0. The model is rate-independent: only the turning points of the input matter.
 //!

@@ -1,6 +1,6 @@
 //! Layouts that repeat one row of taxels along a straight line: grids, and parts of cylinders.
 //!
-//! An extrusion stores only one row and the positions of the rows, whereas a [`Layout`] needs 48 bytes per taxel. Bodies with millions
+//! An extrusion stores only one row and the positions of the rows, whereas a [`Layout`](super::Layout) needs 48 bytes per taxel. Bodies with millions
 //! of taxels consist of extrusions.
 
 use super::limits::{check_angle, check_count};
