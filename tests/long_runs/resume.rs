@@ -94,7 +94,7 @@ fn ctrl_c_ends_a_run_within_two_seconds_and_says_how_to_go_on() {
         assert!(asked.elapsed() < Duration::from_secs(2));
         assert_eq!(output.status.code(), Some(130));
         assert!(
-            said(&output).contains("the same command goes on"),
+            said(&output).contains("the same command continues the run"),
             "{}",
             said(&output)
         );
