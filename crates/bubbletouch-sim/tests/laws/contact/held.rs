@@ -50,7 +50,7 @@ fn gravity(angle: f64) -> DVec3 {
 }
 
 /// Plate on a bed, advanced step by step.
-struct Held {
+struct HeldObject {
     patch: Patch,
     union: SphereUnion,
     objects: [Model; 1],
@@ -63,7 +63,7 @@ struct Held {
     tips: Vec<TangentialSpring>,
 }
 
-impl Held {
+impl HeldObject {
     /// Creates the plate at rest on a level bed.
     fn new(shear: Shear) -> Self {
         let (patch, union) = (bed(), plate());
@@ -148,7 +148,7 @@ impl Held {
 
 /// Returns the angle, in steps of half a degree, at which a plate starts to slide without friction.
 fn angle_without_friction() -> f64 {
-    let mut held = Held::new(Shear {
+    let mut held = HeldObject::new(Shear {
         stiffness: 100.0,
         friction: 0.0,
     });
@@ -162,7 +162,7 @@ fn angle_without_friction() -> f64 {
 #[test]
 fn a_plate_sticks_below_the_angle_of_friction_and_leaves_above() {
     for (stiffness, friction) in [(60.0, 0.2), (120.0, 0.5), (500.0, 0.8)] {
-        let mut held = Held::new(Shear {
+        let mut held = HeldObject::new(Shear {
             stiffness,
             friction,
         });
@@ -188,7 +188,7 @@ fn a_plate_sticks_below_the_angle_of_friction_and_leaves_above() {
 #[test]
 fn a_plate_that_is_drawn_a_little_goes_as_far_as_its_shear_springs_say() {
     let stiffness = 80.0;
-    let mut held = Held::new(Shear {
+    let mut held = HeldObject::new(Shear {
         stiffness,
         friction: 5.0,
     });
@@ -229,7 +229,7 @@ fn a_plate_that_is_drawn_a_little_goes_as_far_as_its_shear_springs_say() {
 
 #[test]
 fn a_skin_that_moves_takes_along_what_lies_on_it() {
-    let mut held = Held::new(Shear {
+    let mut held = HeldObject::new(Shear {
         stiffness: 100.0,
         friction: 0.5,
     });
@@ -259,7 +259,7 @@ fn a_skin_that_moves_takes_along_what_lies_on_it() {
 
 #[test]
 fn no_friction_is_none_to_the_bit() {
-    let mut held = Held::new(Shear {
+    let mut held = HeldObject::new(Shear {
         stiffness: 100.0,
         friction: 0.0,
     });
@@ -278,7 +278,7 @@ fn no_friction_is_none_to_the_bit() {
 #[test]
 fn where_a_plate_rests_on_tips_that_stick_and_slip_its_energy_is_least() {
     let friction = 0.4;
-    let mut held = Held::new(Shear {
+    let mut held = HeldObject::new(Shear {
         stiffness: 150.0,
         friction,
     });
