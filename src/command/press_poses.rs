@@ -66,7 +66,7 @@ struct Reading {
     travel_mm: f64,
     n_touched: usize,
     n_saturated: usize,
-    /// Computing time of the press, median over repetitions, µs.
+    /// Median computing time over the repetitions of one press, µs.
     us: f64,
 }
 

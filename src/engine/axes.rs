@@ -101,7 +101,7 @@ impl AxisValues {
 /// Value of one configuration on an axis, as it is written in result tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisValue {
-    /// Table column of the axis.
+    /// Column of the result tables that contains the values of the axis.
     pub column: Column,
     /// Number, truth value or text on the axis; lists and tables are converted to text. The field is `None` if the axis keeps the value of the study and the
     /// study has no such value.

@@ -73,7 +73,6 @@ mod plan_robot;
 mod plan_signal;
 mod plan_taxels;
 mod pressed_objects;
-pub(crate) mod ranges;
 mod reader;
 mod robot_state;
 mod simulation;

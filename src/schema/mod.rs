@@ -6,6 +6,7 @@
 mod axes_schema;
 mod ranges;
 mod reference;
+mod scene_ranges;
 mod study_schema;
 mod tables;
 #[cfg(test)]
@@ -17,7 +18,7 @@ pub use study_schema::study_schema;
 pub use tables::tables_page;
 
 use crate::scene::SceneSpec;
-use crate::scene::ranges::RANGES;
+use crate::schema::scene_ranges::RANGES;
 use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;

@@ -2,7 +2,8 @@
 
 use super::axes_schema::is_axis;
 use super::scene_schema;
-use super::study_schema::{KindSchema, kinds, properties};
+use super::study_schema::{KindSchema, kinds};
+use super::tidy::properties;
 use crate::inputs::keys::{AxisPlace, KeyAbout, unit_of};
 use crate::inputs::schema_types::accepted_keys;
 use crate::scene::SceneSpec;

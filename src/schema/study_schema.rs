@@ -4,7 +4,7 @@
 //! must have; the kind follows from the table that only this kind has.
 
 use super::ranges::bound;
-use super::tidy::tidy;
+use super::tidy::{properties, tidy};
 use super::{DIALECT, axes_schema, generator};
 use crate::inputs::keys::KeyAbout;
 use crate::studies;
@@ -94,10 +94,4 @@ impl KindSchema {
         let names: Vec<&String> = properties(&self.schema).map(|(name, _)| name).collect();
         json!({ "propertyNames": { "enum": names }, "required": self.schema["required"] })
     }
-}
-
-/// Returns the keys of a table with their schemas.
-pub(super) fn properties(schema: &Value) -> impl Iterator<Item = (&String, &Value)> {
-    let keys = schema.get("properties").and_then(Value::as_object);
-    keys.into_iter().flatten()
 }

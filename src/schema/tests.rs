@@ -1,6 +1,7 @@
 //! Tests that schemas and generated pages agree with the code that reads files.
 
-use super::study_schema::{kinds, properties};
+use super::study_schema::kinds;
+use super::tidy::properties;
 use super::*;
 use crate::inputs::schema_types::accepted_keys;
 use std::collections::BTreeSet;

@@ -86,6 +86,12 @@ fn link_of(text: &str) -> Option<(&str, &str)> {
     is_item.then_some((words, after))
 }
 
+/// Returns the keys of a table with their schemas.
+pub(super) fn properties(schema: &Value) -> impl Iterator<Item = (&String, &Value)> {
+    let keys = schema.get("properties").and_then(Value::as_object);
+    keys.into_iter().flatten()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -25,7 +25,7 @@ use std::path::PathBuf;
 
 /// Object-detail study that is ready to run: its plan and its meshes.
 pub struct ObjectDetailStudy {
-    /// Plan of the study: checked keys in SI units.
+    /// Plan of the study: the checked values of its keys, in SI units.
     pub plan: ObjectDetailPlan,
     /// Meshes of the study, one per object.
     pub meshes: Vec<NamedMesh>,

@@ -29,7 +29,7 @@ use std::collections::BTreeMap;
 
 /// Reconstruction study that is ready to run: its plan, its objects and their touches.
 pub struct ReconstructionStudy {
-    /// Plan of the study: checked keys in SI units.
+    /// Plan of the study: the checked values of its keys, in SI units.
     pub plan: ReconstructionPlan,
     /// Objects of the study with their touches.
     pub touched: Vec<TouchedObject>,

@@ -35,7 +35,7 @@ struct Answer {
     n_steps: usize,
 }
 
-/// Duration of a simulation, seconds, below which the simulation is repeated to measure the median time. In a single short run, other load of the machine would
+/// Computing time of a simulation, seconds. Shorter simulations are repeated, and their median time is reported. In a single short run, other load of the machine would
 /// dominate.
 const SHORT: f64 = 5e-3;
 /// Number of repetitions of a short simulation, from which its computing time is determined.

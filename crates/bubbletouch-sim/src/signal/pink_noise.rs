@@ -36,7 +36,7 @@ pub(super) const ABOUT: ErrorAbout = ErrorAbout {
     )
 };
 
-/// Pink noise with one standard deviation, in the unit of the frame.
+/// Pink noise whose standard deviation is equal for all taxels, in the unit of the frame (metres or newtons).
 #[derive(Debug)]
 struct PinkNoise {
     std: f64,

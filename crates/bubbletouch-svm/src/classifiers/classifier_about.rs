@@ -86,7 +86,7 @@ macro_rules! classifiers {
     ($($name:ident $file:ident $doc:literal;)*) => {
         $(pub mod $file;)*
 
-        /// Kind of classifier that a study can sweep.
+        /// Kind of classifier, for example a linear SVM; studies may compare several kinds.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
         #[serde(rename_all = "snake_case")]
         pub enum ClassifierKind {

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// Rule that forms groups of touches; all touches of a group are on one side of a split into training and test touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KeepTogether {
-    /// Rule that lists the pose parameters whose values define a group.
+    /// Pose parameters whose values define a group of touches.
     pub kind: GroupSpec,
     /// Distance below which two drawn offsets or depths are neighbours, metres, positive.
     pub metres: Option<f64>,

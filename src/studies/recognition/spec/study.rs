@@ -138,7 +138,7 @@ pub struct RecognitionSpec {
     #[serde(default)]
     #[schemars(with = "Names<Scaling>")]
     pub scaling: Scaling,
-    /// Axis: penalty C of the classifiers that have one, positive. Default: 1.
+    /// Axis: penalty C (positive) of classifiers with a penalty. Default: 1.
     pub c: Option<Axis<f64>>,
     /// Candidate values of the penalty C; replaces `c`. Each fit chooses one candidate by cross-validation within its training rows.
     pub c_grid: Option<Vec<f64>>,

@@ -19,7 +19,7 @@ const MAX_STEPS: usize = 40;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Model {
     slopes: Slopes,
-    /// Loads after the motion that was evaluated last.
+    /// Forces on the bodies after the most recently evaluated motion.
     loads: Loads,
     curvature: Symmetric,
     held: ShearSpringModel,

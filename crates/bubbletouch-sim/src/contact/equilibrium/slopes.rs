@@ -5,7 +5,7 @@ use super::pair::Pair;
 use super::symmetric::{Six, Symmetric, dot};
 use glam::DVec3;
 
-/// Derivatives of the deflection of each pair (sphere and taxel or rigid contact) with respect to the motions of the bodies.
+/// Derivatives of contact deflections with respect to the motions of the bodies. A contact is a pair of sphere and taxel, or a rigid contact.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slopes {
     /// Index of the first entry of each pair in `all`, followed by the number of entries.

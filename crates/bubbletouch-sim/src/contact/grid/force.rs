@@ -16,7 +16,7 @@ use crate::objects::Model;
 use crate::text::in_range::positive;
 use crate::world::EvenGrid;
 
-/// Presses a grid to a force, as `press_to_force` does. All taxels have one stiffness, N/m.
+/// Presses a grid of taxels until its spring force reaches a target; the fast path of `press_to_force`. All taxels have one stiffness, N/m.
 pub(crate) fn press(
     (grid, stiffness): (&EvenGrid, f64),
     objects: &[Model],

@@ -1,6 +1,6 @@
 //! Allowed numbers of the keys of a scene file, from which its JSON Schema is built.
 //!
-//! [`ScenePlan`](super::ScenePlan) checks the numbers where it uses them; a test compares both.
+//! [`ScenePlan`](crate::scene::ScenePlan) checks the numbers where it uses them; a test compares both.
 
 use crate::inputs::range::{not_negative, positive};
 
@@ -10,7 +10,7 @@ type Allowed = fn(f64) -> bool;
 const COUNT: Allowed = |number| number >= 1.0;
 
 /// Allowed numbers of each key of a scene file, by key path.
-pub(crate) const RANGES: &[(&str, Allowed)] = &[
+pub(super) const RANGES: &[(&str, Allowed)] = &[
     ("dt_ms", positive),
     ("output_hz", positive),
     ("duration_s", not_negative),
