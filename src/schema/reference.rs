@@ -494,7 +494,8 @@ fn meanings_of_values(name: &str, schema: &Value) -> String {
             choice["description"].as_str()?.replace("\n\n", " ")
         ))
     });
-    let lines: String = lines.collect();
+    // Blank lines between the values separate their sentences.
+    let lines = lines.collect::<Vec<String>>().join("\n");
     match lines.is_empty() {
         true => lines,
         false => format!("\nValues of `{name}`:\n\n{lines}"),
