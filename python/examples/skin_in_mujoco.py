@@ -1,5 +1,8 @@
 """A ball rolls over a palm of taxels in MuJoCo's simulation; the skin reads the force on each taxel at every step."""
 
+# The package mujoco has no types of its own.
+# pyright: reportAttributeAccessIssue=false
+
 import mujoco
 import numpy as np
 

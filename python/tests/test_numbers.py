@@ -53,5 +53,5 @@ def test_what_is_not_read_of_a_robots_file_is_a_warning(tmp_path: Path) -> None:
         'patches = [{ name = "pad", robot = "robot", layout = { grid = { nx = 2, ny = 2, pitch_mm = 4.0 } }, stroke_mm = 5.0 }]\n',
         encoding="utf-8",
     )
-    with pytest.warns(UserWarning, match="robots.robot: .*tactile sensor `s` on link `base`, which is not read"):
+    with pytest.warns(UserWarning, match="robots.robot: .*tactile sensor `s` on link `base` is not read"):
         bt.simulate(scene)
