@@ -2,15 +2,12 @@
 
 use crate::arrays::{numbers, shape_of};
 use crate::errors::bad_input;
-use bubbletouch::geometry::Pose;
+use bubbletouch::geometry::{Pose, written_rotation, written_rotation_matrix};
 use glam::{DMat3, DQuat, DVec3};
 use ndarray::ArrayView1;
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-/// Tolerance for each entry of R Rᵀ − 1, where R is a rotation matrix, and for the deviation of a quaternion's length from 1. The tolerance accepts poses
-/// written with few digits or rounded to float32.
-const ROUNDING: f64 = 1e-3;
 const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
 
 /// Poses of an argument, with a flag that states whether the argument was a single pose.
@@ -40,11 +37,7 @@ impl Poses {
             .map_err(|error| bad_input(place, error, "an array that nobody writes to meanwhile"))?;
         let values = array.as_slice()?;
         let of = |(number, values): (usize, &[f64])| {
-            let pose = match values.len() {
-                7 => from_seven(values),
-                _ => from_matrix(values),
-            };
-            pose.map_err(|allowed| {
+            from_numbers(values).map_err(|allowed| {
                 let place = if is_one {
                     place.to_owned()
                 } else {
@@ -61,26 +54,32 @@ impl Poses {
     }
 }
 
-fn from_seven(values: &[f64]) -> Result<Pose, &'static str> {
-    let at = DVec3::new(values[0], values[1], values[2]);
-    let turn = DQuat::from_xyzw(values[4], values[5], values[6], values[3]);
-    let length = turn.length();
-    // The check also fails for NaN.
-    if at.is_finite() && (length - 1.0).abs() <= ROUNDING {
-        return Ok(Pose::new(turn.normalize(), at));
+/// Returns the pose of seven numbers x, y, z, qw, qx, qy, qz, or of the sixteen numbers of a 4 × 4 matrix by rows.
+///
+/// # Errors
+/// If the numbers are no pose; the error states what is allowed.
+pub fn from_numbers(values: &[f64]) -> Result<Pose, &'static str> {
+    if let Some((position, quaternion)) = values.split_at_checked(3)
+        && quaternion.len() == 4
+    {
+        let allowed = "finite x, y, z and a quaternion qw, qx, qy, qz of length one";
+        return from_parts(position, quaternion).ok_or(allowed);
     }
-    Err("finite x, y, z and a quaternion qw, qx, qy, qz of length one")
+    let [a, b, c, x, d, e, f, y, g, h, i, z, last @ ..] = values else {
+        return Err(ALLOWED);
+    };
+    let pose = from_parts(&[*x, *y, *z], &[*a, *b, *c, *d, *e, *f, *g, *h, *i]);
+    let pose = pose.filter(|_| last == [0.0, 0.0, 0.0, 1.0]);
+    pose.ok_or("a rotation and a translation, with a last row 0, 0, 0, 1")
 }
 
-fn from_matrix(values: &[f64]) -> Result<Pose, &'static str> {
-    const ALLOWED: &str = "a rotation and a translation, with a last row 0, 0, 0, 1";
-    let row = |k: usize| DVec3::new(values[4 * k], values[4 * k + 1], values[4 * k + 2]);
-    let rotation = DMat3::from_cols(row(0), row(1), row(2)).transpose();
-    let at = DVec3::new(values[3], values[7], values[11]);
-    let is_rotation = (rotation * rotation.transpose()).abs_diff_eq(DMat3::IDENTITY, ROUNDING)
-        && rotation.determinant() > 0.0;
-    if !(is_rotation && at.is_finite() && values[12..] == [0.0, 0.0, 0.0, 1.0]) {
-        return Err(ALLOWED);
-    }
-    Ok(Pose::new(DQuat::from_mat3(&rotation).normalize(), at))
+/// Returns the pose with a position, metres, and a rotation: a quaternion w, x, y, z, or a matrix by rows. Returns `None` if the numbers are no pose.
+pub fn from_parts(position: &[f64], rotation: &[f64]) -> Option<Pose> {
+    let position = DVec3::from_slice(position);
+    let rotation = match *rotation {
+        [w, x, y, z] => written_rotation(DQuat::from_xyzw(x, y, z, w)),
+        _ => written_rotation_matrix(&DMat3::from_cols_slice(rotation).transpose()),
+    };
+    let rotation = rotation.filter(|_| position.is_finite())?;
+    Some(Pose::new(rotation, position))
 }

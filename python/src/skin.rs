@@ -4,20 +4,18 @@ use crate::arrays::{numbers, shape_of};
 use crate::errors::{bad_input, guarded};
 use crate::model::model_of;
 use crate::patch::Patch;
+use crate::poses::{from_numbers, from_parts};
 use bubbletouch::contact::{Workspace, press_at_pose};
 use bubbletouch::geometry::{Aabb, Pose};
 use bubbletouch::objects::Model;
 use bubbletouch::world;
-use glam::{DMat3, DQuat, DVec3};
+use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Mutex;
 
 const ALLOWED: &str = "(…, k, 7) of x, y, z, qw, qx, qy, qz; (…, k, 4, 4); or a pair of positions (…, k, 3) and rotations (…, k, 4), (…, k, 9) or (…, k, 3, 3)";
-
-/// Maximum deviation of a quaternion's length from one.
-const MAX_LENGTH_ERROR: f64 = 1e-3;
 
 /// Patches of skin and bodies that may touch them, read at given poses in one call.
 ///
@@ -233,67 +231,81 @@ impl Skin {
 }
 
 impl Skin {
-    /// Computes the frames for `n` sets of poses; the results are in the scratch memory.
+    /// Computes the frames and the wrenches of `n` sets of poses into the scratch memory.
     fn compute(&self, scratch: &mut SkinWorkspace, n: usize, output: Output) {
         let (n_patches, n_bodies) = (self.patches.len(), self.bodies.len());
         scratch.frame.clear();
         scratch.frame.resize(n * self.n_taxels, 0.0);
         scratch.wrenches.clear();
         scratch.wrenches.resize(n * n_patches * 6, 0.0);
-        for set in 0..n {
-            let bodies = &scratch.body_poses[set * n_bodies..][..n_bodies];
-            for (number, skin) in self.patches.iter().enumerate() {
-                let world_from_patch = &scratch.patch_poses[set * n_patches + number];
-                let patch_from_world = world_from_patch.inverse();
-                let start = set * self.n_taxels + skin.first;
-                let frame = &mut scratch.frame[start..][..skin.patch.n_taxels()];
-                let mut is_touched = false;
-                for (body, world_from_body) in self.bodies.iter().zip(bodies) {
-                    let patch_from_body = patch_from_world.compose(world_from_body);
-                    let center = patch_from_body.transform_point(body.ball.center);
-                    let reach = skin.ball.radius + body.ball.radius;
-                    if center.distance_squared(skin.ball.center) > reach * reach {
-                        continue;
-                    }
-                    let body = std::slice::from_ref(&body.model);
-                    press_at_pose(
-                        &skin.patch,
-                        body,
-                        &[patch_from_body],
-                        &mut scratch.workspace,
-                    );
-                    for (taxel, deflection) in frame.iter_mut().zip(scratch.workspace.deflections())
-                    {
-                        *taxel = taxel.max(*deflection);
-                    }
-                    is_touched = true;
-                }
-                if !is_touched {
-                    continue;
-                }
-                let wrench = &mut scratch.wrenches[(set * n_patches + number) * 6..][..6];
-                let taxels = skin
-                    .patch
-                    .layout()
-                    .centers()
-                    .iter()
-                    .zip(skin.patch.layout().axes());
-                for (index, (value, (center, axis))) in frame.iter_mut().zip(taxels).enumerate() {
-                    if *value == 0.0 {
-                        continue;
-                    }
-                    let force = skin.patch.taxels().at(index).stiffness * *value;
-                    let on_patch = -force * *axis;
-                    let torque = center.cross(on_patch);
-                    let six = on_patch.to_array().into_iter().chain(torque.to_array());
-                    for (sum, term) in wrench.iter_mut().zip(six) {
-                        *sum += term;
-                    }
-                    if output == Output::Force {
-                        *value = force;
-                    }
+        let wrenches = scratch.wrenches.chunks_exact_mut(6);
+        for (index, (world_from_patch, wrench)) in
+            scratch.patch_poses.iter().zip(wrenches).enumerate()
+        {
+            let (set, number) = (index / n_patches, index % n_patches);
+            let skin = &self.patches[number];
+            let start = set * self.n_taxels + skin.first;
+            let frame = &mut scratch.frame[start..][..skin.patch.n_taxels()];
+            let poses = &scratch.body_poses[set * n_bodies..][..n_bodies];
+            let patch_from_world = world_from_patch.inverse();
+            let patch_from_bodies = poses.iter().map(|pose| patch_from_world.compose(pose));
+            let bodies = self.bodies.iter().zip(patch_from_bodies);
+            if skin.press(bodies, frame, &mut scratch.workspace) {
+                skin.add_wrench(frame, wrench);
+                if output == Output::Force {
+                    skin.convert_to_forces(frame);
                 }
             }
+        }
+    }
+}
+
+impl SkinPatch {
+    /// Writes the deflections under all bodies into a frame of zeros. Returns whether a body is within reach of the patch.
+    fn press<'b>(
+        &self,
+        bodies: impl Iterator<Item = (&'b Body, Pose)>,
+        frame: &mut [f64],
+        workspace: &mut Workspace,
+    ) -> bool {
+        let mut is_near = false;
+        for (body, patch_from_body) in bodies {
+            let center = patch_from_body.transform_point(body.ball.center);
+            let reach = self.ball.radius + body.ball.radius;
+            if center.distance_squared(self.ball.center) > reach * reach {
+                continue;
+            }
+            let model = std::slice::from_ref(&body.model);
+            press_at_pose(&self.patch, model, &[patch_from_body], workspace);
+            for (taxel, deflection) in frame.iter_mut().zip(workspace.deflections()) {
+                *taxel = taxel.max(*deflection);
+            }
+            is_near = true;
+        }
+        is_near
+    }
+
+    /// Adds the force and the torque of the normal forces on the patch, in its frame about its origin, N and N·m, to `wrench`.
+    fn add_wrench(&self, deflections: &[f64], wrench: &mut [f64]) {
+        let (layout, taxels) = (self.patch.layout(), self.patch.taxels());
+        let places = layout.centers().iter().zip(layout.axes());
+        let touched = deflections.iter().zip(places).enumerate();
+        for (index, (deflection, (center, axis))) in touched.filter(|(_, (d, _))| **d > 0.0) {
+            let force = -(taxels.at(index).stiffness * deflection) * *axis;
+            let six = force
+                .to_array()
+                .into_iter()
+                .chain(center.cross(force).to_array());
+            for (sum, term) in wrench.iter_mut().zip(six) {
+                *sum += term;
+            }
+        }
+    }
+
+    /// Replaces the deflection of each taxel, metres, by its force, newtons.
+    fn convert_to_forces(&self, frame: &mut [f64]) {
+        for (index, value) in frame.iter_mut().enumerate() {
+            *value *= self.patch.taxels().at(index).stiffness;
         }
     }
 }
@@ -340,14 +352,8 @@ fn read_poses(
             .chunks_exact(if width == 1 { 7 } else { 16 })
             .enumerate()
         {
-            let read = match pose.len() {
-                7 => from_parts(&pose[..3], &pose[3..]),
-                _ => from_parts(
-                    &[pose[3], pose[7], pose[11]],
-                    &[&pose[..3], &pose[4..7], &pose[8..11]].concat(),
-                ),
-            };
-            poses.push(read.ok_or_else(|| invalid(place, number))?);
+            let read = from_numbers(pose);
+            poses.push(read.map_err(|_| invalid(place, number))?);
         }
         return Ok(sets);
     };
@@ -399,22 +405,4 @@ fn n_sets(
             Err(bad_input(place, shape_of(shape), allowed))
         }
     }
-}
-
-/// Returns the pose with a position and a rotation (a quaternion w, x, y, z or a matrix by rows). Returns `None` if the numbers are no pose.
-fn from_parts(position: &[f64], rotation: &[f64]) -> Option<Pose> {
-    let position = DVec3::from_slice(position);
-    let rotation = match *rotation {
-        [w, x, y, z] => DQuat::from_xyzw(x, y, z, w),
-        _ => {
-            let matrix = DMat3::from_cols_slice(rotation).transpose();
-            let is_right_handed = (matrix.determinant() - 1.0).abs() <= MAX_LENGTH_ERROR;
-            if !is_right_handed {
-                return None;
-            }
-            DQuat::from_mat3(&matrix)
-        }
-    };
-    let is_pose = position.is_finite() && (rotation.length() - 1.0).abs() <= MAX_LENGTH_ERROR;
-    is_pose.then(|| Pose::new(rotation.normalize(), position))
 }

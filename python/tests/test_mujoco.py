@@ -117,6 +117,10 @@ def test_a_batch_of_poses_is_its_poses_one_by_one(model) -> None:
         assert np.array_equal(one, batch[number])
     matrices = np.tile(np.eye(3), (5, 1, 1, 1))
     assert np.array_equal(skin.read(patch_poses, (body_poses[..., :3], matrices)), batch)
+    sheared = matrices + 0.0
+    sheared[..., 0, 1] = 0.5  # of determinant one, and no rotation
+    with pytest.raises(ValueError, match=r"body_poses\[0\]: no pose"):
+        skin.read(patch_poses, (body_poses[..., :3], sheared))
     for poses, wanted in [
         (body_poses[:, :, :6], "shape"),
         (np.zeros((5, 2, 7)), "k = 1 poses"),

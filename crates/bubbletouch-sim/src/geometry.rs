@@ -1,6 +1,6 @@
 //! Rigid motions, bounding boxes and points.
 
-use glam::{DQuat, DVec3, EulerRot};
+use glam::{DMat3, DQuat, DVec3, EulerRot};
 use std::collections::HashSet;
 
 /// Rigid motion: rotation, then translation. `a_from_b` maps points of frame b to frame a.
@@ -88,6 +88,14 @@ pub fn rotation_from_rpy(rpy: DVec3) -> DQuat {
 pub fn written_rotation(quaternion: DQuat) -> Option<DQuat> {
     let is_near = (quaternion.length() - 1.0).abs() <= 1e-3;
     is_near.then(|| quaternion.normalize())
+}
+
+/// Converts a rotation matrix from a file to a unit quaternion. Returns `None` if an entry of R Rᵀ differs from the identity by more than 0.001, or if the
+/// matrix mirrors.
+pub fn written_rotation_matrix(matrix: &DMat3) -> Option<DQuat> {
+    let is_orthogonal = (*matrix * matrix.transpose()).abs_diff_eq(DMat3::IDENTITY, 1e-3);
+    let is_rotation = is_orthogonal && matrix.determinant() > 0.0;
+    is_rotation.then(|| DQuat::from_mat3(matrix).normalize())
 }
 
 /// Axis-aligned bounding box, metres.

@@ -118,11 +118,19 @@ impl LayoutFile {
             .iter()
             .map(|taxel| sensor.link_from_sensor.compose(taxel));
         let taxels = poses.map(|pose| (pose.translation, pose.rotation * DVec3::Z));
-        let rows: Vec<usize> = (1..=sensor.taxels.len()).collect();
         Ok(Self {
             link: Some(sensor.link.clone()),
-            ..Self::new(place, taxels.collect(), &rows)?
+            ..Self::in_order(place, taxels.collect())?
         })
+    }
+
+    /// Creates the content of a layout file whose rows are its taxels, in order and counted from 1.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    fn in_order(place: &str, taxels: Vec<(DVec3, DVec3)>) -> Result<Self> {
+        let rows: Vec<usize> = (1..=taxels.len()).collect();
+        Self::new(place, taxels, &rows)
     }
 
     /// Returns the default radius of the taxels, metres: half the median distance from a taxel to its nearest neighbour, or 1 mm for a single taxel.

@@ -4,13 +4,11 @@
 
 use super::LayoutFile;
 use crate::error::{Error, Result};
+use crate::geometry::written_rotation_matrix;
 use crate::inputs::arrays::file_array::FileArray;
 use glam::{DMat3, DVec3};
 use ndarray::ArrayD;
 use std::path::Path;
-
-/// Maximum deviation of an entry of RᵀR from the identity matrix for which R is accepted as a rotation matrix in f32.
-const MAX_ROTATION_ERROR: f64 = 1e-3;
 
 /// Reads a layout of taxels from a `.npz` archive of NumPy arrays.
 pub(super) fn read(path: &Path) -> Result<LayoutFile> {
@@ -80,11 +78,10 @@ pub(super) fn read(path: &Path) -> Result<LayoutFile> {
             None => Ok(radii),
         }
     });
-    let rows: Vec<usize> = (1..=n).collect();
     Ok(LayoutFile {
         pixels: pixels.transpose()?,
         radii: radii.transpose()?,
-        ..LayoutFile::new(&place, taxels, &rows)?
+        ..LayoutFile::in_order(&place, taxels)?
     })
 }
 
@@ -99,13 +96,7 @@ fn from_poses(place: &str, poses: &ArrayD<f64>) -> Result<Vec<(DVec3, DVec3)>> {
     let pose = |(row, m): (usize, &[f64])| {
         let rotation =
             DMat3::from_cols_array(&[m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]]);
-        let error = rotation.transpose() * rotation - DMat3::IDENTITY;
-        let largest = error
-            .to_cols_array()
-            .into_iter()
-            .fold(0.0, |a: f64, b| a.max(b.abs()));
-        let is_rotation = largest <= MAX_ROTATION_ERROR && rotation.determinant() > 0.0;
-        if !is_rotation {
+        if written_rotation_matrix(&rotation).is_none() {
             let given = match rotation.determinant() < 0.0 {
                 true => "a left-handed frame",
                 false => "a matrix that is no rotation",

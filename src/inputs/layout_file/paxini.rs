@@ -46,6 +46,5 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
         return Err(Error::input(place, "points without normals", allowed));
     };
     let normals = surface_normals(place, &points, mesh)?;
-    let rows: Vec<usize> = (1..=points.len()).collect();
-    LayoutFile::new(place, points.into_iter().zip(normals).collect(), &rows)
+    LayoutFile::in_order(place, points.into_iter().zip(normals).collect())
 }

@@ -19,10 +19,9 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
     }
     for (link, taxels) in prismatic_taxels(&robot) {
         if let Entry::Vacant(place_of_link) = all.entry(link.clone()) {
-            let rows: Vec<usize> = (1..=taxels.len()).collect();
             let file = LayoutFile {
                 link: Some(link),
-                ..LayoutFile::new(place, taxels, &rows)?
+                ..LayoutFile::in_order(place, taxels)?
             };
             place_of_link.insert(file);
         }
