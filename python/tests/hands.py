@@ -1,0 +1,62 @@
+"""Models of hands with an object, for tests and benchmarks. Needs the package mujoco."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+ROBOTS = Path(__file__).resolve().parents[2] / "objects" / "robots"
+BALL = '<geom name="ball" type="sphere" size="0.03" mass="0.15"/>'
+BOX = '<geom name="box" type="box" size="0.03 0.025 0.025" mass="0.15"/>'
+# Angles of closed joints, degrees; joints that are not listed stay at 0.
+CLOSED = {"proximal": 80, "middle": 75, "distal": 45, "thumb_opposition": 35, "thumb_proximal": 90, "thumb_middle": 45, "thumb_distal": 45}
+
+
+def with_object(robot: str, geoms: str = BALL, pose: str = 'pos="-0.005 0.075 0.06"', others: str = "") -> mujoco.MjModel:
+    """Returns the model of a robot of objects/robots with a free body `object` of the given geoms, and other elements of MJCF."""
+    text = f"""
+    <mujoco>
+      <include file="{robot}.xml"/>
+      <worldbody><body name="object" {pose}><freejoint/>{geoms}</body></worldbody>
+      {others}
+    </mujoco>"""
+    return mujoco.MjModel.from_xml_string(text, {f"{robot}.xml": (ROBOTS / f"{robot}.xml").read_bytes()})
+
+
+def hand_controls(model: mujoco.MjModel, closed: float) -> NDArray[np.float64]:
+    """Returns the controls of the five-finger hand, open at 0 and closed at 1, radians."""
+    names = [model.actuator(number).name for number in range(model.nu)]
+    angles = [CLOSED.get(name, CLOSED.get(name.split("_")[1], 0)) for name in names]
+    return closed * np.deg2rad(angles)
+
+
+def close_hand(model: mujoco.MjModel, data: mujoco.MjData, n_steps: int = 500) -> None:
+    """Lets the object come to rest in the open hand for 150 steps, and closes the fingers over the next 250 of `n_steps` steps."""
+    for step in range(n_steps):
+        data.ctrl[:] = hand_controls(model, min(max((step - 150) / 250, 0.0), 1.0))
+        mujoco.mj_step(model, data)
+
+
+def close_gripper(model: mujoco.MjModel, data: mujoco.MjData, n_steps: int = 400) -> None:
+    """Opens the gripper at once and closes it, without gravity."""
+    model.opt.gravity[:] = 0.0
+    data.qpos[:2] = 0.04
+    data.ctrl[:] = 0.0
+    for _ in range(n_steps):
+        mujoco.mj_step(model, data)
+
+
+def normal_forces(model: mujoco.MjModel, data: mujoco.MjData) -> dict[tuple[str, str], float]:
+    """Returns the engine's normal force between each pair of geoms in contact, newtons; the name of the object's geom comes last."""
+    forces: dict[tuple[str, str], float] = {}
+    for number in range(data.ncon):
+        force = np.zeros(6)
+        mujoco.mj_contactForce(model, data, number, force)
+        geoms = [int(geom) for geom in data.contact.geom[number]]
+        geoms.sort(key=lambda geom: model.geom_bodyid[geom] == model.body("object").id)
+        first, second = (model.geom(geom).name for geom in geoms)
+        forces[first, second] = forces.get((first, second), 0.0) + float(force[0])
+    return forces
