@@ -1,6 +1,6 @@
 //! Class `Mesh`: triangle meshes.
 
-use crate::arrays::{corners, numbers, points, shape_of, to_rows};
+use crate::arrays::{corners, numbers, points, shape_of, to_rows, view};
 use crate::errors::{bad_input, check_readable, exception, guarded};
 use crate::length_unit::unit_of;
 use crate::sphere_union::SphereUnion;
@@ -14,6 +14,7 @@ use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use std::ffi::CString;
 use std::path::PathBuf;
 
@@ -28,18 +29,31 @@ const ADVICE: &str = "Mesh.read(…, close_holes=WIDTH) closes holes up to that 
 pub struct Mesh {
     /// Source of the mesh, such as its file, for error messages.
     place: String,
-    triangles: MeshModel,
+    /// Shape that taxels touch.
+    contact: MeshModel,
     model: Model,
+    /// Facets of a capsule, which differ from the shape that taxels touch; `None` for a mesh of triangles.
+    capsule: Option<CapsuleFacets>,
+}
+
+#[derive(Clone)]
+struct CapsuleFacets {
+    /// Radius, length and tolerance, metres.
+    sizes: [f64; 3],
+    mesh: TriangleMesh,
 }
 
 impl Mesh {
     fn new(place: String, mesh: TriangleMesh) -> Self {
-        let triangles = MeshModel::new(mesh);
-        let model = Model::Mesh(triangles.clone());
+        Self::from_model(place, MeshModel::new(mesh))
+    }
+
+    fn from_model(place: String, contact: MeshModel) -> Self {
         Self {
             place,
-            triangles,
-            model,
+            model: Model::Mesh(contact.clone()),
+            contact,
+            capsule: None,
         }
     }
 
@@ -48,9 +62,12 @@ impl Mesh {
         &self.model
     }
 
-    /// Returns the triangle mesh of the Rust library that this object wraps.
+    /// Returns the surface as a triangle mesh: the triangles themselves, or the facets of a capsule.
     pub fn triangle_mesh(&self) -> &TriangleMesh {
-        self.triangles.mesh()
+        match &self.capsule {
+            Some(capsule) => &capsule.mesh,
+            None => self.contact.mesh(),
+        }
     }
 
     /// Issues a Python warning if triangles of the mesh were turned outwards.
@@ -118,6 +135,87 @@ impl Mesh {
         })
     }
 
+    /// Returns a box about the origin with the side lengths `size` (3,), metres, positive: 12 triangles.
+    #[staticmethod]
+    #[pyo3(name = "box")]
+    fn cuboid(size: &Bound<PyAny>) -> PyResult<Self> {
+        guarded(|| {
+            let size = three_lengths("size", size)?;
+            let mesh = TriangleMesh::cuboid("box", size).map_err(exception)?;
+            Ok(Self::new("box".to_owned(), mesh))
+        })
+    }
+
+    /// Returns a cylinder about the origin along z, metres.
+    ///
+    /// tolerance: largest distance of the facets from the round surface, metres. The facets are inside the cylinder.
+    #[staticmethod]
+    #[pyo3(signature = (radius, length, tolerance=1e-5))]
+    fn cylinder(radius: f64, length: f64, tolerance: f64) -> PyResult<Self> {
+        guarded(|| {
+            let place = "cylinder";
+            let mesh = TriangleMesh::cylinder(place, radius, length, tolerance);
+            Ok(Self::new(place.to_owned(), mesh.map_err(exception)?))
+        })
+    }
+
+    /// Returns an ellipsoid about the origin with the given radii (3,) along the axes, metres.
+    ///
+    /// tolerance: largest distance of the facets from the surface, metres. The facets are inside the ellipsoid. A SphereUnion of one sphere is an exact
+    /// ball.
+    #[staticmethod]
+    #[pyo3(signature = (radii, tolerance=1e-5))]
+    fn ellipsoid(radii: &Bound<PyAny>, tolerance: f64) -> PyResult<Self> {
+        guarded(|| {
+            let radii = three_lengths("radii", radii)?;
+            let place = "ellipsoid";
+            let mesh = TriangleMesh::ellipsoid(place, radii, tolerance);
+            Ok(Self::new(place.to_owned(), mesh.map_err(exception)?))
+        })
+    }
+
+    /// Returns a capsule about the origin along z: a cylinder with a hemisphere at each end. `length` is the distance between the centres of the
+    /// hemispheres, metres, zero or more.
+    ///
+    /// Taxels touch the exact capsule. Its vertices and triangles, with what is computed from them, are facets inside the capsule.
+    /// tolerance: largest distance of the facets from the surface, metres.
+    #[staticmethod]
+    #[pyo3(signature = (radius, length, tolerance=1e-5))]
+    fn capsule(radius: f64, length: f64, tolerance: f64) -> PyResult<Self> {
+        guarded(|| {
+            let place = "capsule";
+            let mesh = TriangleMesh::capsule(place, radius, length, tolerance);
+            let facets = CapsuleFacets {
+                sizes: [radius, length, tolerance],
+                mesh: mesh.map_err(exception)?,
+            };
+            let model = MeshModel::capsule(radius, length).map_err(exception)?;
+            Ok(Self {
+                capsule: Some(facets),
+                ..Self::from_model(place.to_owned(), model)
+            })
+        })
+    }
+
+    /// Returns the mirror image of the mesh in the plane through the origin normal to the axis "x", "y" or "z". Triangles that face outwards face
+    /// outwards again.
+    fn mirrored(&self, axis: &str) -> PyResult<Self> {
+        guarded(|| {
+            let Some(number) = ["x", "y", "z"].iter().position(|name| *name == axis) else {
+                let allowed = r#""x", "y" or "z""#;
+                return Err(bad_input("axis", format!("{axis:?}"), allowed));
+            };
+            // A capsule is its own mirror image.
+            Ok(match &self.capsule {
+                Some(facets) => Self {
+                    capsule: Some(facets.clone()),
+                    ..Self::from_model(self.place.clone(), self.contact.clone())
+                },
+                None => Self::new(self.place.clone(), self.contact.mesh().mirrored(number)),
+            })
+        })
+    }
+
     /// Packs the solid enclosed by the mesh with few spheres, on all cores.
     ///
     /// No sphere extends more than tolerance / 2 (metres, positive) beyond the surface. No point of the surface is more than the tolerance outside the
@@ -176,7 +274,7 @@ impl Mesh {
     /// Bounding box (2, 3): the smallest and largest coordinates, metres.
     #[getter]
     fn bounds<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
-        corners(py, &self.triangles.bounds())
+        corners(py, &self.contact.bounds())
     }
 
     /// Surface area of the mesh, m².
@@ -204,17 +302,37 @@ impl Mesh {
     }
 
     fn __repr__(&self) -> String {
-        let size = self.triangles.bounds().size() * 1e3;
+        let size = self.contact.bounds().size() * 1e3;
         let (n, place) = (self.triangle_mesh().n_triangles(), &self.place);
         let [x, y, z] = [size.x, size.y, size.z];
         format!("<bubbletouch.Mesh {place}: {n} triangles, {x:.1} × {y:.1} × {z:.1} mm>")
     }
 
-    fn __getnewargs__<'py>(
+    fn __reduce__<'py>(
         &self,
         py: Python<'py>,
-    ) -> (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>) {
-        (self.vertices(py), self.triangles(py))
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let class = py.get_type::<Self>();
+        Ok(match &self.capsule {
+            Some(capsule) => (class.getattr("capsule")?, PyTuple::new(py, capsule.sizes)?),
+            None => {
+                let arrays = (self.vertices(py), self.triangles(py));
+                (class.into_any(), arrays.into_pyobject(py)?)
+            }
+        })
+    }
+}
+
+/// Reads three positive lengths, metres.
+fn three_lengths(place: &str, given: &Bound<PyAny>) -> PyResult<DVec3> {
+    let allowed = "(3,) of positive numbers of metres";
+    let is_shape = |shape: &[usize]| shape == [3];
+    let lengths = view(place, given, allowed, is_shape, |array| {
+        Ok(DVec3::new(array[0], array[1], array[2]))
+    })?;
+    match lengths.is_finite() && lengths.cmpgt(DVec3::ZERO).all() {
+        true => Ok(lengths),
+        false => Err(bad_input(place, lengths, allowed)),
     }
 }
 

@@ -184,3 +184,42 @@ def test_names_that_are_not_there_are_refused(model) -> None:
         Skin(model, patches(), geoms=["cup"])
     with pytest.raises(ValueError, match="geom floor: a plane"):
         Skin(model, patches(), geoms=["floor"])
+
+
+def test_deflections_are_those_of_mujocos_signed_distance(model) -> None:
+    """Pushed along its axis by its deflection, a taxel's sphere touches the geoms: MuJoCo's distance of the sphere is zero."""
+    xml = """
+    <mujoco><worldbody>
+      <geom name="taxel" type="sphere" size="0.0015"/>
+      <body name="body"><freejoint/>
+        <geom name="ball" type="sphere" size="0.012"/>
+        <geom name="block" type="box" size="0.014 0.01 0.006"/>
+        <geom name="rod" type="capsule" size="0.006 0.013"/>
+      </body>
+    </worldbody></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(xml)
+    data = mujoco.MjData(model)
+    patch = bt.Patch.grid(12, 12, pitch=3e-3, stroke=8e-3, taxel_radius=1.5e-3)
+    taxel = model.geom("taxel").id
+    rng = np.random.default_rng(3)
+    n_touched = 0
+    for name in ("ball", "block", "rod"):
+        geom = model.geom(name).id
+        surface = geom_surface(model, geom)
+        for _ in range(40):
+            turn = rng.normal(size=4)
+            data.qpos[:3] = rng.uniform(-0.01, 0.01, 3) + [0, 0, 0.012]
+            data.qpos[3:7] = turn / np.linalg.norm(turn)
+            mujoco.mj_kinematics(model, data)
+            pose = np.eye(4)
+            pose[:3, :3], pose[:3, 3] = data.geom_xmat[geom].reshape(3, 3), data.geom_xpos[geom]
+            pushed = patch.press(surface, pose).reshape(-1)
+            for center, deflection in zip(patch.centers, pushed, strict=True):
+                data.geom_xpos[taxel] = center - [0, 0, deflection]
+                distance = mujoco.mj_geomDistance(model, data, taxel, geom, 1.0, None)
+                if deflection == 0.0:
+                    assert distance > -1e-9, name
+                elif deflection < 8e-3:
+                    assert abs(distance) < 1e-9, name
+                    n_touched += 1
+    assert n_touched > 1000

@@ -123,3 +123,58 @@ def test_objects_are_pickled_bit_by_bit(box: bt.Mesh, mug: bt.SphereUnion, proto
     spheres = pickle.loads(pickle.dumps(mug, protocol))
     np.testing.assert_array_equal(spheres.centers, mug.centers)
     np.testing.assert_array_equal(spheres.radii, mug.radii)
+
+
+def test_primitive_shapes_have_their_volumes_and_taxels_touch_the_exact_capsule() -> None:
+    x, y, z = 0.02, 0.03, 0.05
+    volumes = [
+        (bt.Mesh.box([x, y, z]), x * y * z),
+        (bt.Mesh.cylinder(x, y), np.pi * x**2 * y),
+        (bt.Mesh.ellipsoid((x, y, z)), 4 / 3 * np.pi * x * y * z),
+        (bt.Mesh.capsule(x, y), np.pi * x**2 * (y + 4 / 3 * x)),
+    ]
+    for mesh, volume in volumes:
+        assert mesh.volume == pytest.approx(volume, rel=2e-3)
+        np.testing.assert_allclose(mesh.centroid, 0, atol=1e-12)
+        assert "mm>" in repr(mesh)
+    coarse = bt.Mesh.cylinder(x, y, tolerance=1e-3)
+    assert len(coarse) < len(bt.Mesh.cylinder(x, y))
+    capsule = bt.Mesh.capsule(0.01, 0.03, tolerance=1e-3)
+    np.testing.assert_allclose(capsule.bounds, [[-0.01, -0.01, -0.025], [0.01, 0.01, 0.025]], atol=1e-15)
+    patch = bt.Patch.grid(1, 9, 5e-3, stroke=3e-3, taxel_radius=1e-3)
+    lying = [0, 0, 0.01, np.sqrt(0.5), 0, np.sqrt(0.5), 0]
+    beyond = np.maximum(np.abs(patch.centers[:, 0]) - 0.015, 0)
+    exact = np.maximum(np.sqrt(np.maximum(0.011**2 - beyond**2, 0)) - 0.01, 0)
+    np.testing.assert_allclose(patch.press(capsule, lying)[0], exact, atol=1e-15)
+    for again in (pickle.loads(pickle.dumps(capsule)), capsule.mirrored("y")):
+        np.testing.assert_array_equal(again.vertices, capsule.vertices)
+        np.testing.assert_array_equal(patch.press(again, lying), patch.press(capsule, lying))
+    packed = capsule.pack(1e-3)
+    np.testing.assert_allclose(packed.bounds, capsule.bounds, atol=1.5e-3)
+    assert bt.Patch.draped(capsule, 4e-3, 2e-3).n_taxels > 50
+
+
+def test_a_mirrored_mesh_is_the_mirror_image(box: bt.Mesh) -> None:
+    again = pickle.loads(pickle.dumps(box))
+    np.testing.assert_array_equal(again.triangles, box.triangles)
+    low, high = box.mirrored("z").bounds
+    np.testing.assert_allclose([low, high], [[-0.02, -0.015, -0.02], [0.02, 0.015, 0]])
+    assert box.mirrored("x").volume == pytest.approx(box.volume)
+    with pytest.raises(ValueError, match='axis: "w"; "x", "y" or "z"'):
+        box.mirrored("w")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: bt.Mesh.box([1, 2]), "size: shape"),
+        (lambda: bt.Mesh.box([1, 2, 0]), "size: "),
+        (lambda: bt.Mesh.ellipsoid([1, 2, np.nan]), "radii: "),
+        (lambda: bt.Mesh.cylinder(-1.0, 1.0), "cylinder: radius: -1; a positive"),
+        (lambda: bt.Mesh.cylinder(1.0, 1.0, 1e-9), "cylinder: tolerance: "),
+        (lambda: bt.Mesh.capsule(1.0, -1.0), "capsule: length: -1; a finite number"),
+    ],
+)
+def test_sizes_of_no_shape_are_refused(make, message: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(ValueError, match=message):
+        make()

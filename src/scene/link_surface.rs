@@ -9,14 +9,14 @@ use crate::inputs::object_files::read_mesh;
 use crate::mesh::{SizeLimits, TriangleMesh};
 use crate::world::{Link, LinkGeometry, LinkShape, ShapeRole};
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::{Path, PathBuf};
 
 /// Maximum distance between a facet and the round shape that it approximates, relative to the taxel pitch. With a larger value, taxels lie deeper; with a
 /// smaller value, more triangles are needed.
 const SAGITTA: f64 = 0.02;
-/// Minimum and maximum number of facets that approximate a circle of a round shape. More facets would need memory without moving taxels noticeably.
-const N_FACETS: [f64; 2] = [16.0, 720.0];
+/// Minimum distance between a facet and the round shape, relative to the radius of the shape. With a smaller value, more facets would need memory without
+/// moving taxels noticeably.
+const FINEST: f64 = 1e-5;
 
 /// Shapes of a robot link that are selected as a surface.
 pub(super) struct LinkSurface<'a> {
@@ -112,14 +112,7 @@ fn read_link_mesh(file: &str, scale: DVec3, folder: Option<&Path>) -> Result<Tri
     let (mesh, orientation) = read_mesh(&path, None, &SizeLimits::ANY, None)?;
     let place = path.display().to_string();
     orientation.require(&place)?;
-    let vertices = mesh.vertices().iter().map(|&vertex| scale * vertex);
-    let mirrored = scale.to_array().iter().product::<f64>() < 0.0;
-    let corners = |&[a, b, c]: &[u32; 3]| match mirrored {
-        true => [a, c, b],
-        false => [a, b, c],
-    };
-    let triangles = mesh.triangles().iter().map(corners);
-    TriangleMesh::new(&place, vertices.collect(), triangles.collect())
+    mesh.scaled(&place, scale)
 }
 
 /// Returns the path of a mesh file, given its name in a URDF file in `folder`: a path relative to the folder, `file://…`, or `package://NAME/…`. A package path
@@ -144,68 +137,21 @@ fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
 
 /// Returns the facets of a primitive shape (such as a box, cylinder or ball) in the frame of the shape.
 fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
-    let (vertices, triangles) = match *geometry {
-        LinkGeometry::Box { size } => return TriangleMesh::cuboid("shape", size),
+    const PLACE: &str = "shape";
+    let tolerance = |radius: f64| (SAGITTA * pitch).max(FINEST * radius);
+    match *geometry {
+        LinkGeometry::Box { size } => TriangleMesh::cuboid(PLACE, size),
         LinkGeometry::Cylinder { radius, length } => {
-            let half = 0.5 * length;
-            let profile = [(0.0, -half), (radius, -half), (radius, half), (0.0, half)];
-            revolved(&profile, n_facets(radius, pitch))
+            TriangleMesh::cylinder(PLACE, radius, length, tolerance(radius))
         }
-        LinkGeometry::Capsule { radius, length } => ball(radius, 0.5 * length, pitch),
-        LinkGeometry::Sphere { radius } => ball(radius, 0.0, pitch),
-        LinkGeometry::Mesh { .. } => (Vec::new(), Vec::new()),
-    };
-    TriangleMesh::new("shape", vertices, triangles)
-}
-
-type Facets = (Vec<DVec3>, Vec<[u32; 3]>);
-
-/// Returns the facets of a ball, or of a capsule whose hemispheres are shifted by ±`half` along z.
-fn ball(radius: f64, half: f64, pitch: f64) -> Facets {
-    let n = n_facets(radius, pitch);
-    let n_rings = n.div_ceil(4).max(2);
-    let point = |ring: usize, sign: f64| {
-        let (sin, cos) = (FRAC_PI_2 * ring as f64 / n_rings as f64).sin_cos();
-        (radius * cos, sign * (half + radius * sin))
-    };
-    let pole = |sign: f64| (0.0, sign * (half + radius));
-    let lower = (0..n_rings).rev().map(|ring| point(ring, -1.0));
-    // A ball has only one equator ring.
-    let upper = (usize::from(half == 0.0)..n_rings).map(|ring| point(ring, 1.0));
-    let profile = std::iter::once(pole(-1.0)).chain(lower).chain(upper);
-    let profile: Vec<(f64, f64)> = profile.chain([pole(1.0)]).collect();
-    revolved(&profile, n)
-}
-
-/// Returns the number of facets of a circle for which the middle of each facet is at most [`SAGITTA`] times the pitch from the circle.
-fn n_facets(radius: f64, pitch: f64) -> usize {
-    let cos = (1.0 - SAGITTA * pitch / radius).max(0.0);
-    (PI / cos.acos()).ceil().clamp(N_FACETS[0], N_FACETS[1]) as usize
-}
-
-/// Returns the surface of revolution of a profile about z, with n facets around each circle. The profile (r, z) starts at its lower end on the axis and ends at
-/// its upper end.
-fn revolved(profile: &[(f64, f64)], n: usize) -> Facets {
-    let (lower, upper) = (profile[0].1, profile[profile.len() - 1].1);
-    let rings = &profile[1..profile.len() - 1];
-    let mut vertices = vec![DVec3::new(0.0, 0.0, lower), DVec3::new(0.0, 0.0, upper)];
-    for &(r, z) in rings {
-        vertices.extend((0..n).map(|facet| {
-            let (sin, cos) = (TAU * facet as f64 / n as f64).sin_cos();
-            DVec3::new(r * cos, r * sin, z)
-        }));
-    }
-    let at = |ring: usize, facet: usize| (2 + ring * n + facet % n) as u32;
-    let last = rings.len() - 1;
-    let mut triangles = Vec::with_capacity(2 * n * rings.len());
-    for facet in 0..n {
-        triangles.push([0, at(0, facet + 1), at(0, facet)]);
-        triangles.push([1, at(last, facet), at(last, facet + 1)]);
-        for ring in 0..last {
-            let [a, b] = [at(ring, facet), at(ring, facet + 1)];
-            let [c, d] = [at(ring + 1, facet + 1), at(ring + 1, facet)];
-            triangles.extend([[a, b, c], [a, c, d]]);
+        LinkGeometry::Capsule { radius, length } => {
+            TriangleMesh::capsule(PLACE, radius, length, tolerance(radius))
+        }
+        LinkGeometry::Sphere { radius } => {
+            TriangleMesh::capsule(PLACE, radius, 0.0, tolerance(radius))
+        }
+        LinkGeometry::Mesh { ref file, .. } => {
+            Err(Error::input(file, "a mesh", "a primitive shape"))
         }
     }
-    (vertices, triangles)
 }

@@ -61,6 +61,39 @@ class Mesh:
         no valid mesh.
         """
 
+    @staticmethod
+    def box(size: ArrayLike) -> Mesh:
+        """Returns a box about the origin with the side lengths `size` (3,), metres, positive: 12 triangles."""
+
+    @staticmethod
+    def cylinder(radius: float, length: float, tolerance: float = 1e-5) -> Mesh:
+        """Returns a cylinder about the origin along z, metres.
+
+        tolerance: largest distance of the facets from the round surface, metres. The facets are inside the cylinder.
+        """
+
+    @staticmethod
+    def ellipsoid(radii: ArrayLike, tolerance: float = 1e-5) -> Mesh:
+        """Returns an ellipsoid about the origin with the given radii (3,) along the axes, metres.
+
+        tolerance: largest distance of the facets from the surface, metres. The facets are inside the ellipsoid. A SphereUnion of one sphere is an exact
+        ball.
+        """
+
+    @staticmethod
+    def capsule(radius: float, length: float, tolerance: float = 1e-5) -> Mesh:
+        """Returns a capsule about the origin along z: a cylinder with a hemisphere at each end. `length` is the distance between the centres of the
+        hemispheres, metres, zero or more.
+
+        Taxels touch the exact capsule. Its vertices and triangles, with what is computed from them, are facets inside the capsule.
+        tolerance: largest distance of the facets from the surface, metres.
+        """
+
+    def mirrored(self, axis: Literal["x", "y", "z"]) -> Mesh:
+        """Returns the mirror image of the mesh in the plane through the origin normal to the axis "x", "y" or "z". Triangles that face outwards face
+        outwards again.
+        """
+
     def pack(self, tolerance: float, *, sheet: bool = False) -> SphereUnion:
         """Packs the solid enclosed by the mesh with few spheres, on all cores.
 
@@ -102,7 +135,7 @@ class Mesh:
     def __len__(self) -> int:
         """Number of triangles of the mesh."""
 
-    def __getnewargs__(self) -> tuple[NDArray[np.float64], NDArray[np.uint32]]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Skin:

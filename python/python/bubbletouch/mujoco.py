@@ -32,7 +32,7 @@ class Skin:
     layout: patches by the name of the site that carries each. The patch frame is the site's frame: taxels of a flat patch point along the site's z.
     geoms: "all", or names of the geoms that can touch the skin. With "all", geoms of the patches' own bodies are left out, as are visual geoms
         (contype and conaffinity 0).
-    tolerance: largest distance of the facets of capsules, cylinders and ellipsoids from the surface, metres. Spheres, boxes and meshes are exact.
+    tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Spheres, boxes, capsules and meshes are exact.
 
     Raises ValueError for names that the model does not have, and for geoms without a surface (planes, height fields, SDFs) that are named.
     """
@@ -144,7 +144,7 @@ class Skin:
 
 
 def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5) -> _core.Mesh | _core.SphereUnion:
-    """Returns the surface of a geom in the geom's frame: exact for spheres, boxes and meshes, otherwise facets within the tolerance, metres.
+    """Returns the surface of a geom in the geom's frame: exact for spheres, boxes, capsules and meshes, otherwise facets within the tolerance, metres.
 
     Raises ValueError for planes, height fields and signed distance fields.
     """
@@ -153,16 +153,13 @@ def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5) -> _
     if kind == kinds.mjGEOM_SPHERE:
         return _core.SphereUnion(np.zeros((1, 3)), size[:1])
     if kind == kinds.mjGEOM_BOX:
-        return _core.Mesh(*_box(size))
+        return _core.Mesh.box(2.0 * size)
     if kind == kinds.mjGEOM_ELLIPSOID:
-        vertices, triangles = _revolved(_arc(1.0, 0.0, tolerance / max(size)), tolerance / max(size))
-        return _core.Mesh(vertices * size, triangles)
+        return _core.Mesh.ellipsoid(size, tolerance)
     if kind == kinds.mjGEOM_CAPSULE:
-        return _core.Mesh(*_revolved(_arc(size[0], size[1], tolerance), tolerance))
+        return _core.Mesh.capsule(size[0], 2.0 * size[1], tolerance)
     if kind == kinds.mjGEOM_CYLINDER:
-        radius, half = size[:2]
-        profile = np.array([(0.0, -half), (radius, -half), (radius, half), (0.0, half)])
-        return _core.Mesh(*_revolved(profile, tolerance))
+        return _core.Mesh.cylinder(size[0], 2.0 * size[1], tolerance)
     if kind == kinds.mjGEOM_MESH:
         mesh = model.geom_dataid[geom]
         vertices = model.mesh_vert[model.mesh_vertadr[mesh] :][: model.mesh_vertnum[mesh]]
@@ -189,45 +186,6 @@ def _can_touch(model: mujoco.MjModel, geom: int, carriers: set[int]) -> bool:
     has_surface = kind not in (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD, mujoco.mjtGeom.mjGEOM_SDF)
     collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
     return has_surface and collides and int(model.geom_bodyid[geom]) not in carriers
-
-
-def _box(half: Array) -> tuple[Array, NDArray[np.uint32]]:
-    """Returns the vertices and triangles of a box about the origin; `half` contains its half side lengths."""
-    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * half
-    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
-    return corners, np.array(triangles, dtype=np.uint32)
-
-
-def _n_facets(radius: float, tolerance: float) -> int:
-    """Returns the number of chords of a circle whose middles are within the tolerance of it: r (1 − cos(π / n)) ≤ tolerance."""
-    return int(np.ceil(np.pi / np.arccos(max(1.0 - tolerance / radius, 0.0)))) if tolerance < radius else 4
-
-
-def _arc(radius: float, half: float, tolerance: float) -> Array:
-    """Returns the profile (r, z), from the lower to the upper pole, of a capsule with half length `half` (0: a sphere)."""
-    n = max(_n_facets(radius, tolerance) // 2, 4)
-    angles = np.linspace(0, np.pi / 2, n // 2 + 1)
-    upper = np.stack([radius * np.cos(angles), half + radius * np.sin(angles)], axis=1)
-    lower = upper[::-1] * [1.0, -1.0]
-    return np.concatenate([lower, upper[1:] if half == 0 else upper])
-
-
-def _revolved(profile: Array, tolerance: float) -> tuple[Array, NDArray[np.uint32]]:
-    """Returns vertices and triangles of the surface of revolution about z of a profile (r, z) that begins and ends on the axis."""
-    n = max(_n_facets(profile[:, 0].max(), tolerance), 8)
-    angles = 2 * np.pi * np.arange(n) / n
-    circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    rings = [np.column_stack([r * circle, np.full(n, z)]) for r, z in profile[1:-1]]
-    vertices = np.concatenate([[[0.0, 0.0, profile[0, 1]], [0.0, 0.0, profile[-1, 1]]], *rings])
-    here, there = np.arange(n), (np.arange(n) + 1) % n
-    last = 2 + n * (len(rings) - 1)
-    triangles = [np.stack([np.zeros(n), 2 + there, 2 + here], axis=1), np.stack([np.ones(n), last + here, last + there], axis=1)]
-    for ring in range(len(rings) - 1):
-        low, high = 2 + n * ring, 2 + n * (ring + 1)
-        triangles.append(np.stack([low + here, low + there, high + there], axis=1))
-        triangles.append(np.stack([low + here, high + there, high + here], axis=1))
-    return vertices, np.concatenate(triangles).astype(np.uint32)
 
 
 __all__ = ["Skin", "geom_surface"]

@@ -3,6 +3,7 @@
 //! | from | by | gives |
 //! |---|---|---|
 //! | a PLY, OBJ or STL file | [`MeshFormat::read`] | a [`MeshFile`]: corners and polygons as written, in metres |
+//! | the sizes of a box, cylinder, ellipsoid or capsule | [`TriangleMesh::cuboid`] … | a [`TriangleMesh`] |
 //! | a [`MeshFile`] | [`MeshFile::into_mesh`] | a [`TriangleMesh`] |
 //! | a [`TriangleMesh`] | [`TriangleMesh::turned_outwards`] | the mesh with closed parts outwards, and an [`Orientation`] |
 //! | a [`TriangleMesh`] | [`MeshReport::new`] | its faults: holes, flipped or degenerate faces |
@@ -39,6 +40,7 @@ mod obj;
 mod obj_group;
 mod orientation;
 mod ply;
+pub(crate) mod primitives;
 mod pseudonormals;
 mod report;
 mod separation;

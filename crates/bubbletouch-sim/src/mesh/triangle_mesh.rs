@@ -15,27 +15,6 @@ pub struct TriangleMesh {
 }
 
 impl TriangleMesh {
-    /// Creates a box about the origin with the given side lengths, metres: 8 vertices and 12 triangles that face outwards.
-    ///
-    /// # Errors
-    /// If a side length is not finite; errors begin with `place`.
-    pub fn cuboid(place: &str, sides: DVec3) -> Result<Self> {
-        let corner = |corner: u32| {
-            let sign = |bit: u32| if corner & bit == 0 { -0.5 } else { 0.5 };
-            sides * DVec3::new(sign(1), sign(2), sign(4))
-        };
-        let faces = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        let halves = faces.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
-        Self::new(place, (0..8).map(corner).collect(), halves.concat())
-    }
-
     /// Creates a triangle mesh and checks the invariant. Vertices are in metres.
     ///
     /// # Errors
@@ -101,9 +80,13 @@ impl TriangleMesh {
 
     /// Returns the mesh after a rigid motion by `pose`.
     pub fn moved(&self, pose: &Pose) -> Self {
-        let vertices = self.vertices.iter().map(|&v| pose.transform_point(v));
+        self.with_vertices(|vertex| pose.transform_point(vertex))
+    }
+
+    /// Returns the mesh with each vertex replaced by its image under a map.
+    pub(super) fn with_vertices(&self, map: impl Fn(DVec3) -> DVec3) -> Self {
         Self {
-            vertices: vertices.collect(),
+            vertices: self.vertices.iter().map(|&vertex| map(vertex)).collect(),
             triangles: self.triangles.clone(),
         }
     }

@@ -1,6 +1,11 @@
 //! Triangle mesh as an object, with precomputed data for contacts.
+//!
+//! A mesh can be rounded by a radius R: the object is then the set of all points within R of a triangle. A taxel of radius ρ touches this object where a taxel
+//! of radius ρ + R would touch the triangles, so the contact of rounded shapes is exact. A capsule is a rounded line segment.
 
+use crate::error::{Error, Result};
 use crate::geometry::Aabb;
+use crate::mesh::primitives::check_capsule;
 use crate::mesh::{Bvh, TriangleMesh, Welded};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
@@ -14,6 +19,8 @@ pub struct MeshModel {
 #[derive(Debug)]
 struct Data {
     mesh: TriangleMesh,
+    /// Distance of the object's surface from the triangles, metres; 0 for a mesh that is not rounded.
+    rounding: f64,
     bvh: Bvh,
     /// Contact data per triangle, in the order of the tree.
     faces: Vec<ContactFace>,
@@ -37,21 +44,63 @@ pub struct ContactFace {
 impl MeshModel {
     /// Prepares a mesh for contacts; takes a few microseconds per triangle.
     pub fn new(mesh: TriangleMesh) -> Self {
+        let rounding = 0.0;
         let bvh = Bvh::new(&mesh);
         let faces = contact_faces(&mesh, &Welded::new(&mesh));
         let faces = (0..faces.len()).map(|place| faces[bvh.number(place)]);
         let faces = faces.collect();
         Self {
-            data: Arc::new(Data { mesh, bvh, faces }),
+            data: Arc::new(Data {
+                mesh,
+                rounding,
+                bvh,
+                faces,
+            }),
         }
     }
 
-    /// Returns the triangle mesh, metres.
+    /// Prepares a rounded mesh for contacts: the set of all points within `rounding` metres of a triangle.
+    ///
+    /// # Errors
+    /// If the rounding is negative or not finite.
+    pub fn rounded(mesh: TriangleMesh, rounding: f64) -> Result<Self> {
+        if !rounding.is_finite() || rounding < 0.0 {
+            let allowed = "a finite number of metres, zero or more";
+            return Err(Error::input("rounding", rounding, allowed));
+        }
+        let Self { data } = Self::new(mesh);
+        let data = Arc::into_inner(data).expect("a new model has one owner");
+        Ok(Self {
+            data: Arc::new(Data { rounding, ..data }),
+        })
+    }
+
+    /// Creates a capsule about the origin along z, a rounded line segment. `length` is the distance between the centres of its hemispheres, zero or more,
+    /// metres.
+    ///
+    /// # Errors
+    /// If the radius is not positive or the length is negative; errors begin with `capsule`.
+    pub fn capsule(radius: f64, length: f64) -> Result<Self> {
+        const PLACE: &str = "capsule";
+        check_capsule(PLACE, radius, length)?;
+        let end = DVec3::new(0.0, 0.0, 0.5 * length);
+        Self::rounded(
+            TriangleMesh::new(PLACE, vec![-end, end], vec![[0, 1, 1]])?,
+            radius,
+        )
+    }
+
+    /// Returns the triangle mesh without its rounding, metres.
     pub fn mesh(&self) -> &TriangleMesh {
         &self.data.mesh
     }
 
-    /// Returns the tree of the triangles' bounding boxes.
+    /// Returns the distance of the object's surface from the triangles, metres; 0 unless the mesh is rounded.
+    pub fn rounding(&self) -> f64 {
+        self.data.rounding
+    }
+
+    /// Returns the tree of the triangles' bounding boxes, without the rounding.
     pub fn bvh(&self) -> &Bvh {
         &self.data.bvh
     }
@@ -61,12 +110,20 @@ impl MeshModel {
         &self.data.faces
     }
 
-    /// Returns the bounding box of the mesh, metres.
+    /// Returns the bounding box of the object, metres.
     pub fn bounds(&self) -> Aabb {
-        self.data.bvh.bounds()
+        self.enlarged(self.data.bvh.bounds())
     }
 
-    /// Returns the bounding box of the mesh after a rotation about its origin, metres.
+    /// Returns a box enlarged by the rounding on all sides.
+    fn enlarged(&self, bounds: Aabb) -> Aabb {
+        Aabb {
+            min: bounds.min - self.data.rounding,
+            max: bounds.max + self.data.rounding,
+        }
+    }
+
+    /// Returns the bounding box of the object after a rotation about its origin, metres.
     pub fn turned_bounds(&self, rotation: DQuat) -> Aabb {
         let rotation = DMat3::from_quat(rotation);
         let corners = self.corners().map(|corner| rotation * corner);
@@ -74,7 +131,8 @@ impl MeshModel {
             min: point,
             max: point,
         });
-        Aabb::around(points).expect("a mesh has at least one triangle")
+        let around = Aabb::around(points).expect("a mesh has at least one triangle");
+        self.enlarged(around)
     }
 
     /// Returns each vertex that belongs to a triangle, once.
@@ -95,8 +153,12 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
         .map(|number| ContactFace {
             normal: mesh.triangle(number).normal().unwrap_or(DVec3::ZERO),
             across: [DVec3::ZERO; 3],
-            // Initially all sides; shared ones are removed below. The sides of a triangle with a repeated corner are not shared.
-            has_edge: [true; 3],
+            // Initially all sides; shared ones are removed below. A triangle with a repeated corner has one side, which is not shared.
+            has_edge: match welded.corners[number] {
+                [a, b, c] if a == b => [false, b != c, false],
+                [a, b, c] if b == c || c == a => [true, false, false],
+                _ => [true; 3],
+            },
             has_corner: welded.corners[number].map(&mut own_corner),
         })
         .collect();

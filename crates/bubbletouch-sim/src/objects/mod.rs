@@ -6,6 +6,7 @@
 //! | a [`Hand`] with posed fingers | [`pack`] | few spheres, surface within a stated error |
 //! | the vertices of a [mesh](crate::mesh) | [`vertex_spheres`] | one sphere per vertex, as in the original \[BT\] |
 //! | a [`TriangleMesh`](crate::mesh::TriangleMesh) | [`MeshModel::new`] | the triangles themselves |
+//! | a [`TriangleMesh`](crate::mesh::TriangleMesh) and a radius | [`MeshModel::rounded`], [`MeshModel::capsule`] | all points within the radius of a triangle |
 //! | a CSV file | [`read_spheres`] | the spheres of the file |
 //!
 //! [`surface_error`] measures the distance between spheres and a solid.

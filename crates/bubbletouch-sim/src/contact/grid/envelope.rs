@@ -53,7 +53,7 @@ impl Envelope {
         goal: (TravelGoal, f64),
     ) {
         let first = Cell::new(self.first);
-        let radius = placed.radius;
+        let radius = placed.radius + mesh.rounding();
         let sweep = Sweep {
             view: MeshView::new(pose, radius, placed.lines),
             radius,
@@ -62,7 +62,7 @@ impl Envelope {
             heights: Cell::from_mut(&mut self.heights[..]).as_slice_of_cells(),
             first: &first,
         };
-        let [low, high] = sweep.view.turned(&mesh.bounds());
+        let [low, high] = sweep.view.turned(&mesh.bvh().bounds());
         if sweep.view.is_beside(low, high) || low.z - radius >= sweep.limit() {
             return;
         }
@@ -81,7 +81,7 @@ impl Envelope {
 /// State of the search over one mesh. The heights are stored in `Cell`s, so that the search can read and lower them at any time.
 struct Sweep<'a> {
     view: MeshView,
-    /// Radius of a taxel, metres.
+    /// Sum of a taxel's radius and the rounding of the mesh, metres.
     radius: f64,
     lines: &'a GridLines,
     /// Goal of the press, and the travel at first contact with the objects evaluated before.

@@ -74,8 +74,9 @@ impl<'a> MeshAt<'a> {
 
     /// Returns the height at which one triangle stops a taxel, even if the triangle is behind the taxel's substrate; `None` if the triangle misses the taxel.
     pub fn stop_by(&self, taxel: &PlacedTaxel, triangle: usize) -> Option<Stop> {
-        let turned = AxisView::new(self, taxel).turned(&self.mesh.mesh().triangle(triangle));
-        let height = stopping_height(&turned, taxel.radius, DVec2::ZERO)?;
+        let view = AxisView::new(self, taxel);
+        let turned = view.turned(&self.mesh.mesh().triangle(triangle));
+        let height = stopping_height(&turned, view.reach, DVec2::ZERO)?;
         Some(Stop { height, triangle })
     }
 
@@ -84,7 +85,7 @@ impl<'a> MeshAt<'a> {
     fn entered(&self, view: &AxisView) -> Option<Stop> {
         let beside = view.taxel.radius * BESIDE;
         let place = view.to_mesh(beside.extend(view.taxel.behind));
-        let bounds = self.mesh.bounds();
+        let bounds = self.mesh.bvh().bounds();
         if place.cmplt(bounds.min).any() || place.cmpgt(bounds.max).any() {
             return None;
         }
@@ -103,7 +104,7 @@ impl<'a> MeshAt<'a> {
         if rise_ahead <= 0.0 || rise_behind >= 0.0 {
             return None;
         }
-        let height = stopping_height(&view.turned(&triangle), view.taxel.radius, DVec2::ZERO)?;
+        let height = stopping_height(&view.turned(&triangle), view.reach, DVec2::ZERO)?;
         Some(Stop {
             height,
             triangle: number,
@@ -114,6 +115,8 @@ impl<'a> MeshAt<'a> {
 /// Transform from a mesh's frame to a taxel's frame: z along the taxel's axis, origin at the centre of the undeflected taxel.
 struct AxisView<'a> {
     taxel: &'a PlacedTaxel,
+    /// Sum of the taxel's radius and the rounding of the mesh, metres.
+    reach: f64,
     rotation: DMat3,
     translation: DVec3,
     /// Absolute values of the rotation matrix, which give the half-size of a rotated bounding box.
@@ -127,6 +130,7 @@ impl<'a> AxisView<'a> {
         let rotation = taxel_from_patch * mesh.rotation;
         Self {
             taxel,
+            reach: taxel.radius + mesh.mesh.rounding(),
             rotation,
             translation: taxel_from_patch * (mesh.pose.translation - taxel.center),
             absolute: DMat3::from_cols(
@@ -155,7 +159,7 @@ impl<'a> AxisView<'a> {
     /// triangles behind the substrate.
     fn lowest(&self, bounds: &Aabb) -> f64 {
         let center = self.rotation * bounds.center() + self.translation;
-        let half = self.absolute * (0.5 * bounds.size()) + self.taxel.radius;
+        let half = self.absolute * (0.5 * bounds.size()) + self.reach;
         let is_beside = center.x.abs() > half.x || center.y.abs() > half.y;
         if is_beside || center.z + half.z < self.taxel.behind {
             return f64::INFINITY;
@@ -166,7 +170,7 @@ impl<'a> AxisView<'a> {
     /// Returns the height at which a triangle stops the taxel; `None` if the triangle misses the taxel or touches it only behind the substrate.
     fn stop(&self, triangle: &Triangle) -> Option<f64> {
         let turned = self.turned(triangle);
-        let radius = self.taxel.radius;
+        let radius = self.reach;
         let height = stopping_height(&turned, radius, DVec2::ZERO)?;
         if law::reaches_front(height, self.taxel.behind) {
             return Some(height);

@@ -306,7 +306,8 @@ fn nearest_point(object: &Model, part: usize, pose: &Pose, place: DVec3) -> (DVe
             let corners = mesh.mesh().triangle(part).0;
             let triangle = Triangle(corners.map(|corner| pose.transform_point(corner)));
             let (point, _) = triangle.closest(place);
-            (point, place - point)
+            let away = place - point;
+            (point + mesh.rounding() * away.normalize_or_zero(), away)
         }
     }
 }

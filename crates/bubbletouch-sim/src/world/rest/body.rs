@@ -19,13 +19,13 @@ impl Model {
 
     /// Returns spheres (points are spheres of zero radius) whose convex hull equals the object's convex hull.
     pub(crate) fn extremes(&self) -> Vec<Sphere> {
-        let point = |center| Sphere {
-            center,
-            radius: 0.0,
-        };
         match self {
             Self::Spheres(union) => union.spheres().to_vec(),
-            Self::Mesh(mesh) => mesh.corners().map(point).collect(),
+            Self::Mesh(mesh) => {
+                let corners = mesh.corners();
+                let radius = mesh.rounding();
+                corners.map(|center| Sphere { center, radius }).collect()
+            }
         }
     }
 

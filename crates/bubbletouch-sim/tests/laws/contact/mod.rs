@@ -13,6 +13,7 @@ mod many_bodies;
 mod mesh;
 mod press_variants;
 mod reference_scenes;
+mod rounded;
 mod skin_layouts;
 mod skin_meshes;
 mod skins;

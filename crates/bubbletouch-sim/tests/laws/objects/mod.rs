@@ -7,4 +7,5 @@ mod mesh_surface;
 mod orientation;
 mod packing;
 mod packing_laws;
+mod primitives;
 mod solids;
