@@ -39,11 +39,13 @@ impl<S> Spare<S> {
         Self(Mutex::new(Vec::new()))
     }
 
-    fn take(&self) -> Option<S> {
+    /// Takes scratch memory out of the store; returns `None` if the store is empty.
+    pub fn take(&self) -> Option<S> {
         self.0.lock().ok()?.pop()
     }
 
-    fn give_back(&self, scratch: S) {
+    /// Puts scratch memory into the store.
+    pub fn give_back(&self, scratch: S) {
         if let Ok(mut spare) = self.0.lock() {
             spare.push(scratch);
         }

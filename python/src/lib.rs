@@ -60,7 +60,7 @@ mod _core {
     #[pymodule_export]
     use simulation::Simulation;
     #[pymodule_export]
-    use skin::Skin;
+    use skin::{ShearState, Skin};
     #[pymodule_export]
     use sphere_union::SphereUnion;
     #[pymodule_export]

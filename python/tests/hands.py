@@ -49,14 +49,14 @@ def close_gripper(model: mujoco.MjModel, data: mujoco.MjData, n_steps: int = 400
         mujoco.mj_step(model, data)
 
 
-def normal_forces(model: mujoco.MjModel, data: mujoco.MjData) -> dict[tuple[str, str], float]:
-    """Returns the engine's normal force between each pair of geoms in contact, newtons; the name of the object's geom comes last."""
-    forces: dict[tuple[str, str], float] = {}
+def normal_forces(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, float]:
+    """Returns the engine's normal force between the object and each body that it touches, newtons, by the name of the body."""
+    forces: dict[str, float] = {}
     for number in range(data.ncon):
-        force = np.zeros(6)
-        mujoco.mj_contactForce(model, data, number, force)
-        geoms = [int(geom) for geom in data.contact.geom[number]]
-        geoms.sort(key=lambda geom: model.geom_bodyid[geom] == model.body("object").id)
-        first, second = (model.geom(geom).name for geom in geoms)
-        forces[first, second] = forces.get((first, second), 0.0) + float(force[0])
+        bodies = [model.body(model.geom_bodyid[geom]).name for geom in data.contact.geom[number]]
+        if "object" in bodies:
+            force = np.zeros(6)
+            mujoco.mj_contactForce(model, data, number, force)
+            other = bodies[bodies[0] == "object"]
+            forces[other] = forces.get(other, 0.0) + float(force[0])
     return forces

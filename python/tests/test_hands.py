@@ -24,7 +24,7 @@ def test_the_hand_holds_an_object_with_all_parts(geoms) -> None:
         mujoco.mj_step(model, data)
     assert np.linalg.norm(data.body("object").xpos - before) < 5e-3
     forces = normal_forces(model, data)
-    touching = {first.split("_")[0] for (first, _), force in forces.items() if force > 0.1}
+    touching = {body.split("_")[0] for body, force in forces.items() if force > 0.1}
     assert {"palm", "thumb"} < touching and len(touching) >= 5, forces
     # The hand holds the object in any direction.
     for gravity in np.vstack([np.eye(3), -np.eye(3)]) * 9.81:
@@ -45,6 +45,11 @@ def test_the_gripper_holds_an_object_by_equal_forces(geoms) -> None:
     before = data.body("object").xpos.copy()
     for _ in range(1000):
         mujoco.mj_step(model, data)
-    forces = [force for (pad, _), force in normal_forces(model, data).items() if pad.endswith("_pad")]
-    assert len(forces) == 2 and abs(forces[0] - forces[1]) < 0.2 and min(forces) > 5, forces
+    forces = normal_forces(model, data)
+    left, right = forces["left_finger"], forces["right_finger"]
+    assert len(forces) == 2 and abs(left - right) < 0.2 and min(left, right) > 5, forces
+    # The axes of the pads' sites point to each other.
+    axes = [data.site(f"{side}_pad").xmat.reshape(3, 3)[:, 2] for side in ("left", "right")]
+    apart = data.site("right_pad").xpos - data.site("left_pad").xpos
+    assert axes[0] @ apart > 0.02 and np.allclose(axes[0], -axes[1])
     assert np.linalg.norm(data.body("object").xpos - before) < 2e-3

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -178,7 +180,7 @@ def test_taxels_are_drawn_where_they_are(model) -> None:
 
 
 def test_names_that_are_not_there_are_refused(model) -> None:
-    with pytest.raises(ValueError, match="site: 'hand'; one of palm, edge"):
+    with pytest.raises(ValueError, match=r"layout: 'hand'; a site \(palm, edge\) or a body \(world, palm, ball"):
         Skin(model, {"hand": patches()["palm"]})
     with pytest.raises(ValueError, match="geom: 'cup'; one of floor"):
         Skin(model, patches(), geoms=["cup"])
@@ -223,3 +225,15 @@ def test_deflections_are_those_of_mujocos_signed_distance(model) -> None:
                     assert abs(distance) < 1e-9, name
                     n_touched += 1
     assert n_touched > 1000
+
+
+def test_threads_read_one_skin_at_the_same_time(model) -> None:
+    skin = Skin(model, patches())
+    rng = np.random.default_rng(3)
+    datas = [placed(model, ball=[*rng.uniform(-0.01, 0.01, 2), 0.13, 1, 0, 0, 0]) for _ in range(4)]
+    expected = [skin.read(data) for data in datas]
+    with ThreadPoolExecutor(4) as pool:
+        # A read that holds the interpreter's lock while it waits for another read would never end.
+        work = [pool.submit(skin.read, datas[number % 4]) for number in range(2000)]
+        for number, one in enumerate(work):
+            assert np.array_equal(one.result(timeout=60), expected[number % 4])

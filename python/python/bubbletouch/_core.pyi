@@ -18,6 +18,7 @@ __all__ = [
     "Patch",
     "Projection",
     "Reconstructor",
+    "ShearState",
     "Simulation",
     "Skin",
     "Solid",
@@ -138,11 +139,32 @@ class Mesh:
     def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
+class ShearState:
+    """Shear springs with friction of all taxels of a skin, which Skin.read advances by one step; Skin.shear_state() creates it.
+
+    Between two reads, a body in contact drags the taxels sideways until they slip: the shear force is at most the friction coefficient times the normal
+    force.
+    """
+
+    @property
+    def forces(self) -> NDArray[np.float64]:
+        """Force of the bodies on each taxel after the last read, newtons, (n_taxels, 3) or (n, n_taxels, 3), in the frame of the taxel's patch: normal force,
+        friction, and the lateral force of an inclined contact.
+        """
+
+    @property
+    def slipping(self) -> NDArray[np.bool_]:
+        """Whether each taxel slipped during the last step, (n_taxels,) or (n, n_taxels)."""
+
+    def reset(self, sets: Sequence[int] | None = None) -> None:
+        """Sets all shear forces to zero, as before the first read; `sets`: indices of the sets of poses, None for all."""
+
+@final
 class Skin:
     """Patches of skin and bodies that may touch them, read at given poses in one call.
 
     `Skin(patches, bodies)`: patches, a sequence of Patch; bodies, a sequence of Mesh or SphereUnion. A taxel that several bodies deflect has the largest
-    of the deflections. Raises ValueError for an empty sequence of patches.
+    of the deflections. Several threads may read one skin at the same time. Raises ValueError for an empty sequence of patches.
     """
 
     def __new__(cls, patches: Sequence[Patch], bodies: Sequence[_Model]) -> Skin: ...
@@ -160,8 +182,16 @@ class Skin:
         body_poses: ArrayLike | tuple[ArrayLike, ArrayLike],
         *,
         output: Literal["deflection", "force"] = "deflection",
+        forces: ArrayLike | None = None,
+        directions: ArrayLike | None = None,
+        reach: float | None = None,
+        shear: ShearState | None = None,
         out: NDArray[np.float64] | None = None,
         wrenches: NDArray[np.float64] | None = None,
+        contacts: NDArray[np.int64] | None = None,
+        pair_forces: NDArray[np.float64] | None = None,
+        residuals: NDArray[np.float64] | None = None,
+        travels: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
         """Reads all patches under all bodies; returns a frame of the skin, (n_taxels,) or (n, n_taxels) float64, patch after patch.
 
@@ -169,9 +199,29 @@ class Skin:
         (…, k, 4, 4); or a pair (positions, rotations) with positions (…, k, 3) and rotations (…, k, 4) as quaternions w, x, y, z, or (…, k, 9) or
         (…, k, 3, 3) as matrices by rows, as MuJoCo has them.
         output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
-        out: float64 array of the frame's shape, C order, which is filled and returned.
-        wrenches: (n_patches, 6) or (n, n_patches, 6) float64 array that is filled with the force and the torque of the normal forces on each patch, in
-        the patch's frame about its origin, newtons and newton metres.
+
+        forces: wanted normal forces of the pairs of patch and body, newtons, (n_patches, n_bodies) or (n, n_patches, n_bodies), zero or more. The normal
+        force of a pair is the sum of the forces of the patch's taxels along their axes under this body alone. The patch travels from its pose until it
+        has the wanted force. A pair with force 0 does not touch, also if patch and body overlap. A pair with NaN is read at its pose.
+        directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_bodies, 3); default z.
+        reach: largest travel towards the body, metres; default: the patch's largest stroke plus its largest taxel diameter. If the force is not reached,
+        the press ends there, or before the body is behind the substrate.
+        shear: ShearState of this skin, which is advanced by one step; wrenches then contain friction and the lateral forces of inclined contacts.
+
+        The following arrays are filled; float64 except contacts, C order, with a first axis n for n sets of poses.
+        out: the frame; this array is returned.
+        wrenches: (n_patches, 6), force and torque of the normal forces on each patch, in the patch's frame about its origin, newtons and newton metres.
+        contacts: (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke.
+        pair_forces: (n_patches, n_bodies), normal force of each pair, newtons.
+        residuals: (n_patches, n_bodies), wanted force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
+        travels: (n_patches, n_bodies), travel of the patch of each pair, metres; NaN for pairs with force 0.
+        """
+
+    def shear_state(self, stiffness: ArrayLike, friction: ArrayLike, *, n: int | None = None) -> ShearState:
+        """Returns the state of untouched taxels with shear springs, for the argument `shear` of read().
+
+        stiffness: of the shear springs, N/m, positive, and friction: coefficient of friction, zero or more; one number, or (n_taxels,).
+        n: number of sets of poses in each read; None for poses without an axis of sets.
         """
 
     def __len__(self) -> int: ...

@@ -1,0 +1,37 @@
+"""Surfaces of MuJoCo's geoms as contact models."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+import bubbletouch._core as _core
+
+Array = NDArray[np.float64]
+
+
+def geom_surface(model: mujoco.MjModel, geom: int, tolerance: float = 1e-5) -> _core.Mesh | _core.SphereUnion:
+    """Returns the surface of a geom in the geom's frame: exact for spheres, boxes, capsules and meshes, otherwise facets within the tolerance, metres.
+
+    Raises ValueError for planes, height fields and signed distance fields.
+    """
+    kind, size = mujoco.mjtGeom(model.geom_type[geom]), model.geom_size[geom]
+    kinds = mujoco.mjtGeom
+    if kind == kinds.mjGEOM_SPHERE:
+        return _core.SphereUnion(np.zeros((1, 3)), size[:1])
+    if kind == kinds.mjGEOM_BOX:
+        return _core.Mesh.box(2.0 * size)
+    if kind == kinds.mjGEOM_ELLIPSOID:
+        return _core.Mesh.ellipsoid(size, tolerance)
+    if kind == kinds.mjGEOM_CAPSULE:
+        return _core.Mesh.capsule(size[0], 2.0 * size[1], tolerance)
+    if kind == kinds.mjGEOM_CYLINDER:
+        return _core.Mesh.cylinder(size[0], 2.0 * size[1], tolerance)
+    if kind == kinds.mjGEOM_MESH:
+        mesh = model.geom_dataid[geom]
+        vertices = model.mesh_vert[model.mesh_vertadr[mesh] :][: model.mesh_vertnum[mesh]]
+        triangles = model.mesh_face[model.mesh_faceadr[mesh] :][: model.mesh_facenum[mesh]]
+        return _core.Mesh(vertices.astype(np.float64), triangles)
+    name = model.geom(geom).name or f"geom_{geom}"
+    raise ValueError(f"geom {name}: a {kind.name[7:].lower()}; a sphere, box, ellipsoid, capsule, cylinder or mesh")

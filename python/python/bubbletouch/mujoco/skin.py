@@ -1,0 +1,251 @@
+"""Class `Skin`: patches on sites or bodies of a MuJoCo model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Literal
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+import bubbletouch._core as _core
+from bubbletouch.mujoco.contact_forces import ContactForces
+from bubbletouch.mujoco.geoms import geom_surface
+
+Array = NDArray[np.float64]
+Output = Literal["deflection", "force"]
+
+
+class Skin:
+    """Patches on sites or bodies of a MuJoCo model, under its geoms.
+
+    model: mujoco.MjModel.
+    layout: patches by the name of the site or body that carries each; if a site and a body have the name, the site. The patch frame is the frame of the
+        site or body: taxels of a flat patch point along its z axis.
+    geoms: "all", or names of the geoms that can touch the skin. With "all", geoms of the patches' own bodies are left out, as are visual geoms
+        (contype and conaffinity 0).
+    tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Spheres, boxes, capsules and meshes are exact.
+
+    Raises ValueError for names that the model does not have, and for geoms without a surface (planes, height fields, SDFs) that are named.
+    """
+
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        layout: Mapping[str, _core.Patch],
+        *,
+        geoms: Literal["all"] | Sequence[str] = "all",
+        tolerance: float = 1e-5,
+    ) -> None:
+        self._model = model
+        self._patches = dict(layout)
+        self._frames = _Frames(model, list(self._patches))
+        carriers = self._frames.bodies
+        if isinstance(geoms, str):
+            if geoms != "all":
+                raise ValueError(f'geoms: {geoms!r}; "all" or names of geoms')
+            found = [geom for geom in range(model.ngeom) if _can_touch(model, geom, set(carriers))]
+        else:
+            found = [_identity(model, mujoco.mjtObj.mjOBJ_GEOM, name) for name in geoms]
+        if not found:
+            raise ValueError("geoms: none that can touch the skin; at least one")
+        self._geoms = np.array(found, dtype=np.intp)
+        bodies = [geom_surface(model, geom, tolerance) for geom in found]
+        self._skin = _core.Skin(list(self._patches.values()), bodies)
+        self._contact_forces = ContactForces(model, list(self._patches.values()), carriers, found)
+        names = zip(self._patches, self._skin.ranges, strict=True)
+        self._slices = {name: slice(first, last) for name, (first, last) in names}
+
+    @property
+    def n_taxels(self) -> int:
+        """Number of taxels of all patches."""
+        return self._skin.n_taxels
+
+    @property
+    def patches(self) -> dict[str, _core.Patch]:
+        """Patches by the names of their sites or bodies."""
+        return dict(self._patches)
+
+    @property
+    def geoms(self) -> list[str]:
+        """Names of the geoms that can touch the skin; an unnamed geom has the name geom_ID."""
+        return [self._model.geom(geom).name or f"geom_{geom}" for geom in self._geoms]
+
+    def read(
+        self,
+        data: mujoco.MjData,
+        *,
+        output: Output = "deflection",
+        match: Literal["normal_force"] | None = None,
+        reach: float | None = None,
+        shear: _core.ShearState | None = None,
+        out: Array | None = None,
+        wrenches: Array | None = None,
+        contacts: NDArray[np.int64] | None = None,
+        pair_forces: Array | None = None,
+        residuals: Array | None = None,
+        travels: Array | None = None,
+    ) -> Array:
+        """Returns the readings at the poses of `data`, (n_taxels,): deflections, metres, or forces along the taxels' axes, newtons.
+
+        Call mj_step, mj_forward or mj_kinematics before; `match` needs the contact forces of mj_step or mj_forward.
+
+        match: None reads the patches at the engine's poses. "normal_force" lets each patch travel until its normal force under each geom is the engine's.
+            The engine's normal force of a pair of patch and geom is the sum over their contacts of the force along the contact normal (first number of
+            mj_contactForce). A contact of the patch's body counts if the force on the patch is within 60° of the reversed axis of the taxel nearest to the
+            contact. If several patches of one body face a contact, its force is divided among them by their normal forces at the engine's poses, and
+            otherwise the nearest one has it. Flat patches travel along z, other patches against the mean contact force.
+            A geom without contact force reads zero, also where it overlaps taxels. A contact without overlap moves the patch to the geom. A contact
+            that faces no patch presses nothing; its force is in the residual of the nearest patch.
+        reach: largest travel towards a geom with `match`, metres; default: the patch's largest stroke plus its largest taxel diameter.
+        shear: state of shear_state(), which is advanced by one step.
+
+        The following arrays are filled: out (n_taxels,), which is returned; wrenches (n_patches, 6), force and torque on each patch in its own frame;
+        contacts (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke; pair_forces, residuals and travels (n_patches, n_geoms):
+        normal force, the engine's force minus the normal force (0 without `match`), newtons, and travel of the patch, metres.
+        """
+        patch_poses = self._frames.poses(data)
+        body_poses = (data.geom_xpos[self._geoms], data.geom_xmat[self._geoms])
+        if match is None:
+            forces = directions = beside = None
+        elif match == "normal_force":
+            overlaps = np.empty((len(self._patches), len(self._geoms)))
+            self._skin.read(patch_poses, body_poses, pair_forces=overlaps)
+            forces, directions, beside = self._contact_forces.wanted(data, patch_poses, overlaps)
+        else:
+            raise ValueError(f'match: {match!r}; None or "normal_force"')
+        read = self._skin.read(
+            patch_poses,
+            body_poses,
+            output=output,
+            forces=forces,
+            directions=directions,
+            reach=reach,
+            shear=shear,
+            out=out,
+            wrenches=wrenches,
+            contacts=contacts,
+            pair_forces=pair_forces,
+            residuals=residuals,
+            travels=travels,
+        )
+        if residuals is not None and beside is not None:
+            residuals += beside
+        return read
+
+    def shear_state(self, stiffness: float | Array, friction: float | Array) -> _core.ShearState:
+        """Returns the state of untouched taxels with shear springs, for the argument `shear` of read().
+
+        stiffness: of the shear springs, N/m, positive, and friction: coefficient of friction, zero or more; one number, or (n_taxels,).
+        """
+        return self._skin.shear_state(stiffness, friction)
+
+    def frame(self, name: str, readings: Array) -> Array:
+        """Returns the part of one patch in the shape of its frames: (ny, nx) of a grid, otherwise (n_taxels,)."""
+        if name not in self._slices:
+            raise ValueError(f"name: {name!r}; one of {', '.join(self._slices)}")
+        return readings[self._slices[name]].reshape(self._patches[name].shape)
+
+    def install(
+        self, sensor: str, *, output: Output = "force", match: Literal["normal_force"] | None = None
+    ) -> None:
+        """Writes the readings into a `<user>` sensor at every evaluation of the sensors, by MuJoCo's sensor callback.
+
+        The sensor has `dim` = n_taxels and `needstage="pos"` (with `match`: `needstage="acc"`), so that recordings, viewers and observations contain the
+        skin. MuJoCo has one sensor callback for each process: the last installed skin holds it. Raises ValueError if the sensor does not fit.
+        """
+        number = _identity(self._model, mujoco.mjtObj.mjOBJ_SENSOR, sensor)
+        is_user = self._model.sensor_type[number] == mujoco.mjtSensor.mjSENS_USER
+        if not is_user or self._model.sensor_dim[number] != self.n_taxels:
+            given = f"type {self._model.sensor_type[number]}, dim {self._model.sensor_dim[number]}"
+            raise ValueError(f"sensor {sensor!r}: {given}; a <user> sensor with dim {self.n_taxels}")
+        stage = int(self._model.sensor_needstage[number])
+        if match is not None and stage != mujoco.mjtStage.mjSTAGE_ACC:
+            raise ValueError(f'sensor {sensor!r}: needstage {stage}; "acc", because contact forces are computed late')
+        first = int(self._model.sensor_adr[number])
+        target = slice(first, first + self.n_taxels)
+
+        def callback(model: mujoco.MjModel, data: mujoco.MjData, now: int) -> None:
+            if now == stage and model.nsensordata == self._model.nsensordata:
+                self.read(data, output=output, match=match, out=data.sensordata[target])
+
+        mujoco.set_mjcb_sensor(callback)
+
+    def draw(self, scene: mujoco.MjvScene, data: mujoco.MjData, forces: Array, *, largest: float = 1.0) -> None:
+        """Adds a sphere for each taxel to a scene of the viewer (`viewer.user_scn`), grey at rest to red at `largest` newtons.
+
+        Clear the user scene before each frame with `viewer.user_scn.ngeom = 0`. Taxels beyond the scene's capacity are not drawn.
+        """
+        for (name, patch), place, matrix in zip(self._patches.items(), *self._frames.poses(data), strict=True):
+            centers = place + patch.centers @ matrix.reshape(3, 3).T
+            radii = np.broadcast_to(patch.taxel_radius, (patch.n_taxels,))
+            for center, radius, force in zip(centers, radii, forces[self._slices[name]], strict=True):
+                if scene.ngeom >= scene.maxgeom:
+                    return
+                part = min(max(float(force) / largest, 0.0), 1.0)
+                color = np.array([0.6 + 0.4 * part, 0.6 * (1 - part), 0.6 * (1 - part), 1.0], dtype=np.float32)
+                size = np.full(3, radius)
+                sphere = mujoco.mjtGeom.mjGEOM_SPHERE
+                mujoco.mjv_initGeom(scene.geoms[scene.ngeom], sphere, size, center, np.eye(3).ravel(), color)
+                scene.ngeom += 1
+
+
+class _Frames:
+    """Sites and bodies that carry patches."""
+
+    def __init__(self, model: mujoco.MjModel, names: Sequence[str]) -> None:
+        site, body = mujoco.mjtObj.mjOBJ_SITE, mujoco.mjtObj.mjOBJ_BODY
+        sites = [mujoco.mj_name2id(model, site, name) for name in names]
+        on_body = [mujoco.mj_name2id(model, body, name) if at < 0 else -1 for name, at in zip(names, sites, strict=True)]
+        for name, of_site, of_body in zip(names, sites, on_body, strict=True):
+            if of_site < 0 and of_body < 0:
+                listed = f"a site ({_names(model, site)}) or a body ({_names(model, body)})"
+                raise ValueError(f"layout: {name!r}; {listed}")
+        # Rows of the patches on sites and on bodies, and the sites and bodies.
+        self._site_rows = np.flatnonzero(np.array(sites) >= 0)
+        self._body_rows = np.flatnonzero(np.array(sites) < 0)
+        self._sites = np.array(sites, dtype=np.intp)[self._site_rows]
+        self._on_bodies = np.array(on_body, dtype=np.intp)[self._body_rows]
+        pairs = zip(sites, on_body, strict=True)
+        # Body that carries each patch.
+        self.bodies = [int(model.site_bodyid[at]) if at >= 0 else int(body) for at, body in pairs]
+
+    def poses(self, data: mujoco.MjData) -> tuple[Array, Array]:
+        """Returns the positions (n_patches, 3) and the rotation matrices (n_patches, 9) of the patches in the world."""
+        positions, rotations = data.site_xpos[self._sites], data.site_xmat[self._sites]
+        if not len(self._on_bodies):
+            return positions, rotations
+        n = len(self.bodies)
+        all_positions, all_rotations = np.empty((n, 3)), np.empty((n, 9))
+        all_positions[self._site_rows], all_rotations[self._site_rows] = positions, rotations
+        all_positions[self._body_rows] = data.xpos[self._on_bodies]
+        all_rotations[self._body_rows] = data.xmat[self._on_bodies]
+        return all_positions, all_rotations
+
+
+def _identity(model: mujoco.MjModel, kind: mujoco.mjtObj, name: str) -> int:
+    number = mujoco.mj_name2id(model, kind, name)
+    if number < 0:
+        raise ValueError(f"{_word(kind)}: {name!r}; one of {_names(model, kind)}")
+    return int(number)
+
+
+def _word(kind: mujoco.mjtObj) -> str:
+    return str(kind.name[6:].lower())
+
+
+def _names(model: mujoco.MjModel, kind: mujoco.mjtObj) -> str:
+    """Returns the names of all elements of one kind, for messages."""
+    word = _word(kind)
+    count = {"site": model.nsite, "body": model.nbody, "geom": model.ngeom, "sensor": model.nsensor}[word]
+    names = [mujoco.mj_id2name(model, kind, other) for other in range(count)]
+    return ", ".join(name for name in names if name) or f"a model with named {word}s"
+
+
+def _can_touch(model: mujoco.MjModel, geom: int, carriers: set[int]) -> bool:
+    """Returns whether a geom collides, has a surface, and is not on a body that carries a patch."""
+    kind = mujoco.mjtGeom(model.geom_type[geom])
+    has_surface = kind not in (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD, mujoco.mjtGeom.mjGEOM_SDF)
+    collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
+    return has_surface and collides and int(model.geom_bodyid[geom]) not in carriers

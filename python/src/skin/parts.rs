@@ -1,0 +1,145 @@
+//! Patches and bodies of a skin, and the press of a patch under a body at its pose.
+
+use bubbletouch::contact::{Workspace, press_at_pose};
+use bubbletouch::geometry::{Aabb, Pose};
+use bubbletouch::objects::Model;
+use bubbletouch::world::{self, Taxels};
+use glam::DVec3;
+
+/// Patch of a skin, with a ball (centre and radius) that contains all its taxels.
+pub struct SkinPatch {
+    /// Patch of the Rust library.
+    pub patch: world::Patch,
+    /// Index of the patch's first taxel in a frame of the skin.
+    pub first: usize,
+    /// Whether the patch is a flat grid of equal taxels along z.
+    pub is_even: bool,
+    /// Default of the largest travel of a press to a force: the largest stroke plus the largest diameter of a taxel, metres.
+    pub reach: f64,
+    /// Largest stroke of a taxel, metres.
+    pub stroke: f64,
+    ball: Ball,
+}
+
+/// Body that may touch the skin.
+pub struct Body {
+    /// Contact model in the body's frame.
+    pub model: Model,
+    ball: Ball,
+}
+
+/// Ball that contains a patch or a body, in its own frame, metres.
+#[derive(Clone, Copy)]
+struct Ball {
+    center: DVec3,
+    radius: f64,
+}
+
+impl Ball {
+    fn around(bounds: &Aabb) -> Self {
+        Self {
+            center: 0.5 * (bounds.min + bounds.max),
+            radius: 0.5 * (bounds.max - bounds.min).length(),
+        }
+    }
+}
+
+impl Body {
+    /// Prepares a contact model for presses.
+    pub fn new(model: Model) -> Self {
+        model.prepare();
+        Self {
+            ball: Ball::around(&model.bounds()),
+            model,
+        }
+    }
+}
+
+impl SkinPatch {
+    /// Creates the part of a skin whose first taxel has the index `first` in a frame.
+    pub fn new(patch: world::Patch, first: usize) -> Self {
+        let (layout, taxels) = (patch.layout(), patch.taxels().all());
+        let radius = taxels.iter().map(|taxel| taxel.radius).fold(0.0, f64::max);
+        let stroke = taxels.iter().map(|taxel| taxel.stroke).fold(0.0, f64::max);
+        let centers = layout.centers();
+        let (min, max) = centers.iter().fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(min, max), center| (min.min(*center), max.max(*center)),
+        );
+        let is_flat = min.z == max.z && layout.axes().iter().all(|axis| *axis == DVec3::Z);
+        Self {
+            first,
+            is_even: is_flat
+                && layout.as_grid().is_some()
+                && matches!(patch.taxels(), Taxels::Equal(_)),
+            reach: stroke + 2.0 * radius,
+            stroke,
+            ball: Ball::around(&Aabb {
+                min: min - radius,
+                max: max + radius,
+            }),
+            patch,
+        }
+    }
+
+    /// Returns whether a body may come closer to the patch than `margin`, metres.
+    pub fn is_near(&self, body: &Body, patch_from_body: &Pose, margin: f64) -> bool {
+        let center = patch_from_body.transform_point(body.ball.center);
+        let reach = self.ball.radius + body.ball.radius + margin;
+        center.distance_squared(self.ball.center) <= reach * reach
+    }
+
+    /// Presses the patch under one body at its pose; the deflections are in the workspace. Returns the sum of the forces of the taxels, newtons.
+    pub fn press(&self, body: &Body, patch_from_body: Pose, workspace: &mut Workspace) -> f64 {
+        let model = std::slice::from_ref(&body.model);
+        press_at_pose(&self.patch, model, &[patch_from_body], workspace);
+        self.total_force(workspace.deflections())
+    }
+
+    /// Returns the sum of the forces of the taxels along their axes, newtons, for their deflections, metres.
+    pub fn total_force(&self, deflections: &[f64]) -> f64 {
+        match self.patch.taxels() {
+            Taxels::Equal(taxel) => taxel.stiffness * deflections.iter().sum::<f64>(),
+            Taxels::Each(taxels) => {
+                let pairs = taxels.iter().zip(deflections);
+                pairs.map(|(taxel, d)| taxel.stiffness * d).sum()
+            }
+        }
+    }
+
+    /// Adds the force and the torque of the normal forces on the patch, in its frame about its origin, N and N·m, to `wrench`.
+    pub fn add_wrench(&self, deflections: &[f64], wrench: &mut [f64]) {
+        let (layout, taxels) = (self.patch.layout(), self.patch.taxels());
+        let places = layout.centers().iter().zip(layout.axes());
+        let touched = deflections.iter().zip(places).enumerate();
+        for (index, (deflection, (center, axis))) in touched.filter(|(_, (d, _))| **d > 0.0) {
+            let force = -(taxels.at(index).stiffness * deflection) * *axis;
+            let six = force
+                .to_array()
+                .into_iter()
+                .chain(center.cross(force).to_array());
+            for (sum, term) in wrench.iter_mut().zip(six) {
+                *sum += term;
+            }
+        }
+    }
+
+    /// Returns the numbers of touched taxels and of taxels at their stroke.
+    pub fn count(&self, deflections: &[f64]) -> [i64; 2] {
+        let mut counts = [0, 0];
+        for (index, deflection) in deflections.iter().enumerate() {
+            if *deflection > 0.0 {
+                counts[0] += 1;
+                counts[1] += i64::from(*deflection >= self.patch.taxels().at(index).stroke);
+            }
+        }
+        counts
+    }
+
+    /// Replaces the deflection of each taxel, metres, by its force, newtons.
+    pub fn convert_to_forces(&self, frame: &mut [f64]) {
+        for (index, value) in frame.iter_mut().enumerate() {
+            *value *= self.patch.taxels().at(index).stiffness;
+        }
+    }
+}

@@ -1,0 +1,477 @@
+//! Class `Skin`: its arguments and results, and the loop over patches and bodies.
+
+use super::filled::{fill, read_optional};
+use super::force_match::{WantedForce, press_pair};
+use super::parts::{Body, SkinPatch};
+use super::poses::read_poses;
+use super::shear_state::ShearState;
+use crate::arrays::each;
+use crate::batch::Spare;
+use crate::errors::{bad_input, exception, guarded};
+use crate::model::model_of;
+use crate::patch::Patch;
+use bubbletouch::contact::{HeldForce, Workspace};
+use bubbletouch::geometry::Pose;
+use bubbletouch::objects::Model;
+use bubbletouch::world::{Shear, Shears};
+use glam::DVec3;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+
+/// Distance, metres, to which a body without contact is moved while its place in the list of bodies stays.
+const OUT_OF_REACH: f64 = 1e6;
+
+/// Patches of skin and bodies that may touch them, read at given poses in one call.
+///
+/// `Skin(patches, bodies)`: patches, a sequence of Patch; bodies, a sequence of Mesh or SphereUnion. A taxel that several bodies deflect has the largest
+/// of the deflections. Several threads may read one skin at the same time. Raises ValueError for an empty sequence of patches.
+#[pyclass(frozen, module = "bubbletouch")]
+pub struct Skin {
+    parts: Vec<SkinPatch>,
+    bodies: Vec<Body>,
+    /// Contact models of all bodies in one sequence, as presses with shear springs need them.
+    models: Vec<Model>,
+    /// Number of taxels of all patches.
+    n_taxels: usize,
+    spare: Spare<SkinWorkspace>,
+}
+
+/// Memory that successive calls of `read` reuse: copies of the arguments, and results.
+#[derive(Default)]
+struct SkinWorkspace {
+    workspace: Workspace,
+    patch_poses: Vec<Pose>,
+    body_poses: Vec<Pose>,
+    /// Poses of all bodies in the frame of one patch.
+    placed: Vec<Pose>,
+    /// Wanted force of each pair, newtons; empty if every pair is read at its pose.
+    forces: Vec<f64>,
+    /// Direction of each pair, three numbers a pair; empty for z.
+    directions: Vec<f64>,
+    frame: Vec<f64>,
+    wrenches: Vec<f64>,
+    contacts: Vec<i64>,
+    pairs: PairResults,
+}
+
+/// Results for each pair of patch and body.
+#[derive(Default)]
+struct PairResults {
+    /// Force of the body alone, newtons.
+    forces: Vec<f64>,
+    /// Wanted minus reached force, newtons.
+    residuals: Vec<f64>,
+    /// Travel of the patch from its pose, metres.
+    travels: Vec<f64>,
+}
+
+/// Quantity that a frame contains: deflections or forces.
+#[derive(Clone, Copy, PartialEq)]
+enum Output {
+    Deflection,
+    Force,
+}
+
+/// Options of one read.
+#[derive(Clone, Copy)]
+struct ReadOptions {
+    output: Output,
+    /// Largest travel of a press to a force, metres; `None` for the patch's default.
+    reach: Option<f64>,
+    /// Whether the results of pairs are requested.
+    wants_pairs: bool,
+}
+
+#[pymethods]
+impl Skin {
+    #[new]
+    fn new(patches: Vec<Bound<Patch>>, bodies: Vec<Bound<PyAny>>) -> PyResult<Self> {
+        guarded(|| {
+            if patches.is_empty() {
+                return Err(bad_input("patches", "none", "at least one Patch"));
+            }
+            let mut first = 0;
+            let parts = patches.iter().map(|patch| {
+                let part = SkinPatch::new(patch.get().inner().clone(), first);
+                first += part.patch.n_taxels();
+                part
+            });
+            let parts: Vec<SkinPatch> = parts.collect();
+            let bodies = bodies.iter().enumerate().map(|(number, body)| {
+                let model = model_of(&format!("bodies[{number}]"), body)?;
+                Ok(Body::new(model.clone()))
+            });
+            let bodies: Vec<Body> = bodies.collect::<PyResult<_>>()?;
+            Ok(Self {
+                models: bodies.iter().map(|body| body.model.clone()).collect(),
+                bodies,
+                parts,
+                n_taxels: first,
+                spare: Spare::new(),
+            })
+        })
+    }
+
+    /// Number of taxels of all patches.
+    #[getter]
+    fn n_taxels(&self) -> usize {
+        self.n_taxels
+    }
+
+    /// First and last index (exclusive) of each patch's taxels in a frame: a list of pairs, one per patch.
+    #[getter]
+    fn ranges(&self) -> Vec<(usize, usize)> {
+        let of = |part: &SkinPatch| (part.first, part.first + part.patch.n_taxels());
+        self.parts.iter().map(of).collect()
+    }
+
+    /// Reads all patches under all bodies; returns a frame of the skin, (n_taxels,) or (n, n_taxels) float64, patch after patch.
+    ///
+    /// patch_poses, body_poses: poses in the world of the patches and of the bodies, in their order: (k, 7) or (n, k, 7) of x, y, z, qw, qx, qy, qz;
+    /// (…, k, 4, 4); or a pair (positions, rotations) with positions (…, k, 3) and rotations (…, k, 4) as quaternions w, x, y, z, or (…, k, 9) or
+    /// (…, k, 3, 3) as matrices by rows, as MuJoCo has them.
+    /// output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
+    ///
+    /// forces: wanted normal forces of the pairs of patch and body, newtons, (n_patches, n_bodies) or (n, n_patches, n_bodies), zero or more. The normal
+    /// force of a pair is the sum of the forces of the patch's taxels along their axes under this body alone. The patch travels from its pose until it
+    /// has the wanted force. A pair with force 0 does not touch, also if patch and body overlap. A pair with NaN is read at its pose.
+    /// directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_bodies, 3); default z.
+    /// reach: largest travel towards the body, metres; default: the patch's largest stroke plus its largest taxel diameter. If the force is not reached,
+    /// the press ends there, or before the body is behind the substrate.
+    /// shear: ShearState of this skin, which is advanced by one step; wrenches then contain friction and the lateral forces of inclined contacts.
+    ///
+    /// The following arrays are filled; float64 except contacts, C order, with a first axis n for n sets of poses.
+    /// out: the frame; this array is returned.
+    /// wrenches: (n_patches, 6), force and torque of the normal forces on each patch, in the patch's frame about its origin, newtons and newton metres.
+    /// contacts: (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke.
+    /// pair_forces: (n_patches, n_bodies), normal force of each pair, newtons.
+    /// residuals: (n_patches, n_bodies), wanted force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
+    /// travels: (n_patches, n_bodies), travel of the patch of each pair, metres; NaN for pairs with force 0.
+    #[pyo3(signature = (patch_poses, body_poses, *, output="deflection", forces=None, directions=None, reach=None, shear=None, out=None, wrenches=None, contacts=None, pair_forces=None, residuals=None, travels=None))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn read<'py>(
+        &self,
+        py: Python<'py>,
+        patch_poses: &Bound<'py, PyAny>,
+        body_poses: &Bound<'py, PyAny>,
+        output: &str,
+        forces: Option<&Bound<'py, PyAny>>,
+        directions: Option<&Bound<'py, PyAny>>,
+        reach: Option<f64>,
+        shear: Option<&Bound<'py, ShearState>>,
+        out: Option<Bound<'py, PyAny>>,
+        wrenches: Option<&Bound<'py, PyAny>>,
+        contacts: Option<&Bound<'py, PyAny>>,
+        pair_forces: Option<&Bound<'py, PyAny>>,
+        residuals: Option<&Bound<'py, PyAny>>,
+        travels: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        guarded(|| {
+            let options = ReadOptions {
+                output: output_of(output)?,
+                reach: reach_of(reach)?,
+                wants_pairs: pair_forces.is_some() || residuals.is_some() || travels.is_some(),
+            };
+            let mut scratch = self.spare.take().unwrap_or_default();
+            let n_sets = self.read_pose_sets((patch_poses, body_poses), &mut scratch)?;
+            let shape = |last: &[usize]| -> Vec<usize> {
+                n_sets.into_iter().chain(last.iter().copied()).collect()
+            };
+            let (n_patches, n_bodies) = (self.parts.len(), self.bodies.len());
+            let pairs = shape(&[n_patches, n_bodies]);
+            read_optional("forces", forces, &pairs, &mut scratch.forces)?;
+            let vectors = shape(&[n_patches, n_bodies, 3]);
+            read_optional("directions", directions, &vectors, &mut scratch.directions)?;
+            check_pairs(&scratch.forces, &scratch.directions)?;
+            let mut shear = match shear {
+                None => None,
+                Some(state) => {
+                    let state = state.try_borrow_mut();
+                    let state = state.map_err(|_| {
+                        bad_input(
+                            "shear",
+                            "a state that another read uses",
+                            "one read at a time",
+                        )
+                    })?;
+                    state.check(&self.parts, n_sets)?;
+                    Some(state)
+                }
+            };
+            let (read, state) = (&mut scratch, shear.as_deref_mut());
+            py.detach(|| self.compute(read, n_sets.unwrap_or(1), options, state));
+            let float =
+                |place, array: Option<&Bound<'py, PyAny>>, shape: &[usize], values: &[f64]| {
+                    array.map_or(Ok(()), |array| {
+                        fill(place, array, (shape, "float64"), values)
+                    })
+                };
+            float(
+                "wrenches",
+                wrenches,
+                &shape(&[n_patches, 6]),
+                &scratch.wrenches,
+            )?;
+            float("pair_forces", pair_forces, &pairs, &scratch.pairs.forces)?;
+            float("residuals", residuals, &pairs, &scratch.pairs.residuals)?;
+            float("travels", travels, &pairs, &scratch.pairs.travels)?;
+            if let Some(contacts) = contacts {
+                let form = (&shape(&[n_patches, 2])[..], "int64");
+                fill("contacts", contacts, form, &scratch.contacts)?;
+            }
+            let frame = match out {
+                Some(out) => {
+                    float("out", Some(&out), &shape(&[self.n_taxels]), &scratch.frame)?;
+                    out
+                }
+                None => {
+                    let frame = PyArray1::from_slice(py, &scratch.frame);
+                    match n_sets {
+                        None => frame.into_any(),
+                        Some(n) => {
+                            let frame: Bound<PyArray2<f64>> = frame.reshape([n, self.n_taxels])?;
+                            frame.into_any()
+                        }
+                    }
+                }
+            };
+            self.spare.give_back(scratch);
+            Ok(frame)
+        })
+    }
+
+    /// Returns the state of untouched taxels with shear springs, for the argument `shear` of read().
+    ///
+    /// stiffness: of the shear springs, N/m, positive, and friction: coefficient of friction, zero or more; one number, or (n_taxels,).
+    /// n: number of sets of poses in each read; None for poses without an axis of sets.
+    #[pyo3(signature = (stiffness, friction, *, n=None))]
+    fn shear_state(
+        &self,
+        stiffness: &Bound<PyAny>,
+        friction: &Bound<PyAny>,
+        n: Option<usize>,
+    ) -> PyResult<ShearState> {
+        guarded(|| {
+            let stiffness = each("stiffness", stiffness, self.n_taxels)?;
+            let friction = each("friction", friction, self.n_taxels)?;
+            let shears = |part: &SkinPatch| {
+                let taxels = part.first..part.first + part.patch.n_taxels();
+                let of = |taxel: usize| Shear {
+                    stiffness: stiffness[taxel],
+                    friction: friction[taxel],
+                };
+                Shears::Each(taxels.map(of).collect())
+            };
+            ShearState::new(&self.parts, shears, n).map_err(exception)
+        })
+    }
+
+    fn __len__(&self) -> usize {
+        self.parts.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!(
+            "<bubbletouch.Skin: {} patches of {} taxels, {} bodies>",
+            self.parts.len(),
+            self.n_taxels,
+            self.bodies.len()
+        )
+    }
+}
+
+impl Skin {
+    /// Reads the poses of patches and bodies. Returns the number of sets, or `None` if the arrays have no axis of sets.
+    fn read_pose_sets(
+        &self,
+        (of_patches, of_bodies): (&Bound<PyAny>, &Bound<PyAny>),
+        scratch: &mut SkinWorkspace,
+    ) -> PyResult<Option<usize>> {
+        let n_patches = self.parts.len();
+        let patches = read_poses(
+            "patch_poses",
+            of_patches,
+            n_patches,
+            &mut scratch.patch_poses,
+        )?;
+        let n_bodies = self.bodies.len();
+        let bodies = read_poses("body_poses", of_bodies, n_bodies, &mut scratch.body_poses)?;
+        if patches != bodies {
+            let words = |n: Option<usize>| n.map_or("one".to_owned(), |n| n.to_string());
+            let given = format!(
+                "{} patch_poses, {} body_poses",
+                words(patches),
+                words(bodies)
+            );
+            return Err(bad_input("poses", given, "equally many of both"));
+        }
+        Ok(patches)
+    }
+
+    /// Computes all results of `n` sets of poses into the scratch memory.
+    fn compute(
+        &self,
+        scratch: &mut SkinWorkspace,
+        n: usize,
+        options: ReadOptions,
+        mut shear: Option<&mut ShearState>,
+    ) {
+        let (n_patches, n_bodies) = (self.parts.len(), self.bodies.len());
+        let n_read = n * n_patches;
+        clear(&mut scratch.frame, n * self.n_taxels);
+        clear(&mut scratch.wrenches, n_read * 6);
+        clear(&mut scratch.pairs.forces, n_read * n_bodies);
+        clear(&mut scratch.pairs.residuals, n_read * n_bodies);
+        clear(&mut scratch.pairs.travels, n_read * n_bodies);
+        scratch.contacts.clear();
+        for index in 0..n_read {
+            let (set, number) = (index / n_patches, index % n_patches);
+            let part = &self.parts[number];
+            let taxels = set * self.n_taxels + part.first..;
+            let is_near = self.press_pairs((index, number), scratch, options, shear.is_some());
+            let frame = &mut scratch.frame[taxels][..part.patch.n_taxels()];
+            let wrench = &mut scratch.wrenches[index * 6..][..6];
+            if let Some(shear) = &mut shear {
+                let bodies = match is_near {
+                    true => (&self.models[..], &scratch.placed[..]),
+                    false => (&[][..], &[][..]),
+                };
+                let patch = (set, number, &part.patch);
+                shear.step(patch, bodies, wrench, &mut scratch.workspace);
+                frame.copy_from_slice(scratch.workspace.deflections());
+            } else if is_near {
+                part.add_wrench(frame, wrench);
+            }
+            scratch.contacts.extend(match is_near {
+                true => part.count(frame),
+                false => [0, 0],
+            });
+            if is_near && options.output == Output::Force {
+                part.convert_to_forces(frame);
+            }
+        }
+    }
+
+    /// Presses one patch under each body within reach, and writes the largest deflections into the frame of zeros. The poses of the bodies in the frame of
+    /// the patch are in `placed` afterwards. Returns whether a body is within reach.
+    ///
+    /// If the call has a state of shear springs, the frame comes from a press under all bodies together, and only requested results of pairs are computed.
+    fn press_pairs(
+        &self,
+        (index, number): (usize, usize),
+        scratch: &mut SkinWorkspace,
+        options: ReadOptions,
+        has_shear: bool,
+    ) -> bool {
+        let part = &self.parts[number];
+        let set = index / self.parts.len();
+        let n_bodies = self.bodies.len();
+        let patch_from_world = scratch.patch_poses[index].inverse();
+        let frame = &mut scratch.frame[set * self.n_taxels + part.first..][..part.patch.n_taxels()];
+        let poses = &scratch.body_poses[set * n_bodies..][..n_bodies];
+        let has_forces = !scratch.forces.is_empty();
+        let reads_pairs = !has_shear || has_forces || options.wants_pairs;
+        let reach = options.reach.unwrap_or(part.reach);
+        let mut any_near = false;
+        scratch.placed.clear();
+        for (at, (body, pose)) in (index * n_bodies..).zip(self.bodies.iter().zip(poses)) {
+            let mut placed = patch_from_world.compose(pose);
+            let wanted = scratch.forces.get(at).copied().unwrap_or(f64::NAN);
+            let direction = match scratch.directions.get(3 * at..3 * at + 3) {
+                Some(direction) => DVec3::from_slice(direction),
+                None => DVec3::Z,
+            };
+            let margin = if wanted.is_nan() { 0.0 } else { reach };
+            let is_near = part.is_near(body, &placed, margin);
+            let pressed = if wanted == 0.0 {
+                placed.translation.z += OUT_OF_REACH;
+                HeldForce {
+                    travel: f64::NAN,
+                    force: 0.0,
+                }
+            } else if !is_near {
+                HeldForce {
+                    travel: if wanted.is_nan() { 0.0 } else { reach },
+                    force: 0.0,
+                }
+            } else if !reads_pairs {
+                any_near = true;
+                HeldForce::default()
+            } else {
+                any_near = true;
+                let workspace = &mut scratch.workspace;
+                let held = match wanted.is_nan() {
+                    true => HeldForce {
+                        travel: 0.0,
+                        force: part.press(body, placed, workspace),
+                    },
+                    false => {
+                        let wanted = WantedForce {
+                            force: wanted,
+                            direction,
+                            reach,
+                        };
+                        press_pair(part, body, placed, wanted, workspace)
+                    }
+                };
+                for (taxel, deflection) in frame.iter_mut().zip(workspace.deflections()) {
+                    *taxel = taxel.max(*deflection);
+                }
+                placed.translation -= held.travel * direction;
+                held
+            };
+            scratch.placed.push(placed);
+            scratch.pairs.forces[at] = pressed.force;
+            scratch.pairs.travels[at] = pressed.travel;
+            if !wanted.is_nan() {
+                scratch.pairs.residuals[at] = wanted - pressed.force;
+            }
+        }
+        any_near
+    }
+}
+
+/// Fills a vector with `n` zeros.
+fn clear(values: &mut Vec<f64>, n: usize) {
+    values.clear();
+    values.resize(n, 0.0);
+}
+
+fn output_of(output: &str) -> PyResult<Output> {
+    match output {
+        "deflection" => Ok(Output::Deflection),
+        "force" => Ok(Output::Force),
+        other => {
+            let allowed = "\"deflection\" or \"force\"";
+            Err(bad_input("output", format!("{other:?}"), allowed))
+        }
+    }
+}
+
+fn reach_of(reach: Option<f64>) -> PyResult<Option<f64>> {
+    match reach {
+        Some(reach) if !(reach.is_finite() && reach > 0.0) => {
+            Err(bad_input("reach", reach, "a positive number of metres"))
+        }
+        reach => Ok(reach),
+    }
+}
+
+/// Checks wanted forces, which may be NaN, and directions of all pairs.
+fn check_pairs(forces: &[f64], directions: &[f64]) -> PyResult<()> {
+    let is_force = |force: f64| force.is_nan() || (force.is_finite() && force >= 0.0);
+    if let Some(at) = forces.iter().position(|force| !is_force(*force)) {
+        let allowed = "newtons, zero or more; NaN for a pair that is read at its pose";
+        let place = format!("forces, pair {at}");
+        return Err(bad_input(place, forces[at], allowed));
+    }
+    let vectors = directions.chunks_exact(3).map(DVec3::from_slice);
+    let is_unit = |vector: DVec3| (vector.length() - 1.0).abs() < 1e-9;
+    match vectors.enumerate().find(|(_, vector)| !is_unit(*vector)) {
+        Some((at, vector)) => {
+            let place = format!("directions, pair {at}");
+            Err(bad_input(place, vector, "a vector of length one"))
+        }
+        None => Ok(()),
+    }
+}
