@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import bubbletouch as bt
 import mujoco
 import numpy as np
+from bubbletouch.mujoco import Skin
 from numpy.typing import NDArray
 
 ROBOTS = Path(__file__).resolve().parents[2] / "objects" / "robots"
@@ -60,3 +62,29 @@ def normal_forces(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, float
             other = bodies[bodies[0] == "object"]
             forces[other] = forces.get(other, 0.0) + float(force[0])
     return forces
+
+
+def full_hand(meshes: bool = False) -> tuple[mujoco.MjModel, mujoco.MjData, Skin]:
+    """Returns the five-finger hand with a ball that three patches touch, and a skin of 20 patches of 8 × 8 taxels under five bodies.
+
+    The other bodies lie beside the hand. meshes: whether the bodies are triangle meshes (the ball has about 1,300 triangles) instead of primitives.
+    """
+    kinds = ["sphere", "box", "capsule", "cylinder", "ellipsoid"]
+    assets, geoms = "", []
+    for number, kind in enumerate(kinds):
+        shape = f'type="{kind}" size="0.03 0.025 0.02"'
+        if meshes:
+            size = [0.03, 0.03, 0.03] if kind == "sphere" else [0.03, 0.025, 0.02]
+            mesh = bt.Mesh.ellipsoid(size, 2.5e-4)
+            numbers = [" ".join(map(str, np.asarray(part).ravel().tolist())) for part in (mesh.vertices, mesh.triangles)]
+            assets += f'<mesh name="{kind}" vertex="{numbers[0]}" face="{numbers[1]}"/>'
+            shape = f'type="mesh" mesh="{kind}"'
+        geoms.append(f'<geom name="{kind}" {shape} mass="0.15"/>')
+    beside = "".join(f'<body pos="{0.2 + 0.1 * n} 0.1 0">{geom}</body>' for n, geom in enumerate(geoms[1:]))
+    model = with_object("five_finger_hand", geoms[0], others=f"<asset>{assets}</asset><worldbody>{beside}</worldbody>")
+    data = mujoco.MjData(model)
+    close_hand(model, data, n_steps=345)
+    names = [model.site(number).name for number in range(model.nsite)]
+    pitches = [4e-3 if name.startswith("palm") else 1.75e-3 for name in names]
+    layout = {name: bt.Patch.grid(8, 8, pitch, 3e-3, stiffness=300.0) for name, pitch in zip(names, pitches, strict=True)}
+    return model, data, Skin(model, layout, geoms=kinds)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -177,6 +182,36 @@ def test_taxels_are_drawn_where_they_are(model) -> None:
     assert scene.ngeom == 100
     first = scene.geoms[0]
     assert np.allclose(first.pos, data.site("palm").xpos + patches()["palm"].centers[0], atol=1e-6)
+
+
+PICTURE = """
+import mujoco, numpy as np
+from test_mujoco import MODEL, Skin, patches, placed
+model = mujoco.MjModel.from_xml_string(MODEL)
+model.geom_rgba[model.geom("ball").id, 3] = model.geom_rgba[model.geom("decal").id, 3] = 0.0
+skin = Skin(model, patches())
+camera = mujoco.MjvCamera()
+camera.lookat[:], camera.distance, camera.elevation, camera.azimuth = [0, 0, 0.1], 0.15, -89, 90
+with mujoco.Renderer(model, 120, 160) as renderer:
+    for height in (0.1305, 0.2):
+        data = placed(model, ball=[0.004, 0, height, 1, 0, 0, 0])
+        renderer.update_scene(data, camera)
+        skin.draw(renderer.scene, data, skin.read(data, output="force"), largest=0.3)
+        picture = renderer.render().astype(int)
+        red = np.argwhere(picture[..., 0] > 2 * picture[..., 1:].max(axis=-1) + 20)
+        print(len(red), *(red.mean(axis=0) if len(red) else ()))
+"""
+
+
+def test_a_picture_shows_pressed_taxels_in_red() -> None:
+    environment = os.environ | {"MUJOCO_GL": "egl", "PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path])}
+    done = subprocess.run([sys.executable, "-c", PICTURE], env=environment, capture_output=True, text=True)
+    if done.returncode and re.search("EGL|OpenGL|egl", done.stderr):
+        pytest.skip("no display without a screen (EGL)")
+    assert done.returncode == 0, done.stderr
+    pressed, free = done.stdout.splitlines()
+    n, row, column = map(float, pressed.split())
+    assert n > 50 and abs(row - 60) < 10 and 80 < column < 100 and free == "0"
 
 
 def test_names_that_are_not_there_are_refused(model) -> None:
