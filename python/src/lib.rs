@@ -8,6 +8,7 @@ mod batch;
 mod catalogue;
 mod contacts;
 mod errors;
+mod foreign;
 mod goal;
 mod jacobian;
 mod kernel_pace;

@@ -2,6 +2,7 @@
 
 use crate::arrays::whole_number;
 use crate::errors::{bad_input, exception, guarded};
+use crate::foreign::{Given, Raised, provide};
 use crate::threads::{Stop, aside};
 use bubbletouch::Error;
 use bubbletouch::Result;
@@ -10,6 +11,7 @@ use bubbletouch::report::advice::{self, Candidates, Requirement};
 use bubbletouch::report::advice_answers::{answers, answers_json};
 use bubbletouch::report::study_folder::ChartFormat;
 use bubbletouch::shell_line::shell_line;
+use bubbletouch::study::Shard;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::progress::Progress;
 use bubbletouch::study::provenance::Manifest;
@@ -18,6 +20,7 @@ use bubbletouch::table::{Data, Table};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rayon::ThreadPoolBuilder;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant, SystemTime};
@@ -93,14 +96,36 @@ impl Progress for CallbackProgress {
 /// File name, title, note and columns of a table.
 type Said<'py> = (String, String, String, Bound<'py, PyDict>);
 
-/// Text of a study, and its result folder.
+/// Text of a study, its result folder, and the part of the study to run.
 struct StudySource {
     source: Source,
     name: String,
+    /// Classifiers and features in Python.
+    given: [Vec<Given>; 2],
+    /// Shard to compute; its results are in its journal alone.
+    shard: Option<Shard>,
+    /// Whether the journals of shards in the result folder are merged first.
+    merges: bool,
+    /// Number of threads; `None` for the threads of the pool.
+    threads: Option<usize>,
 }
 
-fn run(asked: &StudySource, told: &CallbackProgress) -> Result<Vec<Table>> {
+/// Runs a study or a shard of it. Returns no tables for a shard.
+fn run(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Result<Vec<Table>> {
+    match asked.threads {
+        None => run_here(asked, told, raised),
+        Some(n) => {
+            let pool = ThreadPoolBuilder::new().num_threads(n).build();
+            let pool = pool.map_err(|error| Error::input("threads", n, error))?;
+            pool.install(|| run_here(asked, told, raised))
+        }
+    }
+}
+
+fn run_here(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Result<Vec<Table>> {
     let started = SystemTime::now();
+    let is_foreign = asked.given.iter().any(|given| !given.is_empty());
+    let _provided = provide(asked.given, raised)?;
     let Source {
         results,
         place,
@@ -110,16 +135,30 @@ fn run(asked: &StudySource, told: &CallbackProgress) -> Result<Vec<Table>> {
     check_folder(&asked.source.text, results)?;
     let study = load(&asked.source)?;
     std::fs::create_dir_all(results).map_err(|e| Error::io(results, "create folder", e))?;
-    let journal = Journal::open(&results.join(JOURNAL_FILE), study.identity())?;
+    let file = match asked.shard {
+        Some(shard) => shard.file_name(JOURNAL_FILE),
+        None => JOURNAL_FILE.to_owned(),
+    };
+    let mut journal = Journal::open(&results.join(file), study.identity())?;
+    if asked.merges {
+        journal.take_from_shards(study.identity(), [results.as_path()])?;
+    }
     let n_before = study.n_all() - study.n_pending(Part::All, &journal);
     let outcome = study.run(&RunOptions {
         journal: &journal,
         fail_fast: true,
         retries: true,
-        part: Part::All,
+        part: asked.shard.map_or(Part::All, Part::Shard),
         progress: told,
-    })?;
+    });
     journal.sync()?;
+    let outcome = outcome.map_err(|error| match is_foreign {
+        true => error.under(format!("{place}, ")),
+        false => error,
+    })?;
+    if asked.shard.is_some() {
+        return Ok(Vec::new());
+    }
     let manifest = Manifest {
         study: asked.name.clone(),
         command: shell_line(&[
@@ -139,9 +178,10 @@ fn run(asked: &StudySource, told: &CallbackProgress) -> Result<Vec<Table>> {
     Ok(outcome.tables)
 }
 
-/// Runs a study (TOML text) and writes its results into a folder. Returns the file name, title, note and columns of each table.
+/// Runs a study (TOML text) and writes its results into a folder. Returns the file name, title, note and columns of each table. Classifiers and features are
+/// tuples of name, version and object. A shard, such as `3/8`, writes its journal alone and returns no tables.
 #[pyfunction]
-#[pyo3(signature = (text, place, name, folder, out, seed=None, callback=None))]
+#[pyo3(signature = (text, place, name, folder, out, seed=None, callback=None, classifiers=Vec::new(), features=Vec::new(), shard=None, merges=false, threads=None))]
 #[expect(clippy::too_many_arguments, reason = "called by bubbletouch.run alone")]
 pub fn run_study<'py>(
     py: Python<'py>,
@@ -152,9 +192,17 @@ pub fn run_study<'py>(
     out: PathBuf,
     seed: Option<i128>,
     callback: Option<Py<PyAny>>,
+    classifiers: Vec<Given>,
+    features: Vec<Given>,
+    shard: Option<String>,
+    merges: bool,
+    threads: Option<usize>,
 ) -> PyResult<Vec<Said<'py>>> {
     guarded(|| {
         let seed = seed.map(|seed| whole_number("seed", seed)).transpose()?;
+        let shard = shard
+            .map(|shard| shard.parse().map_err(exception))
+            .transpose()?;
         let packings = out.parent().unwrap_or(Path::new("")).join("packings");
         let asked = StudySource {
             source: Source {
@@ -165,7 +213,13 @@ pub fn run_study<'py>(
                 ..Source::of_text(&place, &text)
             },
             name,
+            given: [classifiers, features],
+            shard,
+            merges,
+            threads: threads.filter(|n| *n > 0),
         };
+        let foreign = Raised::default();
+        let of_foreign = foreign.clone();
         let raised = Arc::new(Mutex::new(None));
         let of_callback = Arc::clone(&raised);
         let ran = aside(py, move |stop| {
@@ -180,14 +234,20 @@ pub fn run_study<'py>(
                     told: Instant::now(),
                 }),
             };
-            run(&asked, &told)
+            run(asked, &told, &of_foreign)
         });
         if let Ok(mut raised) = raised.lock()
             && let Some(error) = raised.take()
         {
             return Err(error);
         }
-        let tables = ran?.map_err(exception)?;
+        let tables = ran?.map_err(|error| {
+            let error = exception(error);
+            if let Ok(mut foreign) = foreign.lock() {
+                error.set_cause(py, foreign.take());
+            }
+            error
+        })?;
         tables.iter().map(|table| columns(py, table)).collect()
     })
 }

@@ -5,7 +5,7 @@ use crate::command::terminal::output::output_folder;
 use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::work_items::{Part, RunOptions};
 use bubbletouch::{Error, Result};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Merge the shards of a study; write tables, charts and a report
 #[derive(clap::Args)]
@@ -26,16 +26,8 @@ pub fn merge(args: &Args) -> Result<()> {
     let identity = study.identity();
     output_folder(folder)?;
     let mut journal = Journal::open(&folder.join(JOURNAL_FILE), identity)?;
-    let mut n_journals = 0;
-    for folder in std::iter::once(folder).chain(&args.from) {
-        for path in shard_journals(folder)? {
-            n_journals += 1;
-            if let Some((begun, shard)) = Journal::read(&path)? {
-                identity.check_same((&begun, shard.records()), &path.display().to_string())?;
-                journal.take_from(shard)?;
-            }
-        }
-    }
+    let folders = std::iter::once(folder).chain(&args.from);
+    let n_journals = journal.take_from_shards(identity, folders.map(PathBuf::as_path))?;
     journal.sync()?;
     let (n_all, n_pending) = (study.n_all(), study.n_pending(Part::All, &journal));
     if n_pending > 0 {
@@ -54,20 +46,4 @@ pub fn merge(args: &Args) -> Result<()> {
         progress: run.progress.as_ref(),
     })?;
     run.end(&outcome, n_all, &format!("{n_journals} shards, "))
-}
-
-/// Returns the shard journals in a folder, sorted by name.
-fn shard_journals(folder: &Path) -> Result<Vec<PathBuf>> {
-    let failed = |e| Error::io(folder, "read", e);
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        // The file name has the form of `Shard::file_name`.
-        if name.starts_with("journal.") && name.contains("-of-") && name.ends_with(".jsonl") {
-            paths.push(path);
-        }
-    }
-    paths.sort();
-    Ok(paths)
 }

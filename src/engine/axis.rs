@@ -1,8 +1,8 @@
 //! Axis of a sweep in a study file: one value or a list of values.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::value::SeqAccessDeserializer;
-use serde::de::{self, IntoDeserializer, SeqAccess, Visitor};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{self, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 use std::fmt;
@@ -76,6 +76,10 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for AxisVisitor<T> {
 
     fn visit_str<E: de::Error>(self, value: &str) -> std::result::Result<Axis<T>, E> {
         T::deserialize(value.into_deserializer()).map(Axis::One)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, value: A) -> std::result::Result<Axis<T>, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(value)).map(Axis::One)
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, values: A) -> std::result::Result<Axis<T>, A::Error> {

@@ -1067,8 +1067,15 @@ def run_study(
     out: _Path,
     seed: int | None = None,
     callback: Callable[[str, int, int], object] | None = None,
+    classifiers: list[tuple[str, str, Any]] = ...,
+    features: list[tuple[str, str, Any]] = ...,
+    shard: str | None = None,
+    merges: bool = False,
+    threads: int | None = None,
 ) -> list[tuple[str, str, str, dict[str, Any]]]:
-    """Runs a study (TOML text) and writes its results into a folder. Returns the file name, title, note and columns of each table."""
+    """Runs a study (TOML text) and writes its results into a folder. Returns the file name, title, note and columns of each table. Classifiers and features are
+    tuples of name, version and object. A shard, such as `3/8`, writes its journal alone and returns no tables.
+    """
 
 def advise(
     results: _Path,

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from bubbletouch import _core
 from bubbletouch._core import Mesh, Simulation, SphereUnion
+from bubbletouch._foreign import Host, hosted, identified
 
 Callback = Callable[[str, int, int], object]
 
@@ -127,6 +128,9 @@ def run(
     *,
     seed: int | None = None,
     callback: Callback | None = None,
+    classifiers: Mapping[str, Any] | None = None,
+    features: Mapping[str, Any] | None = None,
+    processes: int = 0,
 ) -> Study:
     """Runs a study on all cores. The tables are bitwise equal to the tables of `bubbletouch run`.
 
@@ -135,20 +139,36 @@ def run(
     seed: replaces the seed of the study.
     callback: function that is called as callback(stage, n_done, n_total), from any thread, at most 20 times per second. If the callback raises an
     exception, the run ends and the exception is passed on.
+    classifiers: estimators with fit(X, y) and predict(X) as in scikit-learn, by name; a tuple (estimator, version) sets the version. The study trains each of
+    them beside its own classifiers, on its splits and scaled features. A `random_state` that is None becomes the seed of the trial. If there is a
+    predict_proba, decisions on several touches add log-probabilities; otherwise they count votes.
+    features: functions by name, or tuples (function, version). A function converts frames of m measurements, shape (n, m), to features, shape (n, k). Without
+    compression, a frame contains the taxels in rows: frames.reshape(-1, ny, nx).
+    processes: number of processes in which estimators and functions run. 0: one call at a time in this process. Results have the same bytes.
+
+    The default version of an estimator or a function is a hash of its source code and parameters. Work items of another version are computed again.
 
     Raises ValueError, which names the key, if the study is invalid; OSError if a file cannot be read or written; KeyboardInterrupt after Ctrl-C.
     The first work item that fails ends the run. Finished work items are kept in `out`.
     """
-    if isinstance(study, Mapping):
-        text, name, folder = _core.toml_of(_json(study)), "study", Path()
-        place = name
-    else:
-        path = Path(study)
-        text, name, folder, place = path.read_text(encoding="utf-8"), path.stem, path.parent, str(path)
+    text, place, name, folder = _text(study)
     kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
     results = Path(kept.name) / name if kept is not None else Path(out or "")
-    tables = _core.run_study(text, place, name, folder, results, seed, callback)
+    host = Host(processes)
+    given = hosted(host, identified(classifiers, features))
+    try:
+        tables = _core.run_study(text, place, name, folder, results, seed, callback, *given)
+    finally:
+        host.close()
     return Study(results, tables, kept)
+
+
+def _text(study: str | PathLike[str] | Mapping[str, Any]) -> tuple[str, str, str, Path]:
+    """Returns the TOML text of a study, its place in errors, its name, and the folder of its paths."""
+    if isinstance(study, Mapping):
+        return _core.toml_of(_json(study)), "study", "study", Path()
+    path = Path(study)
+    return path.read_text(encoding="utf-8"), str(path), path.stem, path.parent
 
 
 def advise(

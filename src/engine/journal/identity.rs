@@ -124,10 +124,26 @@ fn add_keys(prefix: &str, table: &toml::Table, values: &mut BTreeMap<String, Str
         match value {
             toml::Value::Table(inner) => add_keys(&format!("{prefix}{key}."), inner, values),
             value => {
-                values.insert(format!("{prefix}{key}"), value.to_string());
+                let key = format!("{prefix}{key}");
+                let text = match VERSIONED.contains(&&key[..]) {
+                    true => without_versions(&value.to_string()),
+                    false => value.to_string(),
+                };
+                values.insert(key, text);
             }
         }
     }
+}
+
+/// Keys whose values contain versions: `mine@1`. Work items of another version have other names, so one journal may contain several versions.
+const VERSIONED: [&str; 2] = ["recognition.classifier", "recognition.features"];
+
+/// Returns TOML text in which each string ends before its first `@`.
+fn without_versions(text: &str) -> String {
+    let parts = text
+        .split('"')
+        .map(|part| part.split('@').next().unwrap_or(part));
+    parts.collect::<Vec<_>>().join("\"")
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ pub(crate) mod identity;
 pub(crate) mod journal_file;
 pub(crate) mod line;
 pub(crate) mod rename_old_results;
+mod shard_journals;
 
 pub use crate::engine::journal::identity::{Identity, SameStudy};
 pub use crate::engine::journal::journal_file::{JOURNAL_FILE, Journal};

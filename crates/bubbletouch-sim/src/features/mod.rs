@@ -9,6 +9,8 @@
 //! rotations cause most differences between touches of a free object. Image features need the frame; if it was compressed, the linear estimate of the image
 //! replaces it. A patch without rows and columns uses its [`Chart`].
 //!
+//! [Foreign features](foreign) are a function of a program that uses this crate.
+//!
 //! | feature | numbers (64 × 64) | shift | turn | mirror image | more pressure | deeper |
 //! |---|---|---|---|---|---|---|
 //! | raw, centred | m | | | | of centred: + a | |
@@ -25,6 +27,7 @@
 
 mod chart;
 mod feature;
+pub mod foreign;
 mod image;
 mod join;
 pub mod measured;

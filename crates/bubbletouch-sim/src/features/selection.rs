@@ -1,7 +1,8 @@
 //! Selection of the features of a touch by their names in a study.
 
+use super::foreign::Foreign;
 use super::{ImageFeature, Join, fourier_magnitude, fourier_mellin};
-use crate::error::Error;
+use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
 /// Features of a touch, as listed in the file of a study.
@@ -21,6 +22,8 @@ pub enum Features {
     CentredUnitNorm,
     /// Image features of each frame.
     OfImage(Join),
+    /// Features from outside of this crate, of each frame's measurements.
+    Foreign(Foreign),
 }
 
 /// Features made of measurements: name in the file of a study, and value.
@@ -51,16 +54,45 @@ impl Features {
         }
     }
 
-    /// Returns the number of feature values for a frame of m measurements of an ny × nx image.
+    /// Returns the identity of foreign features; `None` for features of this crate.
+    pub fn foreign(self) -> Option<Foreign> {
+        match self {
+            Self::Foreign(foreign) => Some(foreign),
+            _ => None,
+        }
+    }
+
+    /// Returns the number of feature values for a frame of m measurements of an ny × nx image. Foreign features without code count as m.
     pub fn n_values(self, m: usize, shape: (usize, usize)) -> usize {
-        self.of_image().map_or(m, |join| join.n_values(shape))
+        match self {
+            Self::OfImage(join) => join.n_values(shape),
+            Self::Foreign(foreign) => foreign.n_values(m).unwrap_or(m),
+            _ => m,
+        }
+    }
+
+    /// Returns the text by which a study file names the features: the name, and the version of foreign features.
+    pub fn text(self) -> String {
+        match self {
+            Self::Foreign(foreign) => foreign.to_string(),
+            other => other.into(),
+        }
+    }
+
+    /// Returns whether `name` is the name of features of this crate.
+    pub(super) fn is_own_name(name: &str) -> bool {
+        let mut of_images = ImageFeature::ALL.iter().map(|one| one.name());
+        OF_MEASUREMENTS.iter().any(|(known, _)| *known == name)
+            || of_images.any(|known| known == name)
     }
 }
 
 impl From<Features> for String {
     fn from(features: Features) -> Self {
-        if let Features::OfImage(join) = features {
-            return join.to_string();
+        match features {
+            Features::OfImage(join) => return join.to_string(),
+            Features::Foreign(foreign) => return foreign.name().to_owned(),
+            _ => {}
         }
         let mut known = OF_MEASUREMENTS.iter();
         let found = known.find(|(_, known)| *known == features);
@@ -71,7 +103,7 @@ impl From<Features> for String {
 impl TryFrom<String> for Features {
     type Error = Error;
 
-    fn try_from(text: String) -> Result<Self, Error> {
+    fn try_from(text: String) -> Result<Self> {
         let mut known = OF_MEASUREMENTS.iter();
         if let Some((_, features)) = known.find(|(name, _)| *name == text) {
             return Ok(*features);

@@ -91,6 +91,9 @@ macro_rules! classifiers {
         #[serde(rename_all = "snake_case")]
         pub enum ClassifierKind {
             $(#[doc = $doc] $name,)*
+            /// Classifier from outside of this crate; see [foreign].
+            #[serde(untagged)]
+            Foreign(foreign::Foreign),
         }
 
         /// Deserialises a kind of classifier from its name in [`NAMES`](ClassifierKind::NAMES).
@@ -108,16 +111,17 @@ macro_rules! classifiers {
         }
 
         impl ClassifierKind {
-            /// All kinds of classifiers, in the order of their declaration.
+            /// All kinds of classifiers of this crate, in the order of their declaration.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// Names of all kinds of classifiers: the name in a study file and the common name in words.
+            /// Names of all kinds of classifiers of this crate: the name in a study file and the common name in words.
             pub const NAMES: &[(&str, &str)] = &[$((stringify!($file), $file::ABOUT.words)),*];
 
             /// Returns the descriptor of the kind of classifier.
             pub const fn about(self) -> &'static ClassifierAbout {
                 match self {
                     $(Self::$name => &$file::ABOUT,)*
+                    Self::Foreign(foreign) => foreign.about(),
                 }
             }
         }

@@ -1,12 +1,14 @@
 //! Registry of classifiers with a common interface: SVMs with all kernels, and classifiers without a kernel.
 //!
 //! Equal rows and equal seeds give equal models on every machine. [`Classifier`](classifier::Classifier) contains the parameters of all kinds.
+//! Classifiers from outside of this crate are [foreign].
 
 use serde::{Deserialize, Serialize};
 
 #[macro_use]
 mod classifier_about;
 pub mod classifier;
+pub mod foreign;
 pub(crate) mod lbfgs;
 pub mod parameters;
 pub(crate) mod ranked;

@@ -118,7 +118,7 @@ impl StudyPart {
             classes: (0..n_classes).map(KeyValue::Integer).collect(),
             groups: groups.map(|groups| groups.select(Axis(0), &touched)),
             data: dataset(
-                measured.features(&family.rows, &rows),
+                measured.features(&family.rows, &rows)?,
                 of_read.chain(of_copies).collect(),
             )?,
             split: Split {

@@ -18,7 +18,7 @@ use crate::studies::recognition::plan::trials::projection_of;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
 use crate::studies::recognition::sweep::learned_frames::learned_touches;
-use ndarray::{Array1, Array2, ArrayViewMut2, s};
+use ndarray::{Array1, Array2, ArrayViewMut2, Axis, s};
 
 /// Measurements of all touches of a group of configurations. If touches are read several times, the first readings of all touches come first, followed by the
 /// second readings. Reading r of a touch has the number r · n_touches + touch.
@@ -61,21 +61,24 @@ impl Measurements {
 
     /// Returns the features of the given touches, shape (n, F·m): the first m measurements of each of their F frames. If the inputs require it, the frames of a
     /// touch are combined.
-    pub fn features(&self, inputs: &RowInputs, touches: &[usize]) -> Array2<f64> {
+    ///
+    /// # Errors
+    /// If foreign features cannot be computed.
+    pub fn features(&self, inputs: &RowInputs, touches: &[usize]) -> Result<Array2<f64>> {
         let mut rows = Array2::zeros((touches.len(), inputs.n_features()));
         let Some(temporal_features) = inputs.temporal_features else {
-            self.read_into(inputs, touches, rows.view_mut());
-            return rows;
+            self.read_into(inputs, touches, rows.view_mut())?;
+            return Ok(rows);
         };
         // Touches are processed one at a time, because all frames of all touches may exceed the memory.
         let m = inputs.n_frame_features();
         let mut frames = Array2::zeros((1, self.n_frames * m));
         for (row, touch) in rows.outer_iter_mut().zip(touches) {
-            self.read_into(inputs, &[*touch], frames.view_mut());
+            self.read_into(inputs, &[*touch], frames.view_mut())?;
             let frames = frames.view().into_shape_with_order((self.n_frames, m));
             temporal_features.write(frames.expect("F frames of m"), row);
         }
-        rows
+        Ok(rows)
     }
 
     /// Returns the numbers of the tilted copies of the given training touches; the numbers of copies follow the numbers of all readings. The first copy of each
@@ -90,7 +93,12 @@ impl Measurements {
     }
 
     /// Writes the features of the given touches, shape (n, F·m): the first m measurements of each of their F frames.
-    fn read_into(&self, inputs: &RowInputs, touches: &[usize], mut rows: ArrayViewMut2<f64>) {
+    fn read_into(
+        &self,
+        inputs: &RowInputs,
+        touches: &[usize],
+        mut rows: ArrayViewMut2<f64>,
+    ) -> Result<()> {
         let m = inputs.measurements;
         if let Some(wanted) = inputs.of_images() {
             let mut made = self.of_images.iter();
@@ -99,7 +107,25 @@ impl Measurements {
             for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
                 row.assign(&made.row(*touch));
             }
-            return;
+            return Ok(());
+        }
+        if let Some(foreign) = inputs.features.foreign() {
+            let places = touches.iter().flat_map(|touch| {
+                let first = touch * self.n_frames;
+                first..first + self.n_frames
+            });
+            let measured = self.values.slice(s![.., ..m]);
+            let frames = measured.select(Axis(0), &places.collect::<Vec<_>>());
+            let made = foreign.compute(frames.view())?;
+            for (mut row, frames) in rows
+                .outer_iter_mut()
+                .zip(made.axis_chunks_iter(Axis(0), self.n_frames))
+            {
+                row.iter_mut()
+                    .zip(frames)
+                    .for_each(|(to, value)| *to = *value);
+            }
+            return Ok(());
         }
         for (mut row, touch) in rows.outer_iter_mut().zip(touches) {
             for (frame, mut part) in row.exact_chunks_mut(m).into_iter().enumerate() {
@@ -109,6 +135,7 @@ impl Measurements {
         }
         let of_ones = self.of_ones.slice(s![..m]);
         inputs.features.apply(rows, of_ones);
+        Ok(())
     }
 }
 

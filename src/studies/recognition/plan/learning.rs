@@ -123,7 +123,11 @@ impl Check<'_> {
     /// Checks that each changed hyper-parameter is used by at least one classifier, and that the solver can train every SVM.
     fn parameters(&self, recognition: &RecognitionSpec, given: &toml::Table) -> Result<()> {
         let usual: toml::Table = RecognitionSpec::usual();
-        let kinds = recognition.classifier.values();
+        let kinds = recognition.kinds();
+        self.list(
+            "recognition.classifier",
+            kinds.iter().map(|kind| kind.about().words).collect(),
+        )?;
         for key in parameters::keys() {
             let is_set = given.contains_key(key) && given.get(key) != usual.get(key);
             if is_set && !kinds.iter().any(|kind| kind.uses(key)) {
@@ -149,7 +153,7 @@ impl Check<'_> {
 
     /// Checks that each taxel reads a single value if a study uses image features.
     pub fn images(&self, recognition: &RecognitionSpec, arrays: &[TaxelArray]) -> Result<()> {
-        let mut features = recognition.features.values().into_iter();
+        let mut features = recognition.all_features().into_iter();
         let Some(features) = features.find(|features| features.of_image().is_some()) else {
             let foremost = recognition.depth_window_full_scale.is_some();
             let of_images = [

@@ -1,5 +1,6 @@
 //! Plan of a recognition study: checked keys, converted to SI units.
 
+pub mod foreign;
 pub mod group;
 pub(crate) mod human;
 pub(crate) mod learning;

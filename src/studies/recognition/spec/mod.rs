@@ -1,6 +1,7 @@
 //! Specification of a recognition study: the keys of its TOML file.
 
 pub mod classifier_parameters;
+pub mod foreign;
 pub mod human;
 pub mod keys;
 pub mod pose_split;

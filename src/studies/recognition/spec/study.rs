@@ -10,9 +10,8 @@ use crate::error::Result;
 use crate::inputs::defaults::{count, is_default};
 use crate::inputs::keys::AxisPlace;
 use crate::inputs::objects_spec::ObjectsSpec;
-use crate::inputs::schema_types::{FeatureNames, Names};
+use crate::inputs::schema_types::Names;
 use crate::inputs::toml_value::value_at;
-use crate::learning::classifiers::ClassifierKind;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
 use crate::sensing::Ensemble;
@@ -21,6 +20,7 @@ use crate::studies::recognition::rows::table_rows::TrialScore;
 use crate::studies::recognition::spec::classifier_parameters::{
     ClassifierParameters, OtherKeys, with_parameters,
 };
+pub use crate::studies::recognition::spec::foreign::*;
 pub use crate::studies::recognition::spec::human::*;
 use crate::studies::recognition::spec::keys::recognition_keys;
 use crate::studies::recognition::spec::pose_split::GroupSpec;
@@ -110,8 +110,7 @@ pub struct RecognitionSpec {
     /// Features of images: `fourier_magnitude`, `fourier_mellin`, `polar_harmonics`, `descriptors`, `aligned`, or several of these joined by `+`. For features
     /// of force, add `"force"` to `signal.steps`.
     #[serde(default = "default_features")]
-    #[schemars(with = "Axis<FeatureNames>")]
-    pub features: Axis<Features>,
+    pub features: Axis<FeatureChoice>,
     /// Axis: depth window of the image features, as a fraction of the full scale. Image features use only deflections that are within the window below the
     /// largest deflection of a frame, so that the features do not depend on the press depth. Default: the whole image.
     pub depth_window_full_scale: Option<Axis<f64>>,
@@ -123,9 +122,8 @@ pub struct RecognitionSpec {
     /// Axis: method that combines the frames of a touch into features. Values: `deepest` frame, `stacked_8` (8 frames, or another number, evenly spaced in
     /// time), `moments` of each measurement, `course` of the touch, or `summarised` (moments and course). Default: all frames are concatenated.
     pub temporal_features: Option<Axis<TemporalFeatures>>,
-    /// Axis: kind of classifier, such as `linear_svm`.
-    #[schemars(with = "Axis<Names<ClassifierKind>>")]
-    pub classifier: Axis<ClassifierKind>,
+    /// Axis: kind of classifier, such as `linear_svm`, or a command that trains a classifier, such as `{ command = ["python", "mine.py"] }`.
+    pub classifier: Axis<ClassifierChoice>,
     /// Strategy that combines binary SVMs into a multi-class classifier: `one_vs_one` (default) or `one_vs_rest`.
     #[serde(default)]
     #[schemars(with = "Names<Multiclass>")]
@@ -333,8 +331,8 @@ pub(crate) fn default_seed() -> u64 {
     2018
 }
 
-fn default_features() -> Axis<Features> {
-    Axis::One(Features::Raw)
+fn default_features() -> Axis<FeatureChoice> {
+    Axis::One(FeatureChoice(Features::Raw))
 }
 
 fn default_ensemble() -> Axis<Ensemble> {

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::files::with_folder;
 use crate::inputs::memory::check_memory;
 use crate::inputs::object_files::load_objects;
+use crate::learning::classifiers::foreign::Foreign;
 use crate::note::note;
 use crate::random::Seed;
 use crate::studies::recognition::frames::human_touches::HumanTouches;
@@ -43,6 +44,17 @@ pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
         Some(recorded) => source.replace_recorded(recorded),
         None => source.replace_objects(&mut spec.objects),
     }
+    if !Foreign::given().is_empty() && spec.axes.has("recognition.classifier") {
+        let allowed =
+            "the classifiers of the program named in [axes], too, or varied in [recognition]";
+        return Err(Error::input(
+            "axes.\"recognition.classifier\"",
+            "an axis",
+            allowed,
+        ));
+    }
+    spec.recognition.add_given();
+    spec.recognition.install_commands();
     // Axis values may be paths.
     with_folder(folder, || Plan::variants(&source.place, spec))
 }

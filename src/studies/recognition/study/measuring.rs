@@ -3,8 +3,10 @@
 use crate::engine::progress::{Progress, Silent};
 use crate::engine::work_items::pending::PendingItems;
 use crate::error::Result;
+use crate::learning::classifiers::ClassifierKind;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::measurements::measurement::Measurements;
+use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::study::recognition_study::{RecognitionStudy, in_frames};
 use crate::studies::recognition::study::rows::{ConfigurationRow, RecognitionRows, TouchRow};
 use crate::studies::recognition::training::evaluation_inputs::FamilyInputs;
@@ -25,6 +27,14 @@ pub(crate) struct Job<'a> {
 
 impl RecognitionStudy {
     pub(crate) fn measure_all(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
+        for (number, family) in self.families.iter().enumerate() {
+            let is_left = |trial| left.has(self.family_item(trial, number));
+            if (0..self.n_trials()).any(is_left) {
+                check_provided(
+                    &self.group(family.group).1.configurations[family.configurations.start],
+                )?;
+            }
+        }
         for part in self.parts() {
             part.touched.prepare();
             part.tested.prepare();
@@ -236,11 +246,42 @@ impl Job<'_> {
             measurements,
         };
         let family = FamilyInputs::new(&part.plan, &part.sweep, configurations);
-        let evaluations = trial.evaluate(&family)?.into_iter();
+        let evaluations = trial.evaluate(&family);
+        let evaluations = evaluations.map_err(|error| match of_foreign(&configurations[0]) {
+            Some(words) => error.under(format!("{words}, trial {}, ", self.trial)),
+            None => error,
+        });
+        let evaluations = evaluations?.into_iter();
         let rows = evaluations.map(|evaluation| ConfigurationRow {
             at: (0, 0),
             evaluation,
         });
         Ok(rows.collect())
+    }
+}
+
+/// Returns the number and the names of a configuration whose classifier or features come from outside of this program; `None` for other configurations.
+fn of_foreign(configuration: &Configuration) -> Option<String> {
+    let Configuration {
+        configuration: number,
+        classifier,
+        features,
+        ..
+    } = configuration;
+    let kind = classifier.about().words;
+    let is_foreign =
+        matches!(classifier, ClassifierKind::Foreign(_)) || features.foreign().is_some();
+    let features = String::from(*features);
+    is_foreign.then(|| format!("configuration {number} ({kind}, {features})"))
+}
+
+/// Returns an error if a configuration needs a classifier or features that the running program does not provide.
+fn check_provided(configuration: &Configuration) -> Result<()> {
+    if let ClassifierKind::Foreign(foreign) = configuration.classifier {
+        foreign.check_provided()?;
+    }
+    match configuration.features.foreign() {
+        Some(foreign) => Ok(foreign.n_values(configuration.measurements).map(drop)?),
+        None => Ok(()),
     }
 }

@@ -243,10 +243,10 @@ impl Sweep {
             }
             measurements in plan.measurement_counts(array, group.ensemble);
             temporal_features in Axis::optional_values(&learned.temporal_features);
-            features in learned.features.values();
+            features in learned.all_features();
             depth_window_full_scale in learned.foremost(features);
             tilt_augmentation in learned.copies(features);
-            classifier in learned.classifier.values();
+            classifier in learned.kinds();
             train_touches in train_touches.iter().copied();
             class_imbalance in Axis::optional_values(&learned.class_imbalance);
             mislabelled_fraction in Axis::optional_values(&learned.mislabelled_fraction);

@@ -77,7 +77,7 @@ impl Trial<'_> {
         let training = self.training(family, &split)?;
         let labels = self.inputs.labels.select(Axis(0), &split.test);
         let test = dataset(
-            self.measurements.features(&family.rows, &split.test),
+            self.measurements.features(&family.rows, &split.test)?,
             labels,
         )?;
         let groups = self.inputs.test_groups(&split.test);
@@ -191,7 +191,7 @@ impl Trial<'_> {
         let (rows, labels) = learned_rows(self.measurements, &family.rows, &split.train, &labels);
         Ok(Training {
             inputs: &family.training,
-            data: dataset(self.measurements.features(&family.rows, &rows), labels)?,
+            data: dataset(self.measurements.features(&family.rows, &rows)?, labels)?,
             n_first: split.train.len(),
             group_keys: keys.map(|keys| keys.select(Axis(0), &split.train)),
             seed: self.inputs.stream("validation"),

@@ -1,0 +1,223 @@
+//! Features from outside of this crate: a function of the measurements of a frame.
+//!
+//! A [`Foreign`] is the identity of such features: a name and a version. The code behind it is a [`ForeignFeatures`], which a program
+//! [provides](Foreign::provide) while it runs a study.
+
+use super::Features;
+use crate::error::{Error, Result};
+use ndarray::{Array2, ArrayView2};
+use std::cell::RefCell;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+use std::marker::PhantomData;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Maximum number of letters of a name or a version. Longer ones do not fit into a column of a table.
+const MAX_LETTERS: usize = 64;
+
+/// Features from outside of this crate. Several threads may compute them at the same time.
+pub trait ForeignFeatures: Send + Sync {
+    /// Returns the features (n × k) of n frames of m measurements (n × m). The number k depends on m alone, and each row depends on its frame alone.
+    ///
+    /// # Errors
+    /// If the features cannot be computed.
+    fn compute(&self, frames: ArrayView2<f64>) -> Result<Array2<f64>>;
+}
+
+/// Identity of features from outside of this crate: their name and their version. Results of equal identities are interchangeable.
+#[derive(Clone, Copy)]
+pub struct Foreign(&'static ForeignAbout);
+
+struct ForeignAbout {
+    name: String,
+    version: String,
+    provided: Mutex<Vec<Arc<dyn ForeignFeatures>>>,
+    /// Number k of features for each number m of measurements for which it is known.
+    n_values: Mutex<BTreeMap<usize, usize>>,
+}
+
+/// All identities that this process has used. They are never removed, because every configuration of a study refers to its identity.
+static KNOWN: Mutex<Vec<Foreign>> = Mutex::new(Vec::new());
+
+thread_local! {
+    /// Identities that this thread provides, in the order of their provision.
+    static GIVEN: RefCell<Vec<Foreign>> = const { RefCell::new(Vec::new()) };
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Foreign {
+    /// Returns the identity with this name and version.
+    ///
+    /// # Errors
+    /// If the name is the name of features of this crate, or if the name or the version has other letters than A to Z, a to z, 0 to 9, `_`, `-` and `.`.
+    pub fn new(name: &str, version: &str) -> Result<Self> {
+        let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_-.".contains(letter);
+        let is_word =
+            |text: &str| (1..=MAX_LETTERS).contains(&text.len()) && text.chars().all(is_letter);
+        if !is_word(name) || !is_word(version) || Features::is_own_name(name) {
+            let given = format!("{name:?}, version {version:?}");
+            let allowed = "a name that no other features have, and 1 to 64 letters, digits, _, - and . in name and version";
+            return Err(Error::input("features", given, allowed));
+        }
+        let mut known = lock(&KNOWN);
+        let found = known
+            .iter()
+            .find(|one| one.name() == name && one.version() == version);
+        if let Some(found) = found {
+            return Ok(*found);
+        }
+        let new = Self(Box::leak(Box::new(ForeignAbout {
+            name: name.to_owned(),
+            version: version.to_owned(),
+            provided: Mutex::default(),
+            n_values: Mutex::default(),
+        })));
+        known.push(new);
+        Ok(new)
+    }
+
+    /// Returns the identity that a study names: `name@version`, or the name of features that this thread provides. Returns `None` for other texts.
+    pub fn named(text: &str) -> Option<Self> {
+        if let Some((name, version)) = text.split_once('@') {
+            return Self::new(name, version).ok();
+        }
+        Self::given()
+            .into_iter()
+            .rev()
+            .find(|one| one.name() == text)
+    }
+
+    /// Returns the identities that this thread provides.
+    pub fn given() -> Vec<Self> {
+        GIVEN.with_borrow(Clone::clone)
+    }
+
+    /// Provides the code of these features until the returned value is dropped. Studies that this thread loads meanwhile may use the name alone.
+    #[must_use = "the features are provided until the value is dropped"]
+    pub fn provide(self, features: Arc<dyn ForeignFeatures>) -> Provided {
+        lock(&self.0.provided).push(features.clone());
+        GIVEN.with_borrow_mut(|given| given.push(self));
+        Provided {
+            foreign: self,
+            features,
+            of_thread: PhantomData,
+        }
+    }
+
+    /// Name of the features in tables and charts.
+    pub fn name(&self) -> &'static str {
+        &self.0.name
+    }
+
+    /// Version of the features. Another version gives other results.
+    pub fn version(&self) -> &'static str {
+        &self.0.version
+    }
+
+    /// Returns the features (n × k) of n frames of m measurements (n × m).
+    ///
+    /// # Errors
+    /// If no program provides the code, if the code fails, or if it returns another shape or a value that is not finite.
+    pub fn compute(self, frames: ArrayView2<f64>) -> Result<Array2<f64>> {
+        let code = lock(&self.0.provided).last().cloned();
+        let place = format!("features {}", self.name());
+        let Some(code) = code else {
+            let given = format!("no code for version {}", self.version());
+            let allowed = "the program that provides them, such as bubbletouch.run(…, features={…}) in Python";
+            return Err(Error::input(place, given, allowed));
+        };
+        let made = code.compute(frames)?;
+        let (n, k) = made.dim();
+        let known = *lock(&self.0.n_values).entry(frames.ncols()).or_insert(k);
+        if n != frames.nrows() || k == 0 || k != known {
+            let given = format!("shape ({n}, {k}) for {} frames", frames.nrows());
+            let allowed = format!("({}, {})", frames.nrows(), known.max(1));
+            return Err(Error::input(place, given, allowed));
+        }
+        match made.iter().position(|value| !value.is_finite()) {
+            None => Ok(made),
+            Some(at) => {
+                let given = format!("a value that is not finite, in column {}", at % k);
+                Err(Error::input(place, given, "finite numbers"))
+            }
+        }
+    }
+
+    /// Returns the number of features of a frame of m measurements, as the code returns it for a frame of zeros.
+    ///
+    /// # Errors
+    /// If [`compute`](Self::compute) fails.
+    pub fn n_values(self, m: usize) -> Result<usize> {
+        if let Some(known) = lock(&self.0.n_values).get(&m) {
+            return Ok(*known);
+        }
+        Ok(self.compute(Array2::zeros((1, m)).view())?.ncols())
+    }
+}
+
+impl PartialEq for Foreign {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.0, other.0)
+    }
+}
+
+impl Eq for Foreign {}
+
+impl Hash for Foreign {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        (self.name(), self.version()).hash(state);
+    }
+}
+
+impl Ord for Foreign {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (self.name(), self.version()).cmp(&(other.name(), other.version()))
+    }
+}
+
+impl PartialOrd for Foreign {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The text is part of the names of work items: `Foreign(mine@1)`.
+impl fmt::Debug for Foreign {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+/// The text in a study file: `mine@1`.
+impl fmt::Display for Foreign {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}@{}", self.name(), self.version())
+    }
+}
+
+/// Provision of the code of features; dropping the value ends it.
+pub struct Provided {
+    foreign: Foreign,
+    features: Arc<dyn ForeignFeatures>,
+    /// The value is dropped on the thread that created it.
+    of_thread: PhantomData<*const ()>,
+}
+
+impl Drop for Provided {
+    fn drop(&mut self) {
+        let mut provided = lock(&self.foreign.0.provided);
+        let place = provided
+            .iter()
+            .rposition(|one| Arc::ptr_eq(one, &self.features));
+        place.map(|place| provided.remove(place));
+        GIVEN.with_borrow_mut(|given| {
+            let place = given.iter().rposition(|one| *one == self.foreign);
+            place.map(|place| given.remove(place));
+        });
+    }
+}

@@ -1,0 +1,147 @@
+//! Classifiers and features of a study whose code is in Python.
+//!
+//! The objects come from `bubbletouch/_foreign.py`. A trainer has the methods `fit(rows, labels, seed)`, `predict(model, rows)` and
+//! `log_probabilities(model, rows)`. A function has the method `compute(frames)`.
+
+use bubbletouch::recognition::classifiers::foreign as classifiers;
+use bubbletouch::recognition::data::dataset::Dataset;
+use bubbletouch::recognition::features::foreign as features;
+use bubbletouch::recognition::svm;
+use bubbletouch::{Error, Result};
+use ndarray::{Array2, ArrayView2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
+use pyo3::prelude::*;
+use std::sync::{Arc, Mutex};
+
+/// Name, version and object of a classifier or of features.
+pub type Given = (String, String, Py<PyAny>);
+
+/// First exception that an object raised; it becomes the cause of the study's exception.
+pub type Raised = Arc<Mutex<Option<PyErr>>>;
+
+/// Classifiers and features that are provided while the value exists.
+pub struct Provided {
+    _classifiers: Vec<classifiers::Provided>,
+    _features: Vec<features::Provided>,
+}
+
+/// Object with its name in errors.
+struct Object {
+    place: String,
+    object: Py<PyAny>,
+    raised: Raised,
+}
+
+impl Object {
+    /// Calls the interpreter. An exception becomes an error that names the object.
+    fn call<T>(
+        &self,
+        allowed: &str,
+        call: impl FnOnce(&Bound<PyAny>) -> PyResult<T>,
+    ) -> std::result::Result<T, svm::Error> {
+        Python::attach(|py| {
+            call(self.object.bind(py)).map_err(|error| {
+                let given = error.to_string();
+                if let Ok(mut raised) = self.raised.lock() {
+                    raised.get_or_insert(error);
+                }
+                svm::Error::input(&self.place, given, allowed)
+            })
+        })
+    }
+}
+
+const FIT: &str = "a fit without an exception";
+const PREDICT: &str = "one whole-numbered label of training for each row";
+
+struct Trainer(Arc<Object>);
+
+struct Model {
+    trainer: Arc<Object>,
+    model: Py<PyAny>,
+}
+
+impl classifiers::ForeignClassifier for Trainer {
+    fn fit(
+        &self,
+        rows: &Dataset,
+        seed: u32,
+    ) -> std::result::Result<Box<dyn classifiers::ForeignModel>, svm::Error> {
+        let model = self.0.call(FIT, |object| {
+            let py = object.py();
+            let labels = rows.targets.mapv(|label| label as i64);
+            let given = (rows.records.to_pyarray(py), labels.to_pyarray(py), seed);
+            Ok(object.call_method1("fit", given)?.unbind())
+        })?;
+        let trainer = self.0.clone();
+        Ok(Box::new(Model { trainer, model }))
+    }
+}
+
+impl classifiers::ForeignModel for Model {
+    fn predict(&self, rows: ArrayView2<f64>) -> std::result::Result<Vec<usize>, svm::Error> {
+        self.trainer.call(PREDICT, |object| {
+            let py = object.py();
+            let given = (self.model.bind(py), rows.to_pyarray(py));
+            let labels = object.call_method1("predict", given)?;
+            let labels = labels.cast_into::<PyArray1<i64>>()?.readonly();
+            // A negative label becomes one that no training row has.
+            let label = |&label: &i64| usize::try_from(label).unwrap_or(usize::MAX);
+            Ok(labels.as_array().iter().map(label).collect())
+        })
+    }
+
+    fn log_probabilities(
+        &self,
+        rows: ArrayView2<f64>,
+    ) -> std::result::Result<Option<Array2<f64>>, svm::Error> {
+        self.trainer
+            .call("log-probabilities of all classes", |object| {
+                let py = object.py();
+                let given = (self.model.bind(py), rows.to_pyarray(py));
+                let found = object.call_method1("log_probabilities", given)?;
+                let found: Option<PyReadonlyArray2<f64>> = found.extract()?;
+                Ok(found.map(|found| found.as_array().to_owned()))
+            })
+    }
+}
+
+struct Function(Object);
+
+impl features::ForeignFeatures for Function {
+    fn compute(&self, frames: ArrayView2<f64>) -> Result<Array2<f64>> {
+        let computed = self.0.call("a function without an exception", |object| {
+            let made = object.call_method1("compute", (frames.to_pyarray(object.py()),))?;
+            let made = made.cast_into::<PyArray2<f64>>()?.readonly();
+            Ok(made.as_array().to_owned())
+        });
+        computed.map_err(Error::from)
+    }
+}
+
+/// Provides the classifiers and features of a call of `bubbletouch.run`.
+///
+/// # Errors
+/// If a name or a version is invalid.
+pub fn provide(
+    [of_classifiers, of_features]: [Vec<Given>; 2],
+    raised: &Raised,
+) -> Result<Provided> {
+    let object = |what: &str, name: &str, object| Object {
+        place: format!("{what} {name}"),
+        object,
+        raised: raised.clone(),
+    };
+    let of_classifiers = of_classifiers.into_iter().map(|(name, version, given)| {
+        let trainer = Trainer(Arc::new(object("classifier", &name, given)));
+        Ok(classifiers::Foreign::new(&name, &version)?.provide(Arc::new(trainer)))
+    });
+    let of_features = of_features.into_iter().map(|(name, version, given)| {
+        let function = Function(object("features", &name, given));
+        Ok(features::Foreign::new(&name, &version)?.provide(Arc::new(function)))
+    });
+    Ok(Provided {
+        _classifiers: of_classifiers.collect::<Result<_>>()?,
+        _features: of_features.collect::<Result<_>>()?,
+    })
+}

@@ -1,0 +1,134 @@
+//! Classifier that is a command: the program reads rows from files, trains, and writes the labels of test rows.
+//!
+//! | argument | file | content |
+//! |---|---|---|
+//! | 1 | `train.npz` | `features` (n × m, float64), `labels` (n, int64), `seed` (1, int64) |
+//! | 2 | `test.npz` | `features` (n × m, float64) |
+//! | 3 | `labels.npy` | written by the program: one label for each test row |
+
+use crate::inputs::arrays::file_array::FileArray;
+use crate::learning::classifiers::foreign::{ForeignClassifier, ForeignModel};
+use bubbletouch_svm::dataset::Dataset;
+use bubbletouch_svm::{Error, Result};
+use ndarray::{Array1, Array2, ArrayView2};
+use ndarray_npy::NpzWriter;
+use std::fs::File;
+use std::path::Path;
+use std::process::{Command, ExitStatus, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Time between two checks whether the program has ended. With a longer time, short programs seem slower; with a shorter time, the checks take processor time.
+const BETWEEN_CHECKS: Duration = Duration::from_millis(2);
+
+/// Maximum number of letters of the program's message in an error. Longer messages hide the rest of the error.
+const MAX_LETTERS: usize = 300;
+
+/// Classifier that is a command.
+#[derive(Clone, Debug)]
+pub struct CommandClassifier {
+    /// Name of the classifier in errors.
+    pub name: &'static str,
+    /// Program and its first arguments, at least one word.
+    pub command: Vec<String>,
+    /// Maximum time of one call; `None` for no limit.
+    pub time_limit: Option<Duration>,
+}
+
+/// Training rows that wait for test rows, because one call of the program does both.
+struct CommandModel {
+    classifier: CommandClassifier,
+    features: Array2<f64>,
+    labels: Array1<usize>,
+    seed: u32,
+}
+
+impl ForeignClassifier for CommandClassifier {
+    fn fit(&self, rows: &Dataset, seed: u32) -> Result<Box<dyn ForeignModel>> {
+        Ok(Box::new(CommandModel {
+            classifier: self.clone(),
+            features: rows.records.clone(),
+            labels: rows.targets.clone(),
+            seed,
+        }))
+    }
+}
+
+impl CommandClassifier {
+    fn error(&self, given: impl ToString) -> Error {
+        let allowed = "exit code 0 and a file of one known label for each test row";
+        Error::input(
+            format!("classifier {}", self.name),
+            given.to_string(),
+            allowed,
+        )
+    }
+
+    /// Runs the program with three files as its last arguments.
+    fn run(&self, files: [&Path; 3], said: &Path) -> Result<()> {
+        let program = &self.command[0];
+        let failed =
+            |error: std::io::Error| self.error(format!("{program} cannot be run: {error}"));
+        let mut command = Command::new(program);
+        command.args(&self.command[1..]).args(files);
+        command.stdin(Stdio::null()).stdout(Stdio::null());
+        command.stderr(File::create(said).map_err(failed)?);
+        let mut child = command.spawn().map_err(failed)?;
+        let start = Instant::now();
+        let status: ExitStatus = loop {
+            if let Some(status) = child.try_wait().map_err(failed)? {
+                break status;
+            }
+            if let Some(limit) = self.time_limit.filter(|limit| start.elapsed() > *limit) {
+                child.kill().and_then(|()| child.wait()).map_err(failed)?;
+                let limit = limit.as_secs_f64();
+                return Err(self.error(format!(
+                    "{program} ran longer than its time limit, {limit} s"
+                )));
+            }
+            sleep(BETWEEN_CHECKS);
+        };
+        if status.success() {
+            return Ok(());
+        }
+        // The last line of an exception or a message names the cause.
+        let text = std::fs::read(said).unwrap_or_default();
+        let text = String::from_utf8_lossy(&text);
+        let mut lines = text.lines().rev().map(str::trim);
+        let last = lines.find(|line| !line.is_empty()).unwrap_or("no message");
+        let last: String = last.chars().take(MAX_LETTERS).collect();
+        Err(self.error(format!("{program} ended with {status}: {last}")))
+    }
+}
+
+impl ForeignModel for CommandModel {
+    fn predict(&self, rows: ArrayView2<f64>) -> Result<Vec<usize>> {
+        let of = &self.classifier;
+        let unwritten = |error: &dyn std::fmt::Display| {
+            of.error(format!("its files cannot be written: {error}"))
+        };
+        let folder = tempfile::tempdir().map_err(|error| unwritten(&error))?;
+        let path = |name: &str| folder.path().join(name);
+        let (train, test, labels) = (path("train.npz"), path("test.npz"), path("labels.npy"));
+        let write = || -> std::result::Result<(), Box<dyn std::error::Error>> {
+            let mut file = NpzWriter::new(File::create(&train)?);
+            file.add_array("features", &self.features)?;
+            file.add_array("labels", &self.labels.mapv(|label| label as i64))?;
+            file.add_array("seed", &Array1::from_elem(1, i64::from(self.seed)))?;
+            file.finish()?;
+            let mut file = NpzWriter::new(File::create(&test)?);
+            file.add_array("features", &rows)?;
+            file.finish()?;
+            Ok(())
+        };
+        write().map_err(|error| unwritten(&error))?;
+        of.run([&train, &test, &labels], &path("stderr.txt"))?;
+        let read = FileArray::read(&labels, "labels").and_then(FileArray::into_numbers);
+        let read = read.map_err(|error| of.error(error))?;
+        let label = |number: &f64| match number.fract() == 0.0 && (0.0..1e15).contains(number) {
+            true => Ok(*number as usize),
+            false => Err(of.error(format!("the label {number}"))),
+        };
+        read.iter().map(label).collect()
+    }
+}
