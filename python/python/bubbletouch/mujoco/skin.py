@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal
 
 import mujoco
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import bubbletouch._core as _core
-from bubbletouch.mujoco.contact_forces import ContactForces
+from bubbletouch._contact_forces import Contact, ContactForces
 from bubbletouch.mujoco.geoms import geom_surface
 
 Array = NDArray[np.float64]
@@ -53,7 +53,8 @@ class Skin:
         self._geoms = np.array(found, dtype=np.intp)
         bodies = [geom_surface(model, geom, tolerance) for geom in found]
         self._skin = _core.Skin(list(self._patches.values()), bodies)
-        self._contact_forces = ContactForces(model, list(self._patches.values()), carriers, found)
+        of_geoms = dict(enumerate(model.geom_bodyid.tolist()))
+        self._contact_forces = ContactForces(list(self._patches.values()), carriers, of_geoms, found)
         names = zip(self._patches, self._skin.ranges, strict=True)
         self._slices = {name: slice(first, last) for name, (first, last) in names}
 
@@ -112,7 +113,7 @@ class Skin:
         elif match == "normal_force":
             overlaps = np.empty((len(self._patches), len(self._geoms)))
             self._skin.read(patch_poses, body_poses, pair_forces=overlaps)
-            forces, directions, beside = self._contact_forces.wanted(data, patch_poses, overlaps)
+            forces, directions, beside = self._contact_forces.wanted(_contacts(self._model, data), patch_poses, overlaps)
         else:
             raise ValueError(f'match: {match!r}; None or "normal_force"')
         read = self._skin.read(
@@ -222,6 +223,14 @@ class _Frames:
         all_positions[self._body_rows] = data.xpos[self._on_bodies]
         all_rotations[self._body_rows] = data.xmat[self._on_bodies]
         return all_positions, all_rotations
+
+
+def _contacts(model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[Contact]:
+    """Yields the contacts of the engine with their normal forces."""
+    places, normals, force = data.contact.pos, data.contact.frame[:, :3], np.zeros(6)
+    for number, (first, second) in enumerate(data.contact.geom.tolist()):
+        mujoco.mj_contactForce(model, data, number, force)
+        yield Contact(first, second, places[number], normals[number], float(force[0]))
 
 
 def _identity(model: mujoco.MjModel, kind: mujoco.mjtObj, name: str) -> int:

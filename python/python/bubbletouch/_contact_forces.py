@@ -1,11 +1,10 @@
-"""The engine's contact forces on the patches of a skin, for `match="normal_force"`."""
+"""An engine's contact forces on the patches of a skin, for `match="normal_force"`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,62 +18,70 @@ FACING = 0.5
 
 
 class WantedForces(NamedTuple):
-    """Forces of the pairs of patch and geom, (n_patches, n_geoms), newtons."""
+    """Forces of the pairs of patch and geometry, (n_patches, n_geometries), newtons."""
 
     # Forces that the patches are to have.
     forces: Array
-    # Directions of the patches' travels in their frames, (n_patches, n_geoms, 3), or None if all patches are flat.
+    # Directions of the patches' travels in their frames, (n_patches, n_geometries, 3), or None if all patches are flat.
     directions: Array | None
     # Contact forces on the bodies of the patches that press on no patch; each belongs to the nearest patch.
     beside: Array
 
 
-class ContactForces:
-    """Distributes the engine's contact forces over patches.
+class Contact(NamedTuple):
+    """Contact of two geometries of an engine."""
 
-    patches: patches of the skin. carriers: body of each patch. geoms: geoms that can touch the skin.
+    first: Hashable
+    second: Hashable
+    # Place of the contact in the world, metres, (3,).
+    place: Array
+    # Unit normal from the first to the second geometry in the world, (3,): the contact force pushes the second one along it.
+    normal: Array
+    # Force along the normal, newtons.
+    force: float
+
+
+class ContactForces:
+    """Distributes an engine's contact forces over patches.
+
+    patches: patches of the skin. carriers: body of each patch. bodies: body of each geometry of the engine. touching: geometries that can touch the skin.
     """
 
     def __init__(
-        self, model: mujoco.MjModel, patches: Sequence[_core.Patch], carriers: Sequence[int], geoms: Sequence[int]
+        self,
+        patches: Sequence[_core.Patch],
+        carriers: Sequence[Hashable],
+        bodies: Mapping[Any, Hashable],
+        touching: Sequence[Hashable],
     ) -> None:
-        self._model = model
         self._centers = [np.asarray(patch.centers) for patch in patches]
         self._axes = [np.asarray(patch.axes) for patch in patches]
         self._is_flat = [bool((axes == [0.0, 0.0, 1.0]).all()) for axes in self._axes]
-        self._columns = {int(geom): column for column, geom in enumerate(geoms)}
+        self._columns = {geometry: column for column, geometry in enumerate(touching)}
         of_body = {body: [p for p, carrier in enumerate(carriers) if carrier == body] for body in carriers}
-        self._patches_of_geom = {
-            geom: of_body[body] for geom in range(model.ngeom) if (body := int(model.geom_bodyid[geom])) in of_body
-        }
+        self._patches_of = {geometry: of_body[body] for geometry, body in bodies.items() if body in of_body}
 
-    def wanted(self, data: mujoco.MjData, poses: tuple[Array, Array], overlaps: Array) -> WantedForces:
+    def wanted(self, contacts: Iterable[Contact], poses: tuple[Array, Array], overlaps: Array) -> WantedForces:
         """Returns the forces that the pairs are to have.
 
         poses: positions (n_patches, 3) and rotation matrices (n_patches, 9) of the patches. overlaps: normal forces of the pairs at the engine's poses,
-        (n_patches, n_geoms), by which the force of a contact is divided if several patches of one body face it.
+        (n_patches, n_geometries), by which the force of a contact is divided if several patches of one body face it.
         """
         forces, beside = np.zeros(overlaps.shape), np.zeros(overlaps.shape)
         directions = np.zeros((*overlaps.shape, 3))
-        normals, places = data.contact.frame[:, :3], data.contact.pos
-        six = np.zeros(6)
-        for number, (first, second) in enumerate(data.contact.geom.tolist()):
-            # The normal points from the first to the second geom, and the contact force pushes the second along it.
-            for own, other, sign in ((first, second, -1.0), (second, first, 1.0)):
-                patches, column = self._patches_of_geom.get(own), self._columns.get(other)
-                if patches is None or column is None:
-                    continue
-                mujoco.mj_contactForce(self._model, data, number, six)
-                force = float(six[0])
-                if force <= 0.0:
+        for contact in contacts:
+            force = contact.force
+            for own, other, sign in ((contact.first, contact.second, -1.0), (contact.second, contact.first, 1.0)):
+                patches, column = self._patches_of.get(own), self._columns.get(other)
+                if patches is None or column is None or force <= 0.0:
                     continue
                 away, pushes, facing = [], [], []
                 for patch in patches:
                     rotation = poses[1][patch].reshape(3, 3)
-                    offsets = self._centers[patch] - (places[number] - poses[0][patch]) @ rotation
+                    offsets = self._centers[patch] - (contact.place - poses[0][patch]) @ rotation
                     squares = np.einsum("ij,ij->i", offsets, offsets)
                     nearest = int(squares.argmin())
-                    push = sign * normals[number] @ rotation
+                    push = sign * contact.normal @ rotation
                     away.append(float(squares[nearest]))
                     pushes.append(push)
                     facing.append(-float(push @ self._axes[patch][nearest]) > FACING)

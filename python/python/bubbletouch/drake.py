@@ -1,0 +1,107 @@
+"""Skin for Drake: taxels on frames of a MultibodyPlant, read at the poses of a context. Needs the package drake.
+
+    skin = Skin(plant, scene_graph, {"palm": bt.Patch.grid(8, 8, pitch=4e-3, stroke=3e-3)})
+    forces = skin.read(simulator.get_context(), output="force", match="normal_force")     # (n_taxels,), newtons
+
+The patches take no part in the dynamics. The interface is that of bubbletouch.mujoco.Skin, over the same core.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydrake import geometry as shapes
+from pydrake.geometry import SceneGraph
+from pydrake.multibody.plant import MultibodyPlant
+from pydrake.systems.framework import Context
+
+import bubbletouch._core as _core
+from bubbletouch._contact_forces import Contact, ContactForces
+
+Array = NDArray[np.float64]
+
+
+class Skin:
+    """Patches on frames of a finalized plant, under its collision geometries.
+
+    layout: patches by the name of the frame or body that carries each. geometries: "all", or names of geometries with the proximity role; with "all",
+    geometries of the patches' own bodies and half spaces are left out. tolerance: as for bubbletouch.mujoco.Skin.
+    """
+
+    def __init__(
+        self, plant: MultibodyPlant, scene_graph: SceneGraph, layout: Mapping[str, _core.Patch], *,
+        geometries: Literal["all"] | Sequence[str] = "all", tolerance: float = 1e-5,
+    ) -> None:
+        self._plant, self._scene_graph = plant, scene_graph
+        self._frames = [plant.GetFrameByName(name) for name in layout]
+        carriers = [frame.body().index() for frame in self._frames]
+        of = scene_graph.model_inspector()
+        found = [i for i in of.GetAllGeometryIds() if of.GetProximityProperties(i)]
+        bodies = {i: plant.GetBodyFromFrameId(of.GetFrameId(i)).index() for i in found}
+        names = {of.GetName(i).split("::")[-1]: i for i in found}
+        if geometries == "all":
+            others = [i for i in found if bodies[i] not in carriers]
+            self._touching = [i for i in others if not isinstance(of.GetShape(i), shapes.HalfSpace)]
+        else:
+            if unknown := [name for name in geometries if name not in names]:
+                raise ValueError(f"geometries: {unknown[0]!r}; one of {', '.join(names)}")
+            self._touching = [names[name] for name in geometries]
+        self.skin = _core.Skin(list(layout.values()), [shape_surface(of.GetShape(i), tolerance) for i in self._touching])
+        self._contact_forces = ContactForces(list(layout.values()), carriers, bodies, self._touching)
+
+    def read(self, context: Context, *, match: Literal["normal_force"] | None = None, **options: Any) -> Array:
+        """Returns the readings at the poses of the diagram's context, (n_taxels,). The options are those of bubbletouch.Skin.read; `match` is the one of
+        bubbletouch.mujoco.Skin.read, with the point contacts of the plant's contact results."""
+        plant = self._plant.GetMyContextFromRoot(context)
+        query: Any = self._scene_graph.get_query_output_port().Eval(self._scene_graph.GetMyContextFromRoot(context))
+        patches = _parts([frame.CalcPoseInWorld(plant) for frame in self._frames])
+        bodies = _parts([query.GetPoseInWorld(identity) for identity in self._touching])
+        if match not in (None, "normal_force"):
+            raise ValueError(f'match: {match!r}; None or "normal_force"')
+        if match is None:
+            return self.skin.read(patches, bodies, **options)
+        overlaps = np.empty((len(self._frames), len(self._touching)))
+        self.skin.read(patches, bodies, pair_forces=overlaps)
+        results = self._plant.get_contact_results_output_port().Eval(plant)
+        forces, directions, beside = self._contact_forces.wanted(_contacts(results), patches, overlaps)
+        read = self.skin.read(patches, bodies, forces=forces, directions=directions, **options)
+        if options.get("residuals") is not None:
+            options["residuals"] += beside
+        return read
+
+
+def shape_surface(shape: Any, tolerance: float = 1e-5) -> _core.Mesh | _core.SphereUnion:
+    """Returns the surface of a shape as bubbletouch.mujoco.geom_surface does; a Mesh or Convex is its convex hull, as for Drake's point contact."""
+    if isinstance(shape, shapes.Sphere):
+        return _core.SphereUnion(np.zeros((1, 3)), [shape.radius()])
+    if isinstance(shape, shapes.Box):
+        return _core.Mesh.box(shape.size())
+    if isinstance(shape, shapes.Ellipsoid):
+        return _core.Mesh.ellipsoid([shape.a(), shape.b(), shape.c()], tolerance)
+    if isinstance(shape, shapes.Capsule | shapes.Cylinder):
+        make = _core.Mesh.capsule if isinstance(shape, shapes.Capsule) else _core.Mesh.cylinder
+        return make(shape.radius(), shape.length(), tolerance)
+    if not isinstance(shape, shapes.Mesh | shapes.Convex):
+        raise ValueError(f"geometry: {type(shape).__name__}; a Sphere, Box, Ellipsoid, Capsule, Cylinder, Mesh or Convex")
+    hull = shape.GetConvexHull()
+    faces = [hull.element(k) for k in range(hull.num_elements())]
+    fans = [(f.vertex(0), f.vertex(k), f.vertex(k + 1)) for f in faces for k in range(1, f.num_vertices() - 1)]
+    return _core.Mesh([hull.vertex(k) for k in range(hull.num_vertices())], fans)
+
+
+def _parts(poses: Sequence[Any]) -> tuple[Array, Array]:
+    """Returns the positions (n, 3) and rotation matrices (n, 9) of rigid transforms."""
+    return np.array([X.translation() for X in poses]), np.array([X.rotation().matrix().ravel() for X in poses])
+
+
+def _contacts(results: Any) -> Iterator[Contact]:
+    for info in map(results.point_pair_contact_info, range(results.num_point_pair_contacts())):
+        pair = info.point_pair()
+        normal = -pair.nhat_BA_W  # Drake's normal points from B to A, and its force acts on B.
+        yield Contact(pair.id_A, pair.id_B, info.contact_point(), normal, float(info.contact_force() @ normal))
+
+
+__all__ = ["Skin", "shape_surface"]
