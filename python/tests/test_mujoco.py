@@ -95,7 +95,7 @@ def test_deflections_of_a_sphere_and_a_box_are_their_closed_forms(model) -> None
 
 def test_forces_wrenches_and_out(model) -> None:
     skin = Skin(model, patches())
-    assert skin.geoms == ["ball", "block", "rod", "can", "egg"]
+    assert skin.geoms == ["floor", "ball", "block", "rod", "can", "egg"]
     data = placed(model, ball=[0.004, 0.002, 0.13, 1, 0, 0, 0])
     out, wrenches = np.empty(128), np.empty((2, 6))
     forces = skin.read(data, output="force", out=out, wrenches=wrenches)
@@ -215,12 +215,48 @@ def test_a_picture_shows_pressed_taxels_in_red() -> None:
 
 
 def test_names_that_are_not_there_are_refused(model) -> None:
-    with pytest.raises(ValueError, match=r"layout: 'hand'; a site \(palm, edge\) or a body \(world, palm, ball"):
+    with pytest.raises(ValueError, match=r"layout: 'hand'; a site \(palm, edge\), a body \(world, palm, ball"):
         Skin(model, {"hand": patches()["palm"]})
     with pytest.raises(ValueError, match="geom: 'cup'; one of floor"):
         Skin(model, patches(), geoms=["cup"])
-    with pytest.raises(ValueError, match="geom floor: a plane"):
-        Skin(model, patches(), geoms=["floor"])
+    with pytest.raises(ValueError, match="geom: 'foot'; one of floor"):
+        Skin(model, {"geom:foot": patches()["palm"]})
+    hills = """
+    <mujoco><asset><hfield name="hills" nrow="2" ncol="2" size="1 1 1 1"/></asset>
+      <worldbody><geom name="hills" type="hfield" hfield="hills"/><site name="palm"/></worldbody></mujoco>"""
+    with pytest.raises(ValueError, match="geom hills: a hfield; a plane"):
+        Skin(mujoco.MjModel.from_xml_string(hills), {"palm": patches()["palm"]}, geoms=["hills"])
+
+
+def test_a_floor_presses_a_foot_from_below_alone() -> None:
+    tilt = 0.1
+    model = mujoco.MjModel.from_xml_string(f"""
+    <mujoco><worldbody>
+      <geom name="floor" type="plane" size="0 0 1" pos="0 0 0.3" euler="{np.rad2deg(tilt)} 0 0"/>
+      <body name="foot" pos="7 0 0.32"><freejoint/><geom name="ankle" type="capsule" size="0.02 0.03" pos="0 0 0.021" euler="0 90 0"/>
+        <site name="sole" euler="180 0 0"/><site name="instep" pos="0 0 0.04"/></body>
+    </worldbody></mujoco>""")
+    data = mujoco.MjData(model)
+    data.qpos[3:7] = [np.cos(tilt / 2), np.sin(tilt / 2), 0, 0]
+    flat = bt.Patch.grid(6, 6, 2e-3, 5e-3)
+    around = bt.Patch.draped(geom_surface(model, model.geom("ankle").id), 6e-3, 5e-3)
+    skin = Skin(model, {"sole": flat, "site:instep": flat, "geom:ankle": around})
+    assert skin.geoms == ["floor"]
+    up = np.array([0.0, -np.sin(tilt), np.cos(tilt)])
+    for height in (2e-3 - 1e-4, 2e-3 + 1e-4, -2e-3):
+        data.qpos[:3] = np.array([7.0, 0.0, 0.3]) + height * up
+        mujoco.mj_kinematics(model, data)
+        read = skin.read(data)
+        # The sole faces the floor in parallel: taxel radius 1 mm.
+        assert np.abs(skin.frame("sole", read) - np.clip(1e-3 - height, 0, 5e-3)).max() < 1e-12
+        assert not skin.frame("site:instep", read).any()
+        rotation = data.geom("ankle").xmat.reshape(3, 3)
+        height_of = ((around.centers @ rotation.T + data.geom("ankle").xpos) - [0, 0, 0.3]) @ up
+        ankle = skin.frame("geom:ankle", read)
+        facing = (around.axes @ rotation.T) @ up
+        closed = np.where(facing < -0.5, np.clip((3e-3 - height_of) / -facing, 0, 5e-3), 0.0)
+        assert np.abs(ankle - closed)[facing < -0.5].max() < 1e-12 and not ankle[facing > 0].any()
+        assert ankle.any() or height > 0
 
 
 def test_deflections_are_those_of_mujocos_signed_distance(model) -> None:

@@ -28,7 +28,7 @@ class Skin:
     """Patches on frames of a finalized plant, under its collision geometries.
 
     layout: patches by the name of the frame or body that carries each. geometries: "all", or names of geometries with the proximity role; with "all",
-    geometries of the patches' own bodies and half spaces are left out. tolerance: as for bubbletouch.mujoco.Skin.
+    geometries of the patches' own bodies are left out. tolerance: as for bubbletouch.mujoco.Skin.
     """
 
     def __init__(
@@ -43,8 +43,7 @@ class Skin:
         bodies = {i: plant.GetBodyFromFrameId(of.GetFrameId(i)).index() for i in found}
         names = {of.GetName(i).split("::")[-1]: i for i in found}
         if geometries == "all":
-            others = [i for i in found if bodies[i] not in carriers]
-            self._touching = [i for i in others if not isinstance(of.GetShape(i), shapes.HalfSpace)]
+            self._touching = [i for i in found if bodies[i] not in carriers]
         else:
             if unknown := [name for name in geometries if name not in names]:
                 raise ValueError(f"geometries: {unknown[0]!r}; one of {', '.join(names)}")
@@ -79,13 +78,16 @@ def shape_surface(shape: Any, tolerance: float = 1e-5) -> _core.Mesh | _core.Sph
         return _core.SphereUnion(np.zeros((1, 3)), [shape.radius()])
     if isinstance(shape, shapes.Box):
         return _core.Mesh.box(shape.size())
+    if isinstance(shape, shapes.HalfSpace):
+        box = _core.Mesh.box([2e3, 2e3, 2e3])
+        return _core.Mesh(box.vertices - [0.0, 0.0, 1e3], box.triangles)
     if isinstance(shape, shapes.Ellipsoid):
         return _core.Mesh.ellipsoid([shape.a(), shape.b(), shape.c()], tolerance)
     if isinstance(shape, shapes.Capsule | shapes.Cylinder):
         make = _core.Mesh.capsule if isinstance(shape, shapes.Capsule) else _core.Mesh.cylinder
         return make(shape.radius(), shape.length(), tolerance)
     if not isinstance(shape, shapes.Mesh | shapes.Convex):
-        raise ValueError(f"geometry: {type(shape).__name__}; a Sphere, Box, Ellipsoid, Capsule, Cylinder, Mesh or Convex")
+        raise ValueError(f"geometry: {type(shape).__name__}; a HalfSpace, Sphere, Box, Ellipsoid, Capsule, Cylinder, Mesh or Convex")
     hull = shape.GetConvexHull()
     faces = [hull.element(k) for k in range(hull.num_elements())]
     fans = [(f.vertex(0), f.vertex(k), f.vertex(k + 1)) for f in faces for k in range(1, f.num_vertices() - 1)]

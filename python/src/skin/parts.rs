@@ -6,7 +6,7 @@ use bubbletouch::objects::Model;
 use bubbletouch::world::{self, Taxels};
 use glam::DVec3;
 
-/// Patch of a skin, with a ball (centre and radius) that contains all its taxels.
+/// Patch of a skin, with a ball that contains all its taxels.
 pub struct SkinPatch {
     /// Patch of the Rust library.
     pub patch: world::Patch,
@@ -18,30 +18,15 @@ pub struct SkinPatch {
     pub reach: f64,
     /// Largest stroke of a taxel, metres.
     pub stroke: f64,
-    ball: Ball,
+    /// Centre and radius of a ball around all taxels, in the patch frame, metres.
+    ball: (DVec3, f64),
 }
 
 /// Body that may touch the skin.
 pub struct Body {
     /// Contact model in the body's frame.
     pub model: Model,
-    ball: Ball,
-}
-
-/// Ball that contains a patch or a body, in its own frame, metres.
-#[derive(Clone, Copy)]
-struct Ball {
-    center: DVec3,
-    radius: f64,
-}
-
-impl Ball {
-    fn around(bounds: &Aabb) -> Self {
-        Self {
-            center: 0.5 * (bounds.min + bounds.max),
-            radius: 0.5 * (bounds.max - bounds.min).length(),
-        }
-    }
+    bounds: Aabb,
 }
 
 impl Body {
@@ -49,7 +34,7 @@ impl Body {
     pub fn new(model: Model) -> Self {
         model.prepare();
         Self {
-            ball: Ball::around(&model.bounds()),
+            bounds: model.bounds(),
             model,
         }
     }
@@ -74,19 +59,18 @@ impl SkinPatch {
                 && matches!(patch.taxels(), Taxels::Equal(_)),
             reach: stroke + 2.0 * radius,
             stroke,
-            ball: Ball::around(&Aabb {
-                min: min - radius,
-                max: max + radius,
-            }),
+            ball: (0.5 * (min + max), 0.5 * (max - min).length() + radius),
             patch,
         }
     }
 
-    /// Returns whether a body may come closer to the patch than `margin`, metres.
+    /// Returns whether a body may come closer to the patch than `margin`, metres: its bounding box in its own frame, and the ball around the patch.
     pub fn is_near(&self, body: &Body, patch_from_body: &Pose, margin: f64) -> bool {
-        let center = patch_from_body.transform_point(body.ball.center);
-        let reach = self.ball.radius + body.ball.radius + margin;
-        center.distance_squared(self.ball.center) <= reach * reach
+        let (center, radius) = self.ball;
+        let center = patch_from_body.inverse().transform_point(center);
+        let nearest = center.clamp(body.bounds.min, body.bounds.max);
+        let reach = radius + margin;
+        center.distance_squared(nearest) <= reach * reach
     }
 
     /// Presses the patch under one body at its pose; the deflections are in the workspace. Returns the sum of the forces of the taxels, newtons.

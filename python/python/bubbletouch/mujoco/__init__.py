@@ -1,4 +1,4 @@
-"""Skin for MuJoCo: taxels on sites or bodies of a model, read from `mjData` in the simulation loop. Needs the package mujoco.
+"""Skin for MuJoCo: taxels on sites, bodies or geoms of a model, read from `mjData` in the simulation loop. Needs the package mujoco.
 
     model = mujoco.MjModel.from_xml_path("hand.xml")
     data = mujoco.MjData(model)

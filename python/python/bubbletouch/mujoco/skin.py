@@ -1,4 +1,4 @@
-"""Class `Skin`: patches on sites or bodies of a MuJoCo model."""
+"""Class `Skin`: patches on sites, bodies or geoms of a MuJoCo model."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ Output = Literal["deflection", "force"]
 
 
 class Skin:
-    """Patches on sites or bodies of a MuJoCo model, under its geoms.
+    """Patches on sites, bodies or geoms of a MuJoCo model, under its geoms.
 
     model: mujoco.MjModel.
-    layout: patches by the name of the site or body that carries each; if a site and a body have the name, the site. The patch frame is the frame of the
-        site or body: taxels of a flat patch point along its z axis.
+    layout: patches by the name of the site or body that carries each; if a site and a body have the name, the site. "geom:NAME" is the frame of a geom,
+        as for a patch draped on its geom_surface; "site:NAME" and "body:NAME" are possible, too. Taxels of a flat patch point along z of the frame.
     geoms: "all", or names of the geoms that can touch the skin. With "all", geoms of the patches' own bodies are left out, as are visual geoms
-        (contype and conaffinity 0).
-    tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Spheres, boxes, capsules and meshes are exact.
+        (contype and conaffinity 0), height fields and SDFs.
+    tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Planes, spheres, boxes, capsules and meshes are
+        exact.
 
-    Raises ValueError for names that the model does not have, and for geoms without a surface (planes, height fields, SDFs) that are named.
+    Raises ValueError for names that the model does not have, and for geoms without a surface (height fields, SDFs) that are named.
     """
 
     def __init__(
@@ -193,36 +194,42 @@ class Skin:
 
 
 class _Frames:
-    """Sites and bodies that carry patches."""
+    """Sites, bodies and geoms that carry patches."""
 
     def __init__(self, model: mujoco.MjModel, names: Sequence[str]) -> None:
-        site, body = mujoco.mjtObj.mjOBJ_SITE, mujoco.mjtObj.mjOBJ_BODY
-        sites = [mujoco.mj_name2id(model, site, name) for name in names]
-        on_body = [mujoco.mj_name2id(model, body, name) if at < 0 else -1 for name, at in zip(names, sites, strict=True)]
-        for name, of_site, of_body in zip(names, sites, on_body, strict=True):
-            if of_site < 0 and of_body < 0:
-                listed = f"a site ({_names(model, site)}) or a body ({_names(model, body)})"
-                raise ValueError(f"layout: {name!r}; {listed}")
-        # Rows of the patches on sites and on bodies, and the sites and bodies.
-        self._site_rows = np.flatnonzero(np.array(sites) >= 0)
-        self._body_rows = np.flatnonzero(np.array(sites) < 0)
-        self._sites = np.array(sites, dtype=np.intp)[self._site_rows]
-        self._on_bodies = np.array(on_body, dtype=np.intp)[self._body_rows]
-        pairs = zip(sites, on_body, strict=True)
+        found = [_carrier(model, name) for name in names]
+        kinds = sorted({kind for kind, _ in found}, key="site body geom".split().index)
+        # Kind of frame, rows of its patches, and numbers of its sites, bodies or geoms.
+        self._parts = [
+            (kind, [row for row, (other, _) in enumerate(found) if other == kind], [at for other, at in found if other == kind])
+            for kind in kinds
+        ]
+        of = {"site": model.site_bodyid, "body": range(model.nbody), "geom": model.geom_bodyid}
         # Body that carries each patch.
-        self.bodies = [int(model.site_bodyid[at]) if at >= 0 else int(body) for at, body in pairs]
+        self.bodies = [int(of[kind][at]) for kind, at in found]
 
     def poses(self, data: mujoco.MjData) -> tuple[Array, Array]:
         """Returns the positions (n_patches, 3) and the rotation matrices (n_patches, 9) of the patches in the world."""
-        positions, rotations = data.site_xpos[self._sites], data.site_xmat[self._sites]
-        if not len(self._on_bodies):
-            return positions, rotations
-        n = len(self.bodies)
-        all_positions, all_rotations = np.empty((n, 3)), np.empty((n, 9))
-        all_positions[self._site_rows], all_rotations[self._site_rows] = positions, rotations
-        all_positions[self._body_rows] = data.xpos[self._on_bodies]
-        all_rotations[self._body_rows] = data.xmat[self._on_bodies]
-        return all_positions, all_rotations
+        frames = {"site": (data.site_xpos, data.site_xmat), "body": (data.xpos, data.xmat), "geom": (data.geom_xpos, data.geom_xmat)}
+        if len(self._parts) == 1:
+            [(kind, _, numbers)] = self._parts
+            return frames[kind][0][numbers], frames[kind][1][numbers]
+        positions, rotations = np.empty((len(self.bodies), 3)), np.empty((len(self.bodies), 9))
+        for kind, rows, numbers in self._parts:
+            positions[rows], rotations[rows] = frames[kind][0][numbers], frames[kind][1][numbers]
+        return positions, rotations
+
+
+def _carrier(model: mujoco.MjModel, name: str) -> tuple[str, int]:
+    """Returns the kind and the number of the site, body or geom that carries a patch."""
+    kinds = {"site": mujoco.mjtObj.mjOBJ_SITE, "body": mujoco.mjtObj.mjOBJ_BODY, "geom": mujoco.mjtObj.mjOBJ_GEOM}
+    for kind in ("site", "body"):
+        if (number := mujoco.mj_name2id(model, kinds[kind], name)) >= 0:
+            return kind, number
+    prefix, _, rest = name.partition(":")
+    if prefix in kinds:
+        return prefix, _identity(model, kinds[prefix], rest)
+    raise ValueError(f"layout: {name!r}; a site ({_names(model, kinds['site'])}), a body ({_names(model, kinds['body'])}) or geom:NAME")
 
 
 def _contacts(model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[Contact]:
@@ -255,6 +262,6 @@ def _names(model: mujoco.MjModel, kind: mujoco.mjtObj) -> str:
 def _can_touch(model: mujoco.MjModel, geom: int, carriers: set[int]) -> bool:
     """Returns whether a geom collides, has a surface, and is not on a body that carries a patch."""
     kind = mujoco.mjtGeom(model.geom_type[geom])
-    has_surface = kind not in (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD, mujoco.mjtGeom.mjGEOM_SDF)
+    has_surface = kind not in (mujoco.mjtGeom.mjGEOM_HFIELD, mujoco.mjtGeom.mjGEOM_SDF)
     collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
     return has_surface and collides and int(model.geom_bodyid[geom]) not in carriers
