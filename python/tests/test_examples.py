@@ -20,6 +20,8 @@ def test_example(example: Path, tmp_path: Path) -> None:
     for needed in ("sklearn", "gymnasium", "mujoco", "torch", "rerun"):
         if re.search(rf"^(import|from) {needed}", source, re.M):
             pytest.importorskip(needed)
+    if "-v5" in source:
+        pytest.importorskip("imageio")  # of gymnasium[mujoco]
     done = subprocess.run(
         [sys.executable, str(example)], cwd=tmp_path, capture_output=True, text=True, timeout=300
     )
@@ -37,3 +39,14 @@ def test_page(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
             pytest.importorskip("sklearn")
         exec(compile(block, str(page), "exec"), {})
     assert (tmp_path / "mug.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_guide_s_programs_for_simulators(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("mujoco")
+    page = PACKAGE.parent / "guide" / "simulators.md"
+    monkeypatch.chdir(PACKAGE.parent)
+    for block in re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S):
+        exec(compile(block, str(page), "exec"), {})
+    first, second = capsys.readouterr().out.splitlines()
+    assert re.match(r"(19|20)\.\d\d N on \d\d taxels of the left pad", first), first
+    assert second == "(1024, 64) [2. 2. 2.]", second

@@ -55,7 +55,7 @@ def layout() -> dict[str, bt.Patch]:
 def test_a_checked_environment_sees_the_skin(dict_space: bool, match) -> None:
     env = SkinObservation(Grasp(dict_space), layout(), match=match)
     with warnings.catch_warnings():
-        # The checker advises to check the environment without its wrapper, which is the subject here.
+        # The checker advises to check the environment without its wrapper.
         warnings.simplefilter("ignore", UserWarning)
         check_env(env, skip_render_check=True)
     observation, _ = env.reset(seed=1)
