@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -281,3 +282,32 @@ def test_the_command_reports_such_a_study_and_does_not_run_it(tmp_path: Path, co
     with pytest.raises(subprocess.CalledProcessError) as failed:
         command("run", study.folder / "study.toml", "--out", tmp_path / "again")
     assert failed.value.returncode == 2 and "classifier mine: no code for version 1" in failed.value.stderr
+
+
+GUIDE = (Path(__file__).resolve().parents[2] / "guide" / "own_methods.md").read_text()
+
+
+def test_the_program_of_the_guide_trains_and_predicts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    code = re.findall(r"^```python,mine.py\n(.*?)^```", GUIDE, re.M | re.S)[0]
+    (tmp_path / "mine.py").write_text(code)
+    command = {"command": [sys.executable, "mine.py"], "time_limit_s": 60}
+    text = bt._core.toml_of(bt.study._json(with_keys(classifier=["nearest_centroid", command])))
+    (tmp_path / "study.toml").write_text(text)
+    # Paths are relative to the study file.
+    study = bt.run(tmp_path / "study.toml", tmp_path / "out")
+    assert rows_of(study, "classifier", "mine") == rows_of(study, "classifier", "nearest_centroid")
+    assert len(rows_of(study, "classifier", "mine")) == 12
+    (tmp_path / "mine.py").write_text("raise ArithmeticError('no convergence')")
+    with pytest.raises(ValueError, match=r"configuration \d .*classifier mine: .* ended with exit status: 1: ArithmeticError: no convergence; exit code 0"):
+        bt.run(tmp_path / "study.toml", tmp_path / "out")
+
+
+def test_the_python_of_the_guide_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("sklearn")
+    pytest.importorskip("pandas")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "experiments").mkdir()
+    (tmp_path / "experiments" / "quickstart.toml").write_text(bt._core.toml_of(bt.study._json(with_keys(classifier="nearest_centroid"))))
+    code = re.findall(r"^```python\n(.*?)^```", GUIDE, re.M | re.S)[0]
+    exec(compile(code, "own_methods.md", "exec"), {})
+    assert "tuned" in (tmp_path / "results" / "mine" / "summary.csv").read_text()

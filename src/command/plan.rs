@@ -87,7 +87,8 @@ fn sample(study: Box<dyn AnyStudy>, seconds: f64) -> Result<String> {
             ));
         }
     }
-    Ok(sample.counts().describe(Instant::now(), seconds))
+    let n_threads = rayon::current_num_threads();
+    Ok(sample.counts().describe(Instant::now(), seconds, n_threads))
 }
 
 /// Progress listener that counts finished work items and the steps of the current stage.
@@ -133,13 +134,15 @@ impl Progress for Sample {
 
 impl Counts {
     /// Returns a text with the estimated time of the whole run and a description of the sample from which it was estimated.
-    fn describe(&self, now: Instant, seconds: f64) -> String {
+    fn describe(&self, now: Instant, seconds: f64, n_threads: usize) -> String {
         let estimate = self.clock.as_ref().and_then(|clock| {
             let (n_finished, n_items) = clock.counts();
             let (elapsed_s, left_s) = (clock.elapsed_s(now), clock.left_s(now)?);
-            let total = duration((elapsed_s + left_s).max(1.0));
+            let total_s = (elapsed_s + left_s).max(1.0);
+            let total = duration(total_s);
+            let cores = cores(total_s, n_threads);
             Some(format!(
-                "about {total} ({n_finished} of {n_items} work items took {elapsed_s:.1} s)"
+                "about {total} ({n_finished} of {n_items} work items took {elapsed_s:.1} s)\n  cores    {cores}"
             ))
         });
         estimate.unwrap_or_else(|| {
@@ -156,5 +159,26 @@ impl Counts {
             };
             format!("no work item finished in {seconds} s{during}; --time={longer} samples longer")
         })
+    }
+}
+
+/// Returns the computing time of a run in core hours, as clusters bill it.
+fn cores(total_s: f64, n_threads: usize) -> String {
+    let hours = total_s / 3600.0;
+    let core_hours = hours * n_threads as f64;
+    format!(
+        "{n_threads} cores × {hours:.2} h = {core_hours:.2} core hours; with N shards about {core_hours:.2} / N hours on one core each"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn core_hours_are_cores_times_hours() {
+        let said = super::cores(7200.0, 4);
+        assert!(
+            said.starts_with("4 cores × 2.00 h = 8.00 core hours"),
+            "{said}"
+        );
     }
 }

@@ -18,6 +18,9 @@ pub mod objects {}
 #[doc = include_str!("../../guide/recorded_frames.md")]
 pub mod recorded_frames {}
 
+#[doc = include_str!("../../guide/own_methods.md")]
+pub mod own_methods {}
+
 #[doc = include_str!("../../guide/scenes.md")]
 pub mod scenes {}
 

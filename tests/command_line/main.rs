@@ -27,6 +27,7 @@ mod features;
 mod instructions;
 mod mesh;
 mod outputs;
+mod own_command;
 mod own_objects;
 mod page;
 mod paths;

@@ -12,6 +12,7 @@ fn documents() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let guide = fs::read_dir(root.join("guide")).unwrap();
     let mut paths: Vec<_> = guide.map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.is_file());
     paths.sort();
     paths.insert(0, root.join("README.md"));
     let read = |path: &PathBuf| {

@@ -1,0 +1,211 @@
+//! A classifier that is a command: its files, its errors, its time limit, and its version.
+#![cfg(unix)]
+
+use crate::bad_input::refused;
+use crate::command::Case;
+use bubbletouch::study::write_integers;
+use std::fs;
+
+/// Returns a study with these values of `recognition.classifier`.
+fn study(classifiers: &str) -> String {
+    format!(
+        "question = \"q\"\ntrials = 2\nobjects = {{ sets = [\"cans\"], surface_error_mm = 1.0 }}\n\
+        skin = {{ pitch_mm = 8.0, size_mm = 64.0, stroke_mm = 5.0 }}\n\
+        touches = {{ per_object = 8, offset_x_mm = {{ uniform = [-8.0, 8.0] }}, depth_mm = 3.0 }}\n\
+        sensing = {{ ratio = 4.0 }}\n[recognition]\nclassifier = {classifiers}\n"
+    )
+}
+
+/// Number of test rows: two of eight touches of each of nine cans.
+const N_TEST: usize = 18;
+
+/// Creates a case with a program `mine.sh` that answers the first object, and logs its arguments.
+fn case_of_first_object() -> Case {
+    let case = Case::new();
+    write_integers(&case.path("first.npy"), [0; N_TEST]).unwrap();
+    case.file(
+        "mine.sh",
+        "echo \"$# $(wc -c < $2) $(wc -c < $3)\" >> calls\ncp $1 $4\n",
+    );
+    case
+}
+
+const FIRST: &str = "{ command = [\"sh\", \"mine.sh\", \"first.npy\"], version = \"2\" }";
+
+fn n_calls(case: &Case) -> usize {
+    let calls = fs::read_to_string(case.path("calls")).unwrap_or_default();
+    calls.lines().count()
+}
+
+#[test]
+fn a_command_is_a_classifier_of_a_study() {
+    let case = case_of_first_object();
+    case.file("study.toml", study(&format!("[\"linear_svm\", {FIRST}]")));
+    let run = ["run", "study.toml", "--out", "out"];
+    case.succeeds(&run);
+    let calls = fs::read_to_string(case.path("calls")).unwrap();
+    let bytes =
+        |line: &str| -> Vec<usize> { line.split(' ').map(|n| n.parse().unwrap()).collect() };
+    for line in calls.lines() {
+        // 54 training and 18 test rows of 16 features.
+        let [n_arguments, train, test] = bytes(line)[..] else {
+            panic!("{line}")
+        };
+        assert_eq!(n_arguments, 4);
+        assert!((54 * 17 * 8..54 * 17 * 8 + 2000).contains(&train), "{line}");
+        assert!((18 * 16 * 8..18 * 16 * 8 + 1000).contains(&test), "{line}");
+    }
+    let table = fs::read_to_string(case.path("out/accuracy.csv")).unwrap();
+    let mut rows = csv::Reader::from_reader(table.as_bytes());
+    let headers = rows.headers().unwrap().clone();
+    let place = |name: &str| headers.iter().position(|header| header == name).unwrap();
+    let rows: Vec<_> = rows
+        .records()
+        .map(Result::unwrap)
+        .filter(|row| &row[place("classifier")] == "mine")
+        .collect();
+    assert_eq!(rows.len(), 2);
+    assert!(
+        rows.iter()
+            .all(|row| &row[place("n_correct")] == "2" && &row[place("n_test")] == "18")
+    );
+    assert!(
+        fs::read_to_string(case.path("out/report.html"))
+            .unwrap()
+            .contains("mine")
+    );
+
+    // The second run continues the first, from any folder, and reports without a call.
+    assert_eq!(n_calls(&case), 2);
+    case.succeeds(&run);
+    case.succeeds(&["report", "out"]);
+    assert_eq!(n_calls(&case), 2);
+    // A changed program, and a changed version, are computed again; other classifiers are not.
+    case.file("mine.sh", "echo new >> calls\ncp $1 $4\n");
+    case.succeeds(&run);
+    assert_eq!(n_calls(&case), 4);
+    let later = FIRST.replace("\"2\"", "\"3\"");
+    case.file("study.toml", study(&format!("[\"linear_svm\", {later}]")));
+    case.succeeds(&run);
+    assert_eq!(n_calls(&case), 6);
+    // The study in the results runs elsewhere.
+    case.succeeds(&["run", "out/study.toml", "--out", "elsewhere"]);
+    assert_eq!(
+        fs::read(case.path("out/summary.csv")).unwrap(),
+        fs::read(case.path("elsewhere/summary.csv")).unwrap()
+    );
+}
+
+#[test]
+fn a_command_that_fails_is_named_with_its_message() {
+    let case = case_of_first_object();
+    write_integers(&case.path("few.npy"), [0; 3]).unwrap();
+    write_integers(&case.path("unknown.npy"), [9; N_TEST]).unwrap();
+    for (number, (program, words)) in [
+        (
+            "echo first >&2; echo 'no convergence' >&2; exit 3",
+            ["exit status: 3: no convergence", "exit code 0"],
+        ),
+        ("exit 1", ["exit status: 1: no message", "exit code 0"]),
+        ("kill -9 $$", ["signal: 9", "exit code 0"]),
+        ("true", ["labels.npy", "exit code 0"]),
+        ("echo 3 > $4", ["labels.npy", "exit code 0"]),
+        ("cp few.npy $4", ["3 labels for 18 rows", "one label a row"]),
+        (
+            "cp unknown.npy $4",
+            ["label 9", "labels of the training rows"],
+        ),
+        (
+            "sleep 60",
+            ["longer than its time limit, 0.5 s", "exit code 0"],
+        ),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        case.file("mine.sh", format!("{program}\n"));
+        let classifier = FIRST.replace("version = \"2\"", "time_limit_s = 0.5");
+        case.file("study.toml", study(&classifier));
+        let out = format!("out{number}");
+        let run = ["run", "study.toml", "--out", &out, "--fail-fast"];
+        refused(
+            &case.run(&run),
+            2,
+            &[
+                "configuration 0 (mine, raw), trial ",
+                "classifier mine: ",
+                words[0],
+                words[1],
+            ],
+        );
+        assert!(!case.path(&out).join("summary.csv").exists());
+    }
+    case.file("study.toml", study("{ command = [\"./nothing\"] }"));
+    refused(
+        &case.run(&["run", "study.toml", "--fail-fast"]),
+        2,
+        &["classifier nothing: ./nothing cannot be run"],
+    );
+    // Without --fail-fast, other classifiers are finished.
+    case.file("mine.sh", "echo 'no convergence' >&2; exit 3\n");
+    case.file(
+        "study.toml",
+        study(&format!("[\"nearest_centroid\", {FIRST}]")),
+    );
+    let output = case.run(&["run", "study.toml", "--out", "others"]);
+    assert!(!output.status.success());
+    let failures = fs::read_to_string(case.path("others/failures.csv")).unwrap();
+    assert_eq!(failures.matches("no convergence").count(), 2, "{failures}");
+    assert!(case.path("others/summary.csv").exists());
+}
+
+#[test]
+fn wrong_keys_of_a_command_are_refused() {
+    let case = case_of_first_object();
+    let before = case.names().len() + 1;
+    for (classifier, words) in [
+        (
+            "{ command = [] }",
+            ["an empty command", "a program and its arguments"],
+        ),
+        (
+            "{ command = [\"sh\"], time_limit_s = 0.0 }",
+            ["time_limit_s = 0", "above 0"],
+        ),
+        (
+            "{ command = [\"sh\"], name = \"linear_svm\" }",
+            ["linear_svm", "a name that no other classifier has"],
+        ),
+        (
+            "{ command = [\"sh\"], name = \"a b\" }",
+            ["a b", "letters, digits"],
+        ),
+        (
+            "{ command = [\"sh\"], version = \"1@2\" }",
+            ["1@2", "letters, digits"],
+        ),
+        ("{ command = \"sh\" }", ["invalid type", "sequence"]),
+        ("{ commands = [\"sh\"] }", ["commands", "command"]),
+        ("{ name = \"mine\" }", ["missing field", "command"]),
+        (
+            "[{ command = [\"sh\"] }, { command = [\"sh\", \"-e\"] }]",
+            ["\"sh\" twice", "each value once"],
+        ),
+        ("\"mine\"", ["mine", "linear_svm"]),
+        ("3", ["invalid type", "the name of a classifier"]),
+    ] {
+        case.file("study.toml", study(classifier));
+        refused(
+            &case.run(&["run", "study.toml"]),
+            2,
+            &["study.toml:8", words[0], words[1]],
+        );
+        assert_eq!(case.names().len(), before, "nothing is written");
+    }
+    case.file("study.toml", study("\"mine@1\""));
+    refused(
+        &case.run(&["run", "study.toml"]),
+        2,
+        &["classifier mine: no code for version 1", "bubbletouch.run"],
+    );
+}
