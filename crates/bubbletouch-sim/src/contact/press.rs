@@ -127,10 +127,8 @@ fn to_place(
 ) -> Option<Contact> {
     let by_rows = |workspace: &Workspace| match until {
         TravelGoal::Depth(_) | TravelGoal::Travel(_) => true,
-        // At a pose a mesh may be behind the substrate of some taxels, and held parts push from behind.
-        TravelGoal::Pose => {
-            objects.iter().all(|object| object.spheres().is_some()) && !workspace.holds_any()
-        }
+        // Held parts push from behind the substrate.
+        TravelGoal::Pose => !workspace.holds_any(),
     };
     if let Some(grid) = patch.even_grid()
         && by_rows(workspace)

@@ -3,10 +3,11 @@
 //! A mesh can be rounded by a radius R: the object is then the set of all points within R of a triangle. A taxel of radius ρ touches this object where a taxel
 //! of radius ρ + R would touch the triangles, so the contact of rounded shapes is exact. A capsule is a rounded line segment.
 
+use super::mesh_blocks::MeshBlocks;
 use crate::error::{Error, Result};
 use crate::geometry::Aabb;
 use crate::mesh::primitives::check_capsule;
-use crate::mesh::{Bvh, TriangleMesh, Welded};
+use crate::mesh::{Bvh, Triangle, TriangleMesh, Welded};
 use glam::{DMat3, DQuat, DVec3};
 use std::sync::Arc;
 
@@ -22,8 +23,8 @@ struct Data {
     /// Distance of the object's surface from the triangles, metres; 0 for a mesh that is not rounded.
     rounding: f64,
     bvh: Bvh,
-    /// Contact data per triangle, in the order of the tree.
-    faces: Vec<ContactFace>,
+    /// Triangles with their contact data, in blocks.
+    blocks: MeshBlocks,
 }
 
 /// Contact data of one triangle: its face, and the edges and corners that belong to no earlier triangle.
@@ -35,11 +36,25 @@ pub struct ContactFace {
     /// triangle. On a smooth surface this normal is therefore approximately minus the normal of this triangle. The normal is zero if there is not exactly one
     /// neighbour, or if the neighbour is too thin.
     pub across: [DVec3; 3],
-    /// For each side, from corner i to the next corner, whether the side belongs to this triangle (and not to the neighbouring triangle).
+    /// For each side, from corner i to the next corner, whether the side belongs to this triangle (and not to the neighbouring triangle), and the triangles do
+    /// not lie in one plane.
     pub has_edge: [bool; 3],
     /// For each corner, whether the corner belongs to this triangle (and not to another triangle with the same corner).
     pub has_corner: [bool; 3],
+    /// For each corner, whether the triangles around the corner do not lie in one plane.
+    pub is_sharp: [bool; 3],
+    /// Largest distance of a direction of contact from the normal, for the face, its own edges and its own corners; 2 if the directions are unknown.
+    pub spread: f64,
 }
+
+/// Distance between the unit normals of two triangles up to which the triangles lie in one plane. If larger, a gap opens between faces whose common edge is
+/// left out; if smaller, edges inside flat faces are evaluated needlessly.
+pub(crate) const FLAT: f64 = 1e-8;
+/// Distance of a direction of contact from the normal beyond which a triangle's directions count as unknown. Directions around a corner are bounded by the
+/// normals around it if all these normals are within 90° (distance √2) of one normal.
+const MAX_SPREAD: f64 = 1.3;
+/// Spread of a triangle with unknown directions of contact; larger than any distance between unit vectors.
+const UNKNOWN: f64 = 2.0;
 
 impl MeshModel {
     /// Prepares a mesh for contacts; takes a few microseconds per triangle.
@@ -47,14 +62,14 @@ impl MeshModel {
         let rounding = 0.0;
         let bvh = Bvh::new(&mesh);
         let faces = contact_faces(&mesh, &Welded::new(&mesh));
-        let faces = (0..faces.len()).map(|place| faces[bvh.number(place)]);
-        let faces = faces.collect();
+        let triangles: Vec<Triangle> = (0..faces.len()).map(|t| mesh.triangle(t)).collect();
+        let blocks = MeshBlocks::new(&triangles, &faces);
         Self {
             data: Arc::new(Data {
                 mesh,
                 rounding,
                 bvh,
-                faces,
+                blocks,
             }),
         }
     }
@@ -105,9 +120,9 @@ impl MeshModel {
         &self.data.bvh
     }
 
-    /// Returns the contact data per triangle, in the order of the tree.
-    pub fn faces(&self) -> &[ContactFace] {
-        &self.data.faces
+    /// Returns the triangles in blocks, for searches with vector instructions.
+    pub(crate) fn blocks(&self) -> &MeshBlocks {
+        &self.data.blocks
     }
 
     /// Returns the bounding box of the object, metres.
@@ -137,29 +152,31 @@ impl MeshModel {
 
     /// Returns each vertex that belongs to a triangle, once.
     pub fn corners(&self) -> impl Iterator<Item = DVec3> {
-        let Data { bvh, faces, .. } = &*self.data;
-        let triangles = bvh.triangles().iter().zip(faces);
-        let corners =
-            triangles.flat_map(|(triangle, face)| triangle.0.into_iter().zip(face.has_corner));
+        let triangles = self.data.blocks.triangles.iter();
+        let corners = triangles.flat_map(|t| t.corners.into_iter().zip(t.face.has_corner));
         corners.filter_map(|(corner, is_own)| is_own.then_some(corner))
     }
 }
 
 fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
-    let mut has_corner_owner = vec![false; mesh.vertices().len()];
-    let own = |corner: u32| !std::mem::replace(&mut has_corner_owner[corner as usize], true);
-    let mut own_corner = own;
+    let mut corners: Vec<CornerNormals> = vec![CornerNormals::default(); mesh.vertices().len()];
     let mut faces: Vec<ContactFace> = (0..mesh.n_triangles())
-        .map(|number| ContactFace {
-            normal: mesh.triangle(number).normal().unwrap_or(DVec3::ZERO),
-            across: [DVec3::ZERO; 3],
-            // Initially all sides; shared ones are removed below. A triangle with a repeated corner has one side, which is not shared.
-            has_edge: match welded.corners[number] {
-                [a, b, c] if a == b => [false, b != c, false],
-                [a, b, c] if b == c || c == a => [true, false, false],
-                _ => [true; 3],
-            },
-            has_corner: welded.corners[number].map(&mut own_corner),
+        .map(|number| {
+            let normal = mesh.triangle(number).normal().unwrap_or(DVec3::ZERO);
+            let mut own = |corner: u32| corners[corner as usize].add(normal);
+            ContactFace {
+                normal,
+                across: [DVec3::ZERO; 3],
+                // Initially all sides; shared ones are removed below. A triangle with a repeated corner has one side, which is not shared.
+                has_edge: match welded.corners[number] {
+                    [a, b, c] if a == b => [false, b != c, false],
+                    [a, b, c] if b == c || c == a => [true, false, false],
+                    _ => [true; 3],
+                },
+                has_corner: welded.corners[number].map(&mut own),
+                is_sharp: [true; 3],
+                spread: 0.0,
+            }
         })
         .collect();
     for sides in welded.edges() {
@@ -170,9 +187,68 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
         if let [neighbour] = others {
             let normal = faces[neighbour.triangle as usize].normal;
             let is_same_way = neighbour.is_forward == first.is_forward;
-            faces[first.triangle as usize].across[usize::from(first.side)] =
-                if is_same_way { normal } else { -normal };
+            let across = if is_same_way { normal } else { -normal };
+            let face = &mut faces[first.triangle as usize];
+            face.across[usize::from(first.side)] = across;
+            if normal != DVec3::ZERO && (face.normal + across).length() < FLAT {
+                face.has_edge[usize::from(first.side)] = false;
+            }
+        } else {
+            for corner in first.edge {
+                corners[corner as usize].spread = UNKNOWN;
+            }
         }
     }
+    for (face, numbers) in faces.iter_mut().zip(&welded.corners) {
+        let around = numbers.map(|corner| corners[corner as usize].spread);
+        face.is_sharp = around.map(|spread| spread > FLAT);
+        face.spread = face.own_spread(around);
+    }
     faces
+}
+
+impl ContactFace {
+    /// Returns the spread of the triangle. `around` contains, for each corner, the largest distance of a normal around the corner from the normal of the
+    /// triangle that owns the corner.
+    fn own_spread(&self, around: [f64; 3]) -> f64 {
+        if self.normal == DVec3::ZERO {
+            return UNKNOWN;
+        }
+        let mut spread = 0.0_f64;
+        for k in 0..3 {
+            if self.has_edge[k] {
+                spread = spread.max(match self.across[k] == DVec3::ZERO {
+                    true => UNKNOWN,
+                    false => (self.normal + self.across[k]).length(),
+                });
+            }
+            if self.has_corner[k] {
+                spread = spread.max(around[k]);
+            }
+        }
+        if spread > MAX_SPREAD { UNKNOWN } else { spread }
+    }
+}
+
+/// Normals of the triangles around a corner.
+#[derive(Clone, Copy, Debug, Default)]
+struct CornerNormals {
+    /// Normal of the first triangle, which owns the corner.
+    first: Option<DVec3>,
+    /// Largest distance of a normal from the first normal.
+    spread: f64,
+}
+
+impl CornerNormals {
+    /// Adds the normal of a triangle, zero if the triangle is too thin. Returns whether the triangle is the first.
+    fn add(&mut self, normal: DVec3) -> bool {
+        let is_first = self.first.is_none();
+        let first = *self.first.get_or_insert(normal);
+        let distance = match normal == DVec3::ZERO {
+            true => UNKNOWN,
+            false => normal.distance(first),
+        };
+        self.spread = self.spread.max(distance);
+        is_first
+    }
 }

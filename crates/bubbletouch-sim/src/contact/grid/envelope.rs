@@ -1,238 +1,411 @@
-//! Heights at which a mesh stops each taxel, computed only for triangles that the patch can reach.
+//! Heights at which meshes stop the taxels of a flat grid, computed only for triangles that taxels may touch.
+//!
+//! The search descends the tree of each mesh ([`block_search`](super::block_search)) and evaluates the remaining triangles for their candidate taxels:
+//! faces row by row, edges and corners taxel by taxel. Nodes and triangles with few candidates are skipped if these taxels are already stopped below.
+//!
+//! A press from the front counts each triangle. At a pose, a triangle counts for a taxel unless its far side is behind the taxel's substrate. Triangles whose
+//! near side is in front of the substrate count for each taxel; the others are evaluated with this rule ([`stop_in_front`]).
 
+use super::block_search::{BlockSearch, Candidates};
 use super::lines::GridLines;
 use super::placed_objects::{PlacedObjects, TravelGoal};
+use crate::contact::instructions::{Instructions, for_instructions};
+use crate::contact::mesh::skin_mesh::{MeshAt, stop_in_front};
 use crate::contact::mesh::swept_triangle::{SweptEdge, SweptFace, corner_height};
-use crate::geometry::{Aabb, Pose};
 use crate::mesh::Triangle;
-use crate::objects::{ContactFace, MeshModel, Model};
-use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
-use std::cell::Cell;
+use crate::objects::mesh_blocks::{ContactTriangle, LANES, MAX_DEPTH, MeshBlocks};
+use crate::objects::{ContactFace, Model};
+use glam::{DMat3, DVec2, DVec3};
+use std::ops::Range;
 
 /// Travel of the patch at which a triangle first stops each taxel, given as the least height in the patch frame.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Envelope {
     /// Heights at which triangles stop the taxels, metres, shape (n_taxels,); infinite if no triangle evaluated so far stops the taxel.
-    pub heights: Vec<f64>,
-    /// Smallest of the heights, metres.
+    heights: Vec<f64>,
+    n_columns: usize,
+    /// Rectangle of taxels that contains all finite heights.
+    rows: Range<usize>,
+    columns: Range<usize>,
+    /// Smallest of the heights, metres; infinite if the goal of the press does not depend on it.
     pub first: f64,
 }
 
 impl Envelope {
-    /// Resets the heights to infinity for `n_taxels` taxels.
-    pub fn clear(&mut self, n_taxels: usize) {
-        self.heights.clear();
-        self.heights.resize(n_taxels, f64::INFINITY);
+    /// Resets the heights to infinity. If the grid is unchanged, only the rectangle of finite heights is written.
+    fn clear(&mut self, n_columns: usize, n_rows: usize) {
+        if (self.n_columns, self.heights.len()) == (n_columns, n_columns * n_rows) {
+            for row in self.rows.clone() {
+                self.heights[row * n_columns..][self.columns.clone()].fill(f64::INFINITY);
+            }
+        } else {
+            self.n_columns = n_columns;
+            self.heights.clear();
+            self.heights.resize(n_columns * n_rows, f64::INFINITY);
+        }
+        (self.rows, self.columns) = (n_rows..0, n_columns..0);
         self.first = f64::INFINITY;
+    }
+
+    /// Returns the rows and the columns of the taxels that a mesh may stop.
+    pub fn rectangle(&self) -> (&Range<usize>, &Range<usize>) {
+        (&self.rows, &self.columns)
+    }
+
+    /// Returns the heights at which meshes stop the taxels of a row, for the columns of the rectangle, metres.
+    pub fn row(&self, row: usize) -> &[f64] {
+        &self.heights[row * self.n_columns..][self.columns.clone()]
     }
 
     /// Computes the heights at which meshes stop the taxels, up to the goal of the press. Returns whether there is a mesh. `first` is the travel at first
     /// contact with spheres.
-    pub fn look(&mut self, placed: &PlacedObjects, (goal, first): (TravelGoal, f64)) -> bool {
-        let pairs = placed.objects.iter().zip(placed.patch_from_objects);
-        let meshes = pairs.filter_map(|(object, pose)| match object {
-            Model::Mesh(mesh) => Some((mesh, pose)),
-            Model::Spheres(_) => None,
-        });
-        let mut meshes = meshes.peekable();
-        let has_meshes = meshes.peek().is_some();
-        let n_taxels = placed.lines.x.positions.len() * placed.lines.y.positions.len();
-        self.clear(if has_meshes { n_taxels } else { 0 });
-        for (mesh, pose) in meshes {
-            self.lower(mesh, pose, placed, (goal, first));
+    pub fn look(
+        &mut self,
+        placed: &PlacedObjects,
+        (goal, first): (TravelGoal, f64),
+        instructions: Instructions,
+    ) -> bool {
+        self.clear(
+            placed.lines.x.positions.len(),
+            placed.lines.y.positions.len(),
+        );
+        let mut has_meshes = false;
+        for (object, pose) in placed.objects.iter().zip(placed.patch_from_objects) {
+            let Model::Mesh(mesh) = object else {
+                continue;
+            };
+            has_meshes = true;
+            let reach = placed.radius + mesh.rounding();
+            let rotation = DMat3::from_quat(pose.rotation);
+            let mut sweep = Sweep {
+                rotation,
+                translation: pose.translation,
+                reach,
+                behind: placed.behind,
+                lines: placed.lines,
+                goal,
+                others: first,
+                envelope: self,
+                behind_substrate: [0..0, 0..0],
+            };
+            let bounds =
+                BlockSearch::new(mesh.blocks(), pose, (reach, placed.behind), placed.lines);
+            sweep_blocks(instructions, &mut sweep, mesh.blocks(), &bounds);
+            let may_enter = sweep.behind_substrate;
+            self.enter(&MeshAt::new(mesh, pose), placed, may_enter);
         }
         has_meshes
     }
 
-    /// Lowers the stored heights to the heights at which a mesh stops the taxels, up to the goal of the press.
-    fn lower(
-        &mut self,
-        mesh: &MeshModel,
-        pose: &Pose,
-        placed: &PlacedObjects,
-        goal: (TravelGoal, f64),
-    ) {
-        let first = Cell::new(self.first);
-        let radius = placed.radius + mesh.rounding();
-        let sweep = Sweep {
-            view: MeshView::new(pose, radius, placed.lines),
-            radius,
-            lines: placed.lines,
-            goal,
-            heights: Cell::from_mut(&mut self.heights[..]).as_slice_of_cells(),
-            first: &first,
-        };
-        let [low, high] = sweep.view.turned(&mesh.bvh().bounds());
-        if sweep.view.is_beside(low, high) || low.z - radius >= sweep.limit() {
-            return;
+    /// Stops the taxels of a rectangle whose substrates are inside the solid mesh.
+    fn enter(&mut self, mesh: &MeshAt, placed: &PlacedObjects, [columns, rows]: [Range<usize>; 2]) {
+        for row in rows {
+            for column in columns.clone() {
+                let height = &mut self.heights[row * self.n_columns + column];
+                // A taxel at its stroke stays there, even if the mesh reaches further.
+                if *height < placed.behind + placed.radius {
+                    continue;
+                }
+                let (x, y) = (
+                    placed.lines.x.positions[column],
+                    placed.lines.y.positions[row],
+                );
+                let at = DVec3::new(x, y, 0.0);
+                if let Some(entered) = mesh.entered_on_grid(at, placed.radius, placed.behind) {
+                    *height = height.min(entered);
+                    cover(&mut self.rows, row..row + 1);
+                    cover(&mut self.columns, column..column + 1);
+                }
+            }
         }
-        mesh.bvh().search_places(
-            sweep.limit(),
-            |bounds| sweep.bound(bounds),
-            |place, triangle, _| {
-                sweep.lower_to(triangle, &mesh.faces()[place]);
-                sweep.limit()
-            },
-        );
-        self.first = first.get();
     }
 }
 
-/// State of the search over one mesh. The heights are stored in `Cell`s, so that the search can read and lower them at any time.
-struct Sweep<'a> {
-    view: MeshView,
-    /// Sum of a taxel's radius and the rounding of the mesh, metres.
-    radius: f64,
-    lines: &'a GridLines,
-    /// Goal of the press, and the travel at first contact with the objects evaluated before.
-    goal: (TravelGoal, f64),
-    heights: &'a [Cell<f64>],
-    first: &'a Cell<f64>,
+/// Enlarges a range so that it contains another.
+#[inline(always)]
+fn cover(range: &mut Range<usize>, part: Range<usize>) {
+    *range = match range.start < range.end {
+        true => range.start.min(part.start)..range.end.max(part.end),
+        false => part,
+    };
 }
 
-/// Maximum number of taxels near a bounding box for which the search tests whether the box is hidden. If larger, tests are wasted on triangles as large as
-/// taxels; if smaller, boxes of small triangles are searched needlessly.
-const FEW: usize = 2;
+/// Maximum number of taxels for which the search tests whether they are already stopped below a node or a triangle. If larger, tests are wasted on large
+/// triangles; if smaller, small triangles are evaluated needlessly.
+const FEW: usize = 4;
+
+/// Distance by which a face extends beyond its sides, relative to the radius of a taxel. It closes the gaps at sides between triangles in one plane, which are
+/// not evaluated: gaps of [`FLAT`](crate::objects::FLAT) radii, and of rounding.
+const FACE_SLACK: f64 = 1.5 * crate::objects::FLAT;
+
+/// State of the search over one mesh.
+struct Sweep<'a> {
+    rotation: DMat3,
+    translation: DVec3,
+    /// Sum of a taxel's radius and the rounding of the mesh, metres.
+    reach: f64,
+    /// Height of the substrate, metres; −∞ if the press comes from the front.
+    behind: f64,
+    lines: &'a GridLines,
+    goal: TravelGoal,
+    /// Travel at first contact with the spheres, metres.
+    others: f64,
+    envelope: &'a mut Envelope,
+    /// Columns and rows of the taxels behind whose substrates triangles may lie.
+    behind_substrate: [Range<usize>; 2],
+}
+
+for_instructions! {
+    /// Lowers the heights of the envelope to the heights at which the triangles of a mesh stop the taxels, up to the goal of the press.
+    fn sweep_blocks(
+        sweep: &mut Sweep,
+        blocks: &MeshBlocks,
+        bounds: &BlockSearch,
+    ) = sweep_each_block
+}
+
+#[inline(always)]
+fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch) {
+    const STACK: usize = (LANES - 1) * MAX_DEPTH + 1;
+    let mut stack = [(f32::NEG_INFINITY, 0_u32); STACK];
+    let mut n_waiting = 1;
+    while n_waiting > 0 {
+        n_waiting -= 1;
+        let (low, child) = stack[n_waiting];
+        // Rounded up, so that no triangle below the limit is lost.
+        let limit = (sweep.limit() as f32).next_up();
+        if low >= limit {
+            continue;
+        }
+        let number = (child / 2) as usize;
+        if child % 2 == 1 {
+            let block = &blocks.blocks[number];
+            let candidates = bounds.block(block, limit);
+            sweep.note_behind(&candidates);
+            for lane in lanes(candidates.lanes) {
+                if !sweep.is_hidden(&candidates, lane) {
+                    sweep.lower(
+                        &blocks.triangles[block.first as usize + lane],
+                        candidates.rectangle(lane),
+                    );
+                }
+            }
+            continue;
+        }
+        let node = &blocks.nodes[number];
+        let candidates = bounds.node(node, limit);
+        sweep.note_behind(&candidates);
+        // The children are sorted, the lowest last, so that it is visited first.
+        let start = n_waiting;
+        for lane in lanes(candidates.lanes) {
+            if sweep.is_hidden(&candidates, lane) {
+                continue;
+            }
+            let low = candidates.low[lane];
+            let mut at = n_waiting;
+            while at > start && stack[at - 1].0 < low {
+                stack[at] = stack[at - 1];
+                at -= 1;
+            }
+            stack[at] = (low, node.children[lane]);
+            n_waiting += 1;
+        }
+    }
+}
+
+/// Returns the indices of the set bits, ascending.
+#[inline(always)]
+fn lanes(mut bits: u32) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = bits.trailing_zeros();
+        bits &= bits.wrapping_sub(1);
+        (lane < 32).then_some(lane as usize)
+    })
+}
 
 impl Sweep<'_> {
     /// Returns the travel, metres, beyond which the heights do not affect the press.
+    #[inline(always)]
     fn limit(&self) -> f64 {
         match self.goal {
-            (TravelGoal::Travel(travel), _) => travel,
-            (TravelGoal::Pose, _) => 0.0,
-            (TravelGoal::Depth(depth), others) => self.first.get().min(others) + depth,
+            TravelGoal::Travel(travel) => travel,
+            TravelGoal::Pose => 0.0,
+            TravelGoal::Depth(depth) => self.envelope.first.min(self.others) + depth,
         }
     }
 
-    /// Returns a lower bound, metres, of the travel at which a triangle in a bounding box stops a taxel. The bound is infinite if no triangle in the box can
-    /// lower a height.
-    fn bound(&self, bounds: &Aabb) -> f64 {
-        let [low, high] = self.view.turned(bounds);
-        if self.view.is_beside(low, high) || self.is_hidden(low, high) {
-            return f64::INFINITY;
+    /// Adds the candidates behind whose substrates triangles may lie.
+    #[inline(always)]
+    fn note_behind(&mut self, candidates: &Candidates) {
+        for lane in lanes(candidates.behind) {
+            let [columns, rows] = candidates.rectangle(lane);
+            cover(&mut self.behind_substrate[0], columns);
+            cover(&mut self.behind_substrate[1], rows);
         }
-        low.z - self.radius
     }
 
-    /// Returns whether the triangles in a small box certainly cannot lower the heights of the taxels near the box. At a horizontal distance b from the box, a
-    /// ball of radius ρ stops no lower than √(ρ² − b²) below the box.
-    fn is_hidden(&self, low: DVec3, high: DVec3) -> bool {
-        let (center, half) = (0.5 * (low + high), 0.5 * (high - low) + self.radius);
-        let rows = self.lines.y.within(center.y, half.y);
-        let columns = self.lines.x.within(center.x, half.x);
-        if rows.len() * columns.len() > FEW {
+    /// Returns whether the few candidates in a lane are already stopped below the lane's triangles.
+    #[inline(always)]
+    fn is_hidden(&self, candidates: &Candidates, lane: usize) -> bool {
+        let [columns, rows] = candidates.rectangle(lane);
+        if columns.len() * rows.len() > FEW {
             return false;
         }
-        let n_columns = self.lines.x.positions.len();
-        let limit = self.limit();
-        rows.into_iter().all(|row| {
-            let y = self.lines.y.positions[row];
-            let dy = (low.y - y).max(y - high.y).max(0.0);
-            columns.clone().all(|column| {
-                let x = self.lines.x.positions[column];
-                let dx = (low.x - x).max(x - high.x).max(0.0);
-                let q = self.radius * self.radius - dx * dx - dy * dy;
-                let above = low.z - self.heights[row * n_columns + column].get().min(limit);
-                q <= 0.0 || (above >= 0.0 && q <= above * above)
-            })
-        })
+        let low = f64::from(candidates.low[lane]);
+        for row in rows {
+            let heights = &self.envelope.heights[row * self.envelope.n_columns..];
+            if heights[columns.clone()].iter().any(|&height| height > low) {
+                return false;
+            }
+        }
+        true
     }
 
-    fn lower_to(&self, triangle: &Triangle, face: &ContactFace) {
-        let corners = triangle.0.map(|corner| self.view.place(corner));
+    /// Lowers the heights of a rectangle of taxels to the heights at which a triangle stops them.
+    #[inline(always)]
+    fn lower(&mut self, triangle: &ContactTriangle, [columns, rows]: [Range<usize>; 2]) {
+        let place = |corner: DVec3| self.rotation * corner + self.translation;
+        let corners = triangle.corners.map(place);
+        cover(&mut self.envelope.rows, rows.clone());
+        cover(&mut self.envelope.columns, columns.clone());
         let lowest = corners[0].z.min(corners[1].z).min(corners[2].z);
-        if lowest - self.radius >= self.limit() {
-            return;
+        if lowest - self.reach < self.behind {
+            return self.lower_by_rule(&Triangle(corners), [columns, rows]);
         }
-        let normal = self.view.rotation * face.normal;
-        if let Some(swept) = SweptFace::new(&corners, normal, self.radius) {
-            self.lower_under(swept.ground(), |at| swept.height(at));
+        let face = &triangle.face;
+        let normal = self.rotation * face.normal;
+        let swept = SweptFace::new(&corners, normal, self.reach);
+        if columns.len() * rows.len() == 1 {
+            let place = (rows.start, columns.start);
+            return self.lower_one(face, (&corners, normal, swept), place);
+        }
+        if let Some(swept) = swept {
+            self.lower_to_face(&swept, [columns.clone(), rows.clone()]);
         }
         for k in 0..3 {
             if face.has_edge[k] {
                 let (from, to) = (corners[k], corners[(k + 1) % 3]);
-                let across = self.view.rotation * face.across[k];
-                if let Some(swept) = SweptEdge::new(from, to, self.radius, [normal, across]) {
-                    self.lower_under(swept.ground(), |at| swept.height(at));
+                let across = self.rotation * face.across[k];
+                if let Some(swept) = SweptEdge::new(from, to, self.reach, [normal, across]) {
+                    self.lower_under(swept.ground(), [&columns, &rows], |at| swept.height(at));
                 }
             }
-            if face.has_corner[k] {
+            if face.has_corner[k] && face.is_sharp[k] {
                 let corner = corners[k];
-                let ground = (corner.xy() - self.radius, corner.xy() + self.radius);
-                self.lower_under(ground, |at| corner_height(corner, self.radius, at));
+                let ground = (
+                    corner.truncate() - self.reach,
+                    corner.truncate() + self.reach,
+                );
+                let reach = self.reach;
+                self.lower_under(ground, [&columns, &rows], |at| {
+                    corner_height(corner, reach, at)
+                });
             }
         }
     }
 
-    /// Lowers the heights of the taxels inside a rectangle (given by two corners) to the value of the function `height` at each taxel.
-    #[inline]
-    fn lower_under(&self, ground: (DVec2, DVec2), height: impl Fn(DVec2) -> Option<f64>) {
-        let (low, high) = ground;
-        let (center, half) = (0.5 * (low + high), 0.5 * (high - low));
-        let rows = self.lines.y.within(center.y, half.y);
-        if rows.is_empty() {
-            return;
+    /// Lowers the height of one taxel to the height at which a triangle stops it. If the taxel is under the face, no edge or corner is lower; otherwise only
+    /// sides with the taxel on their outer side are evaluated, and the corners of these sides.
+    #[inline(always)]
+    fn lower_one(
+        &mut self,
+        face: &ContactFace,
+        (corners, normal, swept): (&[DVec3; 3], DVec3, Option<SweptFace>),
+        (row, column): (usize, usize),
+    ) {
+        let at = DVec2::new(self.lines.x.positions[column], self.lines.y.positions[row]);
+        let mut is_outside = [true; 3];
+        if let Some(swept) = swept {
+            is_outside = swept.is_outside(at, FACE_SLACK * self.reach);
+            if is_outside == [false; 3] {
+                return self.lower_to(row, column, swept.height_at(at));
+            }
         }
-        let columns = self.lines.x.within(center.x, half.x);
-        let n_columns = self.lines.x.positions.len();
+        for k in 0..3 {
+            let next = (k + 1) % 3;
+            if face.has_edge[k] && is_outside[k] {
+                let across = self.rotation * face.across[k];
+                let swept = SweptEdge::new(corners[k], corners[next], self.reach, [normal, across]);
+                if let Some(height) = swept.and_then(|swept| swept.height(at)) {
+                    self.lower_to(row, column, height);
+                }
+            }
+            // The corner at the end of side k is the start of the next side.
+            if (is_outside[k] || is_outside[next]) && face.has_corner[next] && face.is_sharp[next] {
+                let lowest = self.envelope.heights[row * self.envelope.n_columns + column];
+                if corners[next].z - self.reach < lowest
+                    && let Some(height) = corner_height(corners[next], self.reach, at)
+                {
+                    self.lower_to(row, column, height);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn lower_to(&mut self, row: usize, column: usize, height: f64) {
+        let lowest = &mut self.envelope.heights[row * self.envelope.n_columns + column];
+        if height < *lowest {
+            *lowest = height;
+            self.envelope.first = self.envelope.first.min(height);
+        }
+    }
+
+    /// Lowers the heights of the taxels of a rectangle that a face stops, row by row.
+    #[inline(always)]
+    fn lower_to_face(&mut self, face: &SweptFace, [columns, rows]: [Range<usize>; 2]) {
+        let slack = FACE_SLACK * self.reach;
+        let is_for_depth = matches!(self.goal, TravelGoal::Depth(_));
         for row in rows {
             let y = self.lines.y.positions[row];
-            let heights = &self.heights[row * n_columns..][columns.clone()];
-            for (lowest, &x) in heights.iter().zip(&self.lines.x.positions[columns.clone()]) {
-                if let Some(height) = height(DVec2::new(x, y))
-                    && height < lowest.get()
+            let first = row * self.envelope.n_columns;
+            let heights = &mut self.envelope.heights[first..][columns.clone()];
+            face.lower_row(y, &self.lines.x.positions[columns.clone()], slack, heights);
+            if is_for_depth {
+                let lowest = heights.iter().fold(self.envelope.first, |a, &b| a.min(b));
+                self.envelope.first = lowest;
+            }
+        }
+    }
+
+    /// Lowers the heights of the taxels that are in the rectangle of candidates and in a rectangle of places (given by two corners) to the value of the
+    /// function `height` at each taxel.
+    #[inline(always)]
+    fn lower_under(
+        &mut self,
+        (low, high): (DVec2, DVec2),
+        [columns, rows]: [&Range<usize>; 2],
+        height: impl Fn(DVec2) -> Option<f64>,
+    ) {
+        let lines = self.lines;
+        for row in rows.clone() {
+            let y = lines.y.positions[row];
+            if y < low.y || y > high.y {
+                continue;
+            }
+            for column in columns.clone() {
+                let x = lines.x.positions[column];
+                if x >= low.x
+                    && x <= high.x
+                    && let Some(height) = height(DVec2::new(x, y))
                 {
-                    lowest.set(height);
-                    self.first.set(self.first.get().min(height));
+                    self.lower_to(row, column, height);
                 }
             }
         }
     }
-}
 
-/// Transform from a mesh's frame to the patch frame, which also rotates bounding boxes.
-struct MeshView {
-    rotation: DMat3,
-    translation: DVec3,
-    /// Positive and negative parts of the rotation matrix; their products with a box's corners are the bounds of the rotated box.
-    positive: DMat3,
-    negative: DMat3,
-    /// Half the patch's width along x and y, enlarged by the taxels' radius, metres.
-    half_size: DVec2,
-}
-
-impl MeshView {
-    fn new(pose: &Pose, radius: f64, lines: &GridLines) -> Self {
-        let rotation = DMat3::from_quat(pose.rotation);
-        let part = |select: fn(DVec3) -> DVec3| {
-            DMat3::from_cols(
-                select(rotation.x_axis),
-                select(rotation.y_axis),
-                select(rotation.z_axis),
-            )
-        };
-        let last = |positions: &[f64]| positions.last().copied().unwrap_or(0.0);
-        Self {
-            rotation,
-            translation: pose.translation,
-            positive: part(|column| column.max(DVec3::ZERO)),
-            negative: part(|column| column.min(DVec3::ZERO)),
-            half_size: DVec2::new(last(&lines.x.positions), last(&lines.y.positions)) + radius,
+    /// Lowers the heights of the taxels of a rectangle to the heights at which a triangle stops them, unless its far side is behind their substrates.
+    #[cold]
+    #[inline(never)]
+    fn lower_by_rule(&mut self, triangle: &Triangle, [columns, rows]: [Range<usize>; 2]) {
+        for row in rows {
+            for column in columns.clone() {
+                let at = DVec2::new(self.lines.x.positions[column], self.lines.y.positions[row]);
+                if let Some(height) = stop_in_front(triangle, self.reach, at, self.behind) {
+                    self.lower_to(row, column, height);
+                }
+            }
         }
-    }
-
-    fn place(&self, point: DVec3) -> DVec3 {
-        self.rotation * point + self.translation
-    }
-
-    /// Returns the lowest and the highest corner, in the patch frame, of the axis-aligned box around a rotated box.
-    fn turned(&self, bounds: &Aabb) -> [DVec3; 2] {
-        [(bounds.min, bounds.max), (bounds.max, bounds.min)]
-            .map(|(near, far)| self.positive * near + self.negative * far + self.translation)
-    }
-
-    /// Returns whether no taxel lies below a box, given by its lowest and highest corner in the patch frame.
-    fn is_beside(&self, low: DVec3, high: DVec3) -> bool {
-        low.xy().cmpgt(self.half_size).any() || high.xy().cmplt(-self.half_size).any()
     }
 }

@@ -57,6 +57,11 @@ impl Lines {
         self.density = 1.0 / pitch;
     }
 
+    /// Returns the number of lines per metre.
+    pub(super) fn density(&self) -> f64 {
+        self.density
+    }
+
     /// Returns the position of the line that is nearest to a coordinate, metres.
     #[inline(always)]
     pub fn nearest(&self, coordinate: f64) -> f64 {

@@ -6,12 +6,14 @@
 //! | `placed_objects` | objects and poses → objects in the frame of the grid |
 //! | `sphere_search` | sphere unions → the spheres that reach a taxel |
 //! | `placed_sphere` | a sphere → the deflections of the taxels under it |
+//! | `block_search` | a mesh → the triangles that taxels may touch |
 //! | `envelope` | meshes → the height at which they stop each taxel |
 //! | `deflection_grid` | all deflections, and the rectangle that contains those above zero |
 //! | `output_buffer` | deflections → a row of the caller's array |
 //! | `press` | travel → deflections |
 //! | `force` | force → travel |
 
+mod block_search;
 mod deflection_grid;
 mod envelope;
 pub(super) mod force;

@@ -22,8 +22,10 @@ pub(crate) struct GridPress {
     lines: GridLines,
     /// Search for the spheres that can press a taxel.
     search: SphereSearch,
-    /// Heights at which the meshes stop the taxels; empty if there are no meshes.
+    /// Heights at which the meshes stop the taxels.
     envelope: Envelope,
+    /// Whether there are meshes.
+    has_meshes: bool,
     deflections: DeflectionGrid,
     /// Height of the substrate, metres, below which spheres push only taxels whose substrate is inside the sphere. The value is −∞ if the press comes from
     /// the front, where spheres push at any distance behind the taxels.
@@ -65,7 +67,9 @@ impl GridPress {
             lines: &self.lines,
         };
         let mut first = search(self.instructions, &mut self.search, &placed, goal);
-        if self.envelope.look(&placed, (goal, first)) {
+        let instructions = self.instructions;
+        self.has_meshes = self.envelope.look(&placed, (goal, first), instructions);
+        if self.has_meshes {
             first = first.min(self.envelope.first);
         }
         first.is_finite().then_some(first)
@@ -125,16 +129,15 @@ impl GridPress {
             &mut self.deflections,
             output,
         );
-        if !self.envelope.heights.is_empty() {
-            self.deflections
-                .cover(&(0..grid.grid.ny), &(0..grid.grid.nx));
-            let mut heights = self.envelope.heights.chunks_exact(grid.grid.nx);
-            self.deflections.each_row(|_, taxels| {
-                let heights = heights.next().unwrap_or_default();
-                for (deflection, height) in taxels.iter_mut().zip(heights) {
+        if self.has_meshes {
+            let (rows, columns) = self.envelope.rectangle();
+            self.deflections.cover(rows, columns);
+            for row in rows.clone() {
+                let taxels = self.deflections.row(row, columns.clone());
+                for (deflection, height) in taxels.iter_mut().zip(self.envelope.row(row)) {
                     *deflection = deflection.max(travel - height);
                 }
-            });
+            }
         }
     }
 }

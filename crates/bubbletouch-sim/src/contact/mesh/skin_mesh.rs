@@ -80,6 +80,21 @@ impl<'a> MeshAt<'a> {
         Some(Stop { height, triangle })
     }
 
+    /// Returns the height at which the mesh stops a taxel of a flat grid whose substrate is inside the solid mesh; `None` if the substrate is outside.
+    /// The taxel has its centre at `center`, and its substrate at height `behind`. All lengths are in metres.
+    pub fn entered_on_grid(&self, center: DVec3, radius: f64, behind: f64) -> Option<f64> {
+        let taxel = PlacedTaxel {
+            number: 0,
+            center,
+            across: [DVec3::X, DVec3::Y],
+            axis: DVec3::Z,
+            radius,
+            behind,
+        };
+        let stop = self.entered(&AxisView::new(self, &taxel))?;
+        Some(stop.height)
+    }
+
     /// Returns the triangle through which a taxel's axis enters the mesh, if the taxel's substrate is inside the solid mesh. In that case the nearest
     /// triangle behind the substrate faces outwards, and the nearest triangle ahead shows its inner side.
     fn entered(&self, view: &AxisView) -> Option<Stop> {
@@ -170,14 +185,24 @@ impl<'a> AxisView<'a> {
     /// Returns the height at which a triangle stops the taxel; `None` if the triangle misses the taxel or touches it only behind the substrate.
     fn stop(&self, triangle: &Triangle) -> Option<f64> {
         let turned = self.turned(triangle);
-        let radius = self.reach;
-        let height = stopping_height(&turned, radius, DVec2::ZERO)?;
-        if law::reaches_front(height, self.taxel.behind) {
-            return Some(height);
-        }
-        // Height of the far side: the highest place of contact for a taxel that moves down from above.
-        let mirrored = Triangle(turned.0.map(|v| DVec3::new(v.x, v.y, -v.z)));
-        let highest = -stopping_height(&mirrored, radius, DVec2::ZERO)?;
-        law::reaches_front(highest, self.taxel.behind).then_some(height)
+        stop_in_front(&turned, self.reach, DVec2::ZERO, self.taxel.behind)
     }
+}
+
+/// Returns the height at which a triangle stops a taxel with the radius `reach` at the position `at`; `None` if the triangle misses the taxel, or if a taxel
+/// on its far side would be behind the substrate at height `behind`. All lengths are in metres.
+pub(crate) fn stop_in_front(
+    triangle: &Triangle,
+    reach: f64,
+    at: DVec2,
+    behind: f64,
+) -> Option<f64> {
+    let height = stopping_height(triangle, reach, at)?;
+    if law::reaches_front(height, behind) {
+        return Some(height);
+    }
+    // Height of the far side: the highest place of contact for a taxel that moves down from above.
+    let mirrored = Triangle(triangle.0.map(|v| DVec3::new(v.x, v.y, -v.z)));
+    let highest = -stopping_height(&mirrored, reach, at)?;
+    law::reaches_front(highest, behind).then_some(height)
 }

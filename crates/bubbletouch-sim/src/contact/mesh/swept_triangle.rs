@@ -66,24 +66,60 @@ impl SweptFace {
         })
     }
 
-    /// Returns the lowest and the highest corner of the rectangle (x, y) below the face.
-    #[inline]
-    pub fn ground(&self) -> (DVec2, DVec2) {
-        let [a, b, c] = self.corners;
-        (a.min(b).min(c), a.max(b).max(c))
-    }
-
     /// Returns the height of the ball's centre at which the face stops the ball, metres; `None` if the ball misses the face.
     #[inline]
     pub fn height(&self, at: DVec2) -> Option<f64> {
+        (self.is_outside(at, 0.0) == [false; 3]).then(|| self.height_at(at))
+    }
+
+    /// Returns, for each side of the face, whether a position is more than `slack` metres beyond the side.
+    #[inline(always)]
+    pub fn is_outside(&self, at: DVec2, slack: f64) -> [bool; 3] {
         let [a, b, c] = self.corners;
-        let beside = |from: DVec2, to: DVec2| (to - from).perp_dot(at - from);
-        let sides = [beside(a, b), beside(b, c), beside(c, a)];
-        let is_under = match self.normal.z > 0.0 {
-            true => sides.iter().all(|&side| side >= 0.0),
-            false => sides.iter().all(|&side| side <= 0.0),
+        let sign = if self.normal.z > 0.0 { 1.0 } else { -1.0 };
+        [(a, b), (b, c), (c, a)].map(|(from, to)| {
+            let side = to - from;
+            let length = side.x.abs() + side.y.abs();
+            sign * side.perp_dot(at - from) < -slack * length
+        })
+    }
+
+    /// Returns the height at which the plane of the face stops the ball, metres.
+    #[inline(always)]
+    pub fn height_at(&self, at: DVec2) -> f64 {
+        self.height_of_first - self.normal.xy().dot(at - self.corners[0]) / self.normal.z
+    }
+}
+
+impl SweptFace {
+    /// Lowers the heights of taxels in a row along x, at the positions (x, y), to the heights at which the face stops them, metres. The face extends by
+    /// `slack` metres beyond its sides.
+    #[inline(always)]
+    pub fn lower_row(&self, y: f64, x: &[f64], slack: f64, heights: &mut [f64]) {
+        let [a, b, c] = self.corners;
+        let sign = if self.normal.z > 0.0 { 1.0 } else { -1.0 };
+        // The distance of a place from each side times its length is `across − along · (x − from)`, positive inside.
+        let side = |from: DVec2, to: DVec2| {
+            let edge = sign * (to - from);
+            let length = edge.x.abs() + edge.y.abs();
+            (edge.x * (y - from.y) + slack * length, edge.y, from.x)
         };
-        is_under.then(|| self.height_of_first - self.normal.xy().dot(at - a) / self.normal.z)
+        let sides = [side(a, b), side(b, c), side(c, a)];
+        let DVec3 {
+            x: nx,
+            y: ny,
+            z: nz,
+        } = self.normal;
+        let along_y = ny * (y - a.y);
+        for (lowest, &x) in heights.iter_mut().zip(x) {
+            let mut is_under = true;
+            for (across, along, from) in sides {
+                is_under &= across - along * (x - from) >= 0.0;
+            }
+            let height = self.height_of_first - (nx * (x - a.x) + along_y) / nz;
+            let is_lower = is_under & (height < *lowest);
+            *lowest = if is_lower { height } else { *lowest };
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod laws;
 mod limits;
 mod many_bodies;
 mod mesh;
+mod mesh_at_pose;
 mod press_variants;
 mod reference_scenes;
 mod rounded;

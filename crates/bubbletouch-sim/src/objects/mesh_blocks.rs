@@ -1,0 +1,209 @@
+//! Triangles of a mesh in blocks of eight, below a tree of nodes with eight children, for the search of the triangles that taxels of a grid touch.
+//!
+//! A ball of radius ρ that touches the mesh at a point p has its centre at p + ρ d, where the unit vector d is a *direction of contact*: the normal n of a face,
+//! a vector between the normals of two faces at their edge, or a vector among the normals of the faces around a corner. Each triangle has a `spread`: the
+//! largest distance |d − n| of its directions of contact from its normal, for its face, its own edges and its own corners. A node has an `axis` and a spread
+//! that contain the directions of all its triangles. The centres of balls in contact are thereby bounded far more tightly than by boxes enlarged by ρ.
+//!
+//! Seen from the other side of the surface, all directions are reversed. If a triangle is concave at an edge, the edge is touched from the other side only.
+//!
+//! Numbers are rounded to single precision; searches enlarge all bounds accordingly.
+
+use super::ContactFace;
+use crate::geometry::Aabb;
+use crate::mesh::Triangle;
+use glam::DVec3;
+use std::ops::Range;
+
+/// Number of triangles in a block and of children of a node: eight f32 values in a vector of 256 bits.
+pub(crate) const LANES: usize = 8;
+/// Maximum depth of the tree: nodes are divided at medians, and eight triangles are in a block.
+pub(crate) const MAX_DEPTH: usize = 12;
+
+/// One number for each lane.
+pub(crate) type Lane = [f32; LANES];
+
+/// Triangles of a mesh in blocks, and the tree of the blocks.
+#[derive(Clone, Debug)]
+pub(crate) struct MeshBlocks {
+    /// Nodes of the tree, the root first.
+    pub nodes: Vec<BlockNode>,
+    pub blocks: Vec<Block>,
+    /// Triangles with their contact data, in the order of the blocks.
+    pub triangles: Vec<ContactTriangle>,
+    /// Centre of the mesh, to which all positions in nodes and blocks are relative, metres.
+    pub center: DVec3,
+    /// Radius of a ball around the centre that contains the mesh, metres.
+    pub radius: f64,
+}
+
+/// Node with up to eight children; unused lanes contain NaN.
+#[derive(Clone, Debug)]
+pub(crate) struct BlockNode {
+    /// Centres and half sizes of the bounding boxes of the children's triangles, metres.
+    pub center: [Lane; 3],
+    pub half: [Lane; 3],
+    /// Centre and radius of a ball that contains the directions of contact of the children's triangles, on the side of their normals.
+    pub axis: [Lane; 3],
+    pub spread: Lane,
+    /// Children: twice the index of a node, or twice the index of a block plus one.
+    pub children: [u32; LANES],
+}
+
+/// Up to eight triangles; unused lanes contain NaN.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    /// Corners of the triangles, metres.
+    pub corners: [[Lane; 3]; 3],
+    /// Unit normals of the triangles.
+    pub normal: [Lane; 3],
+    /// Largest distances of the directions of contact from the normals.
+    pub spread: Lane,
+    /// Index of the first triangle; the triangles of the other lanes follow.
+    pub first: u32,
+}
+
+/// Triangle in double precision with its contact data, stored together because they are read together.
+#[derive(Clone, Debug)]
+pub(crate) struct ContactTriangle {
+    /// Corners of the triangle, metres.
+    pub corners: [DVec3; 3],
+    pub face: ContactFace,
+}
+
+const UNUSED: Lane = [f32::NAN; LANES];
+
+impl MeshBlocks {
+    /// Builds the blocks of triangles with their contact data, in equal order; at least one triangle.
+    pub fn new(triangles: &[Triangle], faces: &[ContactFace]) -> Self {
+        let bounds = Aabb::around(triangles.iter().map(Triangle::bounds));
+        let bounds = bounds.expect("a mesh has at least one triangle");
+        let mut builder = Builder {
+            triangles,
+            faces,
+            middles: triangles.iter().map(Triangle::middle).collect(),
+            order: (0..triangles.len() as u32).collect(),
+            built: Self {
+                nodes: Vec::new(),
+                blocks: Vec::with_capacity(triangles.len().div_ceil(LANES)),
+                triangles: Vec::with_capacity(triangles.len()),
+                center: bounds.center(),
+                radius: 0.5 * bounds.size().length(),
+            },
+        };
+        builder.node(0..triangles.len());
+        builder.built
+    }
+}
+
+struct Builder<'a> {
+    triangles: &'a [Triangle],
+    faces: &'a [ContactFace],
+    middles: Vec<DVec3>,
+    /// Indices of the triangles, sorted into blocks.
+    order: Vec<u32>,
+    built: MeshBlocks,
+}
+
+impl Builder<'_> {
+    /// Adds the node of the triangles `order[range]` and everything below it; returns its index.
+    fn node(&mut self, range: Range<usize>) -> u32 {
+        let number = self.built.nodes.len();
+        let mut node = BlockNode {
+            center: [UNUSED; 3],
+            half: [UNUSED; 3],
+            axis: [UNUSED; 3],
+            spread: UNUSED,
+            children: [0; LANES],
+        };
+        self.built.nodes.push(node.clone());
+        for (lane, part) in self.parts(range).into_iter().enumerate() {
+            self.summarise(&mut node, lane, part.clone());
+            node.children[lane] = match part.len() <= LANES {
+                true => 2 * self.block(part) + 1,
+                false => 2 * self.node(part),
+            };
+        }
+        self.built.nodes[number] = node;
+        number as u32
+    }
+
+    /// Divides a range into up to eight parts, the largest part first, by medians along the longest side.
+    fn parts(&mut self, range: Range<usize>) -> Vec<Range<usize>> {
+        let mut parts = vec![range];
+        while parts.len() < LANES {
+            let largest = (0..parts.len()).max_by_key(|&part| (parts[part].len(), part));
+            let largest = largest.expect("there is a part");
+            let part = parts[largest].clone();
+            if part.len() <= LANES {
+                break;
+            }
+            let cut = part.start + part.len().div_ceil(2).next_multiple_of(LANES);
+            let middles = self.order[part.clone()]
+                .iter()
+                .map(|&place| self.middles[place as usize]);
+            let (low, high) = middles.fold(
+                (DVec3::INFINITY, DVec3::NEG_INFINITY),
+                |(low, high), middle| (low.min(middle), high.max(middle)),
+            );
+            let axis = (high - low).max_position();
+            let middles = &self.middles;
+            self.order[part.clone()].select_nth_unstable_by(cut - part.start, |&a, &b| {
+                let along = |place: u32| middles[place as usize][axis];
+                along(a).total_cmp(&along(b)).then(a.cmp(&b))
+            });
+            parts[largest] = part.start..cut;
+            parts.insert(largest + 1, cut..part.end);
+        }
+        parts
+    }
+
+    /// Writes the bounds of the triangles `order[range]` into a lane of a node.
+    fn summarise(&self, node: &mut BlockNode, lane: usize, range: Range<usize>) {
+        let places = self.order[range].iter().map(|&place| place as usize);
+        let bounds = places.clone().map(|place| self.triangles[place].bounds());
+        let bounds = Aabb::around(bounds).expect("a part has triangles");
+        let normals = places.clone().map(|place| self.faces[place].normal);
+        let (low, high) = normals.fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), normal| (low.min(normal), high.max(normal)),
+        );
+        let axis = 0.5 * (low + high);
+        let spreads = places.map(|place| {
+            let face = &self.faces[place];
+            face.normal.distance(axis) + face.spread
+        });
+        node.spread[lane] = spreads.fold(0.0, f64::max) as f32;
+        let center = bounds.center() - self.built.center;
+        let half = 0.5 * bounds.size();
+        for k in 0..3 {
+            node.center[k][lane] = center[k] as f32;
+            node.half[k][lane] = half[k] as f32;
+            node.axis[k][lane] = axis[k] as f32;
+        }
+    }
+
+    /// Adds the block of the triangles `order[range]`; returns its index.
+    fn block(&mut self, range: Range<usize>) -> u32 {
+        let mut block = Block {
+            corners: [[UNUSED; 3]; 3],
+            normal: [UNUSED; 3],
+            spread: UNUSED,
+            first: self.built.triangles.len() as u32,
+        };
+        for (lane, &place) in self.order[range].iter().enumerate() {
+            let face = self.faces[place as usize];
+            let corners = self.triangles[place as usize].0;
+            for k in 0..3 {
+                for (own, corner) in block.corners.iter_mut().zip(corners) {
+                    own[k][lane] = (corner - self.built.center)[k] as f32;
+                }
+                block.normal[k][lane] = face.normal[k] as f32;
+            }
+            block.spread[lane] = face.spread as f32;
+            self.built.triangles.push(ContactTriangle { corners, face });
+        }
+        self.built.blocks.push(block);
+        (self.built.blocks.len() - 1) as u32
+    }
+}
