@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import bubbletouch as bt
 import numpy as np
 import pytest
@@ -144,3 +146,22 @@ def test_a_batch_is_its_sets_one_by_one_with_all_results(box: bt.Mesh) -> None:
         first = one["out"][:120]
         assert np.array_equal(of_one, counts[number]) and of_one[0, 0] == np.count_nonzero(first)
         assert of_one[0, 1] == np.count_nonzero(first >= 4e-3)
+
+
+def test_one_patch_and_one_body_need_no_axis_and_out_no_memory() -> None:
+    patch = bt.Patch.grid(64, 64, 1e-3, 3e-3)
+    skin, ball = bt.Skin([patch], [BALL]), np.array([0, 0, 0.02, *UNIT])
+    once = skin.read(np.eye(4), ball)
+    assert once.any() and np.array_equal(once, skin.read(poses([0, 0, 0]), ball[None]))
+    assert np.array_equal(once, skin.read((np.zeros(3), np.eye(3)), (ball[:3], ball[3:])))
+    with pytest.raises(ValueError, match="k = 2 poses"):
+        bt.Skin([patch] * 2, [BALL]).read(np.eye(4), ball)
+    out, forces, residuals = np.empty(patch.n_taxels), np.ones((1, 1)), np.empty((1, 1))
+    arrays = dict(out=out, forces=forces, residuals=residuals)
+    skin.read(ball, ball, **arrays)
+    tracemalloc.start()
+    for _ in range(100):
+        skin.read(ball, ball, **arrays)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 4000 < out.nbytes, most

@@ -298,6 +298,21 @@ def test_deflections_are_those_of_mujocos_signed_distance(model) -> None:
     assert n_touched > 1000
 
 
+def test_shear_forces_in_the_loop_and_the_short_name(model) -> None:
+    assert bt.mujoco.Skin is Skin
+    with pytest.raises(AttributeError, match="no attribute 'gazebo'"):
+        _ = bt.gazebo
+    skin = Skin(model, patches(), geoms=["ball"])
+    state = skin.shear_state(400.0, 0.5)
+    wrenches, counts = np.empty((2, 6)), np.empty((2, 2), np.int64)
+    for step in range(5):
+        data = placed(model, ball=[1e-4 * step, 0, 0.13, 1, 0, 0, 0])
+        forces = skin.read(data, output="force", shear=state, wrenches=wrenches, contacts=counts)
+    assert forces.any() and np.array_equal(-state.forces[:64, 2], forces[:64])
+    assert 0 < wrenches[0, 0] <= 0.5 * forces.sum() and np.abs(wrenches[0, :3] - state.forces[:64].sum(axis=0)).max() < 1e-12
+    assert counts[0, 0] == np.count_nonzero(forces) and not counts[1].any()
+
+
 def test_threads_read_one_skin_at_the_same_time(model) -> None:
     skin = Skin(model, patches())
     rng = np.random.default_rng(3)

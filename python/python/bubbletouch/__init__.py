@@ -7,6 +7,8 @@ Invalid input raises ValueError with the message `<where>: <what was given>; <wh
 OSError. A bug of this package raises InternalError; its message asks the user to report the bug.
 """
 
+from typing import TYPE_CHECKING
+
 from bubbletouch._core import (
     Catalogue,
     Chain,
@@ -50,4 +52,15 @@ __all__ = [
     "touch_poses",
     "write_frame",
 ]
+
+if not TYPE_CHECKING:
+    # Parts that need optional packages are imported at their first use: bt.mujoco.Skin.
+    def __getattr__(name):
+        if name in ("drake", "mujoco"):
+            import importlib
+
+            return importlib.import_module(f"bubbletouch.{name}")
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 __version__ = "0.1.0"

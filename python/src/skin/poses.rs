@@ -82,6 +82,7 @@ fn n_sets(
     n_each: usize,
 ) -> PyResult<Option<usize>> {
     match leading {
+        [] if n_each == 1 => Ok(None),
         [k] if *k == n_each => Ok(None),
         [n, k] if *k == n_each => Ok(Some(*n)),
         _ => {

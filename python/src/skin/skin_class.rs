@@ -129,7 +129,7 @@ impl Skin {
     ///
     /// patch_poses, body_poses: poses in the world of the patches and of the bodies, in their order: (k, 7) or (n, k, 7) of x, y, z, qw, qx, qy, qz;
     /// (…, k, 4, 4); or a pair (positions, rotations) with positions (…, k, 3) and rotations (…, k, 4) as quaternions w, x, y, z, or (…, k, 9) or
-    /// (…, k, 3, 3) as matrices by rows, as MuJoCo has them.
+    /// (…, k, 3, 3) as matrices by rows, as MuJoCo has them. A single patch or body needs no axis k: (7,), (4, 4).
     /// output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
     ///
     /// forces: wanted normal forces of the pairs of patch and body, newtons, (n_patches, n_bodies) or (n, n_patches, n_bodies), zero or more. The normal
