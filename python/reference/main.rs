@@ -124,7 +124,7 @@ fn after_presses(folder: &Path, patch: &Patch, mut frames: Array2<f64>) -> Resul
     }
     write_npy(&folder.join("chain.npy"), &frames)?;
     let drawn = Ensemble::ALL.iter().zip(Ensemble::NAMES);
-    for (ensemble, (name, _)) in drawn.filter(|(ensemble, _)| !ensemble.is_learned()) {
+    for (ensemble, (name, _)) in drawn.filter(|(ensemble, _)| ensemble.is_drawn()) {
         let projection = Projection::new(*ensemble, (20, 24), 32, &Seed::new(11))?;
         let measured = projection.measure(frames.view());
         write_npy(&folder.join(format!("{name}.npy")), &measured)?;

@@ -39,7 +39,7 @@ fn ensemble_of(name: &str) -> PyResult<Ensemble> {
     // Learned ensembles are fitted to touches and exist only in studies.
     let drawn = || {
         let all = Ensemble::ALL.iter().zip(Ensemble::NAMES);
-        all.filter(|(ensemble, _)| !ensemble.is_learned())
+        all.filter(|(ensemble, _)| ensemble.is_drawn())
     };
     let found = drawn().find_map(|(ensemble, (known, _))| (*known == name).then_some(*ensemble));
     found.ok_or_else(|| {

@@ -344,12 +344,17 @@ impl Groups {
             settings.iter().map(words).collect::<Vec<_>>().join(", ")
         };
         let rows = groups.iter().map(|rows| rows[0]);
+        // Beside other settings, a setting that does not apply in a row is not mentioned.
+        let name = |row: usize| {
+            let is_said = |one: &&Setting| settings.len() == 1 || one.applies(&[row]);
+            let said = settings.iter().filter(is_said);
+            said.map(|one| one.label(row))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
         Self {
             heading: joined(&|one| one.column.words.to_string()),
-            names: rows
-                .clone()
-                .map(|row| joined(&|one| one.label(row)))
-                .collect(),
+            names: rows.clone().map(name).collect(),
             titles: rows.map(|row| joined(&|one| one.title(row))).collect(),
             of,
         }

@@ -23,9 +23,14 @@ pub struct Chart {
 impl Chart {
     /// Creates the map from the positions of taxels on the plane (metres) and their approximate pitch. The image has (rows, columns) square pixels of the
     /// size `pixel` (metres), centred on the origin.
-    pub fn new(
+    pub fn new(places: &[DVec2], pitch: f64, image: ((usize, usize), f64)) -> Self {
+        Self::with_gaps(places, (pitch, 1.0), image)
+    }
+
+    /// Creates the map for taxels whose distance varies, up to `widest` pitches. A pixel in a gap between taxels shows the nearest taxel.
+    pub fn with_gaps(
         places: &[DVec2],
-        pitch: f64,
+        (pitch, widest): (f64, f64),
         ((rows, columns), pixel): ((usize, usize), f64),
     ) -> Self {
         let (mut terms, mut ends) = (Vec::new(), Vec::with_capacity(rows * columns));
@@ -41,6 +46,10 @@ impl Chart {
                 let largest = own.iter().fold(0.0, |a: f64, (_, weight)| a.max(*weight));
                 if largest < 1.0 - ON_PATCH / NEAR {
                     terms.truncate(start);
+                    let distances = places.iter().map(|taxel| taxel.distance(place) / pitch);
+                    let nearest = distances.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+                    let nearest = nearest.filter(|(_, d)| *d <= ON_PATCH * widest);
+                    terms.extend(nearest.map(|(taxel, _)| (taxel as u32, 1.0)));
                 } else {
                     let sum: f64 = own.iter().map(|(_, weight)| weight).sum();
                     own.iter_mut().for_each(|(_, weight)| *weight /= sum);
@@ -89,6 +98,27 @@ mod tests {
         let frames = Array2::from_shape_fn((5, 12), |(i, j)| (7 * i + j) as f64);
         let difference = chart.images(frames.view()) - &frames;
         assert!(difference.iter().all(|d| d.abs() < 1e-12));
+    }
+
+    #[test]
+    fn the_image_of_a_foveated_grid_has_no_holes() {
+        let grid = Grid {
+            nx: 24,
+            ny: 24,
+            pitch: 1.0,
+        };
+        let layout = ArrayLayout::Foveated;
+        let taxels = layout.taxels(&grid, 0.0).unwrap();
+        let places: Vec<DVec2> = taxels.centers().iter().map(|c| c.truncate()).collect();
+        let half = places.iter().map(|place| place.x).fold(0.0, f64::max);
+        let image = ((24, 24), (2.0 * half + 1.0) / 24.0);
+        let ones = Array2::ones((1, 576));
+        let chart = Chart::with_gaps(&places, (1.0, layout.widest_pitches()), image);
+        let found = chart.images(ones.view());
+        assert!(found.iter().all(|&pixel| (pixel - 1.0).abs() < 1e-12));
+        // Without the widest distance, pixels between the outer taxels have no taxel.
+        let holes = Chart::new(&places, 1.0, image).images(ones.view());
+        assert!(holes.iter().any(|&pixel| pixel == 0.0));
     }
 
     #[test]

@@ -11,6 +11,8 @@
 //! | [`Sbhe`](Ensemble::Sbhe) | ±1/√B on the B taxels of a scrambled block \[SBHE\] | 1 | n + m indices |
 //! | [`BlockAverage`](Ensemble::BlockAverage) | 1/area on a rectangle of taxels | 1/√area | m rectangles |
 //! | [`Subsample`](Ensemble::Subsample) | one taxel | 1 | m indices |
+//! | [`Selected`](Ensemble::Selected) | one taxel that a [`Selection`] chose on training frames | 1 | m indices |
+//! | [`Adaptive`](Ensemble::Adaptive) | none: m readings of blocks that each frame chooses | at most 1 | nothing |
 //! | [`Fourier`](Ensemble::Fourier) | a cosine or sine of a low frequency, ±√2/√n at most | 1 | m × n numbers |
 //! | [`PrincipalComponents`](Ensemble::PrincipalComponents) | a principal component of training frames | 1 | m × n numbers |
 //! | [`Identity`](Ensemble::Identity) | one taxel, all n in order | 1 | nothing |
@@ -47,6 +49,7 @@
 //! | stage | input → output |
 //! |---|---|
 //! | `ensembles` | a name and a seed → the map Φ ([`Ensemble`], [`Operator`]) |
+//! | `selection` | training frames and labels → taxels to read ([`Selection`]) |
 //! | `projection`, `columns` | frames → measurements ([`Projection`]) |
 //! | `dictionary`, `wavelet`, `pca`, `cosine` | training frames → atoms Ψ ([`Dictionary`]) |
 //! | `sensed`, `coherence` | Φ and Ψ → A = ΦΨ, and its coherence |
@@ -65,6 +68,7 @@ mod image_prior;
 mod pca;
 mod projection;
 mod reconstruction;
+mod selection;
 mod sensed;
 mod symmetric_eigen;
 mod wavelet;
@@ -72,11 +76,14 @@ mod wavelet;
 pub use coherence::{Coherence, Extremes};
 pub use columns::Columns;
 pub use dictionary::{Basis, Dictionary, Energy};
-pub use ensembles::{Draw, Ensemble, EnsembleAbout, Learn, Operator, Source};
+pub use ensembles::{
+    Adapt, Draw, Ensemble, EnsembleAbout, Learn, Operator, Source, TrainingFrames,
+};
 pub use image_estimate::{ImageEstimate, N_STEPS};
 pub use image_prior::{ImagePrior, N_COMPONENTS, Readings};
 pub use projection::Projection;
 pub use reconstruction::{
     Effort, Lasso, Lmmse, Omp, Reconstruction, Reconstructor, Solved, Solver,
 };
+pub use selection::Selection;
 pub use sensed::SensedDictionary;

@@ -2,13 +2,14 @@
 
 use super::Ensemble;
 use super::ensembles::ScrambledHadamard;
-use super::ensembles::{Operator, Source};
+use super::ensembles::{Operator, Source, TrainingFrames};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use std::sync::Arc;
 
-/// Linear map y = Φx from a frame of n taxels to m measurements, drawn once and applied to any number of frames.
+/// Map from a frame of n taxels to its measurements, prepared once and applied to any number of frames. The map is linear, y = Φx with m measurements, unless
+/// the ensemble is adaptive.
 ///
 /// ```
 /// use bubbletouch_sim::random::Seed;
@@ -30,49 +31,54 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`.
+    /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`, or prepares an adaptive readout with m readings per frame.
     ///
-    /// The identity ensemble has one measurement per taxel, whatever the value of m.
+    /// The identity ensemble and adaptive ensembles give one value per taxel, whatever the value of m.
     ///
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the ensemble is learned.
     pub fn new(ensemble: Ensemble, grid: (usize, usize), m: usize, seed: &Seed) -> Result<Self> {
         let n = check_size(grid, m)?;
-        let Source::Drawn(draw) = ensemble.about().source else {
-            let given = format!("{}, which are learned from touches", ensemble.about().words);
-            return Err(Error::input("ensemble", given, "an ensemble that is drawn"));
+        let operator = match ensemble.about().source {
+            Source::Drawn(draw) => draw(grid, m, seed),
+            Source::Adaptive(adapt) => adapt(grid, m),
+            Source::Learned(_) => {
+                let given = format!("{}, which are learned from touches", ensemble.about().words);
+                return Err(Error::input("ensemble", given, "an ensemble that is drawn"));
+            }
         };
         Ok(Self {
             ensemble,
             n_taxels: n,
             n_measurements: ensemble.n_measurements(m, n),
-            operator: draw(grid, m, seed).into(),
+            operator: operator.into(),
         })
     }
 
-    /// Prepares the projection of any ensemble. Learned ensembles use the frames of training touches (n_frames × n_taxels).
+    /// Prepares the projection of any ensemble. Learned ensembles use the frames of training touches (n_frames × n_taxels) with their labels.
     ///
     /// # Errors
-    /// If the array has no taxels, if m = 0 or m > n, or if the frames differ in fewer than m directions.
+    /// If the array has no taxels, if m = 0 or m > n, if the frames differ in fewer than m directions or taxels, or if labels are needed and missing.
     ///
     /// # Panics
     /// If a frame does not have n values.
-    pub fn learned(
+    pub fn learned<'a>(
         ensemble: Ensemble,
         grid: (usize, usize),
         m: usize,
-        (frames, seed): (ArrayView2<f64>, &Seed),
+        (training, seed): (impl Into<TrainingFrames<'a>>, &Seed),
     ) -> Result<Self> {
         let Source::Learned(learn) = ensemble.about().source else {
             return Self::new(ensemble, grid, m, seed);
         };
         let n = check_size(grid, m)?;
-        assert_eq!(frames.ncols(), n, "taxels in a frame");
+        let training = training.into();
+        assert_eq!(training.frames.ncols(), n, "taxels in a frame");
         Ok(Self {
             ensemble,
             n_taxels: n,
             n_measurements: m,
-            operator: learn(frames, m, seed)?.into(),
+            operator: learn(&training, m, seed)?.into(),
         })
     }
 
@@ -107,7 +113,12 @@ impl Projection {
         self.n_taxels
     }
 
-    /// Returns the number of measurements of a frame.
+    /// Returns the indices of the taxels that are read, in the order of the measurements, if each measurement is one taxel; otherwise `None`.
+    pub fn taxels(&self) -> Option<&[usize]> {
+        self.operator.taxels()
+    }
+
+    /// Returns the number of values of a measured frame: m, or one per taxel for the identity and for adaptive ensembles.
     pub fn n_measurements(&self) -> usize {
         self.n_measurements
     }

@@ -2,16 +2,19 @@
 //!
 //! Every varying setting has a role in a chart, so no chart mixes configurations that differ in a setting it does not show. The x axis shows the numeric
 //! setting with the most values. Lines and panels show the settings with the next most values; in a tie, texts come before numbers. Each combination of the
-//! remaining settings has its own chart.
+//! remaining settings has its own chart. A setting that applies only to some values of another one shares the lines with it.
 
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
 use crate::studies::recognition::charts::filled::filled;
 use crate::studies::recognition::charts::tables::{
-    CHANCE, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, note_of_groups,
+    CHANCE, CONFIGURATIONS, OVER_FOLDS, OVER_TRIAL, SELECTED_TAXELS, note_of_groups,
 };
 use crate::table::{Along, At, ChartSpec, Mark, Role, Rule, Shown, Table, Value};
 use std::cmp::Reverse;
+
+/// Maximum number of charts of selected taxels; further combinations of settings are only in the table.
+const MAX_PLACES: usize = 4;
 
 /// Minimum number of classifiers with which a study counts as a comparison of classifiers, and charts accuracy against time.
 const MANY_CLASSIFIERS: usize = 3;
@@ -45,6 +48,7 @@ pub fn charts(tables: &[Table], pareto: Option<bool>) -> Vec<ChartSpec> {
         others.extend(time_charts(configurations, &chart));
     }
     others.extend(confusion.and_then(|table| confusion_chart(configurations, table)));
+    others.extend(filled(tables, SELECTED_TAXELS).map_or_else(Vec::new, selected_charts));
     // Charts of accuracies are adjacent, and leave room for the other charts.
     let place = charts.len().min(MAX_CHARTS - others.len());
     charts.splice(place..place, others);
@@ -119,9 +123,14 @@ fn charts_along(
     let swept = Swept::new(configurations, rows);
     let x = x.or_else(|| swept.main(rows));
     let mut others = x.map_or_else(|| swept.free.clone(), |x| without(&swept.free, &x));
+    // A word that only some rows have, such as the method of a selection, divides the lines of another setting.
+    let is_part = |one: &Setting| !one.is_number() && !one.applies(rows);
+    let parts: Vec<Setting> = others.iter().copied().filter(is_part).collect();
+    others.retain(|one| !is_part(one));
     others.sort_by_key(|one| (Reverse(one.levels(rows).len()), one.is_number()));
     let (used, fixed) = others.split_at(others.len().min(2));
     let [lines, panels] = [used.first(), used.get(1)].map(|one| one.map(name_of));
+    let with_parts = |one: Option<String>| one.into_iter().chain(parts.iter().map(name_of));
     let x = x.map_or_else(|| "ratio".to_owned(), |x| name_of(&x));
     let of_rows = |rows: Vec<usize>| {
         let here = fixed.iter().map(|one| &one.column.name);
@@ -131,13 +140,13 @@ fn charts_along(
             title: title(configurations, &x, (used, fixed), rows[0]),
             shown: chart.shown.iter().cloned().chain(here).collect(),
             x: x.clone(),
-            lines: lines.iter().cloned().collect(),
+            lines: with_parts(lines.clone()).collect(),
             panels: panels.clone(),
             ..chart.clone()
         }
     };
     let mut charts: Vec<ChartSpec> = swept.groups(fixed, rows).into_iter().map(of_rows).collect();
-    if let (Some(panels), true) = (panels, fixed.is_empty()) {
+    if let (Some(panels), true) = (panels, fixed.is_empty() && parts.is_empty()) {
         let chart = charts[0].clone();
         charts.push(ChartSpec {
             name: format!("{}_per_{}", chart.name, word(&panels)),
@@ -260,4 +269,48 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
         },
         ..confusion.chart("confusion", "Confusion matrix", ("object", "predicted"))
     })
+}
+
+/// Returns charts of the positions of the selected taxels. Colours show the method, panels show the first condition, and each combination of the other settings has
+/// its own chart.
+fn selected_charts(selected: &Table) -> Vec<ChartSpec> {
+    let rows: Vec<usize> = (0..selected.n_rows).collect();
+    let has_place = |row: &usize| selected.number("x_mm", *row).is_finite();
+    let rows: Vec<usize> = rows.into_iter().filter(has_place).collect();
+    let swept = Swept::new(selected, &rows);
+    let of = |wanted: &dyn Fn(&Setting) -> bool| swept.free.iter().find(|one| wanted(one)).copied();
+    let method = of(&|one| one.column.name == "selection");
+    let condition = of(&|one| one.column.role == Role::Condition);
+    let is_fixed = |one: &&Setting| {
+        let mut used = [method, condition].into_iter().flatten();
+        used.all(|used| used.column.name != one.column.name)
+    };
+    let fixed: Vec<Setting> = swept.free.iter().filter(is_fixed).copied().collect();
+    let chart = |rows: Vec<usize>| {
+        let here = fixed.iter().map(|one| &one.column.name);
+        let words: Vec<String> = fixed.iter().map(|one| one.phrase(rows[0])).collect();
+        let title = match words.is_empty() {
+            true => "Selected taxels".to_owned(),
+            false => format!("Selected taxels ({})", words.join(", ")),
+        };
+        ChartSpec {
+            shown: here
+                .filter_map(|name| selected.shown(name, rows[0]))
+                .collect(),
+            lines: method.as_ref().map(name_of).into_iter().collect(),
+            panels: condition.as_ref().map(name_of),
+            mark: Mark::Points,
+            ..selected.chart(
+                format!("selected_taxels{}", name_ending(&fixed, rows[0])),
+                title,
+                ("y_mm", "x_mm"),
+            )
+        }
+    };
+    let groups = swept.groups(&fixed, &rows).into_iter();
+    groups
+        .filter(|rows| !rows.is_empty())
+        .take(MAX_PLACES)
+        .map(chart)
+        .collect()
 }

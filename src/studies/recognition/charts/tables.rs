@@ -9,8 +9,8 @@ use crate::statistics::p_status::CONFIDENCE;
 use crate::studies::recognition::charts::robustness::{ObjectCounts, ROBUSTNESS, robustness};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::{
-    Comparison, ConfigurationScore, Confused, Confusion, Limit, Pareto, Published, StageTime,
-    Tables, TrialScore, TrialTime, Variance,
+    Comparison, ConfigurationScore, Confused, Confusion, Limit, Pareto, Published, SelectedTaxel,
+    StageTime, Tables, TrialScore, TrialTime, Variance,
 };
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::study::AnyFile;
@@ -64,6 +64,15 @@ const PUBLISHED: File<(Configuration, Published)> = File::new(
 .summary();
 const VARIANCE: File<Variance> =
     File::new("variance.csv", "What makes trials differ", "").summary();
+/// Name of the table of selected taxels.
+pub(crate) const SELECTED_TAXELS: &str = "selected.csv";
+
+const SELECTED: File<(Configuration, SelectedTaxel)> = File::new(
+    SELECTED_TAXELS,
+    "Selected taxels of the first trial",
+    "Taxels are selected on training touches alone. Of configurations with equal measurements, the first has rows.",
+)
+.summary();
 const LIMITS: File<Limit> = File::new(LIMITS_FILE, "How often limits were reached", "").summary();
 
 /// Table files that every recognition study writes. Tables of configurations also have the columns of the axes in `[axes]`.
@@ -80,8 +89,9 @@ pub const TABLES: &[&dyn AnyFile] = &[
     &LIMITS,
 ];
 
-/// Table files that only some studies write: those with several projections per split, and those that sweep a condition.
-pub const TABLES_OF_PARTS: &[&dyn AnyFile] = &[&VARIANCE, &ROBUSTNESS];
+/// Table files that only some studies write: those with several projections per split, those that sweep a condition, and those that
+/// select taxels.
+pub const TABLES_OF_PARTS: &[&dyn AnyFile] = &[&VARIANCE, &ROBUSTNESS, &SELECTED];
 
 /// Returns all tables of a run in the order of their files, followed by [`CONFIGURATIONS`].
 ///
@@ -132,12 +142,16 @@ impl From<'_> {
             self.table(&CONFUSED, |tables| &tables.confused, &[])?,
             self.table(&PUBLISHED, |tables| &tables.published, &axes)?,
         ];
-        let has_variance = match self {
-            Self::Rows(tables) => !tables.variance.is_empty(),
-            Self::Folder(folder) => folder.join(VARIANCE.name()).exists(),
+        // Tables that only some studies have.
+        let has = |name: &str, is_filled: fn(&Tables) -> bool| match self {
+            Self::Rows(tables) => is_filled(tables),
+            Self::Folder(folder) => folder.join(name).exists(),
         };
-        if has_variance {
+        if has(VARIANCE.name(), |tables| !tables.variance.is_empty()) {
             tables.push(self.table(&VARIANCE, |tables| &tables.variance, &[])?);
+        }
+        if has(SELECTED_TAXELS, |tables| !tables.selected.is_empty()) {
+            tables.push(self.table(&SELECTED, |tables| &tables.selected, &axes)?);
         }
         tables.push(self.table(&LIMITS, |tables| &tables.limits, &[])?);
         tables.iter_mut().for_each(say);

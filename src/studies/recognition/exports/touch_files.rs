@@ -109,6 +109,7 @@ impl ReadFrames {
         // Measurements with the identity matrix are the frames themselves.
         let identity = MeasurementGroup {
             ensemble: Ensemble::Identity,
+            selection: None,
             ..group.clone()
         };
         let of = (&identity, part.plan.arrays[group.array].n_values());

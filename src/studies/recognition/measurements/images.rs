@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::random::Seed;
-use crate::sensing::{Ensemble, ImageEstimate, ImagePrior, Projection, Readings};
+use crate::sensing::{ImageEstimate, ImagePrior, Projection, Readings};
 use crate::studies::recognition::measurements::tilted_copies::TiltedCopies;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
@@ -38,7 +38,7 @@ impl Images {
         readings: Readings,
         seed: &Seed,
     ) -> Result<Self> {
-        let is_whole = |projection: &Projection| projection.ensemble() == Ensemble::Identity;
+        let is_whole = |projection: &Projection| projection.ensemble().gives_frames();
         let (chart, n_training) = (array.chart(), readings.training.nrows());
         // Shifting an image by rows and columns gives additional training images.
         let n_frames = match (&chart, n_training < LEARNED_FRAMES) {
@@ -55,7 +55,7 @@ impl Images {
         };
         let estimates = projections.iter().map(|projection| {
             let estimate = match prior.as_ref().filter(|_| !is_whole(projection)) {
-                None => ImageEstimate::of_frames(readings.untouched),
+                None => ImageEstimate::of_frames(projection.measure(readings.untouched).view()),
                 Some(prior) => ImageEstimate::new(projection, prior)?,
             };
             Ok((projection.n_measurements(), estimate))

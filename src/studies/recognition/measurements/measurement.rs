@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::inputs::sensor_errors::TestSensor;
 use crate::random::Seed;
-use crate::sensing::{Ensemble, Projection, Readings};
+use crate::sensing::{Ensemble, Projection, Readings, TrainingFrames};
 use crate::signal::SignalWorkspace;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::{ReadSkin, Reading, TouchToRead, measure};
@@ -35,6 +35,8 @@ pub struct Measurements {
     /// Image features of all touches, one array for each kind of features. Each array has the shape (n_touches, F·k) for F frames of k features, and is
     /// followed by the rows of tilted copies.
     pub of_images: Vec<(FeaturesOfImages, Array2<f64>)>,
+    /// Indices of the selected taxels, in the order of their selection; empty if the ensemble selects no taxels.
+    pub selected: Vec<usize>,
     /// Tilted copies of the training touches; `None` if the group uses no copies.
     pub copies: Option<TiltedCopies>,
     /// Processor time of the measurement, summed over threads, s.
@@ -185,7 +187,8 @@ pub fn measure_group(
         skins: &skins,
         projection: &whole,
     };
-    let sensed = sensed_by(inputs, (reading, &touches), trial, n_measurements)?;
+    let labels = touched.labels();
+    let sensed = sensed_by(inputs, (reading, &touches), &labels, trial, n_measurements)?;
     let reading = Reading {
         projection: &sensed.projection,
         ..reading
@@ -204,8 +207,13 @@ pub fn measure_group(
         }
     };
     let ones = Array2::ones((1, array.n_values()));
+    let selected = sensed
+        .projection
+        .taxels()
+        .filter(|_| inputs.selection.is_some());
     Ok(Measurements {
         values,
+        selected: selected.map_or_else(Vec::new, <[usize]>::to_vec),
         n_touches,
         n_frames,
         of_ones: sensed.projection.measure(ones.view()).row(0).to_owned(),
@@ -235,6 +243,7 @@ fn tilted_copies(
 fn sensed_by(
     inputs: &MeasurementInputs,
     (whole, touches): (Reading, &[TouchToRead]),
+    labels: &Array1<usize>,
     trial: MeasuredTrial,
     n_measurements: usize,
 ) -> Result<SensedBy> {
@@ -251,10 +260,25 @@ fn sensed_by(
     }
     // The number of whole touches that give enough frames; the split alternates between objects.
     let n_touches = learned_touches(whole.skins[0].frames.facts.n_frames);
-    let learned = trial.split().train.iter().take(n_touches);
-    let learned: Vec<TouchToRead> = learned.map(|&touch| touches[touch]).collect();
+    let train = &trial.split().train;
+    let train = &train[..n_touches.min(train.len())];
+    let learned: Vec<TouchToRead> = train.iter().map(|&touch| touches[touch]).collect();
     let (training, _) = measure(whole, &learned)?;
-    let learn = |m| Projection::learned(inputs.ensemble, shape, m, (training.view(), &drawn));
+    // The frames of a touch have its class and its group.
+    let of_frames = |of_touch: &dyn Fn(usize) -> usize| -> Vec<usize> {
+        let n_frames = whole.skins[0].frames.facts.n_frames;
+        let touches = train.iter().map(|&touch| of_touch(touch));
+        touches
+            .flat_map(|value| std::iter::repeat_n(value, n_frames))
+            .collect()
+    };
+    let frames = TrainingFrames {
+        frames: training.view(),
+        labels: &of_frames(&|touch| labels[touch]),
+        groups: &of_frames(&|touch| trial.group_keys.map_or(touch, |keys| keys[touch])),
+        selection: inputs.selection.unwrap_or_default(),
+    };
+    let learn = |m| Projection::learned(inputs.ensemble, shape, m, (frames, &drawn));
     let projection = learn(n_measurements)?;
     let mut images = None;
     if !inputs.of_images.is_empty() {
@@ -263,10 +287,10 @@ fn sensed_by(
             training: training.view(),
             untouched: untouched.view(),
         };
-        let is_served =
-            |m: &usize| projection.ensemble().is_prefix_nested() || *m == n_measurements;
+        let n_values = projection.n_measurements();
+        let is_served = |m: &usize| projection.ensemble().is_prefix_nested() || *m == n_values;
         let counts = inputs.counts_of_images().into_iter().filter(is_served);
-        let projections = counts.map(|m| match m == n_measurements {
+        let projections = counts.map(|m| match m == n_values {
             true => Ok(projection.clone()),
             false => learn(m),
         });

@@ -6,7 +6,7 @@
 use crate::inputs::content_hash::Hashed;
 use crate::inputs::sensor_errors::{Strengths, TestSensor, all_strengths};
 use crate::random::Seed;
-use crate::sensing::Ensemble;
+use crate::sensing::{Ensemble, Selection};
 use crate::signal::{Noise, NoiseUnit, SignalStep, Strength};
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::signal::Condition;
@@ -17,6 +17,7 @@ use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::sweep::configurations::Sweep;
 use bubbletouch_svm::split::Split;
+use ndarray::Array1;
 
 /// All inputs that determine the measurements of a group of configurations.
 #[derive(Clone, Debug)]
@@ -37,6 +38,8 @@ pub struct MeasurementInputs<'a> {
     pub test: Option<TestInputs<'a>>,
     /// Ensemble from which the measurement matrix is drawn.
     pub ensemble: Ensemble,
+    /// Method that selects the taxels to read; `None` if the ensemble selects no taxels.
+    pub selection: Option<Selection>,
     /// Numbers m of measurements to compute, distinct and ascending.
     pub projected: Vec<usize>,
     /// Number of readings of each training touch, each with its own noise.
@@ -66,6 +69,8 @@ pub struct MeasuredTrial<'a> {
     /// Split into training and test touches; `None` if the measurements do not depend on the split. Measurements depend on the split if something is fitted to
     /// training touches, or if test touches have another skin.
     pub split: Option<&'a Hashed<Split>>,
+    /// Group of each touch; `None` if each touch is its own group, or the measurements do not depend on groups. The selection of taxels depends on them.
+    pub group_keys: Option<&'a Hashed<Array1<usize>>>,
 }
 
 /// Inputs of the signal chain; steps without effect are omitted.
@@ -100,7 +105,15 @@ impl MeasurementInputs<'_> {
     pub fn trial<'s>(&self, sweep: &'s Sweep, number: usize) -> MeasuredTrial<'s> {
         let depends = self.learns() || self.has_own_test();
         let split = depends.then(|| &sweep.splits[number]);
-        MeasuredTrial { number, split }
+        let group_keys = sweep
+            .group_keys
+            .as_ref()
+            .filter(|_| self.selection.is_some());
+        MeasuredTrial {
+            number,
+            split,
+            group_keys,
+        }
     }
 
     /// Returns whether a projection or an estimator is fitted to training touches before measuring.
@@ -196,6 +209,7 @@ impl MeasurementGroup {
             condition: self.condition,
             test_sensor: self.test_sensor,
             ensemble: self.ensemble,
+            selection: self.selection,
             configurations: configurations.to_vec(),
         }
     }
@@ -219,6 +233,7 @@ impl MeasurementGroup {
             test_sensor: self.test_sensor,
             test,
             ensemble: self.ensemble,
+            selection: self.selection,
             projected: self.projected(),
             n_readings: self.n_readings(plan),
             of_images: self.features_of_images(),

@@ -1,7 +1,7 @@
 //! Groups of configurations that share their measurements, and families of configurations that share their features.
 
 use crate::inputs::sensor_errors::TestSensor;
-use crate::sensing::Ensemble;
+use crate::sensing::{Ensemble, Selection};
 use crate::studies::recognition::plan::signal::Condition;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
@@ -20,6 +20,8 @@ pub struct MeasurementGroup {
     pub test_sensor: TestSensor,
     /// Ensemble from which the measurement matrix is drawn.
     pub ensemble: Ensemble,
+    /// Method that selects the taxels to read; `None` if the ensemble selects no taxels.
+    pub selection: Option<Selection>,
     /// Configurations of the group, ordered by family.
     pub configurations: Vec<Configuration>,
 }

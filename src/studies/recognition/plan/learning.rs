@@ -8,7 +8,7 @@ use crate::learning::classifiers::classifier::Classifier;
 use crate::learning::classifiers::parameters;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::sensing::Ensemble;
+use crate::sensing::{Ensemble, Selection};
 use crate::studies::recognition::plan::pose_groups::KeepTogether;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
 use crate::studies::recognition::spec::pose_split::PoseSplit;
@@ -51,6 +51,9 @@ impl Check<'_> {
             let allowed = format!("at most {smallest}, the numbers of the smallest frame");
             return Err(self.error(key, given, allowed));
         }
+        if let Some(rate) = sensing.readings_per_s {
+            self.number("sensing.readings_per_s", rate)?;
+        }
         let mut ensembles = sensing.ensemble.values().into_iter();
         let of_rows = ensembles.find(|ensemble| ensemble.about().needs_rows);
         let no_rows = arrays.iter().find(|array| array.sides().is_none());
@@ -66,10 +69,36 @@ impl Check<'_> {
         Ok(())
     }
 
+    /// Checks the key `sensing.selection`: an ensemble must select taxels, and the labels that a method uses must be correct.
+    pub fn selection(&self, spec: &StudySpec) -> Result<()> {
+        let (sensing, recognition) = (&spec.sensing, &spec.recognition);
+        let ensembles = sensing.ensemble.values();
+        let methods = ensembles
+            .iter()
+            .flat_map(|&ensemble| sensing.selections(ensemble));
+        let methods: Vec<Selection> = methods.flatten().collect();
+        if sensing.selection.is_some() && methods.is_empty() {
+            let given = "given, but no ensemble of the study selects taxels";
+            let allowed = "\"selected\" among sensing.ensemble, or no such key";
+            return Err(self.error("sensing.selection", given, allowed));
+        }
+        let mislabelled = recognition
+            .mislabelled_fraction
+            .iter()
+            .flat_map(Axis::values);
+        let has_wrong_labels = mislabelled.into_iter().any(|fraction| fraction > 0.0);
+        if has_wrong_labels && methods.contains(&Selection::Greedy) {
+            let given = "greedy, which uses the labels of training touches, beside recognition.mislabelled_fraction";
+            let allowed = "\"pivoted_qr\" or \"random\" among wrong labels";
+            return Err(self.error("sensing.selection", given, allowed));
+        }
+        Ok(())
+    }
+
     /// Returns an error if an ensemble must be learned from frames but the study has no training frames.
     pub fn drawn(&self, key: &str, ensembles: impl IntoIterator<Item = Ensemble>) -> Result<()> {
         let mut ensembles = ensembles.into_iter();
-        match ensembles.find(|ensemble| ensemble.is_learned()) {
+        match ensembles.find(|ensemble| !ensemble.is_drawn()) {
             None => Ok(()),
             Some(learned) => {
                 let given = learned.about().words;
@@ -290,6 +319,15 @@ impl Check<'_> {
 }
 
 impl SensingSpec {
+    /// Returns the methods of selection for an ensemble; the single value `None` if the ensemble selects no taxels.
+    pub fn selections(&self, ensemble: Ensemble) -> Vec<Option<Selection>> {
+        match (ensemble, &self.selection) {
+            (Ensemble::Selected, None) => vec![Some(Selection::default())],
+            (Ensemble::Selected, axis) => Axis::optional_values(axis),
+            _ => vec![None],
+        }
+    }
+
     /// Returns the numbers m of measurements for an array of `n_taxels`, each at least 1. If neither a ratio nor a number is given, the only number is
     /// `n_taxels`.
     pub fn measurements_on(&self, n_taxels: usize) -> Vec<usize> {

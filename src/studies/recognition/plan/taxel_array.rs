@@ -93,6 +93,13 @@ impl TaxelArray {
         self.layout
     }
 
+    /// Returns the position of the taxel of a frame value along x and y of the array, mm; `None` if the positions of the taxels are unknown.
+    pub fn place_mm(&self, value: usize) -> Option<[f64; 2]> {
+        let center = self.patch.layout().centers()[value % self.n_taxels()];
+        self.is_placed
+            .then(|| [center.x, center.y].map(millimetres))
+    }
+
     /// Returns the quantity that the taxels read.
     pub fn sensed(&self) -> &Sensed {
         &self.sensed
@@ -124,7 +131,8 @@ impl TaxelArray {
 
     /// Returns the mapping from taxels to image pixels; `None` if each taxel is one pixel.
     pub fn chart(&self) -> Option<Chart> {
-        let chart = || Chart::new(&self.chart_places(), self.pitch(), self.image());
+        let spacing = (self.pitch(), self.layout.widest_pitches());
+        let chart = || Chart::with_gaps(&self.chart_places(), spacing, self.image());
         (!self.is_image()).then(chart)
     }
 

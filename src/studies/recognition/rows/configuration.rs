@@ -6,7 +6,7 @@ use crate::inputs::sensor_errors::{Strengths, TestSensor, strength_columns};
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::sensing::Ensemble;
+use crate::sensing::{Ensemble, Selection};
 use crate::signal::NoiseUnit;
 use crate::studies::recognition::rows::image_features::FeaturesOfImages;
 use crate::studies::recognition::rows::row_inputs::RowInputs;
@@ -67,6 +67,8 @@ pub struct Configuration {
     nx: usize => always (Note, "taxels along x", "", Linear);
     /// Number of rows of taxels in the array (along y).
     ny: usize => always (Note, "taxels along y", "", Linear);
+    /// Number n of values of a frame.
+    frame_values: usize => hidden;
     /// Numbers of rows and columns of the images that represent frames of the array.
     image_shape: (usize, usize) => hidden;
     /// Side length of the array along x, mm: number of columns nx times the pitch.
@@ -83,10 +85,14 @@ pub struct Configuration {
     test_sensor: Option<TestSensor> => if_given of "signal.test_sensor";
     /// Ensemble from which the measurement matrix is drawn, such as `gaussian`.
     ensemble: Ensemble => always of "sensing.ensemble";
-    /// Number m of measurements per frame.
+    /// Method that selects the taxels to read; empty for ensembles that select no taxels. The column is present only if the study has the key.
+    selection: Option<Option<Selection>> => if_given of "sensing.selection";
+    /// Number m of measurements per frame. An adaptive ensemble reads at most m blocks.
     measurements: usize => always of "sensing.measurements";
     /// Compression ratio n / m, where n is the number of values of a frame and m the number of measurements.
     ratio: f64 => always of "sensing.ratio";
+    /// Time to read the m measurements of a frame one after the other, ms. The column is present only if the study has the key `sensing.readings_per_s`.
+    readout_ms: Option<f64> => if_given (Cost, "time to read a frame", "ms", Log);
     /// Number F of frames per touch. If the frames are concatenated, a touch has F times the features of a frame.
     frames: usize => always of "touches.frames";
     /// Method that combines the frames of a touch into features, such as `deepest`. The column is present only if the study has the key; without the key,
@@ -124,7 +130,9 @@ impl Configuration {
         let is_of_images = self.features.of_image().is_some();
         RowInputs {
             image_shape: self.image_shape,
-            measurements: self.measurements,
+            measurements: self
+                .ensemble
+                .n_measurements(self.measurements, self.frame_values),
             frames: self.frames,
             temporal_features: self.temporal_features,
             features: self.features,
@@ -246,6 +254,7 @@ pub(crate) mod tests {
             pitch_mm: 2.0,
             nx: 32,
             ny: 32,
+            frame_values: 1024,
             image_shape: (32, 32),
             size_mm: 64.0,
             noise_std: 0.1,
@@ -254,8 +263,10 @@ pub(crate) mod tests {
             strengths: Strengths::default(),
             test_sensor: None,
             ensemble: Ensemble::Gaussian,
+            selection: None,
             measurements: 64,
             ratio: 16.0,
+            readout_ms: None,
             frames: 1,
             temporal_features: None,
             features: Features::Raw,

@@ -9,7 +9,7 @@ use bubbletouch_sim::features::Features;
 pub struct RowInputs {
     /// Numbers of rows and columns of the images that represent frames.
     pub image_shape: (usize, usize),
-    /// Number m of measurements per frame.
+    /// Number of values of a measured frame: m measurements, or one value per taxel if the ensemble gives frames.
     pub measurements: usize,
     /// Number F of frames per touch.
     pub frames: usize,

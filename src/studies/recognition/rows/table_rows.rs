@@ -269,6 +269,20 @@ pub struct Limit {
     meaning: String => Note;
 } }
 
+row! {
+/// Taxel that the ensemble `selected` reads: a row of `selected.csv`, after the [`Configuration`]. Configurations with equal measurements have equal taxels, and only
+/// the first of them has rows.
+pub struct SelectedTaxel {
+    /// Order in which the taxel was selected, from 1.
+    rank: usize => Note "order of selection": Linear;
+    /// Index of the taxel in a frame, from 0; frames are stored row by row.
+    taxel: usize => Subject: Linear;
+    /// Position of the taxel along x of the array, mm; on a curved array, of its projection along the axis of the middle. Empty for taxels without a layout.
+    x_mm: Option<f64> => Note "x" in "mm": Linear;
+    /// Position of the taxel along y of the array, mm, as `x_mm`.
+    y_mm: Option<f64> => Value(Neither) "y" in "mm": Linear;
+} }
+
 /// All result tables of a recognition study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tables {
@@ -292,6 +306,8 @@ pub struct Tables {
     pub published: Vec<(Configuration, Published)>,
     /// Rows of `variance.csv`: three per configuration, one for each source of variance. Empty unless the study has `projections_per_split`.
     pub variance: Vec<Variance>,
+    /// Rows of `selected.csv`: the selected taxels of the first trial. Empty unless an ensemble of the study selects taxels.
+    pub selected: Vec<(Configuration, SelectedTaxel)>,
     /// Rows of `limits.csv`: number of times that each limit of the simulation and of the solver was reached.
     pub limits: Vec<Limit>,
     /// Whether the trials are the folds of a k-fold split.

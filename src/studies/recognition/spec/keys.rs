@@ -13,7 +13,7 @@ use crate::inputs::toml_value::is_at;
 use crate::inputs::units::MAX_FRAMES;
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::classifiers::parameters::{Parameter, declared};
-use crate::sensing::Ensemble;
+use crate::sensing::{Ensemble, Selection};
 use crate::table::Role;
 use crate::table::Scale::{Linear, Log, Share, Words};
 use bubbletouch_sim::features::Features;
@@ -126,6 +126,8 @@ const KEYS: &[KeyAbout] = keys! {
     "sensing.ensemble": Table, Choice, Any, scale: Words, names: Ensemble::NAMES;
     "sensing.ratio": Table, Choice, AtLeastOne, title: "compression", unit: ":1", scale: Log;
     "sensing.measurements": Table, Choice, COUNT, title: "m", scale: Log;
+    "sensing.selection": Table, Choice, Any, title: "taxels selected by", scale: Words, names: Selection::NAMES;
+    "sensing.readings_per_s": Axes, Choice, Positive;
 
     "recognition.features": Table, Choice, Any, scale: Words, names: Features::NAMES;
     "recognition.depth_window_full_scale": Table, Choice, Positive, title: "depth window", unit: "%", scale: Share;

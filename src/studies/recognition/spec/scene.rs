@@ -18,7 +18,8 @@ pub struct SkinSpec {
     pub size_mm: Option<Axis<f64>>,
     /// Axis: number of taxels along a side of the square array, at least 1. Replaces `size_mm`.
     pub taxels: Option<Axis<usize>>,
-    /// Layout of the taxels: `grid` (default), `hexagonal`, `disc`, `cylinder` or `cap`. All layouts have the same area.
+    /// Layout of the taxels: `grid` (default), `foveated` (closer in the middle, farther apart at the edge), `hexagonal`, `disc`, `cylinder` or `cap`. All
+    /// layouts have the same area and about the same number of taxels.
     #[schemars(with = "Option<Names<ArrayLayout>>")]
     pub layout: Option<ArrayLayout>,
     /// Radius of curvature of the layouts `cylinder` and `cap`, from the axis or centre to the rest centres of the taxels, mm, positive.

@@ -14,7 +14,7 @@ use crate::inputs::schema_types::Names;
 use crate::inputs::toml_value::value_at;
 use crate::learning::data::temporal_features::TemporalFeatures;
 use crate::learning::evaluation::next_touch::NextTouch;
-use crate::sensing::Ensemble;
+use crate::sensing::{Ensemble, Selection};
 use crate::studies::recognition::rows::configuration::Configuration;
 use crate::studies::recognition::rows::table_rows::TrialScore;
 use crate::studies::recognition::spec::classifier_parameters::{
@@ -99,6 +99,13 @@ pub struct SensingSpec {
     pub ratio: Option<Axis<f64>>,
     /// Axis: number m of measurements per frame, at least 1. Replaces `ratio`.
     pub measurements: Option<Axis<usize>>,
+    /// Axis: method by which the ensemble `selected` selects the m taxels to read, on training touches only: `greedy` (default; highest validation accuracy of a
+    /// nearest-neighbour classifier), `pivoted_qr` (pivots of m principal components) or `random` (a control). At most 4,096 frames of the training split are
+    /// used, whatever `recognition.train_touches` is.
+    #[schemars(with = "Option<Axis<Names<Selection>>>")]
+    pub selection: Option<Axis<Selection>>,
+    /// Number of measurements that the skin reads out per second. Adds the column `readout_ms`, the time to read a frame. Default: no such column.
+    pub readings_per_s: Option<f64>,
 }
 
 /// Keys of `[recognition]`: features, classifiers, and the split into training and test touches.

@@ -235,23 +235,36 @@ impl Job<'_> {
         part.measure(group, frames, (self.trial, self.n_measurements))
     }
 
+    /// Returns whether a family of configurations is the first of the study that uses the measurements of this job.
+    fn is_first(&self, family: usize) -> bool {
+        let m = |family: usize| self.study.family(family).1[0].measurements;
+        let earlier = self.study.families[..family].iter().enumerate();
+        let mut same =
+            earlier.filter(|(_, one)| self.study.groups[one.group].measured_as == self.group);
+        !same.any(|(earlier, _)| m(earlier) == m(family))
+    }
+
     fn evaluate(
         &self,
-        family: usize,
+        number: usize,
         measurements: &Measurements,
     ) -> Result<Vec<ConfigurationRow>> {
-        let (part, configurations) = self.study.family(family);
+        let (part, configurations) = self.study.family(number);
         let trial = Trial {
             inputs: part.sweep.trial(&part.plan, self.trial)?,
             measurements,
         };
         let family = FamilyInputs::new(&part.plan, &part.sweep, configurations);
         let evaluations = trial.evaluate(&family);
-        let evaluations = evaluations.map_err(|error| match of_foreign(&configurations[0]) {
-            Some(words) => error.under(format!("{words}, trial {}, ", self.trial)),
-            None => error,
-        });
-        let evaluations = evaluations?.into_iter();
+        let mut evaluations =
+            evaluations.map_err(|error| match of_foreign(&configurations[0]) {
+                Some(words) => error.under(format!("{words}, trial {}, ", self.trial)),
+                None => error,
+            })?;
+        if self.trial == 0 && !measurements.selected.is_empty() && self.is_first(number) {
+            evaluations[0].selected.clone_from(&measurements.selected);
+        }
+        let evaluations = evaluations.into_iter();
         let rows = evaluations.map(|evaluation| ConfigurationRow {
             at: (0, 0),
             evaluation,

@@ -162,7 +162,8 @@ impl RecognitionStudy {
                 let [touches, tested] = [0, 1].map(&mut place_touches);
                 let inputs = group.inputs(plan);
                 let trials = (0..plan.spec.trials).map(|trial| inputs.trial(sweep, trial));
-                let splits: Vec<_> = trials.map_while(|trial| trial.split).collect();
+                let splits = trials.map_while(|trial| Some((trial.split?, trial.group_keys)));
+                let splits: Vec<_> = splits.collect();
                 let content = format!("{touches} {tested} {} {splits:?}", inputs.key());
                 self.groups.push(PlacedGroup {
                     part,
@@ -381,6 +382,19 @@ impl RecognitionStudy {
     /// If the trials of a configuration have no rows, or a file cannot be read.
     pub fn outcome(&self, (configurations, touches): RecognitionRows) -> Result<Tables> {
         let mut tables = Tables::default();
+        let arrays: HashMap<usize, (&Plan, usize)> = configurations
+            .iter()
+            .filter(|row| !row.evaluation.selected.is_empty())
+            .map(|row| {
+                let (part, group) = self.group(row.at.0);
+                let number = group.configurations[row.at.1].configuration;
+                (number, (&part.plan, group.array))
+            })
+            .collect();
+        let place = |configuration: &Configuration, taxel: usize| {
+            let (plan, array) = arrays.get(&configuration.configuration)?;
+            plan.arrays[*array].place_mm(taxel)
+        };
         let scored = configurations.into_iter().map(|row| {
             let configuration = &self.group(row.at.0).1.configurations[row.at.1];
             (configuration.clone(), row.evaluation)
@@ -398,6 +412,7 @@ impl RecognitionStudy {
             &mut tables,
             scored.collect(),
             name,
+            place,
             n_folds,
             report.confusion,
         )?;

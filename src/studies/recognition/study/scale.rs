@@ -27,7 +27,11 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     type Placed<'a> = (&'a StudyPart, &'a MeasurementGroup);
     let n_values = |(part, group): Placed| part.plan.arrays[group.array].n_values();
     let n_frames = |(part, group): Placed| (part.sweep.labels.len() * group.frames) as f64;
-    let m = |group: &MeasurementGroup| group.projected().into_iter().max().unwrap_or(0) as f64;
+    let m = |on: Placed| {
+        let most = on.1.projected().into_iter().max().unwrap_or(0);
+        on.1.ensemble
+            .n_measurements(most, on.0.plan.arrays[on.1.array].n_values()) as f64
+    };
     let n_read = |on: Placed| n_frames(on) * on.1.n_readings(&on.0.plan) as f64;
     let measured = |on: Placed| {
         let matrix = on.1.ensemble.about().bytes;
@@ -35,7 +39,7 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         let shape = on.0.plan.arrays[on.1.array].frame_shape();
         let numbers: usize = of_images.map(|one| one.join.n_values(shape)).sum();
         let learned = learned_bytes(on.1, n_values(on) as f64) + 8.0 * n_read(on) * numbers as f64;
-        8.0 * n_read(on) * m(on.1) + matrix(m(on.1), n_values(on) as f64) + learned
+        8.0 * n_read(on) * m(on) + matrix(m(on), n_values(on) as f64) + learned
     };
     let groups = || {
         let parts = study.parts().iter();

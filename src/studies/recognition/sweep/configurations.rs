@@ -16,6 +16,7 @@ use crate::inputs::units::millimetres;
 use crate::learning::classifiers::ClassifierKind;
 use crate::learning::evaluation::next_touch::Poses;
 use crate::random::Seed;
+use crate::sensing::Selection;
 use crate::studies::recognition::frames::samples::named_samples;
 use crate::studies::recognition::frames::touch_set::TouchSet;
 use crate::studies::recognition::plan::group::MeasurementGroup;
@@ -130,6 +131,7 @@ impl Sweep {
             condition in plan.conditions();
             test_sensor in Axis::optional_values(&plan.spec.signal.test_sensor);
             ensemble in plan.spec.sensing.ensemble.values();
+            selection in plan.spec.sensing.selections(ensemble);
             {
                 let group = MeasurementGroup {
                     array,
@@ -137,6 +139,7 @@ impl Sweep {
                     condition,
                     test_sensor: test_sensor.unwrap_or_default(),
                     ensemble,
+                    selection,
                     configurations: Vec::new(),
                 };
                 sweep.add_group(plan, group, &train_touches)?;
@@ -172,7 +175,9 @@ impl Sweep {
 
     /// Checks that a learned ensemble has enough training frames: their variations must span more directions than there are measurements.
     fn check_learned(&self, plan: &Plan, group: &MeasurementGroup) -> Result<()> {
-        if !group.ensemble.is_learned() {
+        // The numbers of principal components are bounded; any number of taxels can be selected otherwise.
+        let is_of_components = matches!(group.selection, None | Some(Selection::PivotedQr));
+        if !group.ensemble.is_learned() || !is_of_components {
             return Ok(());
         }
         let n_train = self.splits.iter().map(|split| split.train.len());
@@ -229,6 +234,7 @@ impl Sweep {
                 pitch_mm: millimetres(array.pitch()),
                 nx: n_columns,
                 ny: n_rows,
+                frame_values: array.n_values(),
                 image_shape: array.image().0,
                 size_mm: millimetres(array.pitch() * array.grid().nx as f64),
                 noise_std: group.condition.noise,
@@ -237,7 +243,9 @@ impl Sweep {
                 strengths: group.condition.strengths,
                 test_sensor: plan.spec.signal.test_sensor.as_ref().map(|_| group.test_sensor),
                 ensemble: group.ensemble,
+                selection: plan.spec.sensing.selection.as_ref().map(|_| group.selection),
                 ratio: array.n_values() as f64 / measurements as f64,
+                readout_ms: plan.spec.sensing.readings_per_s.map(|rate| 1e3 * measurements as f64 / rate),
                 frames: group.frames,
                 variant: AxisValues::default(),
             }

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::studies::recognition::rows::conditions::most_accurate;
 use crate::studies::recognition::rows::configuration::Configuration;
-use crate::studies::recognition::rows::table_rows::{Confusion, Tables, TrialScore};
+use crate::studies::recognition::rows::table_rows::{Confusion, SelectedTaxel, Tables, TrialScore};
 use crate::studies::recognition::spec::study::ConfusionMatrices;
 use crate::studies::recognition::tables::summary::{
     compare_with_best, most_confused, pareto, summarise,
@@ -20,6 +20,7 @@ pub fn tabulate(
     tables: &mut Tables,
     mut scored: Vec<(Configuration, Evaluation)>,
     name: impl Fn(&Configuration, usize) -> String,
+    place: impl Fn(&Configuration, usize) -> Option<[f64; 2]>,
     n_folds: impl Fn(&Configuration) -> usize,
     matrices: ConfusionMatrices,
 ) -> Result<()> {
@@ -46,6 +47,16 @@ pub fn tabulate(
             row.count += count;
         }
         groups.push(evaluation.groups);
+        for (place_in_order, &taxel) in evaluation.selected.iter().enumerate() {
+            let xy = place(&configuration, taxel);
+            let row = SelectedTaxel {
+                rank: place_in_order + 1,
+                taxel,
+                x_mm: xy.map(|[x, _]| x),
+                y_mm: xy.map(|[_, y]| y),
+            };
+            tables.selected.push((configuration.clone(), row));
+        }
         tables
             .accuracy
             .push((configuration.clone(), evaluation.score));

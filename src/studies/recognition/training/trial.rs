@@ -34,6 +34,10 @@ pub struct Evaluation {
     /// Decision counts of each group of test touches; empty if no groups are held out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<GroupCount>,
+    /// Indices of the selected taxels, in the order of their selection. Only the first family of configurations with these measurements has them, in the first
+    /// trial.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub selected: Vec<usize>,
 }
 
 /// Data of a trial that the evaluations of all families in a group share.
@@ -182,6 +186,7 @@ impl Trial<'_> {
                 .map(|((object, predicted), &count)| (object, predicted, count))
                 .collect(),
             groups,
+            selected: Vec::new(),
         })
     }
 

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 /// Rectangular block of taxels in a grid.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Block {
+pub(super) struct Block {
     /// Range of grid rows, along patch y.
     pub rows: Range<usize>,
     /// Range of grid columns, along patch x.
@@ -16,12 +16,19 @@ struct Block {
 }
 
 impl Block {
-    fn area(&self) -> usize {
+    pub(super) fn area(&self) -> usize {
         self.rows.len() * self.columns.len()
     }
 
+    /// Returns the range of taxel indices of each row of the block, in an array with nx columns.
+    pub(super) fn lines(&self, nx: usize) -> impl Iterator<Item = Range<usize>> + '_ {
+        let columns = &self.columns;
+        let line = move |row: usize| row * nx + columns.start..row * nx + columns.end;
+        self.rows.clone().map(line)
+    }
+
     /// Returns the two halves of a block along its longer side (along rows if the sides are equal); the first half is not smaller.
-    fn halves(self) -> [Self; 2] {
+    pub(super) fn halves(self) -> [Self; 2] {
         let half = |range: &Range<usize>| range.start + range.len().div_ceil(2);
         if self.rows.len() >= self.columns.len() {
             let middle = half(&self.rows);
@@ -90,7 +97,7 @@ fn rows_of_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
 }
 
 /// Divides the array into m blocks by repeated halving of the largest block (the oldest among equally large blocks).
-fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
+pub(super) fn split_blocks((ny, nx): (usize, usize), m: usize) -> Vec<Block> {
     let whole = Block {
         rows: 0..ny,
         columns: 0..nx,
@@ -145,8 +152,7 @@ fn measure(blocks: &[Block], frames: ArrayView2<f64>, mut out: ArrayViewMut2<f64
     for (frame, mut row) in frames.outer_iter().zip(out.outer_iter_mut()) {
         for (y, block) in row.iter_mut().zip(blocks) {
             let mut sum = 0.0;
-            for line in block.rows.clone() {
-                let taxels = line * nx + block.columns.start..line * nx + block.columns.end;
+            for taxels in block.lines(nx) {
                 sum += match frame.as_slice() {
                     Some(frame) => frame[taxels].iter().sum::<f64>(),
                     None => frame.slice(s![taxels]).iter().sum::<f64>(),

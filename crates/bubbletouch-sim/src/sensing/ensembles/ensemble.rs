@@ -2,23 +2,53 @@
 
 use crate::error::Result;
 use crate::random::Seed;
-use crate::sensing::Ensemble;
+use crate::sensing::{Ensemble, Selection};
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
 
 /// Function that draws the linear map from an ny × nx array to m measurements, 1 ≤ m ≤ ny · nx, with its own random stream.
 pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
 
-/// Function that learns the linear map to m measurements from training frames (n_frames × n_taxels, at least one frame).
-pub type Learn = fn(ArrayView2<f64>, usize, &Seed) -> Result<Box<dyn Operator>>;
+/// Function that learns the linear map to m measurements from frames of training touches, with its own random stream.
+pub type Learn = fn(&TrainingFrames, usize, &Seed) -> Result<Box<dyn Operator>>;
 
-/// Origin of a measurement map: drawn at random, or learned from frames.
+/// Function that prepares the adaptive readout of an ny × nx array with at most m readings per frame, 1 ≤ m ≤ ny · nx.
+pub type Adapt = fn((usize, usize), usize) -> Box<dyn Operator>;
+
+/// Origin of a measurement map: drawn at random, learned from frames, or adapted to each frame.
 #[derive(Clone, Copy, Debug)]
 pub enum Source {
     /// The map is drawn at random or fixed.
     Drawn(Draw),
     /// The map is learned from frames of training touches.
     Learned(Learn),
+    /// Earlier readings of a frame decide which readings follow. The map is not linear; it returns an estimate of the frame, one value per taxel.
+    Adaptive(Adapt),
+}
+
+/// Frames of training touches from which a measurement map is learned.
+#[derive(Clone, Copy, Debug)]
+pub struct TrainingFrames<'a> {
+    /// Frames, shape (n_frames, n_taxels), at least one frame.
+    pub frames: ArrayView2<'a, f64>,
+    /// Class of each frame, shape (n_frames,); empty if the classes are unknown.
+    pub labels: &'a [usize],
+    /// Group of each frame, shape (n_frames,); empty if each frame is its own group. Validation compares a frame only with frames of other groups.
+    pub groups: &'a [usize],
+    /// Method by which the ensemble `selected` selects taxels; other ensembles do not use it.
+    pub selection: Selection,
+}
+
+/// Training frames of unknown classes.
+impl<'a> From<ArrayView2<'a, f64>> for TrainingFrames<'a> {
+    fn from(frames: ArrayView2<'a, f64>) -> Self {
+        Self {
+            frames,
+            labels: &[],
+            groups: &[],
+            selection: Selection::default(),
+        }
+    }
 }
 
 /// Description of an ensemble, that is, a family of measurement maps.
@@ -34,7 +64,7 @@ pub struct EnsembleAbout {
     pub needs_rows: bool,
     /// Function that returns the memory of a projection, bytes. Its arguments are the numbers of measurements and of taxels.
     pub bytes: fn(f64, f64) -> f64,
-    /// Origin of the measurement map: drawn at random, or learned from frames.
+    /// Origin of the measurement map: drawn at random, learned from frames, or adapted to each frame.
     pub source: Source,
 }
 
@@ -52,17 +82,22 @@ impl EnsembleAbout {
     }
 }
 
-/// Linear map y = Φx from a frame x to its measurements y.
+/// Map from a frame x to its measurements y: linear, y = Φx, unless the ensemble is adaptive. An adaptive map has no matrix Φ.
 pub trait Operator: Debug + Send + Sync {
     /// Measures frames (n_frames × n_taxels) and overwrites `out` (n_frames × n_measurements). The measurements of a frame have equal bits in any batch of
     /// frames.
     fn measure(&self, frames: ArrayView2<f64>, out: ArrayViewMut2<f64>);
 
-    /// Calls `visit(measurement, taxel, value)` for each entry of Φ that can be nonzero, always in one order.
+    /// Calls `visit(measurement, taxel, value)` for each entry of Φ that can be nonzero, always in one order. An adaptive map visits nothing.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64));
 
-    /// Returns the root mean square norm of the rows of Φ.
+    /// Returns the root mean square norm of the rows of Φ; for an adaptive map, an upper bound of the gain from the noise of taxels to the noise of values.
     fn row_norm(&self) -> f64;
+
+    /// Returns the indices of the taxels that are read, in the order of the measurements, if each measurement is one taxel; otherwise `None`.
+    fn taxels(&self) -> Option<&[usize]> {
+        None
+    }
 
     /// Returns the matrix Φ if it is stored, otherwise `None`.
     fn stored(&self) -> Option<&Array2<f64>> {
@@ -86,9 +121,21 @@ impl Ensemble {
         matches!(self.about().source, Source::Learned(_))
     }
 
-    /// Returns the number of measurements for n taxels and a requested number m. The result is n if the ensemble measures every taxel, otherwise m.
+    /// Returns whether the map is drawn at random or fixed, and therefore linear and independent of all frames.
+    pub fn is_drawn(self) -> bool {
+        matches!(self.about().source, Source::Drawn(_))
+    }
+
+    /// Returns whether a measured frame is a frame again, with one value per taxel: each taxel is measured, or an adaptive readout estimates it.
+    pub fn gives_frames(self) -> bool {
+        let about = self.about();
+        about.is_whole_frame || matches!(about.source, Source::Adaptive(_))
+    }
+
+    /// Returns the number of values of a measured frame for n taxels and a requested number m of measurements. The result is n if the values are a frame again,
+    /// otherwise m.
     pub fn n_measurements(self, m: usize, n: usize) -> usize {
-        match self.about().is_whole_frame {
+        match self.gives_frames() {
             true => n,
             false => m,
         }

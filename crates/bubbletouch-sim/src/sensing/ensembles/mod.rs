@@ -13,12 +13,14 @@ ensembles! {
     Sbhe sbhe "Scrambled block Hadamard \\[SBHE\\]: taxels permuted, Walsh–Hadamard transforms of blocks, coefficients in random order.";
     BlockAverage block_average "Averages over blocks of neighbouring taxels: equal squares where the array allows them (64 × 64 at m = 1,024 is 2 × 2 taxels each), else the cells of recursive splitting, largest first, along its longer side. A cell of a smaller m is a union of cells of a larger m, so the smaller measurements follow from the larger, among all m of splitting and among squares whose sides divide each other (ratios 4, 16, 64 …).";
     Subsample subsample "Some taxels, drawn without replacement.";
+    Selected selected "Some taxels, selected on frames of training touches by the method `selection`.";
+    Adaptive adaptive "Averages over blocks of taxels, chosen anew in each frame: coarse blocks first, then halves of the block with the largest sum, m readings in all. The values of a frame are an estimate of the whole frame.";
     Fourier fourier "The lowest Fourier coefficients: products of cosines and sines, the lowest frequencies first.";
     PrincipalComponents principal_components "The first principal components of frames that training touches read: directions in which they differ most.";
     Identity identity "The frame itself, whatever m.";
 }
 
-pub use ensemble::{Draw, EnsembleAbout, Learn, Operator, Source};
+pub use ensemble::{Adapt, Draw, EnsembleAbout, Learn, Operator, Source, TrainingFrames};
 pub(super) use sbhe::ScrambledHadamard;
 
 use serde::{Deserialize, Serialize};

@@ -5,11 +5,11 @@
 //! needs a matrix of m × n numbers, and training touches that it reads in full.
 
 use super::dense::Dense;
-use super::ensemble::{EnsembleAbout, Operator, Source};
+use super::ensemble::{EnsembleAbout, Operator, Source, TrainingFrames};
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::sensing::pca::Pca;
-use ndarray::ArrayView2;
+use ndarray::Array2;
 
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     words: "principal components",
@@ -22,7 +22,16 @@ pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout {
     source: Source::Learned(learn),
 };
 
-fn learn(frames: ArrayView2<f64>, m: usize, seed: &Seed) -> Result<Box<dyn Operator>> {
+fn learn(training: &TrainingFrames, m: usize, seed: &Seed) -> Result<Box<dyn Operator>> {
+    Ok(Box::new(Dense(components(training, m, seed)?)))
+}
+
+/// Returns the first m principal components of training frames, shape (m, n_taxels).
+///
+/// # Errors
+/// If the frames differ in fewer than m directions.
+pub(crate) fn components(training: &TrainingFrames, m: usize, seed: &Seed) -> Result<Array2<f64>> {
+    let frames = training.frames;
     let components = Pca::new(frames, m, &seed.named("principal_components")).components;
     match components.nrows() {
         found if found < m => {
@@ -32,7 +41,7 @@ fn learn(frames: ArrayView2<f64>, m: usize, seed: &Seed) -> Result<Box<dyn Opera
                 format!("at most {found}, in which {n_frames} frames of training touches differ");
             Err(Error::input("measurements", given, allowed))
         }
-        _ => Ok(Box::new(Dense(components))),
+        _ => Ok(components),
     }
 }
 

@@ -6,9 +6,7 @@ use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use rand::seq::SliceRandom;
 
 pub(crate) const ABOUT: EnsembleAbout = EnsembleAbout::new("subsample", |(ny, nx), m, seed| {
-    let mut order = permutation(ny * nx, &seed.named("subsample"));
-    order.truncate(m);
-    Box::new(Taxels(order))
+    Box::new(Taxels(random_taxels(ny * nx, m, seed)))
 });
 
 /// Index of the taxel that each measurement reads.
@@ -33,9 +31,20 @@ impl Operator for Taxels {
         1.0
     }
 
+    fn taxels(&self) -> Option<&[usize]> {
+        Some(&self.0)
+    }
+
     fn known_gram(&self) -> Option<Array2<f64>> {
         Some(Array2::eye(self.0.len()))
     }
+}
+
+/// Returns m of n taxels, drawn without replacement from the stream of the ensemble `subsample`.
+pub(crate) fn random_taxels(n: usize, m: usize, seed: &Seed) -> Vec<usize> {
+    let mut order = permutation(n, &seed.named("subsample"));
+    order.truncate(m);
+    order
 }
 
 /// Returns the numbers 0 … n − 1 in random order; every order is equally probable.

@@ -16,6 +16,8 @@ pub struct LayoutAbout {
     pub curved: Option<Curved>,
     /// Distance between neighbouring taxels, in pitches; `None` if the distance is about one pitch.
     pub neighbour_pitches: Option<f64>,
+    /// Largest distance between neighbouring rows or columns of taxels, in pitches.
+    pub widest_pitches: f64,
     /// Whether the taxels lie in straight rows and columns, one pitch apart along the surface.
     pub is_image: bool,
     /// Function that returns a taxel's position on a plane, metres, from its centre and the radius of curvature.
@@ -39,6 +41,7 @@ impl LayoutAbout {
             sides: |_| None,
             curved: None,
             neighbour_pitches: None,
+            widest_pitches: 1.0,
             is_image: false,
             place_on_plane: |center, _| center.truncate(),
         }

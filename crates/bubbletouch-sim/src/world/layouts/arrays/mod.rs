@@ -4,7 +4,7 @@
 //! per cent of n². In the patch frame the middle is at the origin, with its axis along +z.
 //!
 //! In every layout, the pitch is the side of a square whose area is the mean area per taxel. In a hexagonal lattice of this density the six neighbours of a
-//! taxel are farther away than the pitch: 2.149 mm at a pitch of 2 mm.
+//! taxel are farther away than the pitch: 2.149 mm at a pitch of 2 mm. In a foveated grid, the distance varies over the array.
 
 #[macro_use]
 mod about;
@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 // The rest of the program refers to a layout only by its line here and the file that the line names.
 array_layouts! {
     Grid grid "Rows and columns.";
+    Foveated foveated "Rows and columns, half a pitch apart in the middle and two pitches apart at the edge.";
     Hexagonal hexagonal "Staggered rows: each taxel has six neighbours, 1.0746 pitches away.";
     Disc disc "The hexagonal lattice in a circle.";
     Cylinder cylinder "The grid bent around a cylinder along patch y.";
@@ -40,6 +41,11 @@ impl ArrayLayout {
     /// layouts, whose neighbours are about a pitch apart.
     pub fn neighbour_distance(self, pitch: f64) -> Option<f64> {
         self.about().neighbour_pitches.map(|n| n * pitch)
+    }
+
+    /// Returns the largest distance between neighbouring rows or columns of taxels, in pitches; about 1 if the density is the same everywhere.
+    pub fn widest_pitches(self) -> f64 {
+        self.about().widest_pitches
     }
 
     /// Returns the display name of the layout.

@@ -1,0 +1,188 @@
+//! Which taxels a study reads: selected taxels, adaptive blocks, and arrays whose pitch varies.
+
+use crate::study::{Study, laid_out};
+use bubbletouch::sensing::Selection;
+use bubbletouch::studies::recognition::charts::{charts, tables_of};
+use bubbletouch::study::FeatureSet;
+use bubbletouch::study::progress::Silent;
+use std::collections::BTreeSet;
+
+const STUDY: &str = r#"
+question = "How many taxels, where, and read how?"
+trials = 2
+
+[objects]
+sets = ["household"]
+names = ["mug", "banana", "scissors", "power_drill", "fork", "bowl"]
+surface_error_mm = 1.0
+
+[skin]
+pitch_mm = 4.0
+size_mm = 96.0
+stroke_mm = 5.0
+
+[touches]
+per_object = 30
+offset_x_mm = { uniform = [-10.0, 10.0] }
+offset_y_mm = { uniform = [-10.0, 10.0] }
+yaw_deg = { uniform = [0.0, 360.0] }
+depth_mm = 3.0
+
+[signal]
+noise_std_full_scale = 0.05
+
+[sensing]
+ensemble = "selected"
+measurements = [8, 24]
+
+[recognition]
+classifier = "linear_svm"
+"#;
+
+fn features(text: &str, configuration: usize, trial: usize) -> FeatureSet {
+    let study = laid_out(text).unwrap();
+    let part = study.first();
+    part.features((configuration, trial), &Silent).unwrap()
+}
+
+fn error(text: &str) -> String {
+    laid_out(text).err().expect("refused").to_string()
+}
+
+#[test]
+fn every_method_selects_m_different_taxels_and_the_table_tells_where() {
+    let methods = "ensemble = [\"selected\", \"block_average\"]\nselection = [\"greedy\", \"pivoted_qr\", \"random\"]";
+    let text = STUDY.replace("ensemble = \"selected\"", methods);
+    let tables = Study::new(&text).run();
+    // Three methods and the block average, at two numbers of taxels each.
+    assert_eq!(tables.summary.len(), 8);
+    let methods = Selection::ALL.map(Some).into_iter().chain([None]);
+    for (configuration, selection) in methods.flat_map(|one| [one, one]).enumerate() {
+        let found = &tables.summary[configuration].0;
+        assert_eq!(found.selection, Some(selection));
+        let rows = tables.selected.iter();
+        let own = rows.filter(|(of, _)| of.configuration == configuration);
+        let own: Vec<_> = own.map(|(_, taxel)| taxel).collect();
+        let expected = selection.map_or(0, |_| found.measurements);
+        assert_eq!(own.len(), expected);
+        assert!(own.iter().enumerate().all(|(k, row)| row.rank == k + 1));
+        let different: BTreeSet<usize> = own.iter().map(|row| row.taxel).collect();
+        assert_eq!(different.len(), expected);
+        for row in own {
+            let (x, y) = (row.taxel % 24, row.taxel / 24);
+            let place = [x, y].map(|k| Some(4.0 * k as f64 - 46.0));
+            assert_eq!([row.x_mm, row.y_mm], place);
+        }
+    }
+    let names: Vec<String> = charts(&tables_of(&tables).unwrap(), None)
+        .into_iter()
+        .map(|chart| chart.name)
+        .collect();
+    let of_taxels = names
+        .iter()
+        .filter(|name| name.starts_with("selected_taxels"));
+    assert_eq!(of_taxels.count(), 2, "{names:?}");
+}
+
+#[test]
+fn taxels_are_selected_on_training_touches_of_the_trial() {
+    let [set, other] = [0, 1].map(|trial| features(STUDY, 0, trial));
+    assert_ne!(set.split.test, other.split.test);
+    assert_ne!(set.data.records.row(0), other.data.records.row(0));
+    // The deflections of the test touches do not change the features of the training touches.
+    let deeper = format!("{STUDY}\n[test.touches]\ndepth_mm = 2.0\n");
+    let changed = features(&deeper, 0, 0);
+    assert_eq!(changed.split.train, set.split.train);
+    for &touch in &set.split.train {
+        assert_eq!(set.data.records.row(touch), changed.data.records.row(touch));
+    }
+    let differs = |&touch: &usize| set.data.records.row(touch) != changed.data.records.row(touch);
+    assert!(set.split.test.iter().any(differs));
+}
+
+#[test]
+fn a_selection_at_random_gives_the_rows_of_a_subsample() {
+    let random = "ensemble = \"selected\"\nselection = \"random\"";
+    let random = features(&STUDY.replace("ensemble = \"selected\"", random), 1, 0);
+    let drawn = features(&STUDY.replace("\"selected\"", "\"subsample\""), 1, 0);
+    assert_eq!(random.data.records, drawn.data.records);
+}
+
+#[test]
+fn more_taxels_can_be_selected_than_there_are_training_touches_but_not_by_pivots() {
+    let text = STUDY.replace("per_object = 30", "per_object = 4");
+    assert!(laid_out(&text).is_ok());
+    let pivots = "ensemble = \"selected\"\nselection = \"pivoted_qr\"";
+    let message = error(&text.replace("ensemble = \"selected\"", pivots));
+    assert!(message.contains("key sensing.measurements"), "{message}");
+}
+
+#[test]
+fn keys_that_contradict_a_selection_are_refused() {
+    let drawn = "ensemble = \"gaussian\"\nselection = \"greedy\"";
+    let message = error(&STUDY.replace("ensemble = \"selected\"", drawn));
+    assert!(
+        message.contains("no ensemble of the study selects"),
+        "{message}"
+    );
+    let wrong = STUDY.replace("classifier =", "mislabelled_fraction = 0.1\nclassifier =");
+    let message = error(&wrong);
+    assert!(message.contains("labels of training touches"), "{message}");
+    let message = error(&STUDY.replace("measurements =", "readings_per_s = 0.0\nmeasurements ="));
+    assert!(message.contains("sensing.readings_per_s"), "{message}");
+}
+
+#[test]
+fn adaptive_blocks_give_a_frame_per_touch_at_any_budget() {
+    let text = STUDY.replace("\"selected\"", "\"adaptive\"");
+    let text = text.replace("measurements =", "readings_per_s = 16000.0\nmeasurements =");
+    let images = "features = [\"raw\", \"descriptors\"]\nclassifier =";
+    let text = text.replace("classifier =", images);
+    let tables = Study::new(&text).run();
+    let costs = tables
+        .summary
+        .iter()
+        .map(|(c, _)| (c.measurements, c.readout_ms));
+    let costs: Vec<_> = costs.collect();
+    let expected = [(8, 0.5), (8, 0.5), (24, 1.5), (24, 1.5)].map(|(m, ms)| (m, Some(ms)));
+    assert_eq!(costs, expected);
+    let coarse = features(&text, 0, 0).data.records;
+    let fine = features(&text, 2, 0).data.records;
+    assert_eq!((coarse.ncols(), fine.ncols()), (576, 576));
+    let n_different = |row: ndarray::ArrayView1<f64>| {
+        let values: BTreeSet<u64> = row.iter().map(|value| value.to_bits()).collect();
+        values.len()
+    };
+    for (row, most) in [(coarse.row(3), 8), (fine.row(3), 24)] {
+        assert!(n_different(row) <= most && n_different(row) > most / 2);
+    }
+}
+
+#[test]
+fn with_all_readings_adaptive_blocks_are_the_identity() {
+    let text = STUDY.replace("measurements = [8, 24]", "measurements = 576");
+    let images = "features = [\"raw\", \"descriptors\"]\nclassifier =";
+    let text = text.replace("classifier =", images);
+    for configuration in [0, 1] {
+        let of =
+            |ensemble: &str| features(&text.replace("\"selected\"", ensemble), configuration, 0);
+        assert_eq!(
+            of("\"adaptive\"").data.records,
+            of("\"identity\"").data.records
+        );
+    }
+}
+
+#[test]
+fn a_foveated_array_has_the_taxels_of_the_grid_and_its_blocks() {
+    let text = STUDY.replace("stroke_mm", "layout = \"foveated\"\nstroke_mm");
+    let text = text.replace(
+        "\"selected\"",
+        "[\"adaptive\", \"block_average\", \"selected\"]",
+    );
+    let text = text.replace("classifier =", "features = \"descriptors\"\nclassifier =");
+    let tables = Study::new(&text).run();
+    assert_eq!(tables.summary.len(), 6);
+    assert!(tables.summary.iter().all(|(c, _)| (c.nx, c.ny) == (24, 24)));
+    assert!(tables.summary.iter().any(|(_, score)| score.accuracy > 0.4));
+}
