@@ -78,6 +78,13 @@ solver = "lmmse"
 dictionary = "dct"
 "#;
 
+/// Returns an object-detail study with another key in a table.
+fn detail(table: &str, key: &str) -> String {
+    let study = "question = \"q\"\n[objects]\nmeshes = \"meshes\"\n[skin]\npitch_mm = 2.0\ntaxels = 16\nstroke_mm = 5.0\n\
+                 [touches]\nper_object = 6\ndepth_mm = 3.0\n[object_detail]\ntolerances_mm = [2.0]\nmethods = [\"packing\"]\n";
+    study.replace(table, &format!("{table}\n{key}"))
+}
+
 /// Returns a recognition study with the given classifiers.
 fn recognition(classifier: &str, more: &str) -> String {
     format!(
@@ -99,6 +106,40 @@ fn a_key_that_cannot_act_is_refused_with_its_line_by_plan_and_by_run() {
         (
             with("[touches]", "slide_deg = 3.0"),
             ["key touches.slide_deg", "recognition"],
+        ),
+        (
+            with("[skin]", "stiffness_n_per_m = 50.0"),
+            ["x.toml:6, key skin.stiffness_n_per_m: 50, but no force", "\"force\" among signal.steps"],
+        ),
+        (
+            with("[skin]", "damping_n_s_per_m = 0.5"),
+            ["key skin.damping_n_s_per_m: 0.5, but no force", "\"force\" among signal.steps"],
+        ),
+        (
+            with("[touches]", "speed_mm_per_s = 5.0"),
+            ["key touches.speed_mm_per_s: 5, but no force", "\"force\" among signal.steps"],
+        ),
+        (
+            with("[signal]", "steps = [\"force\", \"noise\"]")
+                .replace("[skin]", "[skin]\ndamping_n_s_per_m = 0.5"),
+            ["key skin.damping_n_s_per_m: 0.5, but every touch is read at rest", "touches.speed_mm_per_s"],
+        ),
+        (
+            with("[signal]", "steps = [\"force\", \"noise\"]")
+                .replace("[touches]", "[touches]\nspeed_mm_per_s = 5.0"),
+            ["key touches.speed_mm_per_s: 5, but the skin has no damper", "skin.damping_n_s_per_m"],
+        ),
+        (
+            detail("[skin]", "stiffness_n_per_m = 50.0"),
+            ["key skin.stiffness_n_per_m: 50, but no force", "no such key"],
+        ),
+        (
+            detail("[skin]", "damping_n_s_per_m = 0.5"),
+            ["key skin.damping_n_s_per_m: 0.5, but no force", "no such key"],
+        ),
+        (
+            detail("[touches]", "speed_mm_per_s = 5.0"),
+            ["key touches.speed_mm_per_s: 5, but no force", "no such key"],
         ),
         (
             with("[signal]", "test_sensor = \"another_skin\""),

@@ -73,6 +73,8 @@ impl ObjectDetailPlan {
             return Err(check.error("objects.surface_error_mm", "a surface error", allowed));
         }
         let placement = check.placement(&spec.touches)?;
+        let of_force = "no such key: the study compares deflections at rest";
+        check.used_springs((&spec.skin, &spec.touches), false, of_force)?;
         let wanted = &spec.object_detail;
         check.keys("object_detail", wanted, KEYS)?;
         if wanted.methods.contains(&DetailMethod::Mesh) {

@@ -90,6 +90,9 @@ impl ReconstructionPlan {
         let (noise_unit, noise) = check.noise(&spec.signal, None)?;
         check.steps(&spec.signal)?;
         check.noise_is_last(&spec.signal)?;
+        let reads_force = spec.signal.steps.contains(&StepSpec::Force);
+        let of_force = "\"force\" among signal.steps beside it";
+        check.used_springs((&spec.skin, &spec.touches), reads_force, of_force)?;
         check.sensing(&spec.sensing, std::slice::from_ref(&array))?;
         check.drawn("sensing.ensemble", spec.sensing.ensemble.values())?;
         let wanted = &spec.reconstruction;

@@ -7,7 +7,7 @@ use crate::inputs::check::Check;
 use crate::inputs::defaults::number;
 use crate::inputs::toml_value::is_at;
 use crate::studies::recognition::plan::study_plan::Plan;
-use crate::studies::recognition::spec::scene::SensedSpec;
+use crate::studies::recognition::spec::scene::{SensedSpec, SkinSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::world::{Spread, TouchAxis};
@@ -187,6 +187,39 @@ impl Check<'_> {
             let given = "one_at_a_time, but fewer than two keys of [signal] have several values";
             let allowed = "no such key, or two axes in [signal]";
             return Err(self.error("signal.combine", given, allowed));
+        }
+        Ok(())
+    }
+
+    /// Checks that the springs, the dampers and the speed have an effect in a study of another kind than recognition. `of_force` states which keys make the
+    /// study read forces.
+    pub fn used_springs(
+        &self,
+        (skin, touches): (&SkinSpec, &TouchesSpec),
+        reads_force: bool,
+        of_force: &str,
+    ) -> Result<()> {
+        let (stiffness, damping) = (skin.stiffness_n_per_m, skin.damping_n_s_per_m);
+        let speed = touches.speed_mm_per_s;
+        let keys = [
+            ("skin.stiffness_n_per_m", stiffness, number::<100>()),
+            ("skin.damping_n_s_per_m", damping, 0.0),
+            ("touches.speed_mm_per_s", speed, 0.0),
+        ];
+        for (key, given, default) in keys {
+            if !reads_force && given != default {
+                return Err(self.error(key, format!("{given}, but no force is read"), of_force));
+            }
+        }
+        if damping > 0.0 && speed == 0.0 {
+            let given = format!("{damping}, but every touch is read at rest");
+            let allowed = "a touches.speed_mm_per_s above 0 beside it";
+            return Err(self.error("skin.damping_n_s_per_m", given, allowed));
+        }
+        if speed > 0.0 && damping == 0.0 {
+            let given = format!("{speed}, but the skin has no damper");
+            let allowed = "a skin.damping_n_s_per_m above 0 beside it";
+            return Err(self.error("touches.speed_mm_per_s", given, allowed));
         }
         Ok(())
     }
