@@ -12,7 +12,7 @@ pub use crate::inputs::object_files::{
     load_spheres, objects_content, read_mesh, read_mesh_file,
 };
 pub use crate::inputs::objects_spec::{ModelSpec, ObjectsSpec};
-pub use crate::inputs::packings::{Packed, pack_within, packing_path};
+pub use crate::inputs::packings::{Packed, pack_with, pack_within, packing_path};
 pub use crate::inputs::sensor_errors::{Strengths, TestSensor, all_strengths, strength_columns};
 pub use crate::inputs::units::millimetres;
 pub use crate::report::pictures::snapshots::Snapshots;

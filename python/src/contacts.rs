@@ -7,14 +7,16 @@ use glam::DVec3;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-/// Contacts of presses at n poses: m pairs of a taxel and the part of the object (sphere or triangle) that touches it, ordered by pose and taxel.
+/// Contacts of presses at n poses: m pairs of a taxel and the part of an object (sphere or triangle) that touches it, ordered by pose and taxel.
 #[pyclass(frozen, get_all, module = "bubbletouch")]
 pub struct Contacts {
     /// For each contact (m,), the number of its pose, from 0.
     pose: Py<PyArray1<i64>>,
     /// For each contact (m,), the number of its taxel in the patch, from 0.
     taxel: Py<PyArray1<i64>>,
-    /// For each contact (m,), the number of the sphere or triangle that determines the taxel's deflection.
+    /// For each contact (m,), the number of the object that touches the taxel, from 0; always 0 for a single object.
+    object: Py<PyArray1<i64>>,
+    /// For each contact (m,), the number of the sphere or triangle of the object that determines the taxel's deflection.
     part: Py<PyArray1<i64>>,
     /// For each contact (m,), the deflection of its taxel, metres; equals the deflection in the frame up to rounding.
     deflection: Py<PyArray1<f64>>,
@@ -98,6 +100,7 @@ impl Contacts {
         Ok(Self {
             pose: whole(|(number, ..)| *number),
             taxel: whole(|(_, contact, _)| contact.taxel),
+            object: whole(|(_, contact, _)| contact.object),
             part: whole(|(_, contact, _)| contact.part),
             deflection: to_column(py, all.iter().map(|(_, contact, _)| contact.deflection))
                 .unbind(),

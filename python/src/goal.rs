@@ -9,7 +9,6 @@ use bubbletouch::objects::Model;
 use bubbletouch::world::Patch;
 use glam::DVec3;
 use pyo3::prelude::*;
-use std::slice::from_ref;
 
 /// Goal of presses: its kind (pose, depth, force or travel), and one amount for all poses or one amount per pose.
 pub struct Goal {
@@ -106,24 +105,25 @@ impl Goal {
         pressed.filter(|contact| !may_touch_none || contact.n_touched > 0)
     }
 
-    fn amount(&self, number: usize) -> f64 {
+    /// Returns the amount of the press with the given number: metres or newtons.
+    pub fn amount(&self, number: usize) -> f64 {
         match self.amounts[..] {
             [amount] => amount,
             _ => self.amounts[number],
         }
     }
 
-    /// Returns the press at the pose with the given number.
+    /// Returns the press of the given number, on objects with one pose each.
     pub fn of_pose<'a>(
         &self,
         number: usize,
         patch: &'a Patch,
-        (model, pose): (&'a Model, &'a Pose),
+        (models, poses): (&'a [Model], &'a [Pose]),
     ) -> Press<'a> {
         Press {
             patch,
-            models: from_ref(model),
-            poses: from_ref(pose),
+            models,
+            poses,
             goal: (self.kind)(self.amount(number)),
         }
     }

@@ -7,7 +7,7 @@
 //! - depth past first contact, on a flat patch: the deepest taxel d keeps its deflection, so its derivative is subtracted, `J_i − J_d`;
 //! - force Σ k δ: the travel changes by `dT = −Σ k J / Σ k r`, where r = −g_z is the change of a deflection per travel; the derivative is `J_i + r_i dT`.
 //!
-//! The derivative of a saturated or untouched taxel is 0.
+//! The derivative of a saturated or untouched taxel is 0. Of several objects, each contact moves with its own object, and the travel changes with all of them.
 
 use crate::errors::bad_input;
 use bubbletouch::contact::{Goal, TaxelContact};
@@ -39,17 +39,17 @@ pub fn check(goal: Goal, patch: &Patch) -> PyResult<()> {
     ))
 }
 
-/// Writes the derivatives of all deflections with respect to the object's pose (n_taxels × 6, initially 0), from the contacts of a press. `origin` is the
-/// position of the object after the press.
+/// Writes the derivatives of all deflections with respect to the poses of k objects (n_taxels × k × 6, initially 0), from the contacts of a press. `origins`
+/// are the positions of the objects after the press.
 pub fn fill(
     changes: &mut [f64],
     goal: Goal,
     patch: &Patch,
-    (contacts, origin): (&[TaxelContact], DVec3),
+    (contacts, origins): (&[TaxelContact], &[DVec3]),
 ) {
     let change = |contact: &TaxelContact| {
         let gradient = contact.gradient();
-        let turn = (contact.point - origin).cross(gradient);
+        let turn = (contact.point - origins[contact.object]).cross(gradient);
         [gradient.x, gradient.y, gradient.z, turn.x, turn.y, turn.z]
     };
     let taxel = |contact: &TaxelContact| patch.taxels().at(contact.taxel);
@@ -59,29 +59,43 @@ pub fn fill(
             .filter(|contact| !contact.is_saturated(taxel(contact)))
     };
     let rise = |contact: &TaxelContact| -contact.gradient().z;
-    let travel = match goal {
-        Goal::Pose | Goal::Travel(_) => [0.0; N],
+    let mut travels = vec![[0.0; N]; origins.len()];
+    match goal {
+        Goal::Pose | Goal::Travel(_) => {}
         Goal::Depth(_) => {
             let deepest = contacts.iter().max_by(|a, b| a.needed.total_cmp(&b.needed));
-            deepest.map_or([0.0; N], |deepest| change(deepest).map(|change| -change))
+            if let Some(deepest) = deepest {
+                travels[deepest.object] = change(deepest).map(|change| -change);
+            }
         }
         Goal::Force(_) => {
-            let (mut sum, mut rises) = ([0.0; N], 0.0);
+            let mut rises = 0.0;
             for contact in moving() {
                 let stiffness = taxel(contact).stiffness;
                 rises += stiffness * rise(contact);
-                for (sum, change) in sum.iter_mut().zip(change(contact)) {
+                let sums = &mut travels[contact.object];
+                for (sum, change) in sums.iter_mut().zip(change(contact)) {
                     *sum += stiffness * change;
                 }
             }
-            sum.map(|sum| if rises > 0.0 { -sum / rises } else { 0.0 })
+            for sum in travels.as_flattened_mut() {
+                *sum = if rises > 0.0 { -*sum / rises } else { 0.0 };
+            }
         }
-    };
+    }
+    let width = N * origins.len();
     for contact in moving() {
         let rise = rise(contact);
-        let row = &mut changes[contact.taxel * N..][..N];
-        for ((to, change), travel) in row.iter_mut().zip(change(contact)).zip(travel) {
-            *to = change + rise * travel;
+        let row = &mut changes[contact.taxel * width..][..width];
+        for (object, travel) in travels.iter().enumerate() {
+            let own = match object == contact.object {
+                true => change(contact),
+                false => [0.0; N],
+            };
+            let row = &mut row[object * N..][..N];
+            for ((to, change), travel) in row.iter_mut().zip(own).zip(travel) {
+                *to = change + rise * travel;
+            }
         }
     }
 }

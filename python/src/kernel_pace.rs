@@ -7,6 +7,7 @@ use crate::patch::Patch;
 use crate::poses::Poses;
 use bubbletouch::contact::Workspace;
 use pyo3::prelude::*;
+use std::slice::from_ref;
 use std::time::Instant;
 
 /// Measures how many taxel readings per second the press kernel computes on one thread, without output arrays. The number is the reference for presses that
@@ -30,7 +31,7 @@ pub fn _kernel_pace(
         let mut n_readings = 0;
         while start.elapsed().as_secs_f64() < seconds {
             for (number, pose) in poses.iter().enumerate() {
-                let press = goal.of_pose(number, patch, (model, pose));
+                let press = goal.of_pose(number, patch, (from_ref(model), from_ref(pose)));
                 press.deflect(&mut workspace).map_err(exception)?;
                 std::hint::black_box(workspace.deflections());
                 n_readings += patch.n_taxels();

@@ -8,7 +8,7 @@ use crate::threads::aside;
 use bubbletouch::mesh::{Orientation, SizeLimits, Surface, TriangleMesh};
 use bubbletouch::objects::{MeshModel, Model, vertex_spheres};
 use bubbletouch::packing::{Body, error_of_file, pack_mesh_watched};
-use bubbletouch::study::read_mesh_file;
+use bubbletouch::study::{pack_with, read_mesh_file};
 use glam::DVec3;
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
@@ -222,10 +222,20 @@ impl Mesh {
     /// spheres. If these bounds cannot be reached, ValueError is raised. The mesh must be closed. Parts that face inwards are turned outwards, with a
     /// UserWarning. With sheet=True, the surface is packed as a sheet without thickness; the mesh may then be open. A scan of 16,000 triangles takes
     /// seconds. Ctrl-C ends the call.
-    #[pyo3(signature = (tolerance, *, sheet=false))]
-    fn pack(&self, py: Python, tolerance: f64, sheet: bool) -> PyResult<SphereUnion> {
+    ///
+    /// cache: folder of packings, created if missing. If the folder contains the spheres of an equal mesh and tolerance, these are read; otherwise, the
+    /// spheres are written to it. Studies use the same files, in the folder packings beside their results. Several processes can share a folder.
+    #[pyo3(signature = (tolerance, *, sheet=false, cache=None))]
+    fn pack(
+        &self,
+        py: Python,
+        tolerance: f64,
+        sheet: bool,
+        cache: Option<PathBuf>,
+    ) -> PyResult<SphereUnion> {
         guarded(|| {
             let mesh = self.triangle_mesh().clone();
+            let place = self.place.clone();
             let body = if sheet { Body::Sheet } else { Body::Solid };
             let (orientation, packed) = aside(py, move |stop| {
                 let (mesh, orientation) = match body {
@@ -234,12 +244,12 @@ impl Mesh {
                 };
                 let surface = Surface::new(mesh);
                 let watch = &mut |_| stop.end_if_told();
-                (
-                    orientation,
-                    pack_mesh_watched(&surface, body, tolerance, watch),
-                )
+                let packed = pack_with(&surface, (body, tolerance), cache.as_deref(), || {
+                    let packed = pack_mesh_watched(&surface, body, tolerance, watch);
+                    packed.map_err(|error| error_of_file(error, &place, ADVICE))
+                });
+                (orientation, packed)
             })?;
-            let packed = packed.map_err(|error| error_of_file(error, &self.place, ADVICE));
             let packed = packed.map_err(exception)?;
             self.warn_if_turned(py, &orientation)?;
             Ok(SphereUnion::from_spheres(packed.spheres))

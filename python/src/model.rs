@@ -1,5 +1,6 @@
 //! Contact models of objects: a [`Mesh`] or a [`SphereUnion`].
 
+use crate::errors::bad_input;
 use crate::mesh::Mesh;
 use crate::sphere_union::SphereUnion;
 use bubbletouch::objects::Model;
@@ -21,4 +22,50 @@ pub fn model_of<'a>(place: &str, object: &'a Bound<PyAny>) -> PyResult<&'a Model
         "{place}: {}; a SphereUnion or a Mesh (a Solid is pressed as what its pack(tolerance) gives)",
         object.get_type()
     )))
+}
+
+/// Contact models of the objects that a patch is pressed on.
+pub enum Objects<'a> {
+    /// A single object.
+    One(&'a Model),
+    /// Several objects, in the order of their poses.
+    Several(Vec<Model>),
+}
+
+impl<'a> Objects<'a> {
+    /// Reads the argument `object`: one object, or a sequence of objects.
+    ///
+    /// # Errors
+    /// If the sequence is empty, or an object is neither a `Mesh` nor a `SphereUnion`.
+    pub fn from_argument(object: &'a Bound<PyAny>) -> PyResult<Self> {
+        const PLACE: &str = "object";
+        let one = model_of(PLACE, object);
+        let (Err(_), Ok(objects)) = (&one, object.try_iter()) else {
+            return one.map(Self::One);
+        };
+        let model = |(number, object): (usize, PyResult<Bound<PyAny>>)| {
+            Ok(model_of(&format!("{PLACE}[{number}]"), &object?)?.clone())
+        };
+        let models: Vec<Model> = objects.enumerate().map(model).collect::<PyResult<_>>()?;
+        match models.is_empty() {
+            true => Err(bad_input(PLACE, "no object", "at least one")),
+            false => Ok(Self::Several(models)),
+        }
+    }
+
+    /// Returns the models of all objects.
+    pub fn models(&self) -> &[Model] {
+        match self {
+            Self::One(model) => std::slice::from_ref(*model),
+            Self::Several(models) => models,
+        }
+    }
+
+    /// Returns the number of objects of a sequence; `None` if the argument was a single object.
+    pub fn n_several(&self) -> Option<usize> {
+        match self {
+            Self::One(_) => None,
+            Self::Several(models) => Some(models.len()),
+        }
+    }
 }

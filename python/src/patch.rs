@@ -1,15 +1,18 @@
 //! Class `Patch`: taxels on a rigid substrate.
 
-use crate::arrays::{each, points, to_column, to_rows, whole_number};
+use crate::arrays::{each, points, to_column, to_rows, view, whole_number};
 use crate::batch::Spare;
-use crate::errors::{bad_input, exception, guarded};
+use crate::errors::{bad_input, check_folder, exception, guarded};
 use crate::mesh::Mesh;
+use crate::output::Output;
 use crate::poses::Poses;
+use crate::slide::{Motion, press_and_slide};
 use bubbletouch::contact::Workspace;
 use bubbletouch::geometry::Aabb;
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutOptions};
 use bubbletouch::random::Seed;
-use bubbletouch::world::{self, DrapeRegion, Grid, Layout, Taxel, Taxels};
+use bubbletouch::report::layout_picture::write_layout_picture;
+use bubbletouch::world::{self, DrapeRegion, Grid, Layout, MissingTaxels, Taxel, Taxels};
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyUserWarning;
@@ -29,9 +32,9 @@ const STIFFNESS: f64 = 100.0;
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Patch {
     patch: world::Patch,
-    /// Shape of a frame: (ny, nx) for a grid, otherwise (n_taxels,).
+    /// Shape of a frame: (ny, nx) for taxels in rows and columns, otherwise (n_taxels,).
     shape: Vec<usize>,
-    /// Row and column of each taxel in the sensor's image, if the layout file has one.
+    /// Row and column of each taxel in the sensor's image, if the layout has one.
     pixels: Option<Vec<[usize; 2]>>,
     /// Memory that successive presses of the patch reuse.
     spare: Spare<Workspace>,
@@ -40,9 +43,8 @@ pub struct Patch {
 impl Patch {
     /// Wraps a patch of the Rust library.
     pub fn from_patch(patch: world::Patch) -> Self {
-        let grid = patch.layout().as_grid();
         Self {
-            shape: grid.map_or(vec![patch.n_taxels()], |grid| vec![grid.ny, grid.nx]),
+            shape: frame_shape(patch.layout()),
             pixels: None,
             spare: Spare::new(),
             patch,
@@ -52,6 +54,32 @@ impl Patch {
     fn with(layout: Layout, taxels: impl Into<Taxels>) -> PyResult<Self> {
         let patch = world::Patch::new("patch", layout, taxels);
         Ok(Self::from_patch(patch.map_err(exception)?))
+    }
+
+    /// Creates a patch with the taxels of a layout file. If no radius is given, the radii are those of the file, or its default.
+    fn from_file(
+        file: LayoutFile,
+        stroke: f64,
+        (taxel_radius, stiffness, damping): (Option<f64>, f64, f64),
+    ) -> PyResult<Self> {
+        let with_radius = |radius| Taxel {
+            radius,
+            stiffness,
+            damping,
+            stroke,
+        };
+        let taxels = match (taxel_radius, &file.radii) {
+            (None, Some(radii)) if radii.iter().any(|radius| *radius != radii[0]) => {
+                Taxels::Each(radii.iter().copied().map(with_radius).collect())
+            }
+            (None, Some(radii)) => Taxels::Equal(with_radius(radii[0])),
+            (Some(radius), _) => Taxels::Equal(with_radius(radius)),
+            (None, None) => Taxels::Equal(with_radius(file.default_radius())),
+        };
+        Ok(Self {
+            pixels: file.pixels,
+            ..Self::with(file.layout, taxels)?
+        })
     }
 
     /// Returns the patch of the Rust library that this object wraps.
@@ -70,6 +98,59 @@ impl Patch {
             Taxels::Each(taxels) => to_column(py, taxels.iter().map(of)).into_any(),
         })
     }
+}
+
+/// Returns the shape of a frame: (ny, nx) for taxels in rows and columns, otherwise (n_taxels,).
+pub fn frame_shape(layout: &Layout) -> Vec<usize> {
+    let sides = layout.sides().map(|sides| sides.to_vec());
+    sides.unwrap_or_else(|| vec![layout.n_taxels()])
+}
+
+/// Issues notes as Python warnings.
+fn warn(py: Python, notes: &[String]) -> PyResult<()> {
+    for note in notes {
+        let note = CString::new(note.as_str()).unwrap_or_default();
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 1)?;
+    }
+    Ok(())
+}
+
+/// Returns the layout with the shape of its frames: (ny, nx) or (n_taxels,).
+fn with_shape(layout: Layout, shape: Option<Vec<i64>>) -> PyResult<Layout> {
+    let n_taxels = layout.n_taxels();
+    match shape.as_deref() {
+        None => Ok(layout),
+        Some(&[n]) if usize::try_from(n) == Ok(n_taxels) => Ok(layout),
+        Some(&[ny, nx]) => {
+            let sides = [side("shape", ny)?, side("shape", nx)?];
+            layout.with_sides(sides).map_err(exception)
+        }
+        Some(other) => {
+            let allowed = format!("({n_taxels},), or (ny, nx) with this product");
+            Err(bad_input("shape", format!("{other:?}"), allowed))
+        }
+    }
+}
+
+/// Reads the row and the column of each of n taxels in an image.
+fn pixels_of(given: &Bound<PyAny>, n: usize) -> PyResult<Vec<[usize; 2]>> {
+    let allowed = format!("({n}, 2)");
+    view(
+        "pixels",
+        given,
+        &allowed,
+        |shape| shape == [n, 2],
+        |array| {
+            let whole = |&number: &f64| match number >= 0.0 && number.fract() == 0.0 && number < 1e9
+            {
+                true => Ok(number as usize),
+                false => Err(bad_input("pixels", number, "integers from 0")),
+            };
+            let rows = array.rows().into_iter();
+            rows.map(|row| Ok([whole(&row[0])?, whole(&row[1])?]))
+                .collect()
+        },
+    )
 }
 
 /// Converts a number of rows or columns; the library checks that it is at least 1.
@@ -263,8 +344,12 @@ impl Patch {
     /// Returns a patch of given taxels: centers (n, 3), metres, and unit axes (n, 3) that point away from the substrate. The lengths of the axes may
     /// differ from 1 by 1 %; the axes are normalised. The other arguments are arrays (n,), or one number for all taxels. Defaults: stiffness 100 N/m,
     /// damping 0.
+    ///
+    /// shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
+    /// pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
     #[staticmethod]
-    #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None))]
+    #[pyo3(signature = (centers, axes, *, stroke, taxel_radius, stiffness=None, damping=None, shape=None, pixels=None))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn from_arrays(
         centers: &Bound<PyAny>,
         axes: &Bound<PyAny>,
@@ -272,6 +357,8 @@ impl Patch {
         taxel_radius: &Bound<PyAny>,
         stiffness: Option<&Bound<PyAny>>,
         damping: Option<&Bound<PyAny>>,
+        shape: Option<Vec<i64>>,
+        pixels: Option<&Bound<PyAny>>,
     ) -> PyResult<Self> {
         guarded(|| {
             let centers = points("centers", centers)?;
@@ -294,10 +381,15 @@ impl Patch {
                 })
                 .collect();
             let layout = Layout::new(centers, axes).map_err(exception)?;
-            match taxels.iter().all(|taxel| *taxel == taxels[0]) {
-                true => Self::with(layout, taxels[0]),
-                false => Self::with(layout, Taxels::Each(taxels)),
-            }
+            let layout = with_shape(layout, shape)?;
+            let patch = match taxels.iter().all(|taxel| *taxel == taxels[0]) {
+                true => Self::with(layout, taxels[0])?,
+                false => Self::with(layout, Taxels::Each(taxels))?,
+            };
+            Ok(Self {
+                pixels: pixels.map(|given| pixels_of(given, n)).transpose()?,
+                ..patch
+            })
         })
     }
 
@@ -308,11 +400,14 @@ impl Patch {
     /// - .csv: columns x_mm, y_mm, z_mm, nx, ny, nz, and optionally radius_mm, row and column;
     /// - .npz: positions and normals, or poses and taxel2pixel as for DEX-01;
     /// - .txt or .ini: iCub;
-    /// - .json: PaXini; the normals are taken from `mesh`;
+    /// - .json: PaXini;
     /// - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
     ///
-    /// taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours. Notes of the reader are issued as
-    /// UserWarnings.
+    /// mesh: surface that gives the normals, for files of iCub and PaXini without normals.
+    /// taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours.
+    ///
+    /// Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.
+    /// Raises ValueError with the file and the row if the file is invalid, and OSError if it cannot be read.
     #[staticmethod]
     #[pyo3(signature = (path, stroke, *, mesh=None, sensor=None, taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "a signature of Python")]
@@ -332,49 +427,146 @@ impl Patch {
                 sensor,
             };
             let file = LayoutFile::read(&path, options).map_err(exception)?;
-            for note in &file.notes {
-                let note = CString::new(note.as_str()).unwrap_or_default();
-                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &note, 1)?;
-            }
-            let with_radius = |radius| Taxel {
-                radius,
-                stiffness,
-                damping,
-                stroke,
-            };
-            let taxels = match (taxel_radius, &file.radii) {
-                (None, Some(radii)) => {
-                    Taxels::Each(radii.iter().copied().map(with_radius).collect())
+            warn(py, &file.notes)?;
+            Self::from_file(file, stroke, (taxel_radius, stiffness, damping))
+        })
+    }
+
+    /// Returns a patch of taxels at given points, metres, (n, 3), with normals that point away from the substrate.
+    ///
+    /// normals: vectors of any length, (n, 3), or a Mesh whose surface, at most 5 mm from each point, gives the normals.
+    /// taxel_radius: metres; None: half the median distance between neighbours.
+    /// shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
+    /// pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
+    #[staticmethod]
+    #[pyo3(signature = (positions, normals, stroke, *, taxel_radius=None, stiffness=100.0, damping=0.0, shape=None, pixels=None))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn from_points(
+        positions: &Bound<PyAny>,
+        normals: &Bound<PyAny>,
+        stroke: f64,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+        shape: Option<Vec<i64>>,
+        pixels: Option<&Bound<PyAny>>,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let positions = points("positions", positions)?;
+            let n = positions.len();
+            let file = match normals.cast::<Mesh>() {
+                Ok(mesh) => {
+                    let mesh = mesh.get().triangle_mesh();
+                    LayoutFile::on_surface("positions", positions, mesh)
                 }
-                (given, _) => {
-                    let radius = given.unwrap_or_else(|| file.default_radius());
-                    Taxels::Equal(with_radius(radius))
+                Err(_) => {
+                    let normals = points("normals", normals)?;
+                    LayoutFile::from_points("from_points", positions, normals)
                 }
             };
-            let patch = Self::with(file.layout, taxels)?;
+            let file = file.map_err(exception)?;
+            let pixels = pixels.map(|given| pixels_of(given, n)).transpose()?;
+            let file = LayoutFile {
+                layout: with_shape(file.layout.clone(), shape)?,
+                pixels,
+                ..file
+            };
+            Self::from_file(file, stroke, (taxel_radius, stiffness, damping))
+        })
+    }
+
+    /// Returns a flat grid of ny × nx taxels that is wrapped around the surface of a mesh.
+    ///
+    /// The grid lies in the plane z = 0 of the pose, (7,) or (4, 4) in the frame of the mesh, `pitch` metres between taxels. Each taxel moves along −z of
+    /// the pose to the first point of the mesh, and its axis is the outward normal of the triangle there. The centres and axes are in the frame of the
+    /// mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
+    ///
+    /// missing: "error": a taxel that meets no outer face of the mesh raises ValueError; "drop": such taxels are omitted, and n_left_out counts them.
+    ///
+    /// Frames have the shape (ny, nx) if no taxel is omitted; pixels has the row and column of each taxel in the grid.
+    #[staticmethod]
+    #[pyo3(signature = (mesh, pose, ny, nx, pitch, stroke, *, missing="error", taxel_radius=None, stiffness=100.0, damping=0.0))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn projected(
+        py: Python,
+        mesh: &Bound<Mesh>,
+        pose: &Bound<PyAny>,
+        ny: i64,
+        nx: i64,
+        pitch: f64,
+        stroke: f64,
+        missing: &str,
+        taxel_radius: Option<f64>,
+        stiffness: f64,
+        damping: f64,
+    ) -> PyResult<Self> {
+        guarded(|| {
+            let poses = Poses::from_argument("pose", pose)?;
+            let [pose] = poses.poses[..] else {
+                let given = format!("{} poses", poses.poses.len());
+                return Err(bad_input("pose", given, "one pose"));
+            };
+            let missing = match missing {
+                "error" => MissingTaxels::Refuse,
+                "drop" => MissingTaxels::Drop,
+                other => {
+                    let given = format!("{other:?}");
+                    return Err(bad_input("missing", given, "\"error\" or \"drop\""));
+                }
+            };
+            let (ny, nx) = (side("ny", ny)?, side("nx", nx)?);
+            let grid = Grid { nx, ny, pitch };
+            let mesh = mesh.get();
+            let (projected, orientation) = py.detach(|| {
+                let (outwards, orientation) = mesh.triangle_mesh().clone().turned_outwards();
+                let projected = Layout::projected(&outwards, &pose, &grid, missing);
+                (projected, orientation)
+            });
+            let projected = projected.map_err(exception)?;
+            mesh.warn_if_turned(py, &orientation)?;
+            let taxel = taxel(pitch, stroke, (taxel_radius, stiffness, damping));
             Ok(Self {
-                pixels: file.pixels,
-                ..patch
+                pixels: Some(projected.pixels),
+                ..Self::with(projected.layout, taxel)?
             })
         })
     }
 
-    /// Writes the layout to a CSV file that Patch.read can read. The columns are x_mm, y_mm, z_mm, nx, ny, nz and radius_mm; if the patch has pixels,
-    /// also row and column.
-    fn write(&self, path: PathBuf) -> PyResult<()> {
+    /// Writes the layout to a file that Patch.read can read. The file contains positions, normals, and what else its format can carry.
+    ///
+    /// format: csv, npz, dex-01 (poses and taxel2pixel in a .npz file), icub (.txt or .ini), paxini (.json) or urdf; None: the format of the extension.
+    ///
+    /// Radii and pixels that the format cannot carry are omitted, with a UserWarning. A layout from a csv, npz or icub file is bitwise equal when it is
+    /// read again; other formats round the last digits. Raises OSError if the file cannot be written.
+    #[pyo3(signature = (path, *, format=None))]
+    fn write(&self, py: Python, path: PathBuf, format: Option<&str>) -> PyResult<()> {
         guarded(|| {
+            let format = format.map(str::parse).transpose().map_err(exception)?;
+            let n_taxels = self.patch.n_taxels();
+            let radii = (0..n_taxels).map(|taxel| self.patch.taxels().at(taxel).radius);
             let file = LayoutFile {
                 layout: self.patch.layout().clone(),
-                radii: Some(
-                    (0..self.patch.n_taxels())
-                        .map(|taxel| self.patch.taxels().at(taxel).radius)
-                        .collect(),
-                ),
+                radii: Some(radii.collect()),
                 pixels: self.pixels.clone(),
                 link: None,
                 notes: Vec::new(),
             };
-            file.write_csv(&path).map_err(exception)
+            check_folder(&path)?;
+            warn(py, &file.write(&path, format).map_err(exception)?)
+        })
+    }
+
+    /// Draws the taxels to a file that ends in .svg or .png: a map with their numbers, from 0, and an oblique view with their axes.
+    ///
+    /// title: heading of the picture; None: "patch".
+    #[pyo3(signature = (path, *, title=None))]
+    fn draw(&self, py: Python, path: PathBuf, title: Option<&str>) -> PyResult<()> {
+        guarded(|| {
+            check_folder(&path)?;
+            let layout = self.patch.layout();
+            let title = title.unwrap_or("patch");
+            py.detach(|| write_layout_picture(&path, title, layout))
+                .map_err(exception)
         })
     }
 
@@ -387,7 +579,7 @@ impl Patch {
         Some(array.expect("two numbers for each taxel").into_pyarray(py))
     }
 
-    /// Returns a copy of the patch, moved by a pose in the patch frame; the copy is not a grid. pose: (7,) or (4, 4).
+    /// Returns a copy of the patch, moved by a pose in the patch frame. Frames of the copy have the same shape. pose: (7,) or (4, 4).
     fn moved(&self, pose: &Bound<PyAny>) -> PyResult<Self> {
         guarded(|| {
             let poses = Poses::from_argument("pose", pose)?;
@@ -396,11 +588,14 @@ impl Patch {
                 return Err(bad_input("pose", given, "one pose"));
             };
             let layout = self.patch.layout().moved(pose);
-            Self::with(layout, self.patch.taxels().clone())
+            Ok(Self {
+                pixels: self.pixels.clone(),
+                ..Self::with(layout, self.patch.taxels().clone())?
+            })
         })
     }
 
-    /// Shape of a frame of the patch: (ny, nx) for a grid, otherwise (n_taxels,).
+    /// Shape of a frame of the patch: (ny, nx) for taxels in rows and columns, otherwise (n_taxels,).
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.shape)
@@ -488,11 +683,13 @@ impl Patch {
         let class = py.get_type::<Self>();
         let grid = self.patch.layout().as_grid();
         let (made_by, given) = match (grid, self.patch.taxels()) {
-            (Some(grid), Taxels::Equal(_)) => {
+            (Some(grid), Taxels::Equal(_)) if self.pixels.is_none() => {
                 let sides = (grid.ny, grid.nx, grid.pitch);
                 (class.getattr("grid")?, sides.into_pyobject(py)?)
             }
             _ => {
+                named.set_item("shape", &self.shape)?;
+                named.set_item("pixels", self.pixels(py))?;
                 let arrays = (self.centers(py), self.axes(py));
                 (class.getattr("from_arrays")?, arrays.into_pyobject(py)?)
             }
@@ -502,9 +699,11 @@ impl Patch {
         Ok((call, given))
     }
 
-    /// Presses the patch on an object at n poses; returns the deflections of the taxels, metres, from 0 to the stroke.
+    /// Presses the patch on an object, or on several objects, at n poses; returns the deflections of the taxels, metres, from 0 to the stroke.
     ///
-    /// poses: the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose.
+    /// object: a Mesh or a SphereUnion, or a sequence of k of them. A taxel that several objects deflect has the largest of the deflections.
+    /// poses: the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose. For a sequence of k
+    /// objects, (n, k, 7) or (n, k, 4, 4); (k, 7) or (k, 4, 4) for a single pose of each.
     ///
     /// The patch approaches along its z axis. At most one of the following goals is given, as one number for all poses or (n,):
     ///
@@ -514,18 +713,19 @@ impl Patch {
     ///
     /// Without a goal, the deflections are computed at the given pose. If the patch does not touch the object, the deflections are zero.
     ///
+    /// output: "deflection", or "force": newtons along the axis of each taxel, its stiffness times its deflection.
     /// out: C-contiguous array of float32 or float64 that receives the frames and is returned.
     /// dtype: type of a new array, float64 (default) or float32.
     /// threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends the call.
     ///
     /// Returns an array (n, ny, nx) for a grid, and (n, n_taxels) for another patch; for a single pose, without the axis n. The result is bitwise equal
     /// for any number of threads. With contacts=True, the Contacts are also returned; the frames are unchanged. With jacobian=True, the derivatives
-    /// (…, 6) of the deflections with respect to the object's pose are also returned. They are per metre along x, y, z, and per radian about x, y, z
-    /// through the object's origin, in the axes of the patch. The derivatives are zero for free and saturated taxels. With a depth or a force, the
-    /// derivatives include the change of the travel; a depth then needs a flat patch.
+    /// (…, 6) of the output with respect to the object's pose are also returned; (…, k, 6) for a sequence of k objects. They are per metre along x, y,
+    /// z, and per radian about x, y, z through the object's origin, in the axes of the patch. The derivatives are zero for free and saturated taxels.
+    /// With a depth or a force, the derivatives include the change of the travel; a depth then needs a flat patch.
     ///
     /// Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
-    #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, out=None, dtype=None, threads=None, contacts=false, jacobian=false))]
+    #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, output="deflection", out=None, dtype=None, threads=None, contacts=false, jacobian=false))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn press<'py>(
         &self,
@@ -535,6 +735,7 @@ impl Patch {
         depth: Option<&Bound<'py, PyAny>>,
         travel: Option<&Bound<'py, PyAny>>,
         force: Option<&Bound<'py, PyAny>>,
+        output: &str,
         out: Option<&Bound<'py, PyAny>>,
         dtype: Option<&Bound<'py, PyAny>>,
         threads: Option<i64>,
@@ -553,8 +754,55 @@ impl Patch {
                 (object, poses, goal),
                 (out, dtype),
                 threads,
-                crate::press::Wanted { contacts, jacobian },
+                crate::press::Wanted {
+                    output: Output::from_argument(output)?,
+                    contacts,
+                    jacobian,
+                },
             )
+        })
+    }
+
+    /// Presses the patch to a depth past first contact, then slides it along its x and y axes, at n poses. The skin has friction: the objects drag the
+    /// taxels sideways until they slip. The friction is zero at first contact.
+    ///
+    /// object, poses, threads: as in press().
+    /// depth: metres, zero or more; one number, or (n,).
+    /// slide: motion of the patch after the press along x and y, metres, (2,) or (n, 2).
+    /// friction: coefficient between taxels and objects, zero or more; one number, or (n_taxels,).
+    /// shear_stiffness: stiffness of the taxels across their axes, N/m; one number, or (n_taxels,). None: the stiffness along the axes.
+    ///
+    /// Returns a dict of arrays at the end of the slide; for a single pose, without the axis n:
+    ///
+    /// - deflection: metres, (n, ny, nx) for a grid, and (n, n_taxels) for another patch;
+    /// - force3: force of the objects on each taxel, newtons, (n, n_taxels, 3), in the patch frame;
+    /// - is_slipping: whether the contact of the taxel slipped in the last step, in the shape of the deflections;
+    /// - wrench: force and torque on the patch about its origin, newtons and newton metres, (n, 6), in the patch frame;
+    /// - travel: travel of the patch along z, metres, (n,); NaN if the path misses all objects, and all other results are then zero.
+    ///
+    /// Raises ValueError if an argument is invalid.
+    #[pyo3(signature = (object, poses, *, depth, slide, friction, shear_stiffness=None, threads=None))]
+    #[expect(clippy::too_many_arguments, reason = "named in Python")]
+    fn press_and_slide<'py>(
+        &self,
+        py: Python<'py>,
+        object: &Bound<'py, PyAny>,
+        poses: &Bound<'py, PyAny>,
+        depth: &Bound<'py, PyAny>,
+        slide: &Bound<'py, PyAny>,
+        friction: &Bound<'py, PyAny>,
+        shear_stiffness: Option<&Bound<'py, PyAny>>,
+        threads: Option<i64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let motion = Motion {
+            depth,
+            slide,
+            friction,
+            shear_stiffness,
+        };
+        guarded(|| {
+            let patch = (&self.patch, &self.shape[..]);
+            press_and_slide(py, patch, (object, poses), &motion, threads)
         })
     }
 }

@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 
 const ALLOWED: &str = "(n, 7) of x, y, z, qw, qx, qy, qz, or (n, 4, 4); without n for one";
 
-/// Poses of an argument, with a flag that states whether the argument was a single pose.
+/// Poses of an argument, with a flag that states whether the argument was a single pose, or a single pose of each of several objects.
 pub struct Poses {
-    /// Poses of the object in the patch frame, `patch_from_object`.
+    /// Poses of the objects in the patch frame, `patch_from_object`: all objects of the first set of poses, then all objects of the next one.
     pub poses: Vec<Pose>,
     /// Whether the argument was a single pose, without the first axis n.
     pub is_one: bool,
@@ -24,13 +24,36 @@ impl Poses {
     /// # Errors
     /// If the shape is wrong, or a pose is not finite or contains no rotation; the error names the pose's number, from 0.
     pub fn from_argument(place: &str, given: &Bound<PyAny>) -> PyResult<Self> {
+        Self::of_objects(place, given, None)
+    }
+
+    /// Reads poses of k objects from an array of shape (n, k, 7), (k, 7), (n, k, 4, 4) or (k, 4, 4). If `n_objects` is `None`, the shapes have no axis k.
+    ///
+    /// # Errors
+    /// If the shape is wrong, or a pose is not finite or contains no rotation; the error names the pose's number, from 0.
+    pub fn of_objects(
+        place: &str,
+        given: &Bound<PyAny>,
+        n_objects: Option<usize>,
+    ) -> PyResult<Self> {
         let array = numbers(place, given)?;
-        let (n_numbers, is_one) = match array.shape() {
-            [7] => (7, true),
-            [4, 4] => (16, true),
-            [_, 7] => (7, false),
-            [_, 4, 4] => (16, false),
-            other => return Err(bad_input(place, shape_of(other), ALLOWED)),
+        let k = n_objects.unwrap_or(1);
+        let shape = array.shape();
+        let (n_numbers, is_one) = match (n_objects, shape) {
+            (None, [7]) => (7, true),
+            (None, [4, 4]) => (16, true),
+            (None, [_, 7]) => (7, false),
+            (None, [_, 4, 4]) => (16, false),
+            (Some(_), [n, 7]) if *n == k => (7, true),
+            (Some(_), [n, 4, 4]) if *n == k => (16, true),
+            (Some(_), [_, n, 7]) if *n == k => (7, false),
+            (Some(_), [_, n, 4, 4]) if *n == k => (16, false),
+            (None, other) => return Err(bad_input(place, shape_of(other), ALLOWED)),
+            (Some(_), other) => {
+                let allowed =
+                    format!("(n, {k}, 7) or (n, {k}, 4, 4), one pose an object; without n for one");
+                return Err(bad_input(place, shape_of(other), allowed));
+            }
         };
         let array = array
             .try_readonly()
@@ -38,10 +61,10 @@ impl Poses {
         let values = array.as_slice()?;
         let of = |(number, values): (usize, &[f64])| {
             from_numbers(values).map_err(|allowed| {
-                let place = if is_one {
-                    place.to_owned()
-                } else {
-                    format!("{place}[{number}]")
+                let place = match (n_objects, is_one) {
+                    (None, true) => place.to_owned(),
+                    (None, false) | (Some(_), true) => format!("{place}[{number}]"),
+                    (Some(_), false) => format!("{place}[{}, {}]", number / k, number % k),
                 };
                 bad_input(place, ArrayView1::from(values), allowed)
             })

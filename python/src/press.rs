@@ -6,9 +6,11 @@ use crate::contacts::{Contacts, OfPose};
 use crate::errors::{bad_input, exception};
 use crate::goal::Goal;
 use crate::jacobian;
-use crate::model::model_of;
+use crate::model::Objects;
+use crate::output::{Output, Scale};
 use crate::poses::Poses;
 use bubbletouch::contact::{Row, Workspace};
+use bubbletouch::geometry::Pose;
 use bubbletouch::world;
 use glam::DVec3;
 use numpy::{
@@ -21,7 +23,7 @@ use pyo3::types::PyTuple;
 use std::sync::Mutex;
 
 /// Type of the numbers in a frame: float32 or float64.
-trait Real: Element + Copy + Default + Send + Sync {
+trait Real: Element + Scale + Send + Sync {
     fn row(frame: &mut [Self]) -> Row<'_>;
 }
 
@@ -37,9 +39,11 @@ impl Real for f32 {
     }
 }
 
-/// Results that a call of `Patch.press` requests in addition to the frames.
+/// Results that a call of `Patch.press` requests.
 #[derive(Clone, Copy)]
 pub struct Wanted {
+    /// Quantity of the frames.
+    pub output: Output,
     /// Whether the call requests the contacts of each press.
     pub contacts: bool,
     /// Whether the call requests the derivatives of the deflections with respect to the pose.
@@ -57,7 +61,7 @@ pub struct PatchToPress<'a> {
     pub spare: &'a Spare<Workspace>,
 }
 
-/// Presses a patch on an object at all poses. Returns the frames of deflections, or a tuple of the frames and the other requested results, contacts first.
+/// Presses a patch on objects at all poses. Returns the frames, or a tuple of the frames and the other requested results, contacts first.
 ///
 /// # Errors
 /// If an argument is invalid, a force cannot be reached (the error names the pose), or Ctrl-C was pressed.
@@ -69,14 +73,16 @@ pub fn press<'py>(
     threads: Option<i64>,
     wanted: Wanted,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let given = Poses::from_argument("poses", poses)?;
-    goal.check(given.poses.len())?;
+    let objects = Objects::from_argument(object)?;
+    let given = Poses::of_objects("poses", poses, objects.n_several())?;
+    let n_sets = given.poses.len() / objects.models().len();
+    goal.check(n_sets)?;
     if wanted.jacobian {
         jacobian::check(goal.kind(), patch.patch)?;
     }
     let batch = Batch {
         patch,
-        object,
+        objects,
         given,
         goal,
         threads: n_threads(threads)?,
@@ -84,7 +90,7 @@ pub fn press<'py>(
     };
     let mut shape = batch.patch.sides.to_vec();
     if !batch.given.is_one {
-        shape.insert(0, batch.given.poses.len());
+        shape.insert(0, n_sets);
     }
     if let Some(out) = out {
         if let Some(dtype) = dtype {
@@ -122,23 +128,27 @@ fn zeros<'py>(py: Python<'py>) -> PyResult<&'py Bound<'py, PyAny>> {
     ZEROS.import(py, "numpy", "zeros")
 }
 
-struct Batch<'a, 'py> {
+struct Batch<'a> {
     patch: PatchToPress<'a>,
-    object: &'a Bound<'py, PyAny>,
+    objects: Objects<'a>,
     given: Poses,
     goal: Goal,
     threads: Option<usize>,
     wanted: Wanted,
 }
 
-impl<'py> Batch<'_, 'py> {
-    fn into_new<T: Real>(self, py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyAny>> {
+impl Batch<'_> {
+    fn into_new<'py, T: Real>(
+        self,
+        py: Python<'py>,
+        shape: &[usize],
+    ) -> PyResult<Bound<'py, PyAny>> {
         let shape = PyTuple::new(py, shape)?;
         let array = zeros(py)?.call1((shape, dtype_of::<T>(py)))?;
         self.fill(py, array.cast_into::<PyArrayDyn<T>>()?, true)
     }
 
-    fn into_out(
+    fn into_out<'py>(
         self,
         py: Python<'py>,
         out: &Bound<'py, PyAny>,
@@ -159,13 +169,14 @@ impl<'py> Batch<'_, 'py> {
         Err(bad_input("out", given, "an array of float32 or float64"))
     }
 
-    fn fill<T: Real>(
+    fn fill<'py, T: Real>(
         self,
         py: Python<'py>,
         array: Bound<'py, PyArrayDyn<T>>,
         is_zero: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut sides = array.shape().to_vec();
+        sides.extend(self.objects.n_several());
         sides.push(jacobian::N);
         let changes = self
             .wanted
@@ -197,8 +208,8 @@ impl<'py> Batch<'_, 'py> {
         (frames, are_zero): (&mut [T], bool),
         changes: Option<&mut [f64]>,
     ) -> PyResult<Option<Contacts>> {
-        let model = model_of("object", self.object)?;
-        let (patch, goal, poses) = (self.patch.patch, &self.goal, &self.given.poses);
+        let models = self.objects.models();
+        let (patch, goal, k) = (self.patch.patch, &self.goal, models.len());
         let (is_one, wanted) = (self.given.is_one, self.wanted);
         let named = |number: usize, error: bubbletouch::Error| {
             let place = if is_one {
@@ -211,18 +222,23 @@ impl<'py> Batch<'_, 'py> {
         let found: Mutex<Vec<(usize, OfPose)>> = Mutex::new(Vec::new());
         type Item<'a, T> = (&'a mut [T], Option<&'a mut [f64]>);
         let work = |number: usize, (frame, changes): Item<T>, workspace: &mut Workspace| {
-            let press = goal.of_pose(number, patch, (model, &poses[number]));
+            let poses = &self.given.poses[number * k..][..k];
+            let press = goal.of_pose(number, patch, (models, poses));
             let row = T::row(frame);
             let pressed = press.deflect_into((row, are_zero), workspace);
             let pressed = pressed.map_err(|error| named(number, error))?;
+            wanted.output.convert(patch, frame);
             if !wanted.contacts && changes.is_none() {
                 return Ok(());
             }
             let met = press.meet(workspace);
             let met = met.map_err(|error| named(number, error))?;
             if let (Some(changes), Some(pressed), Some(_)) = (changes, pressed, met) {
-                let origin = poses[number].translation - pressed.travel * DVec3::Z;
-                jacobian::fill(changes, goal.kind(), patch, (workspace.contacts(), origin));
+                let origin = |pose: &Pose| pose.translation - pressed.travel * DVec3::Z;
+                let origins: Vec<DVec3> = poses.iter().map(origin).collect();
+                let contacts = (workspace.contacts(), &origins[..]);
+                jacobian::fill(changes, goal.kind(), patch, contacts);
+                wanted.output.convert(patch, changes);
             }
             if wanted.contacts {
                 let pressed = goal.unless_missed(pressed);
@@ -238,7 +254,7 @@ impl<'py> Batch<'_, 'py> {
         let items: Vec<Item<T>> = match changes {
             None => frames.map(|frame| (frame, None)).collect(),
             Some(changes) => {
-                let changes = changes.chunks_exact_mut(n_taxels * jacobian::N);
+                let changes = changes.chunks_exact_mut(n_taxels * k * jacobian::N);
                 frames.zip(changes.map(Some)).collect()
             }
         };

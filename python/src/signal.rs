@@ -150,7 +150,7 @@ impl Step {
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Chain {
     chain: signal::Chain,
-    /// Numbers of rows and columns of a grid; `None` for other patches.
+    /// Numbers of rows and columns of the patch; `None` if its taxels form no image.
     sides: Option<[usize; 2]>,
     steps: Vec<Step>,
     spare: Spare<SignalWorkspace>,
@@ -177,9 +177,8 @@ impl Chain {
             };
             let patch = patch.get().inner();
             let chain = signal::Chain::with_quantity(&prepared, patch, quantity);
-            let grid = patch.layout().as_grid();
             Ok(Self {
-                sides: grid.map(|grid| [grid.ny, grid.nx]),
+                sides: patch.layout().sides(),
                 chain: chain.map_err(exception)?,
                 steps,
                 spare: Spare::new(),

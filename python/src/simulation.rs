@@ -1,13 +1,17 @@
 //! Class `Simulation`: execution of a scene, frame by frame or in manual steps.
 
-use crate::arrays::{to_column, to_rows, view, whole_number};
+use crate::arrays::{shape_of, to_column, view, whole_number};
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
-use crate::patch::Patch;
+use crate::patch::{Patch, frame_shape};
 use crate::poses::Poses;
 use bubbletouch::geometry::Pose;
-use bubbletouch::scene::{self, Frame, PatchReading, PoseControl, ScenePlan, SceneSpec, Stepping};
-use numpy::{IntoPyArray, PyArrayMethods};
+use bubbletouch::scene::{
+    self, Frame, ObjectReading, PatchReading, PlannedPatch, PoseControl, ScenePlan, SceneSpec,
+    Stepping,
+};
+use glam::DVec3;
+use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -46,7 +50,7 @@ fn begin(plan: &Arc<ScenePlan>) -> OnItsWay {
 /// The reading of a patch is a dict:
 ///
 /// - pose: (7,) in the world;
-/// - deflection and force: metres and newtons, (ny, nx) for a grid, otherwise (n_taxels,);
+/// - deflection and force: metres and newtons, (ny, nx) for taxels in rows and columns, otherwise (n_taxels,);
 /// - force3: force of the objects on each taxel, newtons, (n_taxels, 3), in the patch frame; the sum equals the force of the wrench;
 /// - signal: sensor signals in the shape of the deflections, or None;
 /// - wrench: force and torque on the patch, newtons and newton metres, (6,), in the patch frame;
@@ -113,11 +117,29 @@ impl Simulation {
     }
 
     /// Returns the current state as a frame. Before any step, the state is the first frame of the scene. Raises ValueError if a pose overflows.
-    fn observe<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let going = &mut self.going;
+    ///
+    /// out: a frame that observe() of an equal simulation returned. Its arrays receive the new values, and the frame is returned. In a loop this is
+    /// faster, because no arrays are allocated.
+    #[pyo3(signature = (*, out=None))]
+    fn observe<'py>(
+        &mut self,
+        py: Python<'py>,
+        out: Option<Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (going, plan) = (&mut self.going, &self.plan);
         guarded(|| {
-            let frame = py.detach(|| on(going, |simulation| simulation.observe().cloned()))?;
-            frame_of(py, &self.plan, frame)
+            py.detach(|| on(going, |simulation| simulation.observe().map(drop)))?;
+            // The state was computed without the lock; the second call only returns the frame.
+            going.with_dependent_mut(|_, simulation| {
+                let frame = simulation.observe().map_err(exception)?;
+                match out {
+                    Some(out) => {
+                        fill_frame(&out, plan, frame)?;
+                        Ok(out)
+                    }
+                    None => frame_of(py, plan, frame),
+                }
+            })
         })
     }
 
@@ -180,12 +202,18 @@ impl Simulation {
     fn __next__<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let (going, plan) = (&mut self.going, &self.plan);
         guarded(|| {
-            let frame = py.detach(|| {
+            let is_over = py.detach(|| {
                 on(going, |simulation| {
-                    simulation.next_frame().map(|frame| frame.cloned())
+                    simulation.next_frame().map(|frame| frame.is_none())
                 })
             });
-            frame?.map(|frame| frame_of(py, plan, frame)).transpose()
+            if is_over? {
+                return Ok(None);
+            }
+            going.with_dependent_mut(|_, simulation| {
+                let frame = simulation.observe().map_err(exception)?;
+                frame_of(py, plan, frame).map(Some)
+            })
         })
     }
 
@@ -260,25 +288,25 @@ fn one_pose(given: &Bound<PyAny>) -> PyResult<Pose> {
     }
 }
 
-fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: Frame) -> PyResult<Bound<'py, PyDict>> {
+/// Creates the dict of a frame.
+fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: &Frame) -> PyResult<Bound<'py, PyDict>> {
     let (said, patches, objects) = (PyDict::new(py), PyDict::new(py), PyDict::new(py));
-    for (patch, reading) in plan.patches.iter().zip(frame.patches) {
-        let shape = patch.skin.layout().as_grid();
-        let shape = shape.map_or(vec![patch.skin.n_taxels()], |grid| vec![grid.ny, grid.nx]);
-        let said = patch_of(py, &shape, reading)?;
-        patches.set_item(patch.skin.name(), said)?;
+    for (patch, reading) in plan.patches.iter().zip(&frame.patches) {
+        let of_patch = PyDict::new(py);
+        for (key, shape, values) in arrays_of(patch, reading) {
+            let array = match values {
+                Some(values) => Some(values.to_vec().into_pyarray(py).reshape(shape)?),
+                None => None,
+            };
+            of_patch.set_item(key, array)?;
+        }
+        set_counts(&of_patch, reading)?;
+        patches.set_item(patch.skin.name(), of_patch)?;
     }
     for (object, reading) in plan.objects.iter().zip(&frame.objects) {
         let of_object = PyDict::new(py);
-        let held = match reading.held {
-            PoseControl::Imposed => "imposed",
-            PoseControl::Pressed { .. } => "pressed",
-            PoseControl::AtRest => "at rest",
-            PoseControl::NotConverged => "unsettled",
-            PoseControl::Escaped { .. } => "escaped",
-        };
         of_object.set_item("pose", to_column(py, reading.pose.to_array()))?;
-        of_object.set_item("held", held)?;
+        of_object.set_item("held", held(reading))?;
         objects.set_item(&object.name, of_object)?;
     }
     said.set_item("time", frame.time)?;
@@ -287,24 +315,136 @@ fn frame_of<'py>(py: Python<'py>, plan: &ScenePlan, frame: Frame) -> PyResult<Bo
     Ok(said)
 }
 
-fn patch_of<'py>(
-    py: Python<'py>,
-    shape: &[usize],
-    reading: PatchReading,
-) -> PyResult<Bound<'py, PyDict>> {
-    let said = PyDict::new(py);
-    let shaped = |values: Vec<f64>| values.into_pyarray(py).reshape(shape.to_vec());
+/// Writes a frame into the dict of an earlier frame. If the dict is not suitable, returns an error and changes nothing.
+fn fill_frame(out: &Bound<PyDict>, plan: &ScenePlan, frame: &Frame) -> PyResult<()> {
+    for is_written in [false, true] {
+        let patches = part(out, "out", "patches")?;
+        for (patch, reading) in plan.patches.iter().zip(&frame.patches) {
+            let of_patch = part(&patches, "out, patches", patch.skin.name())?;
+            for (key, shape, values) in arrays_of(patch, reading) {
+                if let Some(values) = values {
+                    let place = format!("out, patches, {}", patch.skin.name());
+                    fill(&of_patch, (&place, key), (&shape, values), is_written)?;
+                }
+            }
+            if is_written {
+                set_counts(&of_patch, reading)?;
+            }
+        }
+        let objects = part(out, "out", "objects")?;
+        for (object, reading) in plan.objects.iter().zip(&frame.objects) {
+            let of_object = part(&objects, "out, objects", &object.name)?;
+            let place = format!("out, objects, {}", object.name);
+            let pose = Values::Few(reading.pose.to_array().to_vec());
+            fill(&of_object, (&place, "pose"), (&[7], pose), is_written)?;
+            if is_written {
+                of_object.set_item("held", held(reading))?;
+            }
+        }
+    }
+    out.set_item("time", frame.time)
+}
+
+/// Allowed values of the argument `out` of `observe`, for error messages.
+const EARLIER_FRAME: &str = "a frame that observe() of an equal simulation returned";
+
+/// Returns the dict with a key in another dict.
+fn part<'py>(dict: &Bound<'py, PyDict>, place: &str, key: &str) -> PyResult<Bound<'py, PyDict>> {
+    let found = dict.get_item(key)?;
+    let found = found.and_then(|found| found.cast_into::<PyDict>().ok());
+    found.ok_or_else(|| bad_input(place, format!("no dict `{key}`"), EARLIER_FRAME))
+}
+
+/// Writes values into the array with a key in a dict, or only checks that the array is suitable.
+fn fill(
+    dict: &Bound<PyDict>,
+    (place, key): (&str, &str),
+    (shape, values): (&[usize], Values),
+    is_written: bool,
+) -> PyResult<()> {
+    let found = dict.get_item(key)?;
+    let array = found.and_then(|found| found.cast_into::<PyArrayDyn<f64>>().ok());
+    let array = array.filter(|array| array.shape() == shape && array.is_c_contiguous());
+    let writable = array.as_ref().and_then(|array| array.try_readwrite().ok());
+    let Some(mut writable) = writable else {
+        let given = format!("no writeable float64 array `{key}` of {}", shape_of(shape));
+        return Err(bad_input(place, given, EARLIER_FRAME));
+    };
+    if is_written {
+        values.write(writable.as_slice_mut()?);
+    }
+    Ok(())
+}
+
+/// Numbers of an array of a frame.
+enum Values<'a> {
+    Numbers(&'a [f64]),
+    Vectors(&'a [DVec3]),
+    Few(Vec<f64>),
+}
+
+impl Values<'_> {
+    fn to_vec(&self) -> Vec<f64> {
+        match self {
+            Self::Numbers(numbers) => numbers.to_vec(),
+            Self::Vectors(vectors) => vectors.iter().flat_map(|v| v.to_array()).collect(),
+            Self::Few(numbers) => numbers.clone(),
+        }
+    }
+
+    fn write(&self, to: &mut [f64]) {
+        match self {
+            Self::Numbers(numbers) => to.copy_from_slice(numbers),
+            Self::Vectors(vectors) => {
+                for (to, vector) in to.chunks_exact_mut(3).zip(*vectors) {
+                    to.copy_from_slice(&vector.to_array());
+                }
+            }
+            Self::Few(numbers) => to.copy_from_slice(numbers),
+        }
+    }
+}
+
+/// Returns the arrays of a patch's reading: key, shape, and values; `None` for a signal that does not exist.
+fn arrays_of<'a>(
+    patch: &PlannedPatch,
+    reading: &'a PatchReading,
+) -> [(&'static str, Vec<usize>, Option<Values<'a>>); 6] {
+    let shape = frame_shape(patch.skin.layout());
     let wrench = [
         reading.wrench.force.to_array(),
         reading.wrench.torque.to_array(),
     ];
-    said.set_item("pose", to_column(py, reading.pose.to_array()))?;
-    said.set_item("deflection", shaped(reading.deflection)?)?;
-    said.set_item("force", shaped(reading.force)?)?;
-    said.set_item("force3", to_rows(py, reading.force3.into_iter()))?;
-    said.set_item("signal", reading.signal.map(shaped).transpose()?)?;
-    said.set_item("wrench", to_column(py, wrench.concat()))?;
-    said.set_item("n_touched", reading.n_touched)?;
-    said.set_item("n_saturated", reading.n_saturated)?;
-    Ok(said)
+    let pose = Values::Few(reading.pose.to_array().to_vec());
+    let (deflection, force) = (&reading.deflection, &reading.force);
+    let force3 = Values::Vectors(&reading.force3);
+    let signal = reading.signal.as_deref().map(Values::Numbers);
+    [
+        ("pose", vec![7], Some(pose)),
+        (
+            "deflection",
+            shape.clone(),
+            Some(Values::Numbers(deflection)),
+        ),
+        ("force", shape.clone(), Some(Values::Numbers(force))),
+        ("force3", vec![patch.skin.n_taxels(), 3], Some(force3)),
+        ("signal", shape, signal),
+        ("wrench", vec![6], Some(Values::Few(wrench.concat()))),
+    ]
+}
+
+fn set_counts(of_patch: &Bound<PyDict>, reading: &PatchReading) -> PyResult<()> {
+    of_patch.set_item("n_touched", reading.n_touched)?;
+    of_patch.set_item("n_saturated", reading.n_saturated)
+}
+
+/// Returns the rule that determines the pose of an object, as the word in the dict of a frame.
+fn held(reading: &ObjectReading) -> &'static str {
+    match reading.held {
+        PoseControl::Imposed => "imposed",
+        PoseControl::Pressed { .. } => "pressed",
+        PoseControl::AtRest => "at rest",
+        PoseControl::NotConverged => "unsettled",
+        PoseControl::Escaped { .. } => "escaped",
+    }
 }

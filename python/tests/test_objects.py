@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import bubbletouch as bt
@@ -178,3 +179,53 @@ def test_a_mirrored_mesh_is_the_mirror_image(box: bt.Mesh) -> None:
 def test_sizes_of_no_shape_are_refused(make, message: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(ValueError, match=message):
         make()
+
+
+def test_packings_are_cached_in_the_files_of_studies(tmp_path: Path, box: bt.Mesh) -> None:
+    cache = tmp_path / "new" / "packings"
+    made = box.pack(1e-3, cache=cache)
+    (path,) = cache.iterdir()
+    bytes_of_file = path.read_bytes()
+    np.testing.assert_array_equal(made.centers, box.pack(1e-3).centers)
+    # The spheres of the file are returned, not packed again: another valid file of the same name is read.
+    again = box.pack(1e-3, cache=cache)
+    np.testing.assert_array_equal(again.centers, made.centers)
+    np.testing.assert_array_equal(again.radii, made.radii)
+    box.pack(1e-3, sheet=True, cache=cache)
+    box.pack(2e-3, cache=cache)
+    assert len(list(cache.iterdir())) == 3
+    path.write_bytes(bytes_of_file[:-100])
+    np.testing.assert_array_equal(box.pack(1e-3, cache=cache).radii, made.radii)
+    assert path.read_bytes() == bytes_of_file
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(lambda _: box.pack(1.5e-3, cache=cache), range(8)))
+    assert all(np.array_equal(one.centers, together[0].centers) for one in together)
+    assert len(list(cache.iterdir())) == 4
+    with pytest.raises(OSError, match="packings"):
+        box.pack(3e-3, cache=path)
+
+
+def test_a_study_reads_the_packings_of_python_and_python_those_of_a_study(tmp_path: Path, box: bt.Mesh) -> None:
+    meshes = tmp_path / "meshes"
+    meshes.mkdir()
+    for name, scale in [("small", 1.0), ("large", 1.3)]:
+        corners = "".join(f"v {x} {y} {z}\n" for x, y, z in (scale * box.vertices).tolist())
+        faces = "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in box.triangles.tolist())
+        (meshes / f"{name}.obj").write_text(corners + faces)
+    cache = tmp_path / "packings"
+    small = bt.Mesh.read(meshes / "small.obj").pack(1e-3, cache=cache)
+    (first,) = cache.iterdir()
+    written = first.stat().st_mtime_ns
+    study = {
+        "question": "Which box?",
+        "objects": {"meshes": str(meshes), "surface_error_mm": 1.0, "model": "packed"},
+        "skin": {"pitch_mm": 4.0, "taxels": 8, "stroke_mm": 5.0},
+        "touches": {"per_object": 8, "depth_mm": 2.0, "yaw_deg": {"uniform": [0.0, 90.0]}},
+        "sensing": {"ratio": 4},
+        "recognition": {"classifier": "linear_svm"},
+    }
+    bt.run(study, out=tmp_path / "results")
+    assert len(list(cache.iterdir())) == 2 and first.stat().st_mtime_ns == written
+    large = bt.Mesh.read(meshes / "large.obj").pack(1e-3, cache=cache)
+    assert len(list(cache.iterdir())) == 2 and len(large) > 1
+    np.testing.assert_array_equal(small.centers, bt.Mesh.read(meshes / "small.obj").pack(1e-3, cache=cache).centers)

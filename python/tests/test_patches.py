@@ -56,6 +56,48 @@ def test_a_moved_patch_is_moved() -> None:
     np.testing.assert_allclose(moved.axes[highest, 2], 1, atol=2e-3)
 
 
+def test_a_moved_grid_keeps_the_shape_of_its_frames(mug: bt.SphereUnion) -> None:
+    grid = bt.Patch.grid(16, 12, 3e-3, 5e-3)
+    turned = grid.moved([0, 0, 0, *(np.array([1, 0, 0, 1]) / np.sqrt(2))])
+    assert turned.shape == (16, 12) and turned.moved([0, 0, 1e-3, 1, 0, 0, 0]).shape == (16, 12)
+    poses = bt.touch_poses(mug, offset=[[0, 0], [5e-3, 0]])
+    frames = turned.press(mug, poses, depth=2e-3)
+    assert frames.shape == (2, 16, 12)
+    # The object seen from the turned patch is the object turned back.
+    back = poses * [0, 0, 1, 1, 1, 1, 1]
+    back[:, :2] = np.stack([poses[:, 1], -poses[:, 0]], axis=1)
+    w, x, y, z = poses[:, 3:].T
+    back[:, 3:] = np.stack([w + z, x + y, y - x, z - w], axis=1) / np.sqrt(2)
+    np.testing.assert_allclose(frames, grid.press(mug, back, depth=2e-3), atol=1e-9)
+    chain = bt.Chain([bt.Step.noise(0.01)], turned)
+    assert chain(frames).shape == (2, 16, 12)
+    again = pickle.loads(pickle.dumps(turned))
+    np.testing.assert_array_equal(again.press(mug, poses, depth=2e-3), frames)
+
+
+def test_arrays_may_have_rows_columns_and_pixels() -> None:
+    grid = bt.Patch.grid(2, 3, 3e-3, 5e-3)
+    pixels = [[row, 2 - column] for row in range(2) for column in range(3)]
+    patch = bt.Patch.from_arrays(
+        grid.centers, grid.axes, stroke=5e-3, taxel_radius=1e-3, shape=(2, 3), pixels=pixels
+    )
+    assert patch.shape == (2, 3)
+    np.testing.assert_array_equal(patch.pixels, pixels)
+    again = pickle.loads(pickle.dumps(patch.moved([0, 0, 0, 1, 0, 0, 0])))
+    assert again.shape == (2, 3)
+    np.testing.assert_array_equal(again.pixels, pixels)
+    for wrong, said in [
+        ({"shape": (3, 3)}, "layout sides: 3 × 3 for 6 taxels"),
+        ({"shape": (1, 2, 3)}, r"shape: \[1, 2, 3\]; \(6,\), or \(ny, nx\)"),
+        ({"shape": (5,)}, r"shape: \[5\]"),
+        ({"shape": (-2, -3)}, "shape: -2; at least 1"),
+        ({"pixels": [[0, 1]]}, r"pixels: shape \(1, 2\); \(6, 2\)"),
+        ({"pixels": np.full((6, 2), 0.5)}, "pixels: 0.5; integers from 0"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            bt.Patch.from_arrays(grid.centers, grid.axes, stroke=5e-3, taxel_radius=1e-3, **wrong)  # type: ignore[arg-type]
+
+
 def test_patches_are_pickled(mug: bt.SphereUnion) -> None:
     pose = bt.touch_poses(mug)
     made = [

@@ -192,3 +192,35 @@ def test_what_cannot_be_set_is_refused() -> None:
     ]:
         with pytest.raises(ValueError, match=said):
             call()
+
+
+def test_a_frame_is_written_into_an_earlier_one() -> None:
+    noisy = SCENE["patches"][0] | {"signal": ["force", {"noise_std_n": 0.01}], "friction": 0.4}
+    scene = SCENE | {"patches": [noisy, noisy | {"name": "other", "layout": {"disc": {"radius_mm": 9.0, "pitch_mm": 3.0}}}]}
+    simulation, twin = bt.simulate(scene), bt.simulate(scene)
+    out, _ = twin.observe(), simulation.observe()
+    arrays = {id(out["patches"][name][key]) for name in ("palm", "other") for key in ("deflection", "force3", "signal")}
+    for height in (1.0, -1.0, -3.0):
+        for one in (simulation, twin):
+            one.set_object_pose("ball", [1e-3, 0, height * 1e-3, 1, 0, 0, 0])
+            one.step(0.01)
+        assert twin.observe(out=out) is out
+        assert same(out, simulation.observe())
+        assert arrays == {id(out["patches"][name][key]) for name in ("palm", "other") for key in ("deflection", "force3", "signal")}
+    assert out["patches"]["palm"]["deflection"].max() > 1e-3
+    for damage, said in [
+        (lambda frame: frame.pop("patches"), "out: no dict `patches`"),
+        (lambda frame: frame["patches"].pop("palm"), "out, patches: no dict `palm`"),
+        (lambda frame: frame["objects"]["ball"].pop("pose"), "out, objects, ball: .*`pose`"),
+        (lambda frame: frame["patches"]["palm"].update(force=np.zeros((16, 12))), r"`force` of shape \(12, 16\)"),
+        (lambda frame: frame["patches"]["palm"].update(force=np.zeros((12, 16), np.float32)), "float64"),
+        (lambda frame: frame["patches"]["palm"]["force"].setflags(write=False), "writeable"),
+    ]:
+        damaged = simulation.observe()
+        damage(damaged)
+        before = {key: value.copy() for key, value in damaged.get("patches", {}).get("other", {}).items() if isinstance(value, np.ndarray)}
+        simulation.set_object_pose("ball", [0, 0, 5e-3, 1, 0, 0, 0])
+        simulation.step(0.01)
+        with pytest.raises(ValueError, match=said):
+            simulation.observe(out=damaged)
+        assert all(np.array_equal(damaged["patches"]["other"][key], value) for key, value in before.items())

@@ -6,6 +6,7 @@ mod classify;
 mod classify_parameters;
 mod compare;
 mod features;
+mod layout;
 mod merge;
 mod objects;
 mod objects_pack;
@@ -22,7 +23,6 @@ mod schema;
 mod shell;
 mod simulate;
 mod slurm;
-mod slurm_jobs;
 pub mod terminal;
 mod touches;
 mod verify;
@@ -58,6 +58,7 @@ enum Command {
     Calibrate(calibrate::Args),
     Press(press::Args),
     Objects(objects::Args),
+    Layout(layout::Args),
     Simulate(simulate::Args),
     Recording(recording::Args),
     Schema(schema::Args),
@@ -96,6 +97,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Press(args)) => press::press(&args),
         Some(Command::Recording(args)) => recording::recording(&args),
         Some(Command::Objects(args)) => objects::objects(&args),
+        Some(Command::Layout(args)) => layout::layout(&args),
         Some(Command::Schema(args)) => schema::schema(&args),
         Some(Command::Completions(args)) => shell::completions(&args, CommandLine::command()),
         Some(Command::Man(args)) => shell::man(&args, CommandLine::command()),

@@ -1,6 +1,7 @@
 //! `bubbletouch slurm`: submits the shards of a study as an array of cluster jobs, followed by a job that merges them.
 
-use super::slurm_jobs::{queued_shards, submit};
+mod jobs;
+
 use crate::command::options::study_run::ResultsArgs;
 use crate::command::terminal::output::output_folder;
 use crate::command::terminal::streams::say;
@@ -10,6 +11,7 @@ use bubbletouch::study::journal::{JOURNAL_FILE, Journal};
 use bubbletouch::study::work_items::Part;
 use bubbletouch::study::{Shard, sha256};
 use bubbletouch::{Error, Result};
+use jobs::{queued_shards, submit};
 use std::path::Path;
 
 /// Maximum number of jobs in a job array, which is the largest value that Slurm can be configured to allow.

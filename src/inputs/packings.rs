@@ -10,7 +10,7 @@ use crate::inputs::content_hash::{bytes_of_mesh, bytes_of_numbers, sha256};
 use crate::mesh::{Surface, TriangleMesh};
 use crate::note::note;
 use crate::objects::{SphereUnion, read_spheres, write_spheres};
-use crate::packing::{Body, error_of_file, pack_mesh, slow_packing};
+use crate::packing::{Body, Packing, error_of_file, pack_mesh, slow_packing};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -41,18 +41,35 @@ pub fn pack_within(
     tolerance: f64,
     folder: Option<&Path>,
 ) -> Result<Packed> {
-    let path = folder.map(|folder| packing_path(folder, surface.mesh(), tolerance));
+    pack_with(surface, (Body::Solid, tolerance), folder, || {
+        if let Some(slow) = slow_packing(surface, Body::Solid, tolerance) {
+            note(format_args!("{place}: {slow}"));
+        }
+        pack_mesh(surface, Body::Solid, tolerance).map_err(|error| {
+            let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\", free ones with model = \"vertex_spheres\"";
+            error_of_file(error, place, advice)
+        })
+    })
+}
+
+/// Reads the cached spheres of a body within a tolerance (metres) from `folder`. If there are none, packs the body by calling `pack`, and writes the spheres.
+///
+/// Each file is written under another name and renamed, so that several processes can use one folder.
+///
+/// # Errors
+/// If `pack` fails, or the folder cannot be written.
+pub fn pack_with(
+    surface: &Surface,
+    (body, tolerance): (Body, f64),
+    folder: Option<&Path>,
+    pack: impl FnOnce() -> Result<Packing>,
+) -> Result<Packed> {
+    let path = folder.map(|folder| path_of(folder, surface.mesh(), (body, tolerance)));
     if let Some(spheres) = path.as_deref().map(read_packing).transpose()?.flatten() {
         let cached = true;
         return Ok(Packed { spheres, cached });
     }
-    if let Some(slow) = slow_packing(surface, Body::Solid, tolerance) {
-        note(format_args!("{place}: {slow}"));
-    }
-    let packing = pack_mesh(surface, Body::Solid, tolerance).map_err(|error| {
-        let advice = "a study closes small holes with objects.close_holes_mm; open meshes can be touched with model = \"mesh\", free ones with model = \"vertex_spheres\"";
-        error_of_file(error, place, advice)
-    })?;
+    let packing = pack()?;
     if let (Some(folder), Some(path)) = (folder, path) {
         let mut bytes = Vec::new();
         write_spheres(&packing.spheres, &mut bytes).expect("memory takes all");
@@ -68,8 +85,12 @@ pub fn pack_within(
 
 /// Returns the path of the cache file with the spheres of a mesh for a tolerance in metres.
 pub fn packing_path(folder: &Path, mesh: &TriangleMesh, tolerance: f64) -> PathBuf {
+    path_of(folder, mesh, (Body::Solid, tolerance))
+}
+
+fn path_of(folder: &Path, mesh: &TriangleMesh, (body, tolerance): (Body, f64)) -> PathBuf {
     let made_from = [
-        format!("{METHOD}{:?}", Body::Solid).into_bytes(),
+        format!("{METHOD}{body:?}").into_bytes(),
         bytes_of_numbers([tolerance]),
         bytes_of_mesh(mesh),
     ];

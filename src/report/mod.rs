@@ -30,5 +30,6 @@ pub mod text_width;
 
 pub use comparison::{compared, differences, entries, rank_agreement};
 pub use pictures::{
-    colours, drawing, fit_picture, frame_files, heat_map, object_picture, pressure_map, snapshots,
+    colours, drawing, fit_picture, frame_files, heat_map, layout_picture, object_picture,
+    pressure_map, snapshots,
 };

@@ -25,6 +25,7 @@ mod classify;
 mod events;
 mod features;
 mod instructions;
+mod layout;
 mod mesh;
 mod outputs;
 mod own_command;

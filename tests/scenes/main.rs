@@ -9,6 +9,7 @@ mod stored;
 
 mod human_touch;
 mod layout_files;
+mod layout_formats;
 mod scene_by_hand;
 mod scene_cut;
 mod scene_errors;

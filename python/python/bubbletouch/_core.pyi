@@ -37,6 +37,7 @@ __all__ = [
 _Path: TypeAlias = str | PathLike[str]
 _Unit: TypeAlias = Literal["m", "cm", "mm", "in"]
 _Model: TypeAlias = Mesh | SphereUnion
+_Objects: TypeAlias = _Model | Sequence[_Model]
 _Out = TypeVar("_Out", NDArray[np.float32], NDArray[np.float64])
 
 class InternalError(RuntimeError):
@@ -95,13 +96,18 @@ class Mesh:
         outwards again.
         """
 
-    def pack(self, tolerance: float, *, sheet: bool = False) -> SphereUnion:
+    def pack(
+        self, tolerance: float, *, sheet: bool = False, cache: _Path | None = None
+    ) -> SphereUnion:
         """Packs the solid enclosed by the mesh with few spheres, on all cores.
 
         No sphere extends more than tolerance / 2 (metres, positive) beyond the surface. No point of the surface is more than the tolerance outside the
         spheres. If these bounds cannot be reached, ValueError is raised. The mesh must be closed. Parts that face inwards are turned outwards, with a
         UserWarning. With sheet=True, the surface is packed as a sheet without thickness; the mesh may then be open. A scan of 16,000 triangles takes
         seconds. Ctrl-C ends the call.
+
+        cache: folder of packings, created if missing. If the folder contains the spheres of an equal mesh and tolerance, these are read; otherwise, the
+        spheres are written to it. Studies use the same files, in the folder packings beside their results. Several processes can share a folder.
         """
 
     def vertex_spheres(self) -> SphereUnion:
@@ -318,7 +324,7 @@ class Catalogue:
 
 @final
 class Contacts:
-    """Contacts of presses at n poses: m pairs of a taxel and the part of the object (sphere or triangle) that touches it, ordered by pose and taxel."""
+    """Contacts of presses at n poses: m pairs of a taxel and the part of an object (sphere or triangle) that touches it, ordered by pose and taxel."""
 
     @property
     def pose(self) -> NDArray[np.int64]:
@@ -329,8 +335,12 @@ class Contacts:
         """For each contact (m,), the number of its taxel in the patch, from 0."""
 
     @property
+    def object(self) -> NDArray[np.int64]:
+        """For each contact (m,), the number of the object that touches the taxel, from 0; always 0 for a single object."""
+
+    @property
     def part(self) -> NDArray[np.int64]:
-        """For each contact (m,), the number of the sphere or triangle that determines the taxel's deflection."""
+        """For each contact (m,), the number of the sphere or triangle of the object that determines the taxel's deflection."""
 
     @property
     def deflection(self) -> NDArray[np.float64]:
@@ -495,10 +505,60 @@ class Patch:
         taxel_radius: ArrayLike,
         stiffness: ArrayLike | None = None,
         damping: ArrayLike | None = None,
+        shape: Sequence[int] | None = None,
+        pixels: ArrayLike | None = None,
     ) -> Patch:
         """Returns a patch of given taxels: centers (n, 3), metres, and unit axes (n, 3) that point away from the substrate. The lengths of the axes may
         differ from 1 by 1 %; the axes are normalised. The other arguments are arrays (n,), or one number for all taxels. Defaults: stiffness 100 N/m,
         damping 0.
+
+        shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
+        pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
+        """
+
+    @staticmethod
+    def from_points(
+        positions: ArrayLike,
+        normals: ArrayLike | Mesh,
+        stroke: float,
+        *,
+        taxel_radius: float | None = None,
+        stiffness: float = 100.0,
+        damping: float = 0.0,
+        shape: Sequence[int] | None = None,
+        pixels: ArrayLike | None = None,
+    ) -> Patch:
+        """Returns a patch of taxels at given points, metres, (n, 3), with normals that point away from the substrate.
+
+        normals: vectors of any length, (n, 3), or a Mesh whose surface, at most 5 mm from each point, gives the normals.
+        taxel_radius: metres; None: half the median distance between neighbours.
+        shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
+        pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
+        """
+
+    @staticmethod
+    def projected(
+        mesh: Mesh,
+        pose: ArrayLike,
+        ny: int,
+        nx: int,
+        pitch: float,
+        stroke: float,
+        *,
+        missing: Literal["error", "drop"] = "error",
+        taxel_radius: float | None = None,
+        stiffness: float = 100.0,
+        damping: float = 0.0,
+    ) -> Patch:
+        """Returns a flat grid of ny × nx taxels that is wrapped around the surface of a mesh.
+
+        The grid lies in the plane z = 0 of the pose, (7,) or (4, 4) in the frame of the mesh, `pitch` metres between taxels. Each taxel moves along −z of
+        the pose to the first point of the mesh, and its axis is the outward normal of the triangle there. The centres and axes are in the frame of the
+        mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
+
+        missing: "error": a taxel that meets no outer face of the mesh raises ValueError; "drop": such taxels are omitted, and n_left_out counts them.
+
+        Frames have the shape (ny, nx) if no taxel is omitted; pixels has the row and column of each taxel in the grid.
         """
 
     @staticmethod
@@ -519,16 +579,34 @@ class Patch:
         - .csv: columns x_mm, y_mm, z_mm, nx, ny, nz, and optionally radius_mm, row and column;
         - .npz: positions and normals, or poses and taxel2pixel as for DEX-01;
         - .txt or .ini: iCub;
-        - .json: PaXini; the normals are taken from `mesh`;
+        - .json: PaXini;
         - .urdf: `<tactile>` of urdf_tactile, or XELA's prismatic joints; `sensor` selects one of several sensors.
 
-        taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours. Notes of the reader are issued as
-        UserWarnings.
+        mesh: surface that gives the normals, for files of iCub and PaXini without normals.
+        taxel_radius: metres; None: the radius in the file, or half the median distance between neighbours.
+
+        Frames have the shape (ny, nx) if the file numbers its taxels row by row in a complete image. Notes of the reader are issued as UserWarnings.
+        Raises ValueError with the file and the row if the file is invalid, and OSError if it cannot be read.
         """
 
-    def write(self, path: str | PathLike[str]) -> None:
-        """Writes the layout to a CSV file that Patch.read can read. The columns are x_mm, y_mm, z_mm, nx, ny, nz and radius_mm; if the patch has pixels,
-        also row and column.
+    def write(
+        self,
+        path: _Path,
+        *,
+        format: Literal["csv", "npz", "dex-01", "icub", "paxini", "urdf"] | None = None,
+    ) -> None:
+        """Writes the layout to a file that Patch.read can read. The file contains positions, normals, and what else its format can carry.
+
+        format: csv, npz, dex-01 (poses and taxel2pixel in a .npz file), icub (.txt or .ini), paxini (.json) or urdf; None: the format of the extension.
+
+        Radii and pixels that the format cannot carry are omitted, with a UserWarning. A layout from a csv, npz or icub file is bitwise equal when it is
+        read again; other formats round the last digits. Raises OSError if the file cannot be written.
+        """
+
+    def draw(self, path: _Path, *, title: str | None = None) -> None:
+        """Draws the taxels to a file that ends in .svg or .png: a map with their numbers, from 0, and an oblique view with their axes.
+
+        title: heading of the picture; None: "patch".
         """
 
     @property
@@ -536,11 +614,11 @@ class Patch:
         """Row and column of each taxel in the sensor's image, (n_taxels, 2) integers; None if the layout file contains no image."""
 
     def moved(self, pose: ArrayLike) -> Patch:
-        """Returns a copy of the patch, moved by a pose in the patch frame; the copy is not a grid. pose: (7,) or (4, 4)."""
+        """Returns a copy of the patch, moved by a pose in the patch frame. Frames of the copy have the same shape. pose: (7,) or (4, 4)."""
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of a frame of the patch: (ny, nx) for a grid, otherwise (n_taxels,)."""
+        """Shape of a frame of the patch: (ny, nx) for taxels in rows and columns, otherwise (n_taxels,)."""
 
     @property
     def n_taxels(self) -> int:
@@ -584,12 +662,13 @@ class Patch:
     @overload
     def press(
         self,
-        object: _Model,
+        object: _Objects,
         poses: ArrayLike,
         *,
         depth: ArrayLike | None = None,
         travel: ArrayLike | None = None,
         force: ArrayLike | None = None,
+        output: Literal["deflection", "force"] = "deflection",
         out: _Out,
         dtype: DTypeLike | None = None,
         threads: int | None = None,
@@ -599,12 +678,13 @@ class Patch:
     @overload
     def press(  # type: ignore[overload-overlap]
         self,
-        object: _Model,
+        object: _Objects,
         poses: ArrayLike,
         *,
         depth: ArrayLike | None = None,
         travel: ArrayLike | None = None,
         force: ArrayLike | None = None,
+        output: Literal["deflection", "force"] = "deflection",
         out: None = None,
         dtype: type[np.float32] | Literal["float32"],
         threads: int | None = None,
@@ -614,12 +694,13 @@ class Patch:
     @overload
     def press(
         self,
-        object: _Model,
+        object: _Objects,
         poses: ArrayLike,
         *,
         depth: ArrayLike | None = None,
         travel: ArrayLike | None = None,
         force: ArrayLike | None = None,
+        output: Literal["deflection", "force"] = "deflection",
         out: None = None,
         dtype: type[np.float64] | Literal["float64"] | None = None,
         threads: int | None = None,
@@ -629,12 +710,13 @@ class Patch:
     @overload
     def press(
         self,
-        object: _Model,
+        object: _Objects,
         poses: ArrayLike,
         *,
         depth: ArrayLike | None = None,
         travel: ArrayLike | None = None,
         force: ArrayLike | None = None,
+        output: Literal["deflection", "force"] = "deflection",
         out: _Out,
         dtype: DTypeLike | None = None,
         threads: int | None = None,
@@ -644,12 +726,13 @@ class Patch:
     @overload
     def press(
         self,
-        object: _Model,
+        object: _Objects,
         poses: ArrayLike,
         *,
         depth: ArrayLike | None = None,
         travel: ArrayLike | None = None,
         force: ArrayLike | None = None,
+        output: Literal["deflection", "force"] = "deflection",
         out: None = None,
         dtype: type[np.float64] | Literal["float64"] | None = None,
         threads: int | None = None,
@@ -659,12 +742,13 @@ class Patch:
     @overload
     def press(
         self,
-        object: _Model,
+        object: _Objects,
         poses: ArrayLike,
         *,
         depth: ArrayLike | None = None,
         travel: ArrayLike | None = None,
         force: ArrayLike | None = None,
+        output: Literal["deflection", "force"] = "deflection",
         out: None = None,
         dtype: type[np.float64] | Literal["float64"] | None = None,
         threads: int | None = None,
@@ -674,21 +758,24 @@ class Patch:
     @overload
     def press(
         self,
-        object: _Model,
+        object: _Objects,
         poses: ArrayLike,
         *,
         depth: ArrayLike | None = None,
         travel: ArrayLike | None = None,
         force: ArrayLike | None = None,
+        output: Literal["deflection", "force"] = "deflection",
         out: NDArray[np.float32] | NDArray[np.float64] | None = None,
         dtype: DTypeLike | None = None,
         threads: int | None = None,
         contacts: bool = False,
         jacobian: bool = False,
     ) -> Any:
-        """Presses the patch on an object at n poses; returns the deflections of the taxels, metres, from 0 to the stroke.
+        """Presses the patch on an object, or on several objects, at n poses; returns the deflections of the taxels, metres, from 0 to the stroke.
 
-        poses: the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose.
+        object: a Mesh or a SphereUnion, or a sequence of k of them. A taxel that several objects deflect has the largest of the deflections.
+        poses: the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose. For a sequence of k
+        objects, (n, k, 7) or (n, k, 4, 4); (k, 7) or (k, 4, 4) for a single pose of each.
 
         The patch approaches along its z axis. At most one of the following goals is given, as one number for all poses or (n,):
 
@@ -698,17 +785,49 @@ class Patch:
 
         Without a goal, the deflections are computed at the given pose. If the patch does not touch the object, the deflections are zero.
 
+        output: "deflection", or "force": newtons along the axis of each taxel, its stiffness times its deflection.
         out: C-contiguous array of float32 or float64 that receives the frames and is returned.
         dtype: type of a new array, float64 (default) or float32.
         threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends the call.
 
         Returns an array (n, ny, nx) for a grid, and (n, n_taxels) for another patch; for a single pose, without the axis n. The result is bitwise equal
         for any number of threads. With contacts=True, the Contacts are also returned; the frames are unchanged. With jacobian=True, the derivatives
-        (…, 6) of the deflections with respect to the object's pose are also returned. They are per metre along x, y, z, and per radian about x, y, z
-        through the object's origin, in the axes of the patch. The derivatives are zero for free and saturated taxels. With a depth or a force, the
-        derivatives include the change of the travel; a depth then needs a flat patch.
+        (…, 6) of the output with respect to the object's pose are also returned; (…, k, 6) for a sequence of k objects. They are per metre along x, y,
+        z, and per radian about x, y, z through the object's origin, in the axes of the patch. The derivatives are zero for free and saturated taxels.
+        With a depth or a force, the derivatives include the change of the travel; a depth then needs a flat patch.
 
         Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
+        """
+
+    def press_and_slide(
+        self,
+        object: _Objects,
+        poses: ArrayLike,
+        *,
+        depth: ArrayLike,
+        slide: ArrayLike,
+        friction: ArrayLike,
+        shear_stiffness: ArrayLike | None = None,
+        threads: int | None = None,
+    ) -> dict[str, NDArray[Any]]:
+        """Presses the patch to a depth past first contact, then slides it along its x and y axes, at n poses. The skin has friction: the objects drag the
+        taxels sideways until they slip. The friction is zero at first contact.
+
+        object, poses, threads: as in press().
+        depth: metres, zero or more; one number, or (n,).
+        slide: motion of the patch after the press along x and y, metres, (2,) or (n, 2).
+        friction: coefficient between taxels and objects, zero or more; one number, or (n_taxels,).
+        shear_stiffness: stiffness of the taxels across their axes, N/m; one number, or (n_taxels,). None: the stiffness along the axes.
+
+        Returns a dict of arrays at the end of the slide; for a single pose, without the axis n:
+
+        - deflection: metres, (n, ny, nx) for a grid, and (n, n_taxels) for another patch;
+        - force3: force of the objects on each taxel, newtons, (n, n_taxels, 3), in the patch frame;
+        - is_slipping: whether the contact of the taxel slipped in the last step, in the shape of the deflections;
+        - wrench: force and torque on the patch about its origin, newtons and newton metres, (n, 6), in the patch frame;
+        - travel: travel of the patch along z, metres, (n,); NaN if the path misses all objects, and all other results are then zero.
+
+        Raises ValueError if an argument is invalid.
         """
 
 @final
@@ -891,7 +1010,7 @@ class Simulation:
     The reading of a patch is a dict:
 
     - pose: (7,) in the world;
-    - deflection and force: metres and newtons, (ny, nx) for a grid, otherwise (n_taxels,);
+    - deflection and force: metres and newtons, (ny, nx) for taxels in rows and columns, otherwise (n_taxels,);
     - force3: force of the objects on each taxel, newtons, (n_taxels, 3), in the patch frame; the sum equals the force of the wrench;
     - signal: sensor signals in the shape of the deflections, or None;
     - wrench: force and torque on the patch, newtons and newton metres, (6,), in the patch frame;
@@ -911,8 +1030,12 @@ class Simulation:
         positive, or a pose overflows.
         """
 
-    def observe(self) -> dict[str, Any]:
-        """Returns the current state as a frame. Before any step, the state is the first frame of the scene. Raises ValueError if a pose overflows."""
+    def observe(self, *, out: dict[str, Any] | None = None) -> dict[str, Any]:
+        """Returns the current state as a frame. Before any step, the state is the first frame of the scene. Raises ValueError if a pose overflows.
+
+        out: a frame that observe() of an equal simulation returned. Its arrays receive the new values, and the frame is returned. In a loop this is
+        faster, because no arrays are allocated.
+        """
 
     def set_object_pose(self, object: str, pose: ArrayLike) -> None:
         """Sets the pose of an object in the world from the next step on: (7,) or (4, 4). A free object comes to rest from this pose. Raises ValueError if

@@ -2,16 +2,13 @@
 //! are optional.
 
 use super::LayoutFile;
+use super::millimetres::{metres, millimetres};
 use crate::error::{Error, Result};
-use crate::files::WholeFile;
 use crate::numbers_csv::{check_width, finite, line_of, rows_of, unreadable};
 use glam::DVec3;
-use std::io::Write;
-use std::path::Path;
 
 const REQUIRED: [&str; 6] = ["x_mm", "y_mm", "z_mm", "nx", "ny", "nz"];
 const OPTIONAL: [&str; 3] = ["radius_mm", "row", "column"];
-const MM: f64 = 1e-3;
 
 /// Reads a layout of taxels from the text of a CSV file.
 pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
@@ -46,9 +43,13 @@ pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
         let row = row.map_err(|e| unreadable(place, e, &allowed))?;
         let at = format!("{place}, line {}", line_of(&row));
         check_width(&at, &row, header.len())?;
-        let value = |name: &str| {
+        let value = |name: &str| -> Result<f64> {
             let index = position(name).expect("the column exists");
-            finite(&at, name, &row[index], "a finite number")
+            let value = finite(&at, name, &row[index], "a finite number")?;
+            Ok(match name.ends_with("_mm") {
+                true => metres(&row[index]).unwrap_or(value),
+                false => value,
+            })
         };
         let vector = |names: &[&str]| -> Result<DVec3> {
             Ok(DVec3::new(
@@ -57,15 +58,16 @@ pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
                 value(names[2])?,
             ))
         };
-        taxels.push((vector(&REQUIRED[..3])? * MM, vector(&REQUIRED[3..])?));
+        taxels.push((vector(&REQUIRED[..3])?, vector(&REQUIRED[3..])?));
         numbers.push(line_of(&row) as usize - 1);
         if position("radius_mm").is_some() {
             let radius = value("radius_mm")?;
             if radius <= 0.0 {
                 let at = format!("{at}, column radius_mm");
-                return Err(Error::input(at, radius, "a positive number"));
+                let index = position("radius_mm").expect("the column exists");
+                return Err(Error::input(at, &row[index], "a positive number"));
             }
-            radii.push(radius * MM);
+            radii.push(radius);
         }
         if let Some(index) = position("row") {
             let whole = |name: &str, index: usize| {
@@ -78,50 +80,38 @@ pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
             pixels.push([whole("row", index)?, whole("column", column)?]);
         }
     }
-    let read = LayoutFile::new(place, taxels, &numbers)?;
-    Ok(LayoutFile {
+    let read = LayoutFile {
         radii: (!radii.is_empty()).then_some(radii),
-        pixels: (!pixels.is_empty()).then_some(pixels),
-        ..read
+        ..LayoutFile::new(place, taxels, &numbers)?
+    };
+    Ok(match pixels.is_empty() {
+        true => read,
+        false => read.with_pixels(pixels),
     })
 }
 
-impl LayoutFile {
-    /// Writes the layout as a CSV file, from which [`read`](Self::read) returns the same layout.
-    ///
-    /// # Errors
-    /// If the file cannot be written, or if the running command reads it.
-    pub fn write_csv(&self, path: &Path) -> Result<()> {
-        let mut header = REQUIRED.join(",");
-        if self.radii.is_some() {
-            header += ",radius_mm";
-        }
-        if self.pixels.is_some() {
-            header += ",row,column";
-        }
-        let mut text = header + "\n";
-        let taxels = self.layout.centers().iter().zip(self.layout.axes());
-        for (taxel, (center, axis)) in taxels.enumerate() {
-            let [x, y, z] = center.to_array().map(in_mm);
-            text += &format!("{x},{y},{z},{},{},{}", axis.x, axis.y, axis.z);
-            if let Some(radii) = &self.radii {
-                text += &format!(",{}", in_mm(radii[taxel]));
-            }
-            if let Some(pixels) = &self.pixels {
-                text += &format!(",{},{}", pixels[taxel][0], pixels[taxel][1]);
-            }
-            text += "\n";
-        }
-        let mut file = WholeFile::create(path)?;
-        file.write(|file| file.write_all(text.as_bytes()))?;
-        file.commit()
+/// Returns the layout as the text of a CSV file.
+pub(super) fn written(file: &LayoutFile) -> String {
+    let image = file.image();
+    let mut header = REQUIRED.join(",");
+    if file.radii.is_some() {
+        header += ",radius_mm";
     }
-}
-
-/// Converts metres to millimetres. The conversion back gives the same number, and the result has as few digits as possible.
-fn in_mm(metres: f64) -> f64 {
-    let mm = metres / MM;
-    let candidates = [(mm * 1e9).round() / 1e9, mm, mm.next_up(), mm.next_down()];
-    let exact = candidates.into_iter().find(|mm| mm * MM == metres);
-    exact.unwrap_or(mm)
+    if image.is_some() {
+        header += ",row,column";
+    }
+    let mut text = header + "\n";
+    let taxels = file.layout.centers().iter().zip(file.layout.axes());
+    for (taxel, (center, axis)) in taxels.enumerate() {
+        let [x, y, z] = center.to_array().map(millimetres);
+        text += &format!("{x},{y},{z},{},{},{}", axis.x, axis.y, axis.z);
+        if let Some(radii) = &file.radii {
+            text += &format!(",{}", millimetres(radii[taxel]));
+        }
+        if let Some(pixels) = &image {
+            text += &format!(",{},{}", pixels[taxel][0], pixels[taxel][1]);
+        }
+        text += "\n";
+    }
+    text
 }

@@ -1,19 +1,28 @@
 //! Position files of iCub's skin (`icub-main/app/skinGui/conf/positions`). A file has keys such as `name` and `taxel2Repr`, and a section `[calibration]` with
-//! one row `x y z nx ny nz` (positions in metres) for each taxel. Rows of zeros belong to channels without a taxel.
+//! one row `x y z nx ny nz` (positions in metres) for each taxel. Rows of zeros belong to channels without a taxel. Some files have positions only, with zeros
+//! for all normals; a mesh then gives the normals.
 
 use super::LayoutFile;
+use super::normals::surface_normals;
 use crate::error::{Error, Result};
+use crate::mesh::TriangleMesh;
 use glam::DVec3;
 
-/// Reads a layout of taxels from the text of an iCub position file. Normals of any length are scaled to length 1.
-pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
+/// Reads a layout of taxels from the text of an iCub position file. Normals of any length are scaled to length 1. If the file has no normals, they are computed
+/// from the mesh.
+pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
     let (mut taxels, mut rows, mut n_unused) = (Vec::new(), Vec::new(), 0);
+    let mut n_represented = None;
     let mut is_row = false;
     for (index, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         if line.starts_with('[') {
             is_row = line.eq_ignore_ascii_case("[calibration]");
             continue;
+        }
+        if let Some(numbers) = line.strip_prefix("taxel2Repr") {
+            let numbers = numbers.split(|c: char| c == '(' || c == ')' || c.is_whitespace());
+            n_represented = Some(numbers.filter(|number| !number.is_empty()).count());
         }
         if line.is_empty() || !is_row {
             continue;
@@ -39,11 +48,55 @@ pub(super) fn read(place: &str, text: &str) -> Result<LayoutFile> {
         let allowed = "a section [calibration] with rows x y z nx ny nz";
         return Err(Error::input(place, "no taxel", allowed));
     }
-    let mut read = LayoutFile::new(place, taxels, &rows)?;
+    let has_normals = taxels.iter().any(|(_, normal)| *normal != DVec3::ZERO);
+    let mut read = match (mesh, has_normals) {
+        (None, true) => LayoutFile::new(place, taxels, &rows)?,
+        (Some(mesh), false) => {
+            let positions: Vec<DVec3> = taxels.into_iter().map(|(position, _)| position).collect();
+            let normals = surface_normals(place, (&positions, &rows), mesh)?;
+            let taxels = positions.into_iter().zip(normals).collect();
+            LayoutFile::new(place, taxels, &rows)?
+        }
+        (Some(_), true) => {
+            let allowed = "none: the file has normals of its own";
+            return Err(Error::input(place, "a mesh for normals", allowed));
+        }
+        (None, false) => {
+            let place = match rows.first() {
+                Some(row) => format!("{place}, row {row}"),
+                None => place.to_owned(),
+            };
+            let allowed =
+                "rows with normals, or a mesh beside them, whose surface gives the normals";
+            return Err(Error::input(place, "positions without normals", allowed));
+        }
+    };
     if n_unused > 0 {
-        read.notes = vec![format!(
+        read.notes.push(format!(
             "{place}: {n_unused} rows of zeros are channels without a taxel"
-        )];
+        ));
+    }
+    let n_rows = rows.len() + n_unused;
+    if let Some(n_represented) = n_represented.filter(|n| *n != n_rows) {
+        read.notes.push(format!(
+            "{place}: taxel2Repr has {n_represented} numbers for {n_rows} rows; the rows are read"
+        ));
     }
     Ok(read)
+}
+
+/// Returns the layout as the text of an iCub position file, in which each taxel is a channel that represents itself.
+pub(super) fn written(file: &LayoutFile, name: &str) -> String {
+    let n_taxels = file.layout.n_taxels();
+    let numbers: Vec<String> = (0..n_taxels).map(|taxel| taxel.to_string()).collect();
+    let mut text = format!(
+        "name                {name}\nspatial_sampling    taxel\ntaxel2Repr          ({})\n\n[calibration]\n",
+        numbers.join(" ")
+    );
+    for (center, axis) in file.layout.centers().iter().zip(file.layout.axes()) {
+        let numbers = [center.to_array(), axis.to_array()].concat();
+        let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
+        text += &(numbers.join("  ") + "\n");
+    }
+    text
 }

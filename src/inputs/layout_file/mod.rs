@@ -5,11 +5,13 @@
 //! | `.csv` | [`csv`] | `x_mm, y_mm, z_mm, nx, ny, nz[, radius_mm][, row, column]`, one row for each taxel |
 //! | `.npz` | [`npz`] | `positions` and `normals`, each n × 3, metres; or `poses`, n × 3 × 4, and `taxel2pixel`, n × 2, as for Analog Devices' DEX-01 |
 //! | `.txt`, `.ini` | [`icub`] | position files of iCub's skin: position (metres) and normal of each taxel |
-//! | `.json` | [`paxini`] | taxel positions of PaXini's sensors, mm, without normals |
+//! | `.json` | [`paxini`] | taxel positions of PaXini's sensors, mm, with or without normals |
 //! | `.urdf`, `.xml` | [`urdf`] | `<sensor><tactile>` of urdf_tactile, or taxels of three prismatic joints, as for XELA's uSkin |
 
 pub mod csv;
+mod format;
 pub mod icub;
+mod millimetres;
 mod normals;
 pub mod npz;
 pub mod paxini;
@@ -17,7 +19,8 @@ pub mod urdf;
 
 use crate::error::{Error, Result};
 use crate::mesh::TriangleMesh;
-use crate::world::{Layout, TactileSensor};
+use crate::world::{Layout, TactileSensor, unit_axis};
+pub use format::LayoutFormat;
 use glam::DVec3;
 use std::path::Path;
 
@@ -42,7 +45,7 @@ pub struct LayoutFile {
 /// Further inputs of the reader of layout files, which some formats need.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LayoutOptions<'a> {
-    /// Surface from which the normals of the taxels are taken, if the file contains only positions.
+    /// Surface from which the normals of the taxels are taken; required only if the file contains no normals.
     pub mesh: Option<&'a TriangleMesh>,
     /// Name of the sensor to read; required only if the file has several sensors.
     pub sensor: Option<&'a str>,
@@ -60,7 +63,7 @@ impl LayoutFile {
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
         let refuse =
             |option: &str, of: &str| Err(Error::input(&place, option, format!("none: {of}")));
-        if options.mesh.is_some() && ending != "json" {
+        if options.mesh.is_some() && !matches!(&ending[..], "json" | "txt" | "ini") {
             return refuse("a mesh for normals", "this format has normals of its own");
         }
         if options.sensor.is_some() && !matches!(&ending[..], "urdf" | "xml") {
@@ -71,7 +74,7 @@ impl LayoutFile {
         let file = match &ending[..] {
             "csv" => csv::read(&place, &text()?)?,
             "npz" => npz::read(path)?,
-            "txt" | "ini" => icub::read(&place, &text()?)?,
+            "txt" | "ini" => icub::read(&place, &text()?, options.mesh)?,
             "json" => paxini::read(&place, &text()?, options.mesh)?,
             "urdf" | "xml" => urdf::read(&place, &text()?, options.sensor)?,
             _ => return Err(Error::input(place, "another file", FORMATS)),
@@ -98,7 +101,8 @@ impl LayoutFile {
                 return Err(Error::input(at(), given, "a vector with a direction"));
             }
         }
-        let (centers, axes) = taxels.into_iter().map(|(c, a)| (c, unit(a))).unzip();
+        let taxels = taxels.into_iter();
+        let (centers, axes) = taxels.map(|(c, a)| (c, unit_axis(a))).unzip();
         Ok(Self {
             layout: Layout::new(centers, axes).map_err(|error| error.under(place))?,
             radii: None,
@@ -118,10 +122,70 @@ impl LayoutFile {
             .iter()
             .map(|taxel| sensor.link_from_sensor.compose(taxel));
         let taxels = poses.map(|pose| (pose.translation, pose.rotation * DVec3::Z));
+        let read = Self::in_order(place, taxels.collect())?;
         Ok(Self {
             link: Some(sensor.link.clone()),
-            ..Self::in_order(place, taxels.collect())?
+            radii: sensor.radii.clone(),
+            ..match &sensor.pixels {
+                Some(pixels) => read.with_pixels(pixels.clone()),
+                None => read,
+            }
         })
+    }
+
+    /// Creates the content of a layout file from positions (metres) and normals of any length.
+    ///
+    /// # Errors
+    /// If there are no positions, the numbers of positions and normals differ, or a position or normal is invalid; the error contains the row, from 1.
+    pub fn from_points(place: &str, positions: Vec<DVec3>, normals: Vec<DVec3>) -> Result<Self> {
+        if positions.len() != normals.len() {
+            let given = format!("{} positions, {} normals", positions.len(), normals.len());
+            return Err(Error::input(place, given, "one normal a position"));
+        }
+        Self::in_order(place, positions.into_iter().zip(normals).collect())
+    }
+
+    /// Creates the content of a layout file from positions (metres) on a surface, whose outward normals are the axes.
+    ///
+    /// # Errors
+    /// If a position is invalid or more than 5 mm from the surface; the error contains the row, from 1.
+    pub fn on_surface(place: &str, positions: Vec<DVec3>, surface: &TriangleMesh) -> Result<Self> {
+        let rows: Vec<usize> = (1..=positions.len()).collect();
+        let normals = normals::surface_normals(place, (&positions, &rows), surface)?;
+        Self::from_points(place, positions, normals)
+    }
+
+    /// Sets the row and column of each taxel in the sensor's image. If the taxels are numbered row by row in a complete image, the layout has its sides.
+    fn with_pixels(self, pixels: Vec<[usize; 2]>) -> Self {
+        let n_columns = pixels.iter().map(|[_, column]| column + 1).max();
+        let n_columns = n_columns.unwrap_or(1);
+        let in_order =
+            |(taxel, pixel): (usize, &[usize; 2])| *pixel == [taxel / n_columns, taxel % n_columns];
+        let is_image = pixels.iter().enumerate().all(in_order);
+        let sides = [pixels.len() / n_columns, n_columns];
+        let layout = match is_image {
+            // A last row that is not complete is no image.
+            true => self.layout.clone().with_sides(sides).unwrap_or(self.layout),
+            false => self.layout,
+        };
+        Self {
+            layout,
+            pixels: Some(pixels),
+            ..self
+        }
+    }
+
+    /// Returns the row and column of each taxel in an image: of the layout file, or of a layout that is numbered row by row. Returns `None` if there is none.
+    pub fn image(&self) -> Option<Vec<[usize; 2]>> {
+        let by_rows = |[_, n_columns]: [usize; 2]| {
+            let taxels = 0..self.layout.n_taxels();
+            taxels
+                .map(|taxel| [taxel / n_columns, taxel % n_columns])
+                .collect()
+        };
+        self.pixels
+            .clone()
+            .or_else(|| self.layout.sides().map(by_rows))
     }
 
     /// Creates the content of a layout file whose rows are its taxels, in order and counted from 1.
@@ -159,11 +223,3 @@ const MAX_LOOKED_AT: usize = 200;
 
 /// Minimum length of a normal or axis vector in a layout file. Files contain normals with four decimals; shorter vectors count as zero.
 const MIN_AXIS: f64 = 1e-3;
-
-/// Returns a vector of length 1 in the direction of `axis`. A vector that already has length 1, up to rounding, is returned unchanged.
-fn unit(axis: DVec3) -> DVec3 {
-    match (axis.length() - 1.0).abs() < 1e-15 {
-        true => axis,
-        false => axis.normalize(),
-    }
-}

@@ -1,13 +1,15 @@
 //! Layouts stored as NumPy archives, in one of two forms. The first form has `positions` (n × 3, metres), `normals` (n × 3), and optionally `radii` (n, metres)
-//! and `pixels` (n × 2: row, column). The second form, used for Analog Devices' DEX-01, has `poses` (n × 3 × 4) and `taxel2pixel` (n × 2). A pose is a rotation
-//! matrix, whose third column is the normal, followed by the position in metres.
+//! and `pixels` (n × 2: row, column). The second form, used for Analog Devices' DEX-01, has `poses` (n × 3 × 4) and `taxel2pixel` (n × 2), and optionally
+//! `radii`. A pose is a rotation matrix, whose third column is the normal, followed by the position in metres.
 
 use super::LayoutFile;
 use crate::error::{Error, Result};
 use crate::geometry::written_rotation_matrix;
 use crate::inputs::arrays::file_array::FileArray;
 use glam::{DMat3, DVec3};
-use ndarray::ArrayD;
+use ndarray::{Array1, Array2, Array3, ArrayD};
+use ndarray_npy::{NpzWriter, WriteNpzError};
+use std::io::Cursor;
 use std::path::Path;
 
 /// Reads a layout of taxels from a `.npz` archive of NumPy arrays.
@@ -78,12 +80,66 @@ pub(super) fn read(path: &Path) -> Result<LayoutFile> {
             None => Ok(radii),
         }
     });
-    Ok(LayoutFile {
-        pixels: pixels.transpose()?,
+    let read = LayoutFile {
         radii: radii.transpose()?,
         ..LayoutFile::in_order(&place, taxels)?
+    };
+    Ok(match pixels.transpose()? {
+        Some(pixels) => read.with_pixels(pixels),
+        None => read,
     })
 }
+
+/// Returns the layout as an archive of positions and normals.
+pub(super) fn written(file: &LayoutFile) -> Result<Vec<u8>> {
+    let rows = |vectors: &[DVec3]| {
+        let numbers = vectors.iter().flat_map(|vector| vector.to_array());
+        let rows = Array2::from_shape_vec((vectors.len(), 3), numbers.collect());
+        rows.expect("three numbers a vector")
+    };
+    archive(file, "pixels", |npz| {
+        npz.add_array("positions", &rows(file.layout.centers()))?;
+        npz.add_array("normals", &rows(file.layout.axes()))
+    })
+}
+
+/// Returns the layout as an archive of poses. The rotation of a taxel is the frame of the layout.
+pub(super) fn written_as_poses(file: &LayoutFile) -> Result<Vec<u8>> {
+    let (centers, layout) = (file.layout.centers(), &file.layout);
+    let pose = |taxel: usize| {
+        let [x, y, z] = layout.frame(taxel).transpose().to_cols_array_2d();
+        let center = centers[taxel];
+        [&x[..], &[center.x], &y, &[center.y], &z, &[center.z]].concat()
+    };
+    let numbers: Vec<f64> = (0..centers.len()).flat_map(pose).collect();
+    let poses = Array3::from_shape_vec((centers.len(), 3, 4), numbers);
+    let poses = poses.expect("twelve numbers a pose");
+    archive(file, "taxel2pixel", |npz| npz.add_array("poses", &poses))
+}
+
+/// Returns an archive of the arrays that `add` adds, and of the radii and pixels of the layout.
+fn archive(
+    file: &LayoutFile,
+    pixels_name: &str,
+    add: impl FnOnce(&mut Archive) -> std::result::Result<(), WriteNpzError>,
+) -> Result<Vec<u8>> {
+    let mut npz = NpzWriter::new(Cursor::new(Vec::new()));
+    let write = || -> std::result::Result<Vec<u8>, WriteNpzError> {
+        add(&mut npz)?;
+        if let Some(radii) = &file.radii {
+            npz.add_array("radii", &Array1::from(radii.clone()))?;
+        }
+        if let Some(pixels) = file.image() {
+            let numbers = pixels.iter().flatten().map(|&number| number as i64);
+            let pixels = Array2::from_shape_vec((pixels.len(), 2), numbers.collect());
+            npz.add_array(pixels_name, &pixels.expect("two numbers a taxel"))?;
+        }
+        Ok(npz.finish()?.into_inner())
+    };
+    write().map_err(|error| Error::input("layout archive", error, "arrays that fit into a file"))
+}
+
+type Archive = NpzWriter<Cursor<Vec<u8>>>;
 
 fn vectors(array: &ArrayD<f64>) -> Vec<DVec3> {
     let numbers: Vec<f64> = array.iter().copied().collect();

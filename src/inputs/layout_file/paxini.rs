@@ -1,16 +1,17 @@
-//! Taxel positions of PaXini's tactile sensors as JSON, mm: `{"units": "mm", "taxels_mm": [[x, y, z], …]}`, or a list of positions. The files have no normals.
+//! Taxel positions of PaXini's tactile sensors as JSON, mm: `{"units": "mm", "taxels_mm": [[x, y, z], …]}`, or a list of positions. With `rotation`, a list of
+//! rotation matrices by columns, the third column is the normal of a taxel. Without it, the normals are taken from a mesh.
 
 use super::LayoutFile;
-use super::normals::surface_normals;
+use super::millimetres::metres;
 use crate::error::{Error, Result};
+use crate::geometry::written_rotation_matrix;
 use crate::mesh::TriangleMesh;
-use glam::DVec3;
-use serde_json::Value;
+use glam::{DMat3, DVec3};
+use serde_json::{Value, json};
 
 const ALLOWED: &str = "points [x, y, z] in mm: a list, or the member taxels_mm, taxels or points";
-const MM: f64 = 1e-3;
 
-/// Reads a layout of taxels from the text of a PaXini JSON file. The normals are computed from the mesh.
+/// Reads a layout of taxels from the text of a PaXini JSON file. If the file has no normals, they are computed from the mesh.
 pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Result<LayoutFile> {
     let json: Value = serde_json::from_str(text).map_err(|e| Error::input(place, e, ALLOWED))?;
     if let Some(units) = json.get("units").or_else(|| json.get("unit"))
@@ -22,29 +23,85 @@ pub(super) fn read(place: &str, text: &str, mesh: Option<&TriangleMesh>) -> Resu
     let points = members.iter().find_map(|name| json.get(name));
     let points = points.unwrap_or(&json).as_array();
     let points = points.ok_or_else(|| Error::input(place, "no list of points", ALLOWED))?;
-    let point = |(row, point): (usize, &Value)| {
-        let numbers = point.as_array().map(|numbers| {
+    let row_numbers = |what: &str, row: usize, value: &Value, allowed: &str| {
+        let numbers = value.as_array().map(|numbers| {
             let numbers = numbers.iter().map(Value::as_f64);
             numbers.collect::<Option<Vec<f64>>>()
         });
-        match numbers.flatten().as_deref() {
-            Some(&[x, y, z]) => Ok(DVec3::new(x, y, z) * MM),
+        numbers.flatten().ok_or_else(|| {
+            let place = format!("{place}, {what}row {}", row + 1);
+            Error::input(place, format!("`{value}`"), allowed)
+        })
+    };
+    let point = |(row, point): (usize, &Value)| {
+        const ALLOWED: &str = "three numbers: x, y, z";
+        match row_numbers("", row, point, ALLOWED)?[..] {
+            [x, y, z] => {
+                // The decimal number in the file, not its binary rounding, is converted to metres.
+                let exact = |mm: f64| metres(&mm.to_string()).unwrap_or(mm * 1e-3);
+                Ok(DVec3::new(exact(x), exact(y), exact(z)))
+            }
             _ => {
                 let place = format!("{place}, row {}", row + 1);
-                Err(Error::input(
-                    place,
-                    format!("`{point}`"),
-                    "three numbers: x, y, z",
-                ))
+                Err(Error::input(place, format!("`{point}`"), ALLOWED))
             }
         }
     };
     let points = points.iter().enumerate().map(point);
     let points = points.collect::<Result<Vec<_>>>()?;
-    let Some(mesh) = mesh else {
-        let allowed = "a mesh beside it, whose surface gives the normals";
-        return Err(Error::input(place, "points without normals", allowed));
+    let normals = match json.get("rotation") {
+        Some(rotations) => {
+            let rotations = rotations.as_array().map_or(&[][..], Vec::as_slice);
+            if rotations.len() != points.len() {
+                let given = format!("{} matrices for {} taxels", rotations.len(), points.len());
+                let place = format!("{place}, rotation");
+                return Err(Error::input(place, given, "one matrix a taxel"));
+            }
+            let normal = |(row, rotation): (usize, &Value)| {
+                const ALLOWED: &str = "a rotation: nine numbers, three right-handed unit columns";
+                let numbers = row_numbers("rotation, ", row, rotation, ALLOWED)?;
+                let refuse = |given: String| {
+                    let place = format!("{place}, rotation, row {}", row + 1);
+                    Error::input(place, given, ALLOWED)
+                };
+                let columns = <[f64; 9]>::try_from(&numbers[..]);
+                let columns = columns.map_err(|_| refuse(format!("{} numbers", numbers.len())))?;
+                let matrix = DMat3::from_cols_array(&columns);
+                match written_rotation_matrix(&matrix) {
+                    Some(_) => Ok(matrix.z_axis),
+                    None if matrix.determinant() < 0.0 => {
+                        Err(refuse("a left-handed frame".to_owned()))
+                    }
+                    None => Err(refuse("a matrix that is no rotation".to_owned())),
+                }
+            };
+            let normals = rotations.iter().enumerate().map(normal);
+            Some(normals.collect::<Result<Vec<_>>>()?)
+        }
+        None => None,
     };
-    let normals = surface_normals(place, &points, mesh)?;
-    LayoutFile::in_order(place, points.into_iter().zip(normals).collect())
+    match (normals, mesh) {
+        (Some(normals), None) => LayoutFile::from_points(place, points, normals),
+        (None, Some(mesh)) => LayoutFile::on_surface(place, points, mesh),
+        (Some(_), Some(_)) => {
+            let allowed = "none: the file has normals of its own";
+            Err(Error::input(place, "a mesh for normals", allowed))
+        }
+        (None, None) => {
+            let allowed = "a mesh beside it, whose surface gives the normals";
+            Err(Error::input(place, "points without normals", allowed))
+        }
+    }
+}
+
+/// Returns the layout as the text of a PaXini JSON file with rotations.
+pub(super) fn written(file: &LayoutFile, name: &str) -> String {
+    let layout = &file.layout;
+    let mm = |metres: f64| 1e3 * metres;
+    let points = layout.centers().iter();
+    let points: Vec<[f64; 3]> = points.map(|center| center.to_array().map(mm)).collect();
+    let frames = (0..layout.n_taxels()).map(|taxel| layout.frame(taxel).to_cols_array());
+    let frames: Vec<[f64; 9]> = frames.collect();
+    let json = json!({"model": name, "units": "mm", "taxels_mm": points, "rotation": frames});
+    json.to_string() + "\n"
 }

@@ -4,7 +4,7 @@
 use super::LayoutFile;
 use crate::error::{Error, Result};
 use crate::geometry::Pose;
-use crate::world::{JointKind, Robot};
+use crate::world::{Joint, JointKind, Robot};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -15,26 +15,28 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
     let robot = Robot::from_urdf(place, text)?;
     let mut all = BTreeMap::new();
     for sensor in robot.tactile_sensors() {
-        all.insert(sensor.name.clone(), LayoutFile::of_sensor(place, sensor)?);
+        all.insert(sensor.name.clone(), LayoutFile::of_sensor(place, sensor));
     }
-    for (link, taxels) in prismatic_taxels(&robot) {
+    for (link, taxels) in prismatic_taxels(place, &robot) {
         if let Entry::Vacant(place_of_link) = all.entry(link.clone()) {
-            let file = LayoutFile {
+            let file = taxels.and_then(|taxels| LayoutFile::in_order(place, taxels));
+            place_of_link.insert(file.map(|file| LayoutFile {
                 link: Some(link),
-                ..LayoutFile::in_order(place, taxels)?
-            };
-            place_of_link.insert(file);
+                ..file
+            }));
         }
     }
-    let names = all
-        .keys()
-        .map(String::as_str)
-        .collect::<Vec<_>>()
-        .join(", ");
+    // The reader of robots omits a sensor that it cannot read; here, its fault is the reason that the sensor is missing.
+    let missing = |given: String, allowed: String| match Robot::check_tactile_sensors(place, text) {
+        Err(fault) => fault,
+        Ok(()) => Error::input(place, given, allowed),
+    };
+    let names = all.keys().map(String::as_str);
+    let names = names.collect::<Vec<_>>().join(", ");
     let name = match (sensor, all.len()) {
         (_, 0) => {
             let allowed = "a <sensor> with <tactile>, or taxels of three prismatic joints";
-            return Err(Error::input(place, "no tactile sensor", allowed));
+            return Err(missing("no tactile sensor".to_owned(), allowed.to_owned()));
         }
         (Some(name), _) => name.to_owned(),
         (None, 1) => names.clone(),
@@ -47,9 +49,12 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
             ));
         }
     };
-    all.remove(&name).ok_or_else(|| {
-        let given = format!("no sensor `{name}`");
-        Error::input(place, given, format!("one of {names}"))
+    let found = all.remove(&name);
+    found.unwrap_or_else(|| {
+        Err(missing(
+            format!("no sensor `{name}`"),
+            format!("one of {names}"),
+        ))
     })
 }
 
@@ -57,12 +62,13 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
 type Taxel = (DVec3, DVec3);
 
 /// Returns the taxels of each link in file order; a taxel is connected to its link by three prismatic joints along x, y and z. The normal of a taxel is the
-/// axis of the third joint.
-fn prismatic_taxels(robot: &Robot) -> BTreeMap<String, Vec<Taxel>> {
+/// axis of the third joint. If a link has such taxels, and another chain of prismatic joints on the link is none, the link has an error instead.
+fn prismatic_taxels(place: &str, robot: &Robot) -> BTreeMap<String, Result<Vec<Taxel>>> {
     let joints = robot.joints();
     let is_slide = |kind: JointKind| kind == JointKind::Prismatic;
     let below = |link: usize| joints.iter().filter(move |joint| joint.parent == link);
-    let mut all: BTreeMap<String, Vec<Taxel>> = BTreeMap::new();
+    let mut taxels: BTreeMap<String, Vec<Taxel>> = BTreeMap::new();
+    let mut faults: BTreeMap<String, Error> = BTreeMap::new();
     for first in joints.iter().filter(|joint| is_slide(joint.kind)) {
         // The parent link of the first prismatic joint of a chain is not moved by another prismatic joint.
         if joints
@@ -77,22 +83,70 @@ fn prismatic_taxels(robot: &Robot) -> BTreeMap<String, Vec<Taxel>> {
         {
             chain.push(next);
         }
-        let [x, y, z] = chain[..] else { continue };
-        let mut pose = Pose::IDENTITY;
-        let mut axes = Vec::new();
-        for joint in [x, y, z] {
-            pose = pose.compose(&joint.origin);
-            axes.push(pose.rotation * joint.axis);
-        }
-        let is_right_angled = axes[0].dot(axes[1]).abs() < 1e-6
-            && axes[0].dot(axes[2]).abs() < 1e-6
-            && axes[1].dot(axes[2]).abs() < 1e-6;
-        if is_right_angled {
-            let link = robot.links()[x.parent].name.clone();
-            all.entry(link)
-                .or_default()
-                .push((pose.translation, axes[2]));
+        let link = robot.links()[first.parent].name.clone();
+        match taxel_of_chain(&chain) {
+            Ok(taxel) => taxels.entry(link).or_default().push(taxel),
+            Err(given) => {
+                let place = format!("{place}, joint `{}`", first.name);
+                let allowed = "three joints of a taxel, along right-handed axes x, y and z";
+                let fault = Error::input(place, given, allowed);
+                faults.entry(link).or_insert(fault);
+            }
         }
     }
-    all
+    let of_link = |(link, taxels): (String, Vec<Taxel>)| {
+        let fault = faults.remove(&link);
+        (link, fault.map_or(Ok(taxels), Err))
+    };
+    taxels.into_iter().map(of_link).collect()
+}
+
+/// Returns the taxel at the end of a chain of prismatic joints, in the frame of the chain's link, or a description of a chain that moves no taxel.
+fn taxel_of_chain(chain: &[&Joint]) -> std::result::Result<Taxel, String> {
+    if chain.len() != 3 {
+        return Err(format!("a chain of {} prismatic joints", chain.len()));
+    }
+    let mut pose = Pose::IDENTITY;
+    let mut axes = Vec::new();
+    for joint in chain {
+        pose = pose.compose(&joint.origin);
+        axes.push(pose.rotation * joint.axis);
+    }
+    let [x, y, z] = [axes[0], axes[1], axes[2]];
+    let is_right_angled = [x.dot(y), x.dot(z), y.dot(z)]
+        .iter()
+        .all(|dot| dot.abs() < 1e-6);
+    match (is_right_angled, x.cross(y).dot(z) > 0.0) {
+        (true, true) => Ok((pose.translation, z)),
+        (true, false) => Err("a left-handed frame".to_owned()),
+        (false, _) => Err("axes that are not perpendicular".to_owned()),
+    }
+}
+
+/// Returns the layout as the text of a URDF file with one tactile sensor, whose taxels have their z axes along the normals, and spheres of their radii.
+pub(super) fn written(file: &LayoutFile, name: &str) -> String {
+    let name = escape(name);
+    let link = file.link.as_deref().map_or(name.clone(), escape);
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<robot name=\"{name}\">\n  <link name=\"{link}\"/>\n  <sensor name=\"{name}\">\n    <parent link=\"{link}\"/>\n    \
+         <origin xyz=\"0 0 0\" rpy=\"0 0 0\"/>\n    <tactile channel=\"{name}\">\n"
+    );
+    let default = file.default_radius();
+    let taxels = file.layout.centers().iter().zip(file.layout.axes());
+    for (taxel, (center, axis)) in taxels.enumerate() {
+        let DVec3 { x, y, z } = *center;
+        let roll = (-axis.y).atan2(axis.x.hypot(axis.z));
+        let pitch = axis.x.atan2(axis.z);
+        text +=
+            &format!("      <taxel idx=\"{taxel}\" xyz=\"{x} {y} {z}\" rpy=\"{roll} {pitch} 0\">");
+        let radius = file.radii.as_ref().map_or(default, |radii| radii[taxel]);
+        text += &format!("<geometry><sphere radius=\"{radius}\"/></geometry></taxel>\n");
+    }
+    text + "    </tactile>\n  </sensor>\n</robot>\n"
+}
+
+/// Escapes the characters of a name that have a meaning in XML.
+fn escape(name: &str) -> String {
+    let name = name.replace('&', "&amp;").replace('<', "&lt;");
+    name.replace('"', "&quot;")
 }

@@ -239,6 +239,19 @@ impl Drawing {
         }
     }
 
+    /// Draws a filled disc; `radius` is in pixels.
+    pub fn disc(&mut self, at: Point, radius: f64, fill: Rgb) {
+        self.elements.push(Primitive::Circle {
+            cx: snap(at.0),
+            cy: snap(at.1),
+            r: snap(radius),
+            fill: colour(fill),
+            fill_opacity: None,
+            stroke: None,
+            stroke_width: None,
+        });
+    }
+
     /// Draws elements inside an SVG group with `data-` attributes. The group is only written by `svg_with_data`.
     pub fn group(&mut self, data: &[(&str, &str)], draw: impl FnOnce(&mut Self)) {
         let attributes = data

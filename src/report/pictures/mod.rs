@@ -6,6 +6,7 @@ pub(crate) mod even_ticks;
 pub mod fit_picture;
 pub mod frame_files;
 pub mod heat_map;
+pub mod layout_picture;
 pub mod object_picture;
 pub(crate) mod picture;
 pub(crate) mod picture_axes;

@@ -45,6 +45,18 @@ impl RecordedPatch {
         self.centers.len()
     }
 
+    /// Creates a patch without taxels, to be filled.
+    pub(crate) fn empty(name: &str, force: ForceKind) -> Self {
+        Self {
+            name: name.to_owned(),
+            centers: Vec::new(),
+            axes: Vec::new(),
+            grid: None,
+            force,
+            signal: None,
+        }
+    }
+
     /// Creates a patch whose taxels form a grid in the plane z = 0 and have axes along +z.
     pub fn of_grid(name: impl Into<String>, grid: Grid, force: ForceKind) -> Self {
         let centers = (0..grid.n_taxels())

@@ -4,21 +4,26 @@ use super::{Sphere, SphereClusters};
 use crate::error::{Error, Result};
 use crate::geometry::{Aabb, Pose};
 use glam::DVec3;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
-/// Union of rigid spheres in the frame of the object, metres.
+/// Union of rigid spheres in the frame of the object, metres. Clones share their data.
 ///
 /// Invariant: at least one sphere, every centre finite, every radius finite and positive.
 #[derive(Clone, Debug)]
 pub struct SphereUnion {
+    data: Arc<Data>,
+}
+
+#[derive(Debug)]
+struct Data {
     spheres: Vec<Sphere>,
     /// Clusters of the spheres, computed on first use.
-    clusters: OnceLock<Box<SphereClusters>>,
+    clusters: OnceLock<SphereClusters>,
 }
 
 impl PartialEq for SphereUnion {
     fn eq(&self, other: &Self) -> bool {
-        self.spheres == other.spheres
+        self.spheres() == other.spheres()
     }
 }
 
@@ -57,28 +62,30 @@ impl SphereUnion {
 
     fn from_spheres(spheres: Vec<Sphere>) -> Self {
         let clusters = OnceLock::new();
-        Self { spheres, clusters }
+        Self {
+            data: Arc::new(Data { spheres, clusters }),
+        }
     }
 
     /// Returns the spheres of the union in their order of construction.
     pub fn spheres(&self) -> &[Sphere] {
-        &self.spheres
+        &self.data.spheres
     }
 
     /// Returns the spheres in clusters of neighbours, computed on first use in about 100 ns per sphere.
     pub fn clusters(&self) -> &SphereClusters {
-        let sort = || Box::new(SphereClusters::from_spheres(&self.spheres));
-        self.clusters.get_or_init(sort)
+        let sort = || SphereClusters::from_spheres(self.spheres());
+        self.data.clusters.get_or_init(sort)
     }
 
     /// Returns the number of spheres of the union.
     pub fn n_spheres(&self) -> usize {
-        self.spheres.len()
+        self.spheres().len()
     }
 
     /// Returns the bounding box of all spheres, metres.
     pub fn bounds(&self) -> Aabb {
-        Aabb::around(self.spheres.iter().map(Sphere::bounds))
+        Aabb::around(self.spheres().iter().map(Sphere::bounds))
             .expect("a union has at least one sphere")
     }
 
@@ -86,13 +93,13 @@ impl SphereUnion {
     /// point.
     pub fn reach_from(&self, point: DVec3) -> f64 {
         let reach = |sphere: &Sphere| sphere.center.distance(point) + sphere.radius;
-        self.spheres.iter().map(reach).fold(0.0, f64::max)
+        self.spheres().iter().map(reach).fold(0.0, f64::max)
     }
 
     /// Returns the union after a rigid motion.
     pub fn moved(&self, pose: &Pose) -> Self {
         let spheres = self
-            .spheres
+            .spheres()
             .iter()
             .map(|s| Sphere {
                 center: pose.transform_point(s.center),
@@ -106,6 +113,6 @@ impl SphereUnion {
 impl SphereClusters {
     /// Groups the spheres of an object into clusters; takes about 100 ns per sphere.
     pub fn new(union: &SphereUnion) -> Self {
-        Self::from_spheres(&union.spheres)
+        Self::from_spheres(union.spheres())
     }
 }

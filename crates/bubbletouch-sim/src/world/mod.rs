@@ -31,7 +31,10 @@ mod trajectory;
 
 pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges};
 pub(crate) use layouts::Rule;
-pub use layouts::{ArrayLayout, Dome, DomeRing, DrapeRegion, Extrusion, Layout, MAX_TAXELS};
+pub use layouts::{
+    ArrayLayout, Dome, DomeRing, DrapeRegion, Extrusion, Layout, MAX_TAXELS, MissingTaxels,
+    Projected, unit_axis,
+};
 pub use motion::{Interpolation, JointTrajectory, Motion, Oscillation, PoseTrajectory};
 pub use neighbours::Neighbours;
 pub use patch::Patch;

@@ -32,6 +32,8 @@ const UNIT_ROUNDING: f64 = 1e-9;
 pub struct Layout {
     rule: Rule,
     places: OnceLock<Places>,
+    /// Numbers of rows and columns, if the taxels are numbered row by row.
+    sides: Option<[usize; 2]>,
     n_left_out: usize,
 }
 
@@ -94,10 +96,7 @@ impl Layout {
                     "a vector of length one, within 1 %",
                 ));
             }
-            // Axes that are already unit vectors, up to rounding, remain bitwise unchanged.
-            if (length - 1.0).abs() > UNIT_ROUNDING {
-                *axis = axis.normalize();
-            }
+            *axis = unit_axis(*axis);
         }
         Ok(Self::of_places(Places { centers, axes }))
     }
@@ -109,7 +108,31 @@ impl Layout {
     pub fn grid(grid: &Grid) -> Result<Self> {
         grid.check()?;
         check_count("taxel grid", grid.nx as f64 * grid.ny as f64)?;
-        Ok(Self::of_rule(Rule::Grid(*grid)))
+        Ok(Self {
+            sides: Some([grid.ny, grid.nx]),
+            ..Self::of_rule(Rule::Grid(*grid))
+        })
+    }
+
+    /// Returns the layout with its taxels numbered row by row, in an image with the given numbers of rows and columns.
+    ///
+    /// # Errors
+    /// If the number of taxels differs from the number of pixels.
+    pub fn with_sides(self, [n_rows, n_columns]: [usize; 2]) -> Result<Self> {
+        if n_rows.checked_mul(n_columns) != Some(self.n_taxels()) {
+            let given = format!("{n_rows} × {n_columns} for {} taxels", self.n_taxels());
+            return Err(Error::input("layout sides", given, "one pixel a taxel"));
+        }
+        Ok(Self {
+            sides: Some([n_rows, n_columns]),
+            ..self
+        })
+    }
+
+    /// Returns the numbers of rows and columns of the image that the taxels form. The taxels are numbered row by row. Returns `None` if the layout has no such
+    /// image.
+    pub fn sides(&self) -> Option<[usize; 2]> {
+        self.sides
     }
 
     /// Returns the number of taxels of the layout.
@@ -177,7 +200,7 @@ impl Layout {
         }
     }
 
-    /// Returns the layout after a rigid motion in the patch frame; the result is no longer a grid.
+    /// Returns the layout after a rigid motion in the patch frame. The result is no longer a grid, but keeps the numbers of rows and columns.
     #[must_use]
     pub fn moved(&self, pose: &Pose) -> Self {
         let taxels = self.centers().iter().zip(self.axes());
@@ -185,7 +208,10 @@ impl Layout {
             let axis = (pose.rotation * axis).normalize();
             (pose.transform_point(center), axis)
         }));
-        moved.with_left_out(self.n_left_out)
+        Self {
+            sides: self.sides,
+            ..moved.with_left_out(self.n_left_out)
+        }
     }
 
     /// Creates a layout from taxels whose axes are all unit vectors.
@@ -197,6 +223,7 @@ impl Layout {
         Self {
             rule: Rule::None,
             places: places.into(),
+            sides: None,
             n_left_out: 0,
         }
     }
@@ -205,8 +232,18 @@ impl Layout {
         Self {
             rule,
             places: OnceLock::new(),
+            sides: None,
             n_left_out: 0,
         }
+    }
+}
+
+/// Returns the unit vector in the direction of `axis`. A vector that already is a unit vector, up to rounding, is returned bitwise unchanged, so that a layout
+/// keeps its bits when it is written and read again.
+pub fn unit_axis(axis: DVec3) -> DVec3 {
+    match (axis.length() - 1.0).abs() <= UNIT_ROUNDING {
+        true => axis,
+        false => axis.normalize(),
     }
 }
 

@@ -7,6 +7,7 @@
 //! | `extrusion` | a row repeated along a line ([`Extrusion`]): grids, cylinders |
 //! | `dome`, `curved` | on spheres ([`Dome`]) and other curved surfaces |
 //! | `draped`, `drape_region` | on a mesh, or on a part of a mesh |
+//! | `projected` | a flat grid, projected onto a mesh ([`Projected`]) |
 //! | `arrays` | arrays of equal area and density that can be compared ([`ArrayLayout`]) |
 //! | `order` | the order in which taxels are numbered |
 //! | `ring`, `limits` | rings around an axis, and the checks that all layouts share |
@@ -21,12 +22,14 @@ mod flat;
 mod layout;
 mod limits;
 mod order;
+mod projected;
 mod ring;
 
 pub use arrays::ArrayLayout;
 pub use dome::{Dome, DomeRing};
 pub use drape_region::DrapeRegion;
 pub use extrusion::Extrusion;
-pub use layout::Layout;
 pub(crate) use layout::Rule;
+pub use layout::{Layout, unit_axis};
 pub use limits::MAX_TAXELS;
+pub use projected::{MissingTaxels, Projected};

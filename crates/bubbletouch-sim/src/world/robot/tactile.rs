@@ -17,6 +17,10 @@ pub struct TactileSensor {
     pub link_from_sensor: Pose,
     /// Pose `sensor_from_taxel` of each taxel, metres, in the order of the data vector; z is the taxel's normal.
     pub taxels: Vec<Pose>,
+    /// Radius of each taxel, metres, shape (n_taxels,). `None` if not every taxel is described by a sphere.
+    pub radii: Option<Vec<f64>>,
+    /// Row and column of each taxel of an array, shape (n_taxels,). `None` for taxels that are listed one by one.
+    pub pixels: Option<Vec<[usize; 2]>>,
 }
 
 /// Largest allowed number of taxels of an array. A larger number indicates a mistake in the file.
@@ -38,6 +42,21 @@ pub(super) fn read_tactile_sensors(robot: Element) -> Vec<TactileSensor> {
         tactile.or_note(sensor.map(Some), None, &consequence)
     });
     sensors.collect()
+}
+
+/// Returns the first fault of a tactile sensor.
+///
+/// # Errors
+/// If a sensor is incomplete or has an invalid value; the error contains its line.
+pub(super) fn check_tactile_sensors(robot: Element) -> Result<()> {
+    let mut elements = robot.node.descendants();
+    elements
+        .by_ref()
+        .filter(|node| node.tag_name().name() == "tactile")
+        .try_for_each(|node| {
+            let tactile = Element { node, ..robot };
+            read_sensor(tactile, &Place::new(node)).map(drop)
+        })
 }
 
 /// Origin of a tactile sensor in the file: its XML element, its name, and the name of its link.
@@ -78,10 +97,6 @@ fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
         node: sensor,
         ..tactile
     };
-    let mut taxels = match tactile.child("array")? {
-        Some(array) => array_taxels(array)?,
-        None => Vec::new(),
-    };
     let mut listed = tactile
         .children("taxel")
         .enumerate()
@@ -90,24 +105,61 @@ fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
             let xyz = taxel.numbers("xyz")?.unwrap_or([0.0; 3]);
             let rpy = taxel.numbers("rpy")?.unwrap_or([0.0; 3]);
             let pose = Pose::new(rotation_from_rpy(DVec3::from(rpy)), DVec3::from(xyz));
-            Ok((index, pose))
-        });
-    let mut listed = listed.by_ref().collect::<Result<Vec<_>>>()?;
+            Ok((index, pose, sphere_radius(taxel)?))
+        })
+        .collect::<Result<Vec<_>>>()?;
     listed.sort_by(|one, other| one.0.total_cmp(&other.0));
-    taxels.extend(listed.into_iter().map(|(_, pose)| pose));
-    if taxels.is_empty() {
-        return Err(tactile.refuse("<tactile> without taxels", "an <array> or <taxel>s"));
-    }
+    let radii = listed.iter().map(|(_, _, radius)| *radius).collect();
+    let (taxels, radii, pixels) = match (listed.is_empty(), tactile.child("array")?) {
+        (true, Some(array)) => {
+            let taxels = array_taxels(array)?;
+            let (taxels, pixels) = taxels.into_iter().unzip();
+            (taxels, None, Some(pixels))
+        }
+        (true, None) => {
+            return Err(tactile.refuse("<tactile> without taxels", "an <array> or <taxel>s"));
+        }
+        (false, array) => {
+            if array.is_some() {
+                // urdf_tactile ignores the array, too.
+                let given = "<array> beside <taxel>s";
+                let note = tactile.refuse(given, "one of them: the array is not read");
+                tactile.lines.note(note.to_string());
+            }
+            (
+                listed.into_iter().map(|(_, pose, _)| pose).collect(),
+                radii,
+                None,
+            )
+        }
+    };
     Ok(TactileSensor {
         name: name.to_owned(),
         link: link.to_owned(),
         link_from_sensor: sensor.origin()?,
         taxels,
+        radii,
+        pixels,
     })
 }
 
-/// Returns the taxels of `<array rows cols order size spacing offset>`: rows run along x and columns along y, and the taxel (0, 0) is at −offset.
-fn array_taxels(array: Element) -> Result<Vec<Pose>> {
+/// Returns the radius of the sphere that describes the shape of a taxel, metres; `None` if its shape is another one or unknown.
+fn sphere_radius(taxel: Element) -> Result<Option<f64>> {
+    let Some(geometry) = taxel.child("geometry")? else {
+        return Ok(None);
+    };
+    let Some(sphere) = geometry.child("sphere")? else {
+        return Ok(None);
+    };
+    let [radius] = sphere.needed_numbers::<1>("radius")?;
+    match radius > 0.0 && radius.is_finite() {
+        true => Ok(Some(radius)),
+        false => Err(sphere.refuse(format!("`radius` {radius}"), "a positive number of metres")),
+    }
+}
+
+/// Returns the poses, and the rows and columns, of the taxels of `<array rows cols order size spacing offset>`: rows run along x and columns along y, and the taxel (0, 0) is at −offset.
+fn array_taxels(array: Element) -> Result<Vec<(Pose, [usize; 2])>> {
     let count = |attribute: &str| -> Result<usize> {
         let [number] = array.needed_numbers::<1>(attribute)?;
         let is_count = number >= 1.0 && number.fract() == 0.0 && number <= MAX_TAXELS as f64;
@@ -141,7 +193,7 @@ fn array_taxels(array: Element) -> Result<Vec<Pose>> {
             false => (index % rows, index / rows),
         };
         let place = DVec3::new(row as f64 * along_x - x, column as f64 * along_y - y, 0.0);
-        Pose::from_translation(place)
+        (Pose::from_translation(place), [row, column])
     });
     Ok(taxels.collect())
 }

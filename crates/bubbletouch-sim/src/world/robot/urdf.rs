@@ -5,7 +5,7 @@
 
 use super::link::read_link;
 use super::mimic::{Drive, drives};
-use super::tactile::read_tactile_sensors;
+use super::tactile::{check_tactile_sensors, read_tactile_sensors};
 use super::text::{parsed, repaired};
 use super::tree::Tree;
 use super::xml::{Element, Lines};
@@ -47,6 +47,17 @@ pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
     let notes = lines.into_notes();
     let robot = Robot::assembled((name, place), links, joints, tree, drives, notes)?;
     Ok(robot.with_tactile_sensors(sensors))
+}
+
+/// Returns the first fault of a tactile sensor in the text of a URDF file.
+pub(super) fn check_sensors(place: &str, text: &str) -> Result<()> {
+    let lines = Lines::new(place, text);
+    let text = repaired(place, text, &lines);
+    let document = parsed(&text).map_err(|e| unreadable(place, &text, &e))?;
+    check_tactile_sensors(Element {
+        node: document.root_element(),
+        lines: &lines,
+    })
 }
 
 type Parts = (String, Vec<Link>, Vec<Joint>, Tree, Vec<Drive>);

@@ -2,7 +2,7 @@
 
 use super::Robot;
 use super::text::decoded;
-use super::urdf::read_urdf;
+use super::urdf::{check_sensors, read_urdf};
 use crate::error::{Error, Result};
 use std::path::Path;
 
@@ -13,6 +13,14 @@ impl Robot {
     /// If a part that determines poses of links is invalid. The message begins with `place`, the file's name, and contains the line.
     pub fn from_urdf(place: &str, text: &str) -> Result<Self> {
         read_urdf(place, text)
+    }
+
+    /// Checks the tactile sensors in the text of a URDF file, which `from_urdf` omits with a note if they are invalid.
+    ///
+    /// # Errors
+    /// If the text is no XML, or a tactile sensor is invalid. The message begins with `place`, the file's name, and contains the line.
+    pub fn check_tactile_sensors(place: &str, text: &str) -> Result<()> {
+        check_sensors(place, text)
     }
 
     /// Reads a robot from a URDF file in UTF-8, UTF-16 with a byte order mark, or Latin-1. Mesh files are not opened.

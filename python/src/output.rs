@@ -1,0 +1,62 @@
+//! Quantity that a frame contains: deflections or forces.
+
+use crate::errors::bad_input;
+use bubbletouch::world::Patch;
+use pyo3::prelude::*;
+
+/// Quantity that a frame contains: deflections, metres, or forces along the axes of the taxels, newtons.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Output {
+    /// Deflections of the taxels, metres.
+    Deflection,
+    /// Forces of the springs along the axes of the taxels, newtons: stiffness times deflection.
+    Force,
+}
+
+impl Output {
+    /// Reads the argument `output` of a method.
+    ///
+    /// # Errors
+    /// If the word is neither `deflection` nor `force`.
+    pub fn from_argument(output: &str) -> PyResult<Self> {
+        match output {
+            "deflection" => Ok(Self::Deflection),
+            "force" => Ok(Self::Force),
+            other => {
+                let allowed = "\"deflection\" or \"force\"";
+                Err(bad_input("output", format!("{other:?}"), allowed))
+            }
+        }
+    }
+
+    /// Converts deflections to the quantity of the output. `values` contains equally many numbers for each taxel; zeros are not written.
+    pub fn convert<T: Scale>(self, patch: &Patch, values: &mut [T]) {
+        if self == Self::Deflection {
+            return;
+        }
+        let n_each = values.len() / patch.n_taxels();
+        for (taxel, values) in values.chunks_exact_mut(n_each).enumerate() {
+            for value in values.iter_mut().filter(|value| **value != T::default()) {
+                *value = value.scaled(patch.taxels().at(taxel).stiffness);
+            }
+        }
+    }
+}
+
+/// Number that is multiplied in double precision.
+pub trait Scale: Copy + Default + PartialEq {
+    /// Returns the number times a factor, rounded once.
+    fn scaled(self, factor: f64) -> Self;
+}
+
+impl Scale for f64 {
+    fn scaled(self, factor: f64) -> Self {
+        self * factor
+    }
+}
+
+impl Scale for f32 {
+    fn scaled(self, factor: f64) -> Self {
+        (f64::from(self) * factor) as Self
+    }
+}

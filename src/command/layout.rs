@@ -1,0 +1,123 @@
+//! `bubbletouch layout`: describes a layout file, draws it, and writes it in another format.
+
+use crate::command::terminal::streams::{note, say};
+use bubbletouch::Result;
+use bubbletouch::inputs::layout_file::{LayoutFile, LayoutFormat, LayoutOptions};
+use bubbletouch::inputs::object_files::read_mesh;
+use bubbletouch::mesh::{LengthUnit, SizeLimits};
+use bubbletouch::report::layout_picture::write_layout_picture;
+use glam::DVec3;
+use std::path::PathBuf;
+
+/// Describe, draw and convert a file of taxel positions and normals
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  bubbletouch layout objects/skins/fingertip.csv --out fingertip.svg"
+)]
+pub struct Args {
+    /// Layout: .csv, .npz, .txt or .ini (iCub), .json (PaXini) or .urdf
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Take the normals from the surface of this mesh
+    #[arg(long, value_name = "FILE", help_heading = "Input")]
+    mesh: Option<PathBuf>,
+    /// Set the unit of --mesh: m, cm, mm or in [default: m]
+    #[arg(long, value_name = "UNIT", requires = "mesh", help_heading = "Input")]
+    mesh_unit: Option<LengthUnit>,
+    /// Read the sensor of this name in a robot's file
+    #[arg(long, value_name = "NAME", help_heading = "Input")]
+    sensor: Option<String>,
+    /// Draw to .svg or .png, or write a layout file
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Write csv, npz, dex-01, icub, paxini or urdf [default: by extension]
+    #[arg(long, value_name = "FORMAT", requires = "out", help_heading = "Output")]
+    format: Option<LayoutFormat>,
+}
+
+pub fn layout(args: &Args) -> Result<()> {
+    let mesh = args.mesh.as_ref().map(|path| -> Result<_> {
+        let (mesh, orientation) = read_mesh(path, args.mesh_unit, &SizeLimits::ANY, None)?;
+        orientation.require(&path.display().to_string())?;
+        Ok(mesh)
+    });
+    let mesh = mesh.transpose()?;
+    let options = LayoutOptions {
+        mesh: mesh.as_ref(),
+        sensor: args.sensor.as_deref(),
+    };
+    let file = LayoutFile::read(&args.file, options)?;
+    file.notes.iter().for_each(note);
+    if let Some(out) = &args.out {
+        let ending = out.extension().and_then(|ending| ending.to_str());
+        let is_picture =
+            ending.is_some_and(|ending| ["svg", "png"].contains(&&ending.to_ascii_lowercase()[..]));
+        match is_picture && args.format.is_none() {
+            true => {
+                let name = args.file.file_stem().unwrap_or_default().to_string_lossy();
+                write_layout_picture(out, &name, &file.layout)?;
+            }
+            false => file.write(out, args.format)?.iter().for_each(note),
+        }
+    }
+    describe(&file)
+}
+
+fn describe(file: &LayoutFile) -> Result<()> {
+    let layout = &file.layout;
+    let centers = layout.centers();
+    let low = centers.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = centers
+        .iter()
+        .copied()
+        .fold(DVec3::NEG_INFINITY, DVec3::max);
+    let size = 1e3 * (high - low);
+    say(format_args!(
+        "{} taxels within {:.1} × {:.1} × {:.1} mm",
+        layout.n_taxels(),
+        size.x,
+        size.y,
+        size.z
+    ))?;
+    match &file.radii {
+        Some(radii) => {
+            let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
+            let largest = radii.iter().copied().fold(0.0, f64::max);
+            match least == largest {
+                true => say(format_args!("radius {:.3} mm", 1e3 * least))?,
+                false => say(format_args!(
+                    "radii {:.3} to {:.3} mm",
+                    1e3 * least,
+                    1e3 * largest
+                ))?,
+            }
+        }
+        None => {
+            let radius = 1e3 * file.default_radius();
+            say(format_args!(
+                "no radii; by default {radius:.3} mm, half the distance between neighbours"
+            ))?;
+        }
+    }
+    match (layout.sides(), file.image()) {
+        (Some([rows, columns]), _) => say(format_args!("image of {rows} × {columns} pixels"))?,
+        (None, Some(pixels)) => {
+            let [rows, columns] = [0, 1].map(|side| {
+                pixels
+                    .iter()
+                    .map(|pixel| pixel[side] + 1)
+                    .max()
+                    .unwrap_or_default()
+            });
+            say(format_args!(
+                "image of {rows} × {columns} pixels, of which {} are taxels",
+                pixels.len()
+            ))?;
+        }
+        (None, None) => {}
+    }
+    match &file.link {
+        Some(link) => say(format_args!("in the frame of link `{link}`")),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,57 @@
+//! Conversion between decimal numbers of millimetres in files and metres, rounded only once, so that a layout keeps its bits when it is written and read again.
+
+/// Returns the number of metres that a decimal number of millimetres stands for; `None` if the text is no finite number.
+pub(super) fn metres(mm: &str) -> Option<f64> {
+    let (digits, exponent) = match mm.find(['e', 'E']) {
+        Some(at) => (&mm[..at], mm[at + 1..].parse::<i64>().ok()?),
+        None => (mm, 0),
+    };
+    let metres = format!("{digits}e{}", exponent.checked_sub(3)?).parse::<f64>();
+    metres.ok().filter(|metres| metres.is_finite())
+}
+
+/// Returns the decimal number of millimetres, with as few digits as possible, that [`metres`] converts to the given number.
+pub(super) fn millimetres(metres: f64) -> String {
+    let text = format!("{metres:e}");
+    let (digits, exponent) = text.split_once('e').expect("a number with an exponent");
+    let exponent = exponent.parse::<i32>().expect("an integer") + 3;
+    let text = format!("{digits}e{exponent}");
+    // Numbers of usual size are written without an exponent.
+    let plain = text.parse::<f64>().map(|mm| mm.to_string());
+    let plain = plain
+        .ok()
+        .filter(|plain| self::metres(plain) == Some(metres));
+    plain.filter(|plain| plain.len() < 24).unwrap_or(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+
+    #[test]
+    fn millimetres_are_read_as_the_metres_that_were_written() {
+        let mut rng = Seed::new(5).named("millimetres").rng();
+        let random = (0..20_000).map(|_| {
+            let size = 10f64.powi(rng.gen_range(-12..3));
+            size * rng.gen_range(-1.0..1.0)
+        });
+        let special = [0.0, 1e-3, 0.7e-3, 5e-324, f64::MAX / 1e4, -1e-10];
+        for number in random.collect::<Vec<f64>>().into_iter().chain(special) {
+            assert_eq!(metres(&millimetres(number)), Some(number));
+        }
+        assert_eq!(
+            (&millimetres(1.5e-3)[..], &millimetres(-0.02)[..]),
+            ("1.5", "-20")
+        );
+        assert_eq!((metres("25"), metres("2.5E1")), (Some(0.025), Some(0.025)));
+    }
+
+    #[test]
+    fn other_texts_are_no_millimetres() {
+        for text in ["", "nan", "inf", "1e400", "x", "1e", "1e1e1", "e3"] {
+            assert_eq!(metres(text), None, "{text}");
+        }
+    }
+}
