@@ -2,6 +2,7 @@
 
 mod drawn;
 mod engine;
+mod foreign;
 mod hard_cases;
 mod inseparable;
 mod libsvm;

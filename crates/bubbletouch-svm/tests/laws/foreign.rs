@@ -1,0 +1,152 @@
+//! Classifiers from outside of the crate give their own labels, and decisions on several touches from their probabilities or votes.
+
+use bubbletouch_svm::Result;
+use bubbletouch_svm::classifiers::ClassifierKind;
+use bubbletouch_svm::classifiers::classifier::{Classifier, TrainedClassifier};
+use bubbletouch_svm::classifiers::foreign::{
+    Foreign, ForeignClassifier, ForeignModel, LinfaClassifier,
+};
+use bubbletouch_svm::dataset::Dataset;
+use ndarray::{Array1, Array2, ArrayView2, array};
+use std::sync::Arc;
+
+/// Rows of three classes with the labels 2, 5, 9; class 2 has twice as many rows.
+fn data() -> Dataset {
+    let labels: Array1<usize> = (0..60).map(|row| [2, 5, 2, 9][row % 4]).collect();
+    let value = |(row, column): (usize, usize)| {
+        labels[row] as f64 * (column + 1) as f64 + 4.0 * (1.7 * (row * 3 + column) as f64).sin()
+    };
+    Dataset::new(Array2::from_shape_fn((60, 3), value), labels.clone())
+}
+
+/// Model of this crate, as a program would provide it.
+struct Ours {
+    kind: ClassifierKind,
+    has_probabilities: bool,
+}
+
+struct OurModel(TrainedClassifier, bool);
+
+impl ForeignClassifier for Ours {
+    fn fit(&self, rows: &Dataset, seed: u32) -> Result<Box<dyn ForeignModel>> {
+        let trained = Classifier::new(self.kind).train(rows, &u64::from(seed))?;
+        Ok(Box::new(OurModel(trained, self.has_probabilities)))
+    }
+}
+
+impl ForeignModel for OurModel {
+    fn predict(&self, rows: ArrayView2<f64>) -> Result<Vec<usize>> {
+        Ok(self.0.labels(rows)?.to_vec())
+    }
+
+    fn log_probabilities(&self, rows: ArrayView2<f64>) -> Result<Option<Array2<f64>>> {
+        let prior = array![0.5_f64, 0.25, 0.25].mapv(f64::ln);
+        Ok(self.1.then_some(self.0.scores(rows)? + prior))
+    }
+}
+
+fn trained(foreign: Foreign) -> Result<TrainedClassifier> {
+    Classifier::new(ClassifierKind::Foreign(foreign)).train(&data(), &7_u64)
+}
+
+#[test]
+fn a_foreign_classifier_gives_the_labels_and_scores_of_its_code() {
+    let kind = ClassifierKind::LogisticRegression;
+    let foreign = Foreign::new("ours", "1").unwrap();
+    let provided = foreign.provide(Arc::new(Ours {
+        kind,
+        has_probabilities: true,
+    }));
+    let (data, ours) = (
+        data(),
+        Classifier::new(kind).train(&data(), &7_u64).unwrap(),
+    );
+    let theirs = trained(foreign).unwrap();
+    let rows = data.records.view();
+    assert_eq!(theirs.labels(rows).unwrap(), ours.labels(rows).unwrap());
+    // Three touches of one object together: the prior counts once.
+    let [ours, theirs] = [ours, theirs].map(|model| {
+        let scores = model.scores(rows).unwrap();
+        let sums = Array2::from_shape_fn((20, 3), |(row, class)| {
+            (0..3)
+                .map(|touch| scores[[(4 * row + touch * 20) % 60, class]])
+                .sum()
+        });
+        model.labels_of_scores(sums.view())
+    });
+    assert_eq!(theirs, ours);
+    drop(provided);
+    let error = trained(foreign).unwrap_err().to_string();
+    assert!(
+        error.contains("classifier ours: no code for version 1"),
+        "{error}"
+    );
+}
+
+#[test]
+fn without_probabilities_labels_are_votes() {
+    let kind = ClassifierKind::NearestCentroid;
+    let foreign = Foreign::new("votes", "1").unwrap();
+    let _provided = foreign.provide(Arc::new(Ours {
+        kind,
+        has_probabilities: false,
+    }));
+    let model = trained(foreign).unwrap();
+    let scores = model.scores(data().records.view()).unwrap();
+    let labels = model.labels(data().records.view()).unwrap();
+    assert_eq!(model.labels_of_scores(scores.view()), labels);
+    assert!(scores.iter().all(|score| score.is_finite()));
+}
+
+#[test]
+fn a_name_is_an_identity_with_its_version() {
+    let [one, other] = ["1", "2"].map(|version| Foreign::new("same", version).unwrap());
+    assert_eq!(one, Foreign::new("same", "1").unwrap());
+    assert!(one != other && one < other);
+    assert_eq!(
+        format!("{:?}", ClassifierKind::Foreign(one)),
+        "Foreign(same@1)"
+    );
+    assert_eq!(Foreign::named("same@2"), Some(other));
+    assert_eq!(Foreign::named("same"), None);
+    let ours = || {
+        Arc::new(Ours {
+            kind: ClassifierKind::KNearest,
+            has_probabilities: false,
+        })
+    };
+    let outer = one.provide(ours());
+    let inner = other.provide(ours());
+    assert_eq!(Foreign::named("same"), Some(other));
+    assert_eq!(Foreign::given(), [one, other]);
+    drop(inner);
+    assert_eq!(Foreign::named("same"), Some(one));
+    drop(outer);
+    assert!(Foreign::given().is_empty() && !one.is_provided());
+    for (name, version) in [
+        ("", "1"),
+        ("a", ""),
+        ("a@b", "1"),
+        ("a", "1 2"),
+        ("rbf_svm", "1"),
+    ] {
+        assert!(Foreign::new(name, version).is_err(), "{name} {version}");
+    }
+}
+
+#[test]
+fn any_classifier_of_linfa_is_a_foreign_classifier() {
+    let neighbours = LinfaClassifier::<_, bubbletouch_svm::Error>::new(Classifier::new(
+        ClassifierKind::KNearest,
+    ));
+    let foreign = Foreign::new("linfa", "1").unwrap();
+    let _provided = foreign.provide(Arc::new(neighbours));
+    let rows = data().records;
+    let ours = Classifier::new(ClassifierKind::KNearest)
+        .train(&data(), &0_u64)
+        .unwrap();
+    assert_eq!(
+        trained(foreign).unwrap().labels(rows.view()).unwrap(),
+        ours.labels(rows.view()).unwrap()
+    );
+}
