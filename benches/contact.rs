@@ -5,7 +5,7 @@ use bubbletouch::contact::{
     Instructions, Workspace, press_at_pose, press_to_depth, press_with_contacts,
 };
 use bubbletouch::geometry::Pose;
-use bubbletouch::mesh::{LengthUnit, MeshFormat, Surface, TriangleMesh};
+use bubbletouch::mesh::{MeshFormat, Surface, TriangleMesh};
 use bubbletouch::objects::{
     Catalogue, MeshModel, Model, Sphere, SphereUnion, vertex_spheres, write_spheres,
 };
@@ -208,7 +208,7 @@ fn bottles() -> [(&'static str, Model); 2] {
     };
     let place = path.display().to_string();
     let file = BufReader::new(File::open(&path).expect("the mesh can be read"));
-    let mesh = MeshFormat::Ply.read(&place, LengthUnit::Metre, file);
+    let mesh = MeshFormat::Ply.read(&place, None, file);
     let mesh = mesh
         .and_then(|file| file.into_mesh(&place))
         .expect("a good mesh");

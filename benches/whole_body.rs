@@ -223,7 +223,7 @@ struct Hug {
 
 impl Hug {
     fn new() -> Self {
-        let robot = Robot::read_urdf("objects/robots/humanoid.urdf".as_ref());
+        let robot = Robot::read("objects/robots/humanoid.urdf".as_ref());
         let robot = robot.expect("the robot is committed");
         let mut positions = vec![0.0; robot.n_positions()];
         for joint in ["left_shoulder", "right_shoulder"] {

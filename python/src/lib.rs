@@ -23,6 +23,7 @@ mod poses;
 mod press;
 mod projection;
 mod reconstruction;
+mod robot;
 mod signal;
 mod simulation;
 mod skin;
@@ -58,6 +59,8 @@ mod _core {
     use projection::Projection;
     #[pymodule_export]
     use reconstruction::Reconstructor;
+    #[pymodule_export]
+    use robot::{Joint, Robot};
     #[pymodule_export]
     use signal::{Chain, Step};
     #[pymodule_export]

@@ -44,7 +44,8 @@ struct CapsuleFacets {
 }
 
 impl Mesh {
-    fn new(place: String, mesh: TriangleMesh) -> Self {
+    /// Wraps a triangle mesh; `place` is its source, for error messages.
+    pub fn new(place: String, mesh: TriangleMesh) -> Self {
         Self::from_model(place, MeshModel::new(mesh))
     }
 
@@ -96,9 +97,9 @@ impl Mesh {
         })
     }
 
-    /// Reads a mesh from a PLY, OBJ or STL file.
+    /// Reads a mesh from a PLY, OBJ, STL, Collada (.dae) or glTF (.glb, .gltf) file.
     ///
-    /// unit: unit of the coordinates in the file. None: metres; the object must then be 0.1 mm to 10 m in size.
+    /// unit: unit of the coordinates in the file. None: metres, or the unit that a Collada file contains; the object must then be 0.1 mm to 10 m in size.
     /// close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. None: no hole is closed.
     ///
     /// Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it contains

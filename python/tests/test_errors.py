@@ -54,7 +54,7 @@ def test_a_file_that_is_something_else_is_bad_input(tmp_path: Path) -> None:
         bt.Catalogue.read(text)
     folder = tmp_path / "folder.ply"
     folder.mkdir()
-    with pytest.raises(ValueError, match="folder.ply: a folder; a .ply, .obj or .stl file"):
+    with pytest.raises(ValueError, match="folder.ply: a folder; a .ply, .obj, .stl, .dae, .glb or .gltf file"):
         bt.Mesh.read(folder)
 
 

@@ -44,7 +44,7 @@ pub struct Args {
     /// Read objects from a TOML file, not the built-in ones
     #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["set", "mesh"], help_heading = "Input")]
     objects: Option<PathBuf>,
-    /// Draw a PLY, OBJ or STL mesh, packed with spheres
+    /// Draw a mesh, packed with spheres
     #[arg(long, value_name = "FILE", conflicts_with_all = ["names", "set"], help_heading = "Input")]
     mesh: Option<PathBuf>,
     /// Set the unit of the mesh: m, cm, mm or in
@@ -78,7 +78,7 @@ enum Action {
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  bubbletouch objects mesh scan.ply --unit mm")]
 struct MeshArgs {
-    /// PLY, OBJ or STL file
+    /// PLY, OBJ, STL, Collada or glTF file
     file: PathBuf,
     /// Set the unit of the mesh: m, cm, mm or in
     ///

@@ -98,7 +98,7 @@ struct Source {
     /// Press a built-in object, or one of --objects
     #[arg(long, value_name = "NAME", help_heading = "Object")]
     object: Option<String>,
-    /// Press a PLY, OBJ or STL mesh
+    /// Press a PLY, OBJ, STL, Collada or glTF mesh
     #[arg(long, value_name = "FILE", help_heading = "Object")]
     mesh: Option<PathBuf>,
     /// Press spheres of a CSV file (columns x,y,z,r)

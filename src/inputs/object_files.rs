@@ -98,7 +98,8 @@ pub fn file_content(path: &Path) -> Result<String> {
     Ok(sha256(bytes))
 }
 
-/// Reads a PLY, OBJ or STL file, and converts it to metres. Without a unit, the numbers are metres, and the size must be within `sizes`.
+/// Reads a mesh file, and converts it to metres. Without a unit, the numbers are metres or in the unit that the file contains, and the size must be within
+/// `sizes`.
 ///
 /// # Errors
 /// If the file cannot be read, has an unknown extension, or contains no such mesh.
@@ -110,7 +111,7 @@ pub fn read_mesh_file(
     let format = MeshFormat::from_path(path)?;
     check_regular(path)?;
     let place = path.display().to_string();
-    let mesh = format.read(&place, unit.unwrap_or_default(), open(path, "a mesh")?)?;
+    let mesh = format.read(&place, unit, open(path, "a mesh")?)?;
     if unit.is_none() {
         let vertices = mesh.vertices().iter();
         let points = vertices.map(|&point| Aabb {
@@ -163,7 +164,7 @@ fn check_regular(path: &Path) -> Result<()> {
         // Other errors are reported when the file is opened.
         _ => return Ok(()),
     };
-    let allowed = "a .ply, .obj or .stl file";
+    let allowed = format!("a {} file", MeshFormat::ENDINGS);
     Err(Error::input(path.display(), given, allowed))
 }
 
@@ -350,7 +351,7 @@ fn mesh_paths(folder: &Path, spec: &ObjectsSpec) -> Result<Vec<PathBuf>> {
     let (given, allowed) = match (paths.len(), n_meshes) {
         (0, 0) => (
             "no meshes".to_owned(),
-            "at least two .ply, .obj or .stl files",
+            &*format!("at least two {} files", MeshFormat::ENDINGS),
         ),
         (0, n) => (
             format!("{n} meshes, none of them named in objects.names"),

@@ -21,7 +21,7 @@ pub struct ObjectsSpec {
     pub sets: Vec<SetName>,
     /// Names of the objects that are selected from the sets and meshes. Default: all objects.
     pub names: Option<Vec<String>>,
-    /// Folder of PLY, OBJ or STL meshes with one object per file, relative to the study file.
+    /// Folder of PLY, OBJ, STL, Collada or glTF meshes with one object per file, relative to the study file.
     #[schemars(with = "Option<String>")]
     pub meshes: Option<FilePath>,
     /// Model that is built from each mesh: `mesh` (default), `packed` or `vertex_spheres`.

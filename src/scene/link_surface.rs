@@ -2,14 +2,13 @@
 //!
 //! Boxes are exact. Round shapes are divided into facets with their corners on the shape; taxels are then at most [`SAGITTA`] pitches inside the shape.
 
-use super::plan_robot::PlannedRobot;
-use super::reader::Reader;
 use crate::error::{Error, Result};
+use crate::geometry::Pose;
 use crate::inputs::object_files::read_mesh;
 use crate::mesh::{SizeLimits, TriangleMesh};
-use crate::world::{Link, LinkGeometry, LinkShape, ShapeRole};
+use crate::world::{Link, LinkGeometry, LinkShape, MeshFolders, Robot, ShapeRole};
 use glam::DVec3;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Maximum distance between a facet and the round shape that it approximates, relative to the taxel pitch. With a larger value, taxels lie deeper; with a
 /// smaller value, more triangles are needed.
@@ -19,7 +18,7 @@ const SAGITTA: f64 = 0.02;
 const FINEST: f64 = 1e-5;
 
 /// Shapes of a robot link that are selected as a surface.
-pub(super) struct LinkSurface<'a> {
+pub struct LinkSurface<'a> {
     /// Name of the robot link.
     pub link: &'a str,
     /// Role of the shapes that are selected from the link: visual or collision. If `None`, the collision shapes are selected if the link has any, otherwise the
@@ -27,55 +26,50 @@ pub(super) struct LinkSurface<'a> {
     pub role: Option<ShapeRole>,
 }
 
-impl Reader<'_> {
-    /// Returns the surface of the shapes of a robot link as a mesh. Round shapes are divided into facets that are fine enough for taxels at this pitch
-    /// (metres).
-    ///
-    /// # Errors
-    /// If the robot has no such link, the link has no such shapes, or the mesh of a shape cannot be read.
-    pub(super) fn link_surface(
-        &self,
-        key: &str,
-        robot: &PlannedRobot,
-        surface: &LinkSurface,
-        pitch: f64,
-    ) -> Result<TriangleMesh> {
-        let index = self.under(key, robot.robot.link(surface.link))?;
-        let links = robot.robot.links();
-        let link = &links[index];
-        let shapes = solids(link, surface.role);
-        if shapes.is_empty() {
-            let others = links
-                .iter()
-                .filter(|link| !solids(link, surface.role).is_empty());
-            let others: Vec<String> = others.map(|link| format!("`{}`", link.name)).collect();
-            let (kind, allowed) = (kind(surface.role), others.join(", "));
-            let given = format!(
-                "`{}`, a link without {kind}shapes that have a volume",
-                link.name
-            );
-            let allowed = match others.len() {
-                0 => format!("no link of robot `{}` has any", robot.name),
-                _ => format!("a link with such shapes: {allowed}"),
-            };
-            return Err(self.check.error(key, given, allowed));
-        }
-        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-        for shape in shapes {
-            let mesh = match &shape.geometry {
-                LinkGeometry::Mesh { file, scale } => {
-                    self.under(key, read_link_mesh(file, *scale, robot.folder.as_deref()))?
-                }
-                round_or_box => self.under(key, facets(round_or_box, pitch))?,
-            };
-            let first = vertices.len() as u32;
-            let mesh = mesh.moved(&shape.origin);
-            vertices.extend_from_slice(mesh.vertices());
-            let corners = mesh.triangles().iter();
-            triangles.extend(corners.map(|corners| corners.map(|corner| first + corner)));
-        }
-        self.under(key, TriangleMesh::new(&link.name, vertices, triangles))
+/// Returns the surface of the shapes of a robot link as a mesh in the link's frame. Round shapes are divided into facets that are fine enough for taxels at this
+/// pitch (metres).
+///
+/// # Errors
+/// If the robot has no such link, the link has no such shapes, or the mesh of a shape cannot be read.
+pub fn link_surface(
+    robot: &Robot,
+    folders: &MeshFolders,
+    surface: &LinkSurface,
+    pitch: f64,
+) -> Result<TriangleMesh> {
+    let links = robot.links();
+    let link = &links[robot.link(surface.link)?];
+    let shapes = solids(link, surface.role);
+    if shapes.is_empty() {
+        let others = links
+            .iter()
+            .filter(|link| !solids(link, surface.role).is_empty());
+        let others: Vec<String> = others.map(|link| format!("`{}`", link.name)).collect();
+        let kind = kind(surface.role);
+        let given = format!("a link without {kind}shapes that have a volume");
+        let allowed = match others.len() {
+            0 => format!("no link of robot `{}` has any", robot.name()),
+            _ => format!("a link with such shapes: {}", others.join(", ")),
+        };
+        return Err(Error::input(format!("`{}`", link.name), given, allowed));
     }
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for shape in shapes {
+        let mesh = match &shape.geometry {
+            LinkGeometry::Mesh {
+                file,
+                mesh_from_file,
+                scale,
+            } => read_link_mesh(&folders.find(file)?, mesh_from_file, *scale)?,
+            round_or_box => facets(round_or_box, pitch)?,
+        };
+        let first = vertices.len() as u32;
+        let mesh = mesh.moved(&shape.origin);
+        vertices.extend_from_slice(mesh.vertices());
+        let corners = mesh.triangles().iter();
+        triangles.extend(corners.map(|corners| corners.map(|corner| first + corner)));
+    }
+    TriangleMesh::new(&link.name, vertices, triangles)
 }
 
 /// Returns all shapes of a link that have the given role and a volume. Without a role, returns the collision shapes, or the visual shapes if there are none.
@@ -102,37 +96,13 @@ fn kind(role: Option<ShapeRole>) -> &'static str {
     }
 }
 
-/// Reads a mesh file named in a URDF file in `folder`, and multiplies the coordinates by `scale`.
-fn read_link_mesh(file: &str, scale: DVec3, folder: Option<&Path>) -> Result<TriangleMesh> {
-    let Some(path) = find_mesh(file, folder.unwrap_or(Path::new(""))) else {
-        let allowed =
-            "a file beside the robot's, or in a folder above it that contains the package";
-        return Err(Error::input(file, "a mesh that is not found", allowed));
-    };
-    let (mesh, orientation) = read_mesh(&path, None, &SizeLimits::ANY, None)?;
+/// Reads a mesh file of a link, moves it by `mesh_from_file`, and multiplies the coordinates by `scale`. If the scale mirrors the mesh, its triangles are turned,
+/// so that they still face outwards.
+fn read_link_mesh(path: &Path, mesh_from_file: &Pose, scale: DVec3) -> Result<TriangleMesh> {
+    let (mesh, orientation) = read_mesh(path, None, &SizeLimits::ANY, None)?;
     let place = path.display().to_string();
     orientation.require(&place)?;
-    mesh.scaled(&place, scale)
-}
-
-/// Returns the path of a mesh file, given its name in a URDF file in `folder`: a path relative to the folder, `file://…`, or `package://NAME/…`. A package path
-/// is searched in each parent folder, both as NAME/… and without NAME, because a copy of a package may have another name.
-fn find_mesh(file: &str, folder: &Path) -> Option<PathBuf> {
-    let in_package = ["package://", "model://"]
-        .iter()
-        .find_map(|start| file.strip_prefix(start));
-    let Some(in_package) = in_package else {
-        let path = folder.join(file.strip_prefix("file://").unwrap_or(file));
-        return path.exists().then_some(path);
-    };
-    let inside = in_package
-        .split_once('/')
-        .map_or(in_package, |(_, inside)| inside);
-    let folder = std::path::absolute(folder).ok()?;
-    let mut found = folder
-        .ancestors()
-        .flat_map(|above| [above.join(in_package), above.join(inside)]);
-    found.find(|path| path.is_file())
+    mesh.moved(mesh_from_file).scaled(&place, scale)
 }
 
 /// Returns the facets of a primitive shape (such as a box, cylinder or ball) in the frame of the shape.
@@ -149,6 +119,9 @@ fn facets(geometry: &LinkGeometry, pitch: f64) -> Result<TriangleMesh> {
         }
         LinkGeometry::Sphere { radius } => {
             TriangleMesh::capsule(PLACE, radius, 0.0, tolerance(radius))
+        }
+        LinkGeometry::Ellipsoid { semi_axes } => {
+            TriangleMesh::ellipsoid(PLACE, semi_axes, tolerance(semi_axes.max_element()))
         }
         LinkGeometry::Mesh { ref file, .. } => {
             Err(Error::input(file, "a mesh", "a primitive shape"))

@@ -84,6 +84,7 @@ mod spec_patch;
 mod summary;
 
 pub use frame::{Frame, FrameSink, FrictionReading, ObjectReading, PatchReading, PoseControl};
+pub use link_surface::{LinkSurface, link_surface};
 pub use mount::Mount;
 pub use plan::ScenePlan;
 pub use plan_object::{Movement, PlannedObject};

@@ -1,6 +1,6 @@
 //! Patches of an executable scene: layouts, taxels and mounts.
 
-use super::link_surface::LinkSurface;
+use super::link_surface::{LinkSurface, link_surface};
 use super::mount::Mount;
 use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
@@ -74,6 +74,7 @@ impl Reader<'_> {
                 .value(&pitch_key, pitch_mm, positive, "a positive number")?;
         }
         let layout_key = &format!("{key}.layout");
+        self.drape_on_own_link(layout_key, spec, robots)?;
         let (layout, radii) = match self.listed_taxels(layout_key, spec, robots)? {
             Some(listed) => listed,
             None => {
@@ -160,14 +161,15 @@ impl Reader<'_> {
                             self.known(&format!("patches.{}.robot", spec.name), name, names)?;
                         let role = region.as_ref().and_then(|region| region.shapes);
                         let surface = LinkSurface { link, role };
-                        self.link_surface(key, &robots[robot], &surface, pitch)?
+                        let PlannedRobot { robot, meshes, .. } = &robots[robot];
+                        self.under(key, link_surface(robot, meshes, &surface, pitch))?
                     }
                     (both_or_neither, _) => {
                         let given = match both_or_neither {
                             Some(_) => "mesh and region.link",
-                            None => "neither mesh nor region.link",
+                            None => "neither mesh nor a link",
                         };
-                        let allowed = "mesh = \"FILE\" or region = { link = \"NAME\" }, a link of the patch's robot";
+                        let allowed = "mesh = \"FILE\", on = \"collision\" for the patch's own link, or region = { link = \"NAME\" }, a link of the patch's robot";
                         return Err(self.check.error(key, given, allowed));
                     }
                 };
@@ -241,6 +243,42 @@ impl Reader<'_> {
             sensor: parts.and_then(|parts| parts.sensor.as_deref()),
         };
         self.under(key, LayoutFile::read(&self.path(path), options))
+    }
+
+    /// Replaces `on`, the shapes of the patch's own link, by the region of this link.
+    fn drape_on_own_link(
+        &self,
+        key: &str,
+        spec: &mut PatchSpec,
+        robots: &[PlannedRobot],
+    ) -> Result<()> {
+        let LayoutSpec::Draped {
+            mesh, on, region, ..
+        } = &mut spec.layout
+        else {
+            return Ok(());
+        };
+        let Some(role) = on.take() else {
+            return Ok(());
+        };
+        let key = &format!("{key}.on");
+        let region = region.get_or_insert_default();
+        if mesh.is_some() || region.link.is_some() || region.shapes.is_some() {
+            let given = "beside mesh, region.link or region.shapes";
+            return Err(self
+                .check
+                .error(key, given, "one surface: on = \"collision\" alone"));
+        }
+        let Some(name) = &spec.robot else {
+            let allowed = "robot = \"NAME\" of the patch";
+            return Err(self.check.error(key, "a patch without a robot", allowed));
+        };
+        let names = robots.iter().map(|robot| robot.name.as_str());
+        let robot = &robots[self.known(key, name, names)?].robot;
+        let base = || robot.links()[robot.base()].name.clone();
+        region.link = Some(spec.link.clone().unwrap_or_else(base));
+        region.shapes = Some(role);
+        Ok(())
     }
 
     /// Mounts a patch whose taxels are draped over a robot link on this link.

@@ -5,9 +5,9 @@ use super::spec::RobotSpec;
 use crate::error::Result;
 use crate::scene::spec_motion::JointsSpec;
 use crate::spelling::nearest_names;
-use crate::world::{Joint, JointTrajectory, Motion, Robot};
+use crate::world::{Joint, JointTrajectory, MeshFolders, Motion, Robot};
 use ndarray::Array2;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Robot of a scene, checked and ready for simulation.
 #[derive(Clone, Debug)]
@@ -16,8 +16,8 @@ pub struct PlannedRobot {
     pub name: String,
     /// Links and joints of the robot, read from its file.
     pub robot: Robot,
-    /// Folder of the URDF file. Mesh files of the links are relative to this folder.
-    pub folder: Option<PathBuf>,
+    /// Folders in which mesh files of the links are searched.
+    pub meshes: MeshFolders,
     /// Motion of the robot's base.
     pub base: Motion,
     /// Motion of the joints; `None` if all joints stay at their rest positions.
@@ -33,18 +33,15 @@ impl PlannedRobot {
 }
 
 impl Reader<'_> {
-    /// Checks a robot of a scene file and reads its URDF file.
+    /// Checks a robot of a scene file and reads the robot's file.
     pub fn robot(&self, spec: &RobotSpec) -> Result<PlannedRobot> {
         let key = &format!("robots.{}", spec.name);
-        let robot = match (&spec.urdf, spec.floating) {
-            (None, true) => Robot::floating(&spec.name),
-            (Some(path), false) => {
-                let key = &format!("{key}.urdf");
-                self.open(key, path)?;
-                self.under(key, Robot::read_urdf(&self.path(path)))?
-            }
+        let (robot, meshes) = match (&spec.file, &spec.urdf, spec.floating) {
+            (None, None, true) => (Robot::floating(&spec.name), MeshFolders::default()),
+            (Some(path), None, false) => self.robot_file(key, "file", path, spec)?,
+            (None, Some(path), false) => self.robot_file(key, "urdf", path, spec)?,
             _ => {
-                let allowed = "either urdf = \"FILE\" or floating = true";
+                let allowed = "either file = \"FILE\" or floating = true";
                 return Err(self.check.error(key, "both or neither", allowed));
             }
         };
@@ -53,11 +50,35 @@ impl Reader<'_> {
             base: self.motion(key, &spec.at, spec.motion.as_ref())?,
             joints: self.joints(&format!("{key}.joints"), spec.joints.as_ref(), &robot)?,
             robot,
-            folder: spec.urdf.as_ref().map(|path| self.path(path)).map(|path| {
-                let folder = path.parent();
-                folder.unwrap_or(Path::new("")).to_owned()
-            }),
+            meshes,
         })
+    }
+
+    /// Reads the URDF or MJCF file of a robot, which the key `name` contains; also returns the folders of its meshes.
+    fn robot_file(
+        &self,
+        key: &str,
+        name: &str,
+        path: &Path,
+        spec: &RobotSpec,
+    ) -> Result<(Robot, MeshFolders)> {
+        let file_key = &format!("{key}.{name}");
+        self.open(file_key, path)?;
+        let path = self.path(path);
+        let robot = self.under(file_key, Robot::read(&path))?;
+        let packages = spec.packages.iter().map(|(package, folder)| {
+            let folder = self.path(folder);
+            if folder.is_dir() {
+                return Ok((package.clone(), folder));
+            }
+            let key = format!("{key}.packages.{package}");
+            let given = format!("{}, which is no folder", folder.display());
+            Err(self
+                .check
+                .error(&key, given, "a folder, its path relative to the scene's"))
+        });
+        let packages = packages.collect::<Result<_>>()?;
+        Ok((robot, MeshFolders::beside(&path, packages)))
     }
 
     /// Checks the way-points of a robot's joints and returns the joint motion.

@@ -11,6 +11,7 @@ use crate::files::FilePath;
 use crate::toml_text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Contents of a scene file. Paths are relative to the folder of the scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -66,11 +67,21 @@ pub struct PlaneSpec {
 pub struct RobotSpec {
     /// Name of the robot, unique in the scene.
     pub name: String,
-    /// Path of the robot's URDF file, relative to the scene file.
+    /// Path of the robot's file, URDF or MJCF (MuJoCo), relative to the scene file. In MJCF each body is a link, and each site with a name is a link that is
+    /// fixed to its body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<String>")]
+    pub file: Option<FilePath>,
+    /// Another name of `file`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub urdf: Option<FilePath>,
-    /// Whether the robot consists of one link without joints; replaces `urdf`. Default: false.
+    /// Folders of packages by their names, for meshes at `package://NAME/…`, such as `packages = { my_robot = "../my_robot" }`. Default: a package is searched in
+    /// the folders above the robot's file.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(with = "BTreeMap<String, String>")]
+    pub packages: BTreeMap<String, FilePath>,
+    /// Whether the robot consists of one link without joints; replaces `file`. Default: false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub floating: bool,
     /// Pose of the robot's base, or its initial pose if it moves. Default: the world origin.
@@ -79,7 +90,7 @@ pub struct RobotSpec {
     /// Imposed motion of the robot's base. Default: no motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionSpec>,
-    /// Joint positions of the robot over time. A joint that is not listed stays at 0, or at the nearest limit.
+    /// Joint positions of the robot over time. A joint that is not listed stays at its default position: in URDF at 0 or at the nearest limit, in MJCF at `ref`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joints: Option<JointsSpec>,
 }

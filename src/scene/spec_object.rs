@@ -36,7 +36,7 @@ pub struct ObjectSpec {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub spheres: Option<FilePath>,
-    /// Mesh file (PLY, OBJ or STL) of the object; replaces `object`.
+    /// Mesh file (PLY, OBJ, STL, Collada or glTF) of the object; replaces `object`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<String>")]
     pub mesh: Option<FilePath>,

@@ -182,7 +182,7 @@ pub enum LayoutSpec {
     Sensor(String),
     /// Taxels on the outer surface of a triangle mesh, or of a link of the patch's robot.
     Draped {
-        /// Mesh file of the surface; omitted if `region.link` names a link.
+        /// Mesh file of the surface; omitted if `on` or `region.link` is given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<String>")]
         mesh: Option<FilePath>,
@@ -190,6 +190,10 @@ pub enum LayoutSpec {
         #[serde(default, alias = "mesh_unit", skip_serializing_if = "Option::is_none")]
         #[schemars(with = "Option<Names<LengthUnit>>")]
         unit: Option<LengthUnit>,
+        /// Shapes of the patch's own link that form the surface, instead of a mesh file: `collision` or `visual`. The shapes include meshes of the robot's file.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(with = "Option<Names<ShapeRole>>")]
+        on: Option<ShapeRole>,
         /// Distance between neighbouring taxels, mm.
         pitch_mm: f64,
         /// Part of the surface that carries taxels. Default: the whole outer surface.

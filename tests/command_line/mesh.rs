@@ -348,7 +348,10 @@ fn words_that_no_mesh_has_are_refused() {
         String::from_utf8(output.stderr).unwrap()
     };
     assert!(refused("objects mesh cube.obj --unit ft").contains("expected one of m, cm, mm, in"));
-    assert!(refused("objects mesh cube.step").contains("a name that ends in .ply, .obj or .stl"));
+    assert!(
+        refused("objects mesh cube.step")
+            .contains("a name that ends in .ply, .obj, .stl, .dae, .glb or .gltf")
+    );
     assert!(refused("objects mesh none.stl").contains("none.stl: cannot be opened"));
     assert!(
         refused("press --mesh cube.obj --model cage")

@@ -289,7 +289,7 @@ fn mesh(
         most_bytes: (20, 4 << 20),
         least_s: SOON,
         read: &|input| {
-            let file = format.read(PLACE, LengthUnit::Millimetre, input)?;
+            let file = format.read(PLACE, Some(LengthUnit::Millimetre), input)?;
             file.into_mesh(PLACE).map(drop)
         },
     }
@@ -349,6 +349,104 @@ fn meshes_in_stl() {
         "endsolid\n",
     ];
     mesh("stl", MeshFormat::Stl, seeds, words);
+}
+
+const COLLADA: &str = r##"<COLLADA><asset><unit meter="0.01"/></asset><library_geometries><geometry id="g"><mesh>
+<source id="s"><float_array id="f" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common><accessor source="#f" count="3" stride="3"><param name="X"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#s"/></vertices>
+<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><vcount>3</vcount><p>0 1 2</p></polylist></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="c"><node id="n"><translate>1 0 0</translate><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#c"/></scene></COLLADA>"##;
+
+#[test]
+fn meshes_in_collada() {
+    let words: &[&str] = &[
+        "<node>",
+        "</node>",
+        "<instance_node url=\"#n\"/>",
+        "<matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</matrix>",
+        "<scale>-1 1 1</scale>",
+        "<trifans>",
+        "count=\"4000000000\"",
+        "stride=\"0\"",
+        "offset=\"99999999999\"",
+        "nan",
+        "-1",
+    ];
+    let seeds = vec![COLLADA.as_bytes().to_vec()];
+    mesh("collada", MeshFormat::Collada, seeds, words);
+}
+
+const GLTF: &str = r#"{"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"children":[1]},{"scale":[-1,1,1],"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"mode":4}]}],
+"accessors":[{"bufferView":0,"componentType":5120,"normalized":true,"count":3,"type":"VEC3"}],
+"bufferViews":[{"buffer":0,"byteLength":12}],"buffers":[{"byteLength":12,"uri":"data:;base64,AAAAfwAAAH8AAAAA"}]}"#;
+
+#[test]
+fn meshes_in_gltf() {
+    let mut binary = b"glTF".to_vec();
+    let json = GLTF.as_bytes();
+    for number in [2, 20 + json.len() as u32, json.len() as u32] {
+        binary.extend(number.to_le_bytes());
+    }
+    binary.extend(b"JSON");
+    binary.extend(json);
+    let words: &[&str] = &[
+        "\"indices\":0,",
+        "\"sparse\":{},",
+        "\"byteStride\":3,",
+        "\"byteOffset\":18446744073709551615,",
+        "\"count\":4000000000,",
+        "\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],",
+        "[0,0,1]",
+        "5126",
+        "1e999",
+    ];
+    let seeds = vec![json.to_vec(), binary];
+    mesh("gltf", MeshFormat::Gltf, seeds, words);
+}
+
+#[test]
+fn models_of_mujoco() {
+    let mut seeds = files("objects/robots", "xml", 20_000);
+    seeds.push(
+        br#"<mujoco><default><joint axis="1 0 0"/></default><worldbody><frame euler="1 2 3"><body><freejoint/></body></frame>
+<replicate count="3" offset="1 0 0"><body name="b"><joint type="ball"/><joint/><geom fromto="0 0 0 1 1 1" type="capsule" size="1"/></body></replicate></worldbody></mujoco>"#
+            .to_vec(),
+    );
+    Target {
+        name: "mjcf",
+        seeds,
+        words: &[
+            "<body name=\"a\">",
+            "</body>",
+            "<joint name=\"a\"/>",
+            "<freejoint/>",
+            "<include file=\"a.xml\"/>",
+            "<replicate count=\"100\">",
+            "</replicate>",
+            "<frame zaxis=\"0 0 1\">",
+            "</frame>",
+            "childclass=\"a\"",
+            "<default class=\"a\">",
+            "</default>",
+            "<equality><joint joint1=\"a\" joint2=\"a\"/></equality>",
+            "<compiler eulerseq=\"XYZ\"/>",
+            "type=\"ball\"",
+            "nan",
+            "1e999",
+        ],
+        n_inputs: 2000,
+        most_bytes: (TREE, 1 << 28),
+        least_s: SOON,
+        read: &|input| {
+            let robot = Robot::from_mjcf(PLACE, text_of(input)?)?;
+            robot
+                .forward(&Pose::IDENTITY, &robot.rest_positions())
+                .map(drop)
+        },
+    }
+    .run();
 }
 
 #[test]

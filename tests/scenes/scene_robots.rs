@@ -245,19 +245,19 @@ fn what_cannot_be_draped_over_a_link_is_refused_with_the_key() {
         "region = { link = \"base\" }",
         robot,
         &format!(
-            "{key}: `base`, a link without shapes that have a volume; a link with such shapes: `palm`, `tip`"
+            "{key}: `base`: a link without shapes that have a volume; a link with such shapes: `palm`, `tip`"
         ),
     );
     let visual = "region = { link = \"palm\", shapes = \"visual\" }";
     refused(
         visual,
         robot,
-        "`palm`, a link without visual shapes that have a volume; a link with such shapes: `tip`, `wrist`, `lost`",
+        "`palm`: a link without visual shapes that have a volume; a link with such shapes: `tip`, `wrist`, `lost`",
     );
     refused(
         "region = { link = \"lost\" }",
         robot,
-        "absent.obj: a mesh that is not found",
+        "absent.obj: a mesh that is not found; a file at one of the paths tried: ",
     );
     refused(
         link,
@@ -276,7 +276,7 @@ fn what_cannot_be_draped_over_a_link_is_refused_with_the_key() {
         robot,
         "mesh and region.link; mesh = \"FILE\" or",
     );
-    refused("", robot, "neither mesh nor region.link");
+    refused("", robot, "neither mesh nor a link");
     refused(
         &format!("unit = \"cm\", {link}"),
         robot,
@@ -292,4 +292,140 @@ fn what_cannot_be_draped_over_a_link_is_refused_with_the_key() {
         robot,
         "shapes alone; link beside them",
     );
+}
+
+#[test]
+fn skin_is_draped_over_the_shapes_of_the_patchs_own_link() {
+    let own = |link: &str, draped: &str| {
+        hand(draped, &format!("robot = \"left\"\nlink = \"{link}\"")).map(|plan| {
+            let layout = plan.patches[0].skin.layout();
+            layout.centers().to_vec()
+        })
+    };
+    for (link, role) in [
+        ("palm", "collision"),
+        ("tip", "visual"),
+        ("wrist", "visual"),
+    ] {
+        let region = format!("region = {{ link = \"{link}\", shapes = \"{role}\" }}");
+        let on = format!("on = \"{role}\"");
+        assert_eq!(own(link, &on).unwrap(), own(link, &region).unwrap());
+    }
+    let top = "on = \"collision\", region = { plane_point_mm = [0.0, 0.0, 20.0], plane_normal = [0.0, 0.0, 1.0] }";
+    assert!(
+        own("palm", top)
+            .unwrap()
+            .iter()
+            .all(|center| (center.z - 0.02).abs() < 1e-12)
+    );
+    for (draped, more, said) in [
+        (
+            "on = \"collision\"",
+            "",
+            "key patches.skin.layout.on: a patch without a robot",
+        ),
+        (
+            "on = \"collision\", region = { link = \"palm\" }",
+            "robot = \"left\"",
+            "beside mesh, region.link or region.shapes",
+        ),
+        (
+            "on = \"collision\"",
+            "robot = \"left\"",
+            "`base`: a link without collision shapes",
+        ),
+        ("on = \"both\"", "robot = \"left\"", "both"),
+    ] {
+        let error = hand(draped, more).unwrap_err();
+        assert!(error.to_string().contains(said), "{error}");
+        assert_eq!(error.exit_code(), 2);
+    }
+}
+
+/// Arm of MuJoCo, whose elbow starts outside its range, with a site and a mesh of the model's folder.
+const ARM: &str = r#"<mujoco model="arm"><compiler meshdir="parts"/><asset><mesh file="cube.obj" scale="0.01 0.01 0.02"/></asset>
+<worldbody><body name="upper" pos="0 0 0.5"><joint name="shoulder" axis="0 1 0"/>
+<body name="lower" pos="0.3 0 0"><joint name="elbow" axis="0 1 0" range="10 90"/>
+<geom type="mesh" mesh="cube" pos="0 0 0.1"/><site name="palm" pos="0.2 0 0" euler="0 90 0"/></body></body></worldbody></mujoco>"#;
+
+#[test]
+fn a_robot_of_mujoco_carries_skin_on_its_bodies_and_sites() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("parts")).unwrap();
+    std::fs::write(folder.path().join("parts/cube.obj"), CUBE).unwrap();
+    std::fs::write(folder.path().join("arm.xml"), ARM).unwrap();
+    let plan = |robot: &str, link: &str, layout: &str| {
+        let text = format!(
+            "title = \"An arm\"\n[[robots]]\nname = \"arm\"\n{robot}\n[[patches]]\nname = \"pad\"\nrobot = \"arm\"\n\
+             link = \"{link}\"\nstroke_mm = 2.0\nlayout = {{ {layout} }}\n"
+        );
+        ScenePlan::new("s.toml", folder.path(), SceneSpec::parse("s.toml", &text)?)
+    };
+    let grid = "grid = { nx = 2, ny = 2, pitch_mm = 2.0 }";
+    let file = "file = \"arm.xml\"";
+    assert_eq!(
+        pad_at(&plan(file, "palm", grid).unwrap()),
+        DVec3::new(0.5, 0.0, 0.5)
+    );
+    let bent =
+        format!("{file}\njoints = {{ time_s = [0.0], positions = {{ shoulder_deg = [90.0] }} }}");
+    let at = pad_at(&plan(&bent, "palm", grid).unwrap());
+    assert!((at - DVec3::new(0.0, 0.0, 0.0)).length() < 1e-15, "{at}");
+    let covered = plan(
+        file,
+        "lower",
+        "draped = { on = \"collision\", pitch_mm = 2.0 }",
+    )
+    .unwrap();
+    let mut centers = covered.patches[0].skin.layout().centers().iter();
+    let half = DVec3::new(0.01, 0.01, 0.02);
+    assert!(centers.all(|&center| {
+        let out = (center - DVec3::new(0.0, 0.0, 0.1)).abs() - half;
+        out.max_element().abs() < 1e-12
+    }));
+    for (robot, said) in [
+        (
+            "file = \"arm.xml\"\nurdf = \"arm.xml\"",
+            "key robots.arm: both or neither",
+        ),
+        ("file = \"none.xml\"", "key robots.arm.file"),
+        (
+            "file = \"arm.xml\"\npackages = { arm = \"none\" }",
+            "key robots.arm.packages.arm",
+        ),
+    ] {
+        let error = plan(robot, "palm", grid).unwrap_err();
+        assert!(error.to_string().contains(said), "{error}");
+        assert_eq!(error.exit_code(), 2);
+    }
+}
+
+#[test]
+fn meshes_of_a_package_are_read_from_the_folder_of_the_scenes_key() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir_all(folder.path().join("robots")).unwrap();
+    std::fs::create_dir_all(folder.path().join("elsewhere/meshes")).unwrap();
+    std::fs::write(folder.path().join("robots/hand.urdf"), HAND).unwrap();
+    std::fs::write(folder.path().join("elsewhere/meshes/cube.obj"), CUBE).unwrap();
+    let plan = |packages: &str| {
+        let text = format!(
+            "title = \"A hand\"\n[[robots]]\nname = \"left\"\nfile = \"robots/hand.urdf\"\n{packages}\n[[patches]]\nname = \"skin\"\n\
+             robot = \"left\"\nlink = \"tip\"\nstroke_mm = 2.0\nlayout = {{ draped = {{ on = \"visual\", pitch_mm = 2.0 }} }}\n"
+        );
+        ScenePlan::new(
+            "s.toml",
+            folder.path(),
+            SceneSpec::parse("s.toml", &text).unwrap(),
+        )
+    };
+    let missing = plan("").unwrap_err().to_string();
+    assert!(
+        missing.contains("package://hand_description/meshes/cube.obj: a mesh that is not found; packages = { hand_description = \"FOLDER\" }")
+            && missing.contains("robots/hand_description/meshes/cube.obj"),
+        "{missing}"
+    );
+    let found = plan("packages = { hand_description = \"elsewhere\" }").unwrap();
+    // The resolved scene finds the package from any folder.
+    let resolved = SceneSpec::parse("r.toml", &found.spec.to_toml()).unwrap();
+    ScenePlan::new("r.toml", Path::new("/"), resolved).unwrap();
 }

@@ -84,6 +84,18 @@ pub fn rotation_from_rpy(rpy: DVec3) -> DQuat {
     DQuat::from_euler(EulerRot::ZYX, rpy.z, rpy.y, rpy.x)
 }
 
+/// Returns roll, pitch and yaw of a rotation, radians: the inverse of [`rotation_from_rpy`]. The product of the three rotations is accurate for every rotation;
+/// near a pitch of ±90° roll and yaw alone are not unique.
+pub fn rpy_from_rotation(rotation: DQuat) -> DVec3 {
+    let matrix = DMat3::from_quat(rotation);
+    let yaw = matrix.x_axis.y.atan2(matrix.x_axis.x);
+    // The rest is Ry(pitch) Rx(roll), whatever the error of the yaw.
+    let rest = DMat3::from_rotation_z(-yaw) * matrix;
+    let pitch = (-rest.x_axis.z).atan2(rest.x_axis.x);
+    let roll = (-rest.z_axis.y).atan2(rest.y_axis.y);
+    DVec3::new(roll, pitch, yaw)
+}
+
 /// Normalises a quaternion from a file; `None` if its length differs from 1 by more than 0.001. Components with four digits are accurate enough.
 pub fn written_rotation(quaternion: DQuat) -> Option<DQuat> {
     let is_near = (quaternion.length() - 1.0).abs() <= 1e-3;

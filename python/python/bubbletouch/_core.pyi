@@ -1,6 +1,6 @@
 """Types of the compiled module `bubbletouch._core`. Lengths are in metres, forces in newtons, angles in radians."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, TypeAlias, TypeVar, final, overload
 
@@ -12,12 +12,14 @@ __all__ = [
     "Chain",
     "Contacts",
     "InternalError",
+    "Joint",
     "KernelSvm",
     "LinearModel",
     "Mesh",
     "Patch",
     "Projection",
     "Reconstructor",
+    "Robot",
     "ShearState",
     "Simulation",
     "Skin",
@@ -54,9 +56,9 @@ class Mesh:
     def __new__(cls, vertices: ArrayLike, triangles: ArrayLike) -> Mesh: ...
     @staticmethod
     def read(path: _Path, *, unit: _Unit | None = None, close_holes: float | None = None) -> Mesh:
-        """Reads a mesh from a PLY, OBJ or STL file.
+        """Reads a mesh from a PLY, OBJ, STL, Collada (.dae) or glTF (.glb, .gltf) file.
 
-        unit: unit of the coordinates in the file. None: metres; the object must then be 0.1 mm to 10 m in size.
+        unit: unit of the coordinates in the file. None: metres, or the unit that a Collada file contains; the object must then be 0.1 mm to 10 m in size.
         close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. None: no hole is closed.
 
         Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it contains
@@ -995,6 +997,81 @@ class Reconstructor:
 
         Returns a dict: frames (n, ny, nx); the numbers of atoms used, n_atoms (n,); is_capped (n,), whether the solver stopped at a limit.
         """
+
+@final
+class Robot:
+    """Robot of a URDF or MJCF file: links, joints and their poses. Use Robot.read.
+
+    The base of a URDF robot is the link that no joint moves. The base of an MJCF robot is the link `world`; the other links are the bodies and, after them,
+    the sites with a name.
+    """
+
+    @staticmethod
+    def read(file: _Path, packages: Mapping[str, _Path] | None = None) -> Robot:
+        """Reads a robot from a URDF or MJCF file; the root element decides on the format.
+
+        packages: folders by the names of packages, for meshes at package://NAME/…. None: packages are searched in the folders above the file.
+
+        Parts of the file that are not used are listed in `notes`. Mesh files are opened only by mesh(). Raises OSError if the file cannot be read, and
+        ValueError if a part that places links is invalid.
+        """
+
+    @property
+    def name(self) -> str:
+        """Name of the robot."""
+
+    @property
+    def links(self) -> list[str]:
+        """Names of all links."""
+
+    @property
+    def joints(self) -> list[Joint]:
+        """Joint positions that `q` contains, in the order of `q`."""
+
+    @property
+    def notes(self) -> list[str]:
+        """Remarks on parts of the file that are not used."""
+
+    def pose(
+        self, link: str, q: Mapping[str, ArrayLike] | ArrayLike | None = None, *, base: ArrayLike | None = None
+    ) -> NDArray[np.float64]:
+        """Returns the pose of a link in the world for joint positions `q`.
+
+        q: dict from the names of joints to positions, numbers or (n,), radians and metres; or an array (d,) or (n, d) in the order of `joints`. Joints that the
+        dict does not contain, and all joints without q, have their default positions. Limits are not checked.
+        base: pose of the base in the world, (7,) or (4, 4). None: the identity.
+
+        Returns x, y, z, qw, qx, qy, qz: (7,), or (n, 7) for n positions. Raises ValueError if an argument is invalid.
+        """
+
+    def mesh(self, link: str, *, shapes: Literal["collision", "visual"] | None = None, pitch: float = 1e-3) -> Mesh:
+        """Returns the surface of a link as a mesh in the link's frame, for example for Patch.draped.
+
+        shapes: collision or visual. None: the collision shapes, or the visual ones if the link has no collision shapes.
+        pitch: distance of the taxels for which the facets of round shapes are fine enough, metres.
+
+        Raises ValueError if the link has no such shapes, or a mesh file is not found or invalid.
+        """
+
+@final
+class Joint:
+    """Joint position of a Robot. Fixed joints and joints that mimic others have none."""
+
+    @property
+    def name(self) -> str:
+        """Name of the joint. A joint of several positions has the suffixes .x, .y, .z, .roll, .pitch, .yaw or .theta."""
+
+    @property
+    def kind(self) -> str:
+        """Kind of the joint: revolute, continuous, prismatic, planar, floating or ball."""
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Lowest and highest position, radians or metres; infinite without a limit."""
+
+    @property
+    def default(self) -> float:
+        """Position if `q` does not contain the joint: in URDF 0 or the limit nearest to 0, in MJCF `ref`."""
 
 @final
 class Simulation:

@@ -22,7 +22,7 @@ pub struct StudyArgs {
     pub study: PathBuf,
     /// Replace the study's objects by a mesh folder or TOML file
     ///
-    /// A folder contains one PLY, OBJ or STL mesh for each object. In a study of recorded frames, this is the folder of the recorded files.
+    /// A folder contains one PLY, OBJ, STL, Collada or glTF mesh for each object. In a study of recorded frames, this is the folder of the recorded files.
     #[arg(long, value_name = "FOLDER|FILE.toml", help_heading = "Input")]
     objects: Option<PathBuf>,
     /// Replace the study's seed

@@ -16,7 +16,7 @@ const FINE: f64 = 1e-4;
 
 #[derive(clap::Args)]
 pub struct WhichObject {
-    /// Mesh file (PLY, OBJ, STL), or name of an object
+    /// Mesh file (PLY, OBJ, STL, DAE, GLB), or name of an object
     object: String,
     /// Read objects from a TOML file, not the built-in ones
     #[arg(long, value_name = "FILE.toml", help_heading = "Input")]

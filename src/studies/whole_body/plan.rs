@@ -13,7 +13,7 @@ use crate::studies::recognition::spec::keys::shared_keys;
 use crate::studies::whole_body::spec::{
     BodyRecognitionSpec, BodySceneSpec, BodySensingSpec, WholeBodyStudySpec,
 };
-use crate::world::{Motion, Oscillation, Robot, Taxel};
+use crate::world::{MeshFolders, Motion, Oscillation, Robot, Taxel};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -131,8 +131,8 @@ impl WholeBodyPlan {
         let robot_file = wanted.robot.within(folder);
         let covered = PlannedRobot {
             name: ROBOT.to_owned(),
-            robot: Robot::read_urdf(&robot_file)?,
-            folder: None,
+            robot: Robot::read(&robot_file)?,
+            meshes: MeshFolders::default(),
             base: Motion::Fixed(Pose::IDENTITY),
             joints: None,
         };

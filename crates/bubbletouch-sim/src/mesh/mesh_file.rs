@@ -41,7 +41,7 @@ impl MeshFile {
     }
 
     /// Returns the contents of the file with every coordinate multiplied by a factor.
-    pub(super) fn scaled(self, place: &str, factor: f64) -> Result<Self> {
+    pub(in crate::mesh) fn scaled(self, place: &str, factor: f64) -> Result<Self> {
         let vertices = self.vertices.into_iter().map(|v| v * factor).collect();
         Self::new(place, vertices, self.polygons)
     }

@@ -2,7 +2,7 @@
 //!
 //! | from | by | gives |
 //! |---|---|---|
-//! | a PLY, OBJ or STL file | [`MeshFormat::read`] | a [`MeshFile`]: corners and polygons as written, in metres |
+//! | a PLY, OBJ, STL, Collada or glTF file | [`MeshFormat::read`] | a [`MeshFile`]: corners and polygons as written, in metres |
 //! | the sizes of a box, cylinder, ellipsoid or capsule | [`TriangleMesh::cuboid`] … | a [`TriangleMesh`] |
 //! | a [`MeshFile`] | [`MeshFile::into_mesh`] | a [`TriangleMesh`] |
 //! | a [`TriangleMesh`] | [`TriangleMesh::turned_outwards`] | the mesh with closed parts outwards, and an [`Orientation`] |
@@ -32,23 +32,18 @@ mod box_tree;
 mod box_tree_build;
 mod bvh;
 mod crossings;
-mod format;
+mod formats;
 mod holes;
 mod measures;
 mod mesh_file;
-mod obj;
-mod obj_group;
 mod orientation;
-mod ply;
 pub(crate) mod primitives;
 mod pseudonormals;
 mod report;
 mod separation;
 mod size_limits;
 mod slab;
-mod stl;
 mod surface;
-mod text_lines;
 mod triangle;
 mod triangle_mesh;
 mod welded;
@@ -56,16 +51,14 @@ mod winding;
 
 pub use box_tree::BoxTree;
 pub use bvh::{Bvh, Closest, Hit};
-pub use format::{LengthUnit, MeshFormat};
+pub use formats::{
+    LengthUnit, MeshFormat, obj_group, read_collada, read_gltf, read_obj, read_ply, read_stl,
+};
 pub use holes::{ClosedHoles, Hole};
 pub use mesh_file::MeshFile;
-pub use obj::read_obj;
-pub use obj_group::obj_group;
 pub use orientation::Orientation;
-pub use ply::read_ply;
 pub use report::MeshReport;
 pub use size_limits::SizeLimits;
-pub use stl::read_stl;
 pub use surface::Surface;
 pub use triangle::{Feature, Triangle};
 pub use triangle_mesh::TriangleMesh;

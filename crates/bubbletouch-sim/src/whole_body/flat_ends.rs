@@ -55,6 +55,10 @@ fn holds(shape: &LinkGeometry, point: DVec3) -> bool {
             let along = point.z.abs() - 0.5 * length;
             DVec3::new(beside, 0.0, along.max(0.0)).length() <= radius + SAME
         }
+        LinkGeometry::Ellipsoid { semi_axes } => {
+            let relative = point / semi_axes;
+            relative.length() * semi_axes.min_element() <= semi_axes.min_element() + SAME
+        }
         LinkGeometry::Mesh { .. } => false,
     }
 }

@@ -10,7 +10,7 @@
 //! | `neighbours` | a patch → the neighbours of each taxel ([`Neighbours`]) |
 //! | `rest` | an object → its resting poses on a table ([`RestPose`]) |
 //! | `placement`, `touches` | ranges of offsets, turns and depths → [`Touch`]es |
-//! | `robot` | URDF → links and joints ([`Robot`]) |
+//! | `robot` | URDF or MJCF → links and joints ([`Robot`]) |
 //! | `motion`, `trajectory` | way points → poses and joint positions over time |
 //! | `human_touch` | a kind of touch by a hand → poses of fingers over time ([`HumanTouch`]) |
 
@@ -43,8 +43,8 @@ pub use per_taxel::{PerTaxel, Taxels};
 pub use placement::{Placement, RestPoses, Spread, Touch, TouchAxis};
 pub use rest::{RestPose, as_modelled, center_of_mass, stable_poses, stable_poses_about};
 pub use robot::{
-    Coordinate, Dimension, Joint, JointKind, Limits, Link, LinkGeometry, LinkShape, Mimic, Robot,
-    ShapeRole, TactileSensor,
+    Coordinate, Dimension, Joint, JointKind, Limits, Link, LinkGeometry, LinkShape, MeshFolders,
+    Mimic, Robot, ShapeRole, TactileSensor,
 };
 pub use shear::{Shear, Shears};
 pub use taxel::{Grid, Taxel};

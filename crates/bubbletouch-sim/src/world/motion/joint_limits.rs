@@ -11,7 +11,8 @@ use crate::world::robot::{Dimension, Limits};
 const SLACK: f64 = 1e-6;
 
 /// Checks the limits of all joints that have one coordinate; `curves` are the robot's positions over time. Returns a note for each mimicking joint that
-/// leaves its own limits: such a joint follows its `<mimic>`.
+/// leaves its own limits: such a joint follows its `<mimic>`. Joints that stay at their default position are not checked: MuJoCo's `qpos0` can be outside the
+/// range.
 ///
 /// # Errors
 /// If a joint that mimics no other joint leaves its limits; the error contains the first such joint and its largest violation.
@@ -21,12 +22,17 @@ pub(super) fn check_limits(
     way_points: &WayPoints,
 ) -> Result<Vec<String>> {
     let mut notes = Vec::new();
+    let rest = robot.rest_positions();
     for (index, joint) in robot.joints().iter().enumerate() {
         let (Some(limits), Some(drive)) = (joint.limits, robot.drive_of(index)) else {
             continue;
         };
         let (position, multiplier, offset) = drive;
         let extremes = curves[position].extremes(&way_points.times);
+        let ends = [extremes.lowest, extremes.highest].map(|taken| taken.value);
+        if joint.mimic.is_none() && ends == [rest[position]; 2] {
+            continue;
+        }
         let moved = extremes.driven(multiplier, offset);
         let unit = joint.kind.coordinates()[0].1;
         if let Some((taken, given, allowed)) = first_beyond(&moved, &limits, unit) {

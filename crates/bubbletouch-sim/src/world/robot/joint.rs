@@ -11,21 +11,25 @@ pub struct Joint {
     pub name: String,
     /// Kind of motion that the joint allows.
     pub kind: JointKind,
-    /// Index of the parent link.
+    /// Index of the parent link. If several joints move one link (MJCF), the parent of all joints but the first is the link itself.
     pub parent: usize,
     /// Index of the child link, which the joint moves.
     pub child: usize,
-    /// Pose of the child link on the parent link (`parent_from_joint`) if all coordinates are zero.
+    /// Pose of the child link on the parent link (`parent_from_joint`) if the joint is at its reference position.
     pub origin: Pose,
-    /// Axis of the joint, unit vector in the joint's frame; unused by fixed and floating joints.
+    /// Axis of the joint, unit vector in the joint's frame; unused by fixed, floating and ball joints.
     pub axis: DVec3,
+    /// Point of the joint's frame through which the axis of a hinge passes, or about which a ball joint rotates, metres; zero in URDF.
+    pub anchor: DVec3,
+    /// Position of a hinge or slide at which the joint does not move its child, rad or m; zero in URDF, `ref` in MJCF.
+    pub reference: f64,
     /// Limits of position and velocity; `None` for joints without a `<limit>`, without coordinates, or with several coordinates.
     pub limits: Option<Limits>,
     /// Relation to the joint that this joint mimics, if any.
     pub mimic: Option<Mimic>,
 }
 
-/// Kinds of joints in URDF \[URDF\].
+/// Kinds of joints in URDF \[URDF\] and MJCF \[MJCF\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// Hinge with limits.
@@ -40,6 +44,8 @@ pub enum JointKind {
     Floating,
     /// Motion in the plane perpendicular to the axis: three coordinates.
     Planar,
+    /// Rotation about a point: three coordinates (MJCF).
+    Ball,
 }
 
 /// Limits of a hinge or slide: radians or metres, and seconds. Missing or contradictory limits are infinite.
@@ -85,6 +91,7 @@ impl JointKind {
             Self::Revolute | Self::Continuous => &[("", Angle)],
             Self::Prismatic => &[("", Length)],
             Self::Planar => &[(".x", Length), (".y", Length), (".theta", Angle)],
+            Self::Ball => &[(".roll", Angle), (".pitch", Angle), (".yaw", Angle)],
             Self::Floating => &[
                 (".x", Length),
                 (".y", Length),
@@ -107,9 +114,14 @@ impl Joint {
     pub(super) fn pose(&self, coordinates: &[f64]) -> Pose {
         let motion = match (self.kind, coordinates) {
             (JointKind::Revolute | JointKind::Continuous, &[angle]) => {
-                Pose::from_rotation(DQuat::from_axis_angle(self.axis, angle))
+                self.turn(DQuat::from_axis_angle(self.axis, angle - self.reference))
             }
-            (JointKind::Prismatic, &[travel]) => Pose::from_translation(travel * self.axis),
+            (JointKind::Prismatic, &[travel]) => {
+                Pose::from_translation((travel - self.reference) * self.axis)
+            }
+            (JointKind::Ball, &[roll, pitch, yaw]) => {
+                self.turn(rotation_from_rpy(DVec3::new(roll, pitch, yaw)))
+            }
             (JointKind::Planar, &[x, y, theta]) => {
                 let (along_x, along_y) = plane_across(self.axis);
                 let turn = DQuat::from_axis_angle(self.axis, theta);
@@ -122,6 +134,11 @@ impl Joint {
             _ => return self.origin,
         };
         self.origin.compose(&motion)
+    }
+
+    /// Returns the rotation about the anchor of the joint.
+    fn turn(&self, rotation: DQuat) -> Pose {
+        Pose::new(rotation, self.anchor - rotation * self.anchor)
     }
 }
 

@@ -64,11 +64,18 @@ pub enum LinkGeometry {
         /// Radius of the sphere, metres.
         radius: f64,
     },
+    /// Ellipsoid around the origin (MJCF).
+    Ellipsoid {
+        /// Semi-axes of the ellipsoid along x, y and z, metres.
+        semi_axes: DVec3,
+    },
     /// Triangle mesh in a separate file.
     Mesh {
-        /// Name of the mesh file as written: a path relative to the URDF file, or a `file://` or `package://` address. The file is opened only for skin that
-        /// is draped over the link.
+        /// Name of the mesh file as written: a path relative to the robot's file, or a `file://` or `package://` address. The file is opened only for skin
+        /// that is draped over the link.
         file: String,
+        /// Motion of the mesh before it is scaled; the identity in URDF, the inverse of `refpos` and `refquat` in MJCF.
+        mesh_from_file: Pose,
         /// Metres per unit of the mesh file along each axis; not zero, negative for mirrored axes.
         scale: DVec3,
     },
@@ -82,6 +89,7 @@ impl LinkGeometry {
             Self::Cylinder { radius, length } => *radius > 0.0 && *length > 0.0,
             // A capsule of length zero is a sphere.
             Self::Capsule { radius, .. } | Self::Sphere { radius } => *radius > 0.0,
+            Self::Ellipsoid { semi_axes } => semi_axes.min_element() > 0.0,
             Self::Mesh { .. } => true,
         }
     }
@@ -171,7 +179,11 @@ fn read_mesh(form: &Element) -> Result<LinkGeometry> {
     if scale.to_array().contains(&0.0) {
         return Err(form.refuse(format!("`scale` {scale}"), "three numbers other than zero"));
     }
-    Ok(LinkGeometry::Mesh { file, scale })
+    Ok(LinkGeometry::Mesh {
+        file,
+        mesh_from_file: Pose::IDENTITY,
+        scale,
+    })
 }
 
 fn length_of(form: &Element, attribute: &str) -> Result<f64> {

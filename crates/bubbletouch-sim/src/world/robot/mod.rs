@@ -1,4 +1,4 @@
-//! Robots: links and joints, read from URDF \[URDF\] or as one floating link, from which the poses of all links are computed.
+//! Robots: links and joints, read from URDF \[URDF\] or MJCF \[MJCF\], or as one floating link, from which the poses of all links are computed.
 //!
 //! A robot is a tree of rigid links. Joint j connects its parent link to its child link:
 //!
@@ -11,6 +11,10 @@
 //! | prismatic | travel, m | shift along the axis |
 //! | planar | x, y, m; theta, rad | shift in the plane across the axis, then turn about it |
 //! | floating | x, y, z, m; roll, pitch, yaw, rad | shift, then turn: `Rz(yaw) Ry(pitch) Rx(roll)` |
+//! | ball | roll, pitch, yaw, rad | turn about the anchor: `Rz(yaw) Ry(pitch) Rx(roll)` |
+//!
+//! In MJCF, hinges turn about an axis through their anchor, hinges and slides do not move their link at their reference position `ref`, and several joints
+//! can move one link. Such joints act one after the other, in the order of the file.
 //!
 //! Links, joints and their origins determine poses and must be valid. A joint whose axis or type cannot be read is fixed. Limits, shapes and `<mimic>` that
 //! cannot be read are omitted. Each of these cases is reported in a note of the robot.
@@ -20,17 +24,20 @@
 mod coordinate;
 mod joint;
 mod link;
+mod mesh_folders;
 mod mimic;
+mod mjcf;
 mod model;
+mod robot_file;
 mod tactile;
 mod text;
 mod tree;
 mod urdf;
-mod urdf_file;
 mod xml;
 
 pub use coordinate::{Coordinate, Dimension};
 pub use joint::{Joint, JointKind, Limits, Mimic};
 pub use link::{Link, LinkGeometry, LinkShape, ShapeRole};
+pub use mesh_folders::MeshFolders;
 pub use model::Robot;
 pub use tactile::TactileSensor;

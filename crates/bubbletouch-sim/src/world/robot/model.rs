@@ -40,6 +40,8 @@ pub struct Robot {
     /// Sources of the joints' coordinates (own positions or mimicked joints), one per joint.
     drives: Vec<Drive>,
     coordinates: Vec<Coordinate>,
+    /// Default position of each coordinate, rad or m.
+    rest: Vec<f64>,
     tactile_sensors: Vec<TactileSensor>,
     pub(super) notes: Vec<String>,
 }
@@ -61,12 +63,14 @@ impl Robot {
             },
             drives: Vec::new(),
             coordinates: Vec::new(),
+            rest: Vec::new(),
             tactile_sensors: Vec::new(),
             notes: Vec::new(),
         }
     }
 
-    /// Creates a robot from parts that have been checked. Returns an error if two coordinates have one name.
+    /// Creates a robot from parts that have been checked. The default positions are 0, or the limit nearest to 0. Returns an error if two coordinates have one
+    /// name.
     pub(super) fn assembled(
         (name, place): (String, &str),
         links: Vec<Link>,
@@ -92,7 +96,12 @@ impl Robot {
             let given = format!("two coordinates called `{}`", second.name);
             return Err(Error::input(place, given, "joints of other names"));
         }
+        let rest = coordinates.iter().map(|coordinate: &Coordinate| {
+            let limits = joints[coordinate.joint].limits;
+            limits.map_or(0.0, |limits| 0f64.clamp(limits.lower, limits.upper))
+        });
         Ok(Self {
+            rest: rest.collect(),
             name,
             links,
             joints,
@@ -102,6 +111,13 @@ impl Robot {
             tactile_sensors: Vec::new(),
             notes,
         })
+    }
+
+    /// Returns the robot with other default positions. `rest_of` returns the default positions of a joint, one per coordinate of its kind.
+    pub(super) fn with_rest(mut self, rest_of: impl Fn(&Joint) -> Vec<f64>) -> Self {
+        let own = self.joints.iter().filter(|joint| joint.mimic.is_none());
+        self.rest = own.flat_map(rest_of).collect();
+        self
     }
 
     pub(super) fn with_tactile_sensors(self, tactile_sensors: Vec<TactileSensor>) -> Self {
@@ -151,13 +167,10 @@ impl Robot {
         self.coordinates.len()
     }
 
-    /// Returns the default joint positions, rad and m: 0, or the limit nearest to 0 if the joint's range excludes 0.
+    /// Returns the default joint positions, rad and m. In URDF they are 0, or the limit nearest to 0 if the joint's range excludes 0. In MJCF they are the
+    /// reference positions (MuJoCo's `qpos0`), which can be outside the joint's range.
     pub fn rest_positions(&self) -> Vec<f64> {
-        let rest = |coordinate: &Coordinate| {
-            let limits = self.joints[coordinate.joint].limits;
-            limits.map_or(0.0, |limits| 0f64.clamp(limits.lower, limits.upper))
-        };
-        self.coordinates.iter().map(rest).collect()
+        self.rest.clone()
     }
 
     /// Returns the index of the link with the given name.
@@ -176,6 +189,22 @@ impl Robot {
     pub fn joint(&self, name: &str) -> Result<usize> {
         let names = self.joints.iter().map(|joint| joint.name.as_str());
         known(format!("joint of robot `{}`", self.name), name, names)
+    }
+
+    /// Returns the index of the joint position with the given name.
+    ///
+    /// # Errors
+    /// If there is no such position. If the name is that of a mimicking joint, the error contains the joint that it follows; otherwise similar names.
+    pub fn position(&self, name: &str) -> Result<usize> {
+        let place = format!("joint of robot `{}`", self.name);
+        let mut joints = self.joints.iter().filter(|joint| joint.name == name);
+        if let Some(mimic) = joints.find_map(|joint| joint.mimic) {
+            let followed = &self.joints[mimic.joint].name;
+            let given = format!("`{name}`, which mimics `{followed}`");
+            return Err(Error::input(place, given, format!("`{followed}`")));
+        }
+        let names = self.coordinates.iter().map(|joint| joint.name.as_str());
+        known(place, name, names)
     }
 
     /// Returns the pose `world_from_link` of every link, in order; `world_from_base` is the pose of the base.

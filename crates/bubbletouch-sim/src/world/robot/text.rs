@@ -1,9 +1,10 @@
-//! Text of a URDF file: decodes bytes, and repairs the text for a strict XML parser without changing line numbers.
+//! Text of a robot's file: decodes bytes, and repairs the text for a strict XML parser without changing line numbers.
 //!
 //! Many public files are not well-formed XML, although other tools accept them. Examples are comments or spaces before `<?xml`, `--` inside
 //! a comment, undeclared namespace prefixes, and NUL bytes at the end.
 
 use super::xml::Lines;
+use crate::error::Error as InputError;
 use roxmltree::{Document, Error, ParsingOptions};
 
 /// Largest number of undeclared namespace prefixes in one file; robot files have far fewer.
@@ -74,6 +75,21 @@ pub(super) fn parsed(text: &str) -> Result<Document<'_>, Error> {
     Document::parse_with_options(text, options)
 }
 
+/// Returns the message of the XML reader as an error with the line number. `format` is the name of the file format.
+pub(super) fn unreadable(place: &str, text: &str, error: &Error, format: &str) -> InputError {
+    if text.trim().is_empty() {
+        let root = if format == "MJCF" { "mujoco" } else { "robot" };
+        return InputError::input(place, "an empty file", format!("{format}: a <{root}>"));
+    }
+    let said = error.to_string();
+    // The XML reader appends its own position; here the position precedes the message.
+    let given = said
+        .rsplit_once(" at ")
+        .map_or(said.as_str(), |(given, _)| given);
+    let place = format!("{place}, line {}", error.pos().row);
+    InputError::input(place, given, format!("{format}: well-formed XML"))
+}
+
 /// Returns a predicate for the match of `<?xml` at a byte position after the beginning of the text. The predicate is true for a declaration, and false for
 /// another instruction such as `<?xml-model`.
 fn is_late_declaration(text: &str) -> impl Fn((usize, &str)) -> bool + '_ {
@@ -101,6 +117,14 @@ fn without(text: &str, open: &str, close: &str) -> String {
         rest = &rest[end..];
     }
     kept + rest
+}
+
+/// Returns the name of the first element of a text, which can contain comments.
+pub(super) fn root_name(text: &str) -> Option<String> {
+    let text = without(text, "<!--", "-->");
+    let end = root_name_end(&text)?;
+    let start = text[..end].rfind('<')?;
+    Some(text[start + 1..end].to_owned())
 }
 
 /// Returns the byte position after the name of the first element.

@@ -14,27 +14,13 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Checks that the joints connect the links to one tree. `robot` and `elements` (one per joint) give the location in error messages.
-    pub fn new(
-        links: &[Link],
-        joints: &[Joint],
-        robot: Element,
-        elements: &[Element],
-    ) -> Result<Self> {
+    /// Checks that the joints connect the links to one tree. `elements` (one per joint) give the location in error messages.
+    pub fn new(links: &[Link], joints: &[Joint], elements: &[Element]) -> Result<Self> {
         let moved_by = moved_by(links, joints, elements)?;
         let is_root = |link: &usize| moved_by[*link].is_none();
         let roots: Vec<usize> = (0..links.len()).filter(is_root).collect();
-        let root = match roots.as_slice() {
-            [] => return Err(circle(0, links, joints, &moved_by, elements)),
-            &[root] => root,
-            &[first, second, ..] => {
-                let names = format!("`{}`, `{}`", links[first].name, links[second].name);
-                let more = if roots.len() > 2 { ", …" } else { "" };
-                return Err(robot.refuse(
-                    format!("{} links that no joint moves: {names}{more}", roots.len()),
-                    "one root: join the others to it (a fixed joint will do)",
-                ));
-            }
+        let Some(&root) = roots.first() else {
+            return Err(circle(0, links, joints, &moved_by, elements));
         };
         let outward = outward(root, links.len(), joints);
         let mut is_reached = vec![false; links.len()];

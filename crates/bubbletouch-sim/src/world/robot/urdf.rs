@@ -6,15 +6,17 @@
 use super::link::read_link;
 use super::mimic::{Drive, drives};
 use super::tactile::{check_tactile_sensors, read_tactile_sensors};
-use super::text::{parsed, repaired};
+use super::text::{parsed, repaired, unreadable};
 use super::tree::Tree;
 use super::xml::{Element, Lines};
 use super::{Joint, JointKind, Limits, Link, Mimic, Robot};
 use crate::error::{Error, Result};
+use crate::geometry::Pose;
 use crate::text::spelling::nearest_names;
 use glam::DVec3;
 use roxmltree::Node;
-use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 
 /// Part of the XML namespace address that all versions of xacro use.
 const XACRO: &str = "xacro";
@@ -28,7 +30,7 @@ const ALONE: &str = "the joint mimics none";
 pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
     let lines = Lines::new(place, text);
     let text = repaired(place, text, &lines);
-    let document = parsed(&text).map_err(|e| unreadable(place, &text, &e))?;
+    let document = parsed(&text).map_err(|e| unreadable(place, &text, &e, "URDF"))?;
     let root = Element {
         node: document.root_element(),
         lines: &lines,
@@ -53,7 +55,7 @@ pub(super) fn read_urdf(place: &str, text: &str) -> Result<Robot> {
 pub(super) fn check_sensors(place: &str, text: &str) -> Result<()> {
     let lines = Lines::new(place, text);
     let text = repaired(place, text, &lines);
-    let document = parsed(&text).map_err(|e| unreadable(place, &text, &e))?;
+    let document = parsed(&text).map_err(|e| unreadable(place, &text, &e, "URDF"))?;
     check_tactile_sensors(Element {
         node: document.root_element(),
         lines: &lines,
@@ -64,10 +66,13 @@ type Parts = (String, Vec<Link>, Vec<Joint>, Tree, Vec<Drive>);
 
 fn read_parts(root: Element) -> Result<Parts> {
     if root.node.tag_name().name() != "robot" {
-        return Err(root.refuse(format!("{} as the root", root.called()), "URDF: a <robot>"));
+        return Err(root.refuse(
+            format!("{} as the root", root.called()),
+            "URDF: a <robot>, or MJCF: a <mujoco>",
+        ));
     }
     root.check_tags(&["link", "joint", "material", "transmission", "gazebo"])?;
-    let elements: Vec<Element> = root.children("link").collect();
+    let elements = distinct(root, "link", |_| String::new())?;
     let mut links = elements.iter().map(read_link).collect::<Result<Vec<_>>>()?;
     if links.is_empty() {
         return Err(root.refuse("a robot without a <link>", "at least one"));
@@ -75,35 +80,111 @@ fn read_parts(root: Element) -> Result<Parts> {
     let names = elements.iter().map(Element::name);
     let names = names.collect::<Result<Vec<_>>>()?;
     let mut link_of = index_of_each("link", names.into_iter(), &elements)?;
-    add_world(root, &mut links, &mut link_of);
-    let (mut joints, elements) = read_joints(root, &links, &link_of)?;
+    add_missing_parent(root, &mut links, &mut link_of);
+    let (mut joints, mut elements) = read_joints(root, &links, &link_of)?;
+    join_roots(root, &links, &mut joints, &mut elements);
     drop_mimics_of_several(&mut joints, &elements);
-    let tree = Tree::new(&links, &joints, root, &elements)?;
+    let tree = Tree::new(&links, &joints, &elements)?;
     let drives = drives(&joints, &elements)?;
     let name = root.or_note(root.name(), "robot", "the robot is called `robot`");
     Ok((name.to_owned(), links, joints, tree, drives))
 }
 
-/// Adds the link `world` if a joint names this link as its parent but the file does not contain the link. Some tools define the link implicitly.
-fn add_world<'a>(root: Element<'a>, links: &mut Vec<Link>, link_of: &mut HashMap<&'a str, usize>) {
+/// Returns the elements with a tag, without repeated ones: elements with the name and the `meaning` of an earlier element. Repeated elements become notes.
+fn distinct<'a>(
+    root: Element<'a>,
+    tag: &'a str,
+    meaning: impl Fn(&Element) -> String,
+) -> Result<Vec<Element<'a>>> {
+    let mut first: HashMap<(&str, String), usize> = HashMap::new();
+    let mut all = Vec::new();
+    for element in root.children(tag) {
+        let line = element.line();
+        match first.entry((element.name()?, meaning(&element))) {
+            Entry::Vacant(place) => {
+                place.insert(line);
+                all.push(element);
+            }
+            Entry::Occupied(place) => {
+                let given = format!(
+                    "a second {tag} `{}` (the first is on line {})",
+                    place.key().0,
+                    place.get()
+                );
+                let repeated = Err(element.refuse(given, "a name of its own"));
+                element.or_note(repeated, (), "it is passed over");
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Adds the link that a joint names as its parent but that the file does not contain, if it is `world` or the only base of the robot. Some tools define `world`
+/// implicitly, and files of grippers name the link of the arm to which they are attached.
+fn add_missing_parent<'a>(
+    root: Element<'a>,
+    links: &mut Vec<Link>,
+    link_of: &mut HashMap<&'a str, usize>,
+) {
     const WORLD: &str = "world";
-    let mut parents = root
-        .children("joint")
-        .flat_map(|joint| joint.children("parent"));
-    let is_world = |parent: &Element| parent.node.attribute("link") == Some(WORLD);
-    let Some(parent) = parents.find(is_world) else {
+    let joints: Vec<Element> = root.children("joint").collect();
+    let ends = |tag| {
+        let all = joints.iter().flat_map(move |joint| joint.children(tag));
+        all.filter_map(|end| Some((end, end.node.attribute("link")?)))
+    };
+    let children: HashSet<&str> = ends("child").map(|(_, name)| name).collect();
+    let mut missing = ends("parent").filter(|(_, name)| !link_of.contains_key(name));
+    let Some((parent, name)) = missing.next() else {
         return;
     };
-    if link_of.contains_key(WORLD) {
+    let is_only_base = missing.all(|(_, other)| other == name)
+        && links
+            .iter()
+            .all(|link| children.contains(link.name.as_str()));
+    if name != WORLD && !is_only_base {
         return;
     }
-    let missing = Err(parent.refuse("parent `world`, which is no link", "a <link> of that name"));
+    let given = format!("parent `{name}`, which is no link");
+    let missing = Err(parent.refuse(given, "a <link> of that name"));
     parent.or_note(missing, (), "it is the base of the robot");
-    link_of.insert(WORLD, links.len());
+    link_of.insert(name, links.len());
     links.push(Link {
-        name: WORLD.to_owned(),
+        name: name.to_owned(),
         shapes: Vec::new(),
     });
+}
+
+/// Joins each further link that no joint moves to the first one, by a fixed joint without offset, as MuJoCo does.
+fn join_roots<'a>(
+    root: Element<'a>,
+    links: &[Link],
+    joints: &mut Vec<Joint>,
+    elements: &mut Vec<Element<'a>>,
+) {
+    let is_moved: HashSet<usize> = joints.iter().map(|joint| joint.child).collect();
+    let mut roots = (0..links.len()).filter(|link| !is_moved.contains(link));
+    let Some(base) = roots.next() else {
+        return;
+    };
+    for other in roots {
+        let (name, base_name) = (&links[other].name, &links[base].name);
+        let given = format!("links `{base_name}` and `{name}`, which no joint moves");
+        let several = Err(root.refuse(given, "one of them"));
+        root.or_note(several, (), &format!("`{name}` is fixed to `{base_name}`"));
+        joints.push(Joint {
+            name: format!("{name}_fixed"),
+            kind: JointKind::Fixed,
+            parent: base,
+            child: other,
+            origin: Pose::IDENTITY,
+            axis: DVec3::X,
+            anchor: DVec3::ZERO,
+            reference: 0.0,
+            limits: None,
+            mimic: None,
+        });
+        elements.push(root);
+    }
 }
 
 /// Returns the joints with their elements, in the order of the file.
@@ -112,7 +193,14 @@ fn read_joints<'a>(
     links: &[Link],
     link_of: &HashMap<&str, usize>,
 ) -> Result<(Vec<Joint>, Vec<Element<'a>>)> {
-    let elements: Vec<Element> = root.children("joint").collect();
+    let ends = |joint: &Element| {
+        let tags = ["parent", "child"].into_iter();
+        let ends = tags.flat_map(|tag| joint.children(tag));
+        ends.filter_map(|end| end.node.attribute("link"))
+            .collect::<Vec<_>>()
+            .join("\0")
+    };
+    let elements = distinct(root, "joint", ends)?;
     let names = elements.iter().map(Element::name);
     let names = names.collect::<Result<Vec<_>>>()?;
     let joint_of = index_of_each("joint", names.iter().copied(), &elements)?;
@@ -155,6 +243,8 @@ fn read_joint(
         child: ends.read(element, name, "child")?,
         origin: element.origin()?,
         axis,
+        anchor: DVec3::ZERO,
+        reference: 0.0,
         limits: read_limits(element, name, kind),
         mimic: element.or_note(mimic, None, ALONE),
     })
@@ -371,18 +461,4 @@ fn xacro_error(element: Element) -> Error {
         format!("{} of xacro", element.called()),
         "plain URDF: expand it first (xacro robot.urdf.xacro > robot.urdf)",
     )
-}
-
-/// Returns the message of the XML reader as an error, with the line number.
-fn unreadable(place: &str, text: &str, error: &roxmltree::Error) -> Error {
-    if text.trim().is_empty() {
-        return Error::input(place, "an empty file", "URDF: a <robot>");
-    }
-    let said = error.to_string();
-    // The XML reader appends its own position; here the position precedes the message.
-    let given = said
-        .rsplit_once(" at ")
-        .map_or(said.as_str(), |(given, _)| given);
-    let place = format!("{place}, line {}", error.pos().row);
-    Error::input(place, given, "URDF: well-formed XML")
 }

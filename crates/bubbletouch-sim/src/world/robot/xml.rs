@@ -2,28 +2,58 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::{Pose, rotation_from_rpy, written_rotation};
-use crate::text::spelling::slip_of;
+use crate::text::spelling::{nearest_names, slip_of};
 use glam::{DQuat, DVec3};
 use roxmltree::Node;
 use std::cell::RefCell;
+use std::ops::Range;
 use std::str::FromStr;
 
-/// Line starts of a file, and notes collected while the file is read.
-pub(super) struct Lines<'a> {
-    place: &'a str,
-    starts: Vec<usize>,
+/// Line starts of a text that is composed of one or more files, and notes collected while the text is read.
+#[derive(Default)]
+pub(super) struct Lines {
+    /// Names of the files, for messages.
+    places: Vec<String>,
+    /// Lines and parts of lines, ordered by their position in the text.
+    starts: Vec<LineStart>,
     notes: RefCell<Vec<String>>,
 }
 
-impl<'a> Lines<'a> {
-    /// Creates the table of line starts; `place` is the file's name.
-    pub fn new(place: &'a str, text: &str) -> Self {
-        let ends = text.match_indices('\n').map(|(end, _)| end + 1);
-        Self {
+/// Start of a line, or of a part of a line of another file.
+struct LineStart {
+    /// Byte position in the text.
+    offset: usize,
+    /// Index of the file.
+    place: usize,
+    /// Number of the line in its file, from 1.
+    line: usize,
+}
+
+impl Lines {
+    /// Creates the table of line starts of one file; `place` is the file's name.
+    pub fn new(place: &str, text: &str) -> Self {
+        let mut lines = Self::default();
+        let place = lines.add_place(place);
+        lines.add(place, 0, text, 0..text.len());
+        lines
+    }
+
+    /// Adds a file without text, and returns its index.
+    pub fn add_place(&mut self, place: &str) -> usize {
+        self.places.push(place.to_owned());
+        self.places.len() - 1
+    }
+
+    /// Adds the lines of a range of the file's `text`, which is at byte position `offset` of the whole text.
+    pub fn add(&mut self, place: usize, offset: usize, text: &str, range: Range<usize>) {
+        let first = 1 + text[..range.start].matches('\n').count();
+        let ends = text[range].match_indices('\n').map(|(end, _)| end + 1);
+        let starts = std::iter::once(0).chain(ends).zip(first..);
+        self.starts.extend(starts.map(|(start, line)| LineStart {
+            offset: offset + start,
             place,
-            starts: std::iter::once(0).chain(ends).collect(),
-            notes: RefCell::default(),
-        }
+            line,
+        }));
     }
 
     /// Adds a note, which is a sentence about the file, preceded by the file's name.
@@ -36,8 +66,9 @@ impl<'a> Lines<'a> {
         self.notes.into_inner()
     }
 
-    fn line(&self, offset: usize) -> usize {
-        self.starts.partition_point(|&start| start <= offset)
+    fn at(&self, offset: usize) -> &LineStart {
+        let next = self.starts.partition_point(|start| start.offset <= offset);
+        &self.starts[next - 1]
     }
 }
 
@@ -45,18 +76,19 @@ impl<'a> Lines<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
     pub node: Node<'a, 'a>,
-    pub lines: &'a Lines<'a>,
+    pub lines: &'a Lines,
 }
 
 impl<'a> Element<'a> {
     /// Returns the line number of the element, from 1.
     pub fn line(&self) -> usize {
-        self.lines.line(self.node.range().start)
+        self.lines.at(self.node.range().start).line
     }
 
     /// Returns an input error that names the file and the line of this element.
     pub fn refuse(&self, given: impl ToString, allowed: impl ToString) -> Error {
-        let place = format!("{}, line {}", self.lines.place, self.line());
+        let start = self.lines.at(self.node.range().start);
+        let place = format!("{}, line {}", self.lines.places[start.place], start.line);
         Error::input(place, given, allowed)
     }
 
@@ -114,11 +146,7 @@ impl<'a> Element<'a> {
         let Some(text) = self.node.attribute(attribute) else {
             return Ok(None);
         };
-        // Some exporters write "1, 2, 3".
-        let words = text.split(|c: char| c == ',' || c.is_whitespace());
-        let words = words.filter(|word| !word.is_empty());
-        let numbers: Option<Vec<f64>> = words.map(finite).collect();
-        let numbers = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
+        let numbers = finite_numbers(text).and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
         let allowed = || match N {
             1 => "a finite number".to_owned(),
             _ => format!("{N} finite numbers with spaces between"),
@@ -126,6 +154,31 @@ impl<'a> Element<'a> {
         match numbers {
             Some(numbers) => Ok(Some(numbers)),
             None => Err(self.refuse(format!("`{attribute}` \"{}\"", shortened(text)), allowed())),
+        }
+    }
+
+    /// Returns the numbers in the value of an attribute, which are at most `n` finite numbers; none if the attribute is missing.
+    pub fn up_to(&self, n: usize, attribute: &str) -> Result<Vec<f64>> {
+        let text = self.node.attribute(attribute).unwrap_or_default();
+        let numbers = finite_numbers(text).filter(|numbers| numbers.len() <= n);
+        numbers.ok_or_else(|| {
+            let given = format!("`{attribute}` \"{}\"", shortened(text));
+            self.refuse(given, format!("at most {n} finite numbers"))
+        })
+    }
+
+    /// Returns the value that belongs to the word of an attribute, or `None` if the attribute is missing.
+    pub fn one_of<T: Copy>(&self, attribute: &str, words: &[(&str, T)]) -> Result<Option<T>> {
+        let Some(given) = self.node.attribute(attribute) else {
+            return Ok(None);
+        };
+        match words.iter().find(|(word, _)| *word == given) {
+            Some((_, value)) => Ok(Some(*value)),
+            None => {
+                let names = words.iter().map(|(word, _)| *word);
+                let given = format!("`{attribute}` \"{}\"", shortened(given));
+                Err(self.refuse(given, nearest_names("", names)))
+            }
         }
     }
 
@@ -206,6 +259,13 @@ impl<'a> Element<'a> {
 fn is_own(node: &Node) -> bool {
     let root = node.document().root_element();
     node.is_element() && node.tag_name().namespace() == root.tag_name().namespace()
+}
+
+/// Returns the numbers of a text; `None` if a word is not a finite number.
+fn finite_numbers(text: &str) -> Option<Vec<f64>> {
+    // Some exporters write "1, 2, 3".
+    let words = text.split(|c: char| c == ',' || c.is_whitespace());
+    words.filter(|word| !word.is_empty()).map(finite).collect()
 }
 
 fn finite(word: &str) -> Option<f64> {

@@ -206,7 +206,7 @@ fn cut_or_garbled_files_never_panic() {
 
 /// Returns the mesh of a valid file.
 fn read(format: MeshFormat, bytes: &[u8]) -> TriangleMesh {
-    let file = format.read("m", LengthUnit::Metre, bytes);
+    let file = format.read("m", None, bytes);
     file.unwrap().into_mesh("m").unwrap()
 }
 
@@ -334,7 +334,9 @@ fn a_unit_is_what_it_says_and_a_name_says_the_format() {
     let text = obj(&cuboid(DVec3::ONE));
     for (name, metres) in [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254)] {
         let unit: LengthUnit = name.parse().unwrap();
-        let file = MeshFormat::Obj.read("box", unit, text.as_bytes()).unwrap();
+        let file = MeshFormat::Obj
+            .read("box", Some(unit), text.as_bytes())
+            .unwrap();
         let bounds = file.into_mesh("box").unwrap().bounds();
         assert_eq!(bounds.max, DVec3::splat(metres));
     }
@@ -351,7 +353,7 @@ fn a_unit_is_what_it_says_and_a_name_says_the_format() {
         .to_string();
     assert_eq!(
         error,
-        "a/b.step: not a mesh by its name; a name that ends in .ply, .obj or .stl"
+        "a/b.step: not a mesh by its name; a name that ends in .ply, .obj, .stl, .dae, .glb or .gltf"
     );
 }
 

@@ -3,6 +3,7 @@
 mod catalogue;
 mod files;
 mod mesh_files;
+mod mesh_scene_files;
 mod mesh_surface;
 mod orientation;
 mod packing;

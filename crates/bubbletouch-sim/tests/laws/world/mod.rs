@@ -2,6 +2,7 @@
 
 mod placement_rest;
 mod placement_touches;
+mod robot_mjcf;
 mod robot_motion;
 mod robot_public_files;
 mod robot_urdf;

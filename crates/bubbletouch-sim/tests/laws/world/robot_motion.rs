@@ -435,7 +435,7 @@ fn every_motion_says_where_it_is() {
 
 #[test]
 fn following_a_trajectory_allocates_nothing() {
-    let arm = Robot::read_urdf("../../objects/robots/arm.urdf".as_ref()).unwrap();
+    let arm = Robot::read("../../objects/robots/arm.urdf".as_ref()).unwrap();
     let there = Array2::from_shape_fn((3, 7), |(i, k)| 0.2 * i as f64 - 0.05 * k as f64);
     let times = vec![0.0, 1.0, 2.0];
     let trajectory = JointTrajectory::new(&arm, times, there, Interpolation::Cubic).unwrap();

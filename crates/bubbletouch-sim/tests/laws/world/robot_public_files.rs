@@ -309,7 +309,7 @@ fn bytes_of_other_encodings_are_text() {
         ([0xFF, 0xFE].into_iter().chain(little()).collect(), false),
         ([0xFE, 0xFF].into_iter().chain(big()).collect(), false),
     ] {
-        let robot = Robot::from_urdf_bytes("r.urdf", &bytes).unwrap();
+        let robot = Robot::from_bytes("r.urdf", &bytes).unwrap();
         assert_eq!(robot.links()[0].name, "\u{e9}paule");
         let notes = robot.notes();
         assert_eq!(
@@ -320,9 +320,7 @@ fn bytes_of_other_encodings_are_text() {
     }
     for bytes in [&b"\x89PNG\r\n\x1a\n\0\0"[..], b"", b"\xFF", b"\xFF\xFE\0"] {
         assert_eq!(
-            Robot::from_urdf_bytes("r.urdf", bytes)
-                .unwrap_err()
-                .exit_code(),
+            Robot::from_bytes("r.urdf", bytes).unwrap_err().exit_code(),
             2
         );
     }
@@ -382,4 +380,73 @@ fn a_tactile_sensor_is_named_in_a_note() {
     has_note(&robot, "tactile sensor `s` on link `a`");
     let camera = "<robot name='r'><link name='a'/><sensor name='s'><camera/></sensor></robot>";
     assert!(read(camera).notes().is_empty());
+}
+
+#[test]
+fn further_links_that_no_joint_moves_are_fixed_to_the_first_one() {
+    let robot = read(
+        r#"<robot name="r"><link name="a"/><link name="b"/><link name="c"/><link name="d"/>
+<joint name="j" type="fixed"><parent link="c"/><child link="d"/><origin xyz="1 0 0"/></joint></robot>"#,
+    );
+    assert_eq!(robot.base(), 0);
+    has_note(
+        &robot,
+        "line 1: links `a` and `b`, which no joint moves; one of them: `b` is fixed to `a`",
+    );
+    has_note(&robot, "`c` is fixed to `a`");
+    let base = Pose::from_translation(DVec3::new(0.0, 2.0, 0.0));
+    let links = robot.forward(&base, &[]).unwrap();
+    let at: Vec<DVec3> = links.iter().map(|link| link.translation).collect();
+    let there = base.translation;
+    assert_eq!(at, [there, there, there, there + DVec3::X]);
+}
+
+#[test]
+fn repeated_links_and_joints_are_passed_over() {
+    let robot = read(
+        r#"<robot name="r"><link name="a"/><link name="b"/>
+<link name="b"><collision><geometry><sphere radius="1"/></geometry></collision></link>
+<joint name="j" type="fixed"><parent link="a"/><child link="b"/><origin xyz="1 0 0"/></joint>
+<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint></robot>"#,
+    );
+    assert_eq!((robot.links().len(), robot.joints().len()), (2, 1));
+    assert!(robot.links()[1].shapes.is_empty());
+    assert_eq!(second(&robot).translation, DVec3::X);
+    has_note(
+        &robot,
+        "line 2: a second link `b` (the first is on line 1); a name of its own: it is passed over",
+    );
+    has_note(&robot, "line 4: a second joint `j`");
+}
+
+#[test]
+fn a_missing_link_that_carries_the_whole_robot_is_its_base() {
+    let gripper = |inside: &str| {
+        Robot::from_urdf(
+            "r.urdf",
+            &format!(
+                r#"<robot name="r"><link name="palm"/><link name="finger"/>{inside}
+<joint name="mount" type="fixed"><parent link="left_hand"/><child link="palm"/><origin xyz="1 0 0"/></joint>
+<joint name="grip" type="fixed"><parent link="palm"/><child link="finger"/></joint></robot>"#
+            ),
+        )
+    };
+    let robot = gripper("").unwrap();
+    assert_eq!(robot.links()[robot.base()].name, "left_hand");
+    assert_eq!(
+        robot.forward(&Pose::IDENTITY, &[]).unwrap()[1].translation,
+        DVec3::X
+    );
+    has_note(
+        &robot,
+        "parent `left_hand`, which is no link; a <link> of that name: it is the base of the robot",
+    );
+    // A robot with another base has a misspelt parent.
+    let wrong = gripper(r#"<link name="left_hnd"/>"#)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        wrong.contains("`left_hand`, which is no link; perhaps `left_hnd`"),
+        "{wrong}"
+    );
 }

@@ -403,7 +403,7 @@ fn bad_taxels_and_names_are_refused() {
 }
 
 fn humanoid() -> Robot {
-    Robot::read_urdf(Path::new("../../objects/robots/humanoid.urdf")).unwrap()
+    Robot::read(Path::new("../../objects/robots/humanoid.urdf")).unwrap()
 }
 
 #[test]

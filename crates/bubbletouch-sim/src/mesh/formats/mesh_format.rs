@@ -1,7 +1,12 @@
 //! Format and unit of a mesh file.
 
-use super::{MeshFile, read_obj, read_ply, read_stl};
+use super::collada::read_collada;
+use super::gltf::read_gltf;
+use super::obj::read_obj;
+use super::ply::read_ply;
+use super::stl::read_stl;
 use crate::error::{Error, Result};
+use crate::mesh::MeshFile;
 use serde::{Deserialize, Serialize};
 use std::io::BufRead;
 use std::path::Path;
@@ -15,9 +20,13 @@ pub enum MeshFormat {
     Obj,
     /// Stereolithography, ascii or binary.
     Stl,
+    /// Collada, version 1.4 or 1.5.
+    Collada,
+    /// glTF 2.0, binary (`.glb`) or JSON (`.gltf`).
+    Gltf,
 }
 
-/// Length unit of the numbers in a mesh file; the supported formats do not store their unit.
+/// Length unit of the numbers in a mesh file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LengthUnit {
     /// Metre (m).
@@ -36,6 +45,9 @@ pub enum LengthUnit {
 }
 
 impl MeshFormat {
+    /// Endings of the names of mesh files, for messages.
+    pub const ENDINGS: &str = ".ply, .obj, .stl, .dae, .glb or .gltf";
+
     /// Returns the format of a file by its extension, ignoring case.
     ///
     /// # Errors
@@ -46,27 +58,38 @@ impl MeshFormat {
             "ply" => Ok(Self::Ply),
             "obj" => Ok(Self::Obj),
             "stl" => Ok(Self::Stl),
+            "dae" => Ok(Self::Collada),
+            "glb" | "gltf" => Ok(Self::Gltf),
             _ => Err(Error::input(
                 path.display(),
                 "not a mesh by its name",
-                "a name that ends in .ply, .obj or .stl",
+                format!("a name that ends in {}", Self::ENDINGS),
             )),
         }
     }
 
-    /// Reads a file of this format and converts it from the given unit to metres.
+    /// Reads a file of this format and converts it to metres. Without a unit, the numbers of a Collada file are in the unit that the file contains, and those of
+    /// other files are metres.
     ///
     /// # Errors
-    /// If the file is invalid; errors begin with `place`, the name of the file.
-    pub fn read(self, place: &str, unit: LengthUnit, source: impl BufRead) -> Result<MeshFile> {
-        let file = match self {
-            Self::Ply => read_ply(place, source),
-            Self::Obj => read_obj(place, source),
-            Self::Stl => read_stl(place, source),
-        }?;
-        match unit {
-            LengthUnit::Metre => Ok(file),
-            _ => file.scaled(place, unit.metres()),
+    /// If the file is invalid; errors begin with `place`, the path of the file.
+    pub fn read(
+        self,
+        place: &str,
+        unit: Option<LengthUnit>,
+        source: impl BufRead,
+    ) -> Result<MeshFile> {
+        let (file, own_unit) = match self {
+            Self::Ply => (read_ply(place, source)?, 1.0),
+            Self::Obj => (read_obj(place, source)?, 1.0),
+            Self::Stl => (read_stl(place, source)?, 1.0),
+            Self::Collada => read_collada(place, source)?,
+            Self::Gltf => (read_gltf(place, source)?, 1.0),
+        };
+        let metres = unit.map_or(own_unit, LengthUnit::metres);
+        match metres == 1.0 {
+            true => Ok(file),
+            false => file.scaled(place, metres),
         }
     }
 }

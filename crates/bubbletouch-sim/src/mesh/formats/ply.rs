@@ -3,9 +3,9 @@
 //! A file must have an element `vertex` with scalar properties x, y, z (metres). The element `face` is read if its list has the name `vertex_indices` or
 //! `vertex_index`. Other elements and properties are skipped.
 
-use super::MeshFile;
 use super::text_lines::BYTE_ORDER_MARK;
 use crate::error::{Error, Result};
+use crate::mesh::MeshFile;
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{

@@ -1,8 +1,8 @@
 //! Meshes from Wavefront OBJ files. Positions and faces are read; groups, materials, normals and texture are ignored.
 
-use super::MeshFile;
 use super::text_lines::{coordinates, each_line};
 use crate::error::{Error, Result};
+use crate::mesh::MeshFile;
 use glam::DVec3;
 use std::io::BufRead;
 

@@ -1,9 +1,9 @@
 //! Meshes from STL files, ASCII or binary. Corners with identical coordinates become one vertex; normals are ignored.
 
-use super::MeshFile;
 use super::text_lines::{BYTE_ORDER_MARK, coordinates, each_line};
 use crate::error::{Error, Result};
 use crate::geometry::place_bits;
+use crate::mesh::MeshFile;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::io::BufRead;

@@ -1,0 +1,453 @@
+//! Meshes from Collada files (`.dae`), version 1.4 or 1.5. Positions, polygons and the tree of nodes are read; materials, normals, texture and animations are
+//! ignored. Skins are read in their bind pose.
+
+use super::joined_parts::{JoinedParts, triangles_of_fan, triangles_of_strip};
+use crate::error::{Error, Result};
+use crate::mesh::MeshFile;
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use roxmltree::{Document, Node, ParsingOptions};
+use std::collections::HashMap;
+use std::io::BufRead;
+use std::str::FromStr;
+
+/// Largest depth of the tree of nodes. A deeper tree indicates nodes that contain each other.
+const MAX_DEPTH: usize = 100;
+
+/// Reads the mesh in a Collada file, in the unit of the file, and the length of this unit in metres (1 if the file does not contain it). All geometries of the
+/// scene form one mesh.
+///
+/// # Errors
+/// If the file is not Collada, has no faces, or contains wrong counts, indices that do not exist or numbers that are not finite. The error begins with `place`
+/// and the line.
+pub fn read_collada(place: &str, mut source: impl BufRead) -> Result<(MeshFile, f64)> {
+    let mut bytes = Vec::new();
+    source
+        .read_to_end(&mut bytes)
+        .map_err(|e| Error::io(place, "read", e))?;
+    let text = match std::str::from_utf8(&bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
+    };
+    let text = text.trim_start_matches('\u{feff}');
+    let options = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    let document = Document::parse_with_options(text, options).map_err(|error| {
+        let said = error.to_string();
+        let given = said
+            .rsplit_once(" at ")
+            .map_or(said.as_str(), |(given, _)| given);
+        let place = format!("{place}, line {}", error.pos().row);
+        Error::input(place, given, "Collada: well-formed XML")
+    })?;
+    let root = document.root_element();
+    let nodes = root.descendants();
+    let file = Collada {
+        place,
+        by_id: nodes
+            .filter_map(|node| Some((node.attribute("id")?, node)))
+            .collect(),
+    };
+    if root.tag_name().name() != "COLLADA" {
+        let given = format!("<{}> as the root", root.tag_name().name());
+        return Err(file.refuse(root, given, "a <COLLADA>"));
+    }
+    let mut reading = Reading {
+        file: &file,
+        positions: HashMap::new(),
+        parts: JoinedParts::default(),
+    };
+    match file.visual_scene(root)? {
+        Some(scene) => reading.add_node(scene, &DAffine3::IDENTITY, 0)?,
+        None => {
+            let geometries = root.descendants().filter(|node| is(*node, "geometry"));
+            for geometry in geometries {
+                reading.add_geometry(geometry, &DAffine3::IDENTITY)?;
+            }
+        }
+    }
+    Ok((reading.parts.into_file(place)?, file.unit(root)?))
+}
+
+/// Collada file with its elements by their names.
+struct Collada<'a> {
+    place: &'a str,
+    by_id: HashMap<&'a str, Node<'a, 'a>>,
+}
+
+impl<'a> Collada<'a> {
+    fn refuse(&self, node: Node, given: impl ToString, allowed: impl ToString) -> Error {
+        let line = node.document().text_pos_at(node.range().start).row;
+        Error::input(format!("{}, line {line}", self.place), given, allowed)
+    }
+
+    /// Returns the length of the file's unit, metres.
+    fn unit(&self, root: Node) -> Result<f64> {
+        let unit = child(root, "asset").and_then(|asset| child(asset, "unit"));
+        let Some((unit, text)) = unit.and_then(|unit| Some((unit, unit.attribute("meter")?)))
+        else {
+            return Ok(1.0);
+        };
+        let metres = f64::from_str(text.trim()).ok();
+        let metres = metres.filter(|metres| *metres > 0.0 && metres.is_finite());
+        metres.ok_or_else(|| {
+            let given = format!("`meter` \"{text}\"");
+            self.refuse(unit, given, "a positive number of metres")
+        })
+    }
+
+    /// Returns the visual scene that the file shows; its first one if the file does not name one.
+    fn visual_scene(&self, root: Node<'a, 'a>) -> Result<Option<Node<'a, 'a>>> {
+        let shown = child(root, "scene").and_then(|scene| child(scene, "instance_visual_scene"));
+        match shown {
+            Some(shown) => self.target(shown, "url").map(Some),
+            None => Ok(root.descendants().find(|node| is(*node, "visual_scene"))),
+        }
+    }
+
+    /// Returns the element that an attribute refers to. An id is searched in the mesh around the element first, because some files repeat ids in each mesh.
+    fn target(&self, node: Node<'a, 'a>, attribute: &str) -> Result<Node<'a, 'a>> {
+        let address = node.attribute(attribute).unwrap_or_default();
+        let found = address.strip_prefix('#').and_then(|id| {
+            let mesh = node.ancestors().find(|node| is(*node, "mesh"));
+            let mut near = mesh.into_iter().flat_map(|mesh| mesh.descendants());
+            let near = near.find(|node| node.attribute("id") == Some(id));
+            near.or(self.by_id.get(id).copied())
+        });
+        found.ok_or_else(|| {
+            let given = format!(
+                "<{}> with `{attribute}` \"{address}\"",
+                node.tag_name().name()
+            );
+            self.refuse(node, given, "# and the id of an element of the file")
+        })
+    }
+
+    /// Returns the words of an element's text as numbers.
+    ///
+    /// # Errors
+    /// If `parse` returns `None` for a word; the error contains its place in the text.
+    fn words<T>(
+        &self,
+        node: Node,
+        parse: impl Fn(&str) -> Option<T>,
+        allowed: &str,
+    ) -> Result<Vec<T>> {
+        let text = node.text().unwrap_or_default();
+        let words = text.split_ascii_whitespace().enumerate();
+        let numbers = words.map(|(index, word)| {
+            parse(word).ok_or_else(|| {
+                let given = format!(
+                    "<{}>, number {}: \"{word}\"",
+                    node.tag_name().name(),
+                    index + 1
+                );
+                self.refuse(node, given, allowed)
+            })
+        });
+        numbers.collect()
+    }
+
+    fn numbers(&self, node: Node) -> Result<Vec<f64>> {
+        let finite = |word: &str| f64::from_str(word).ok().filter(|number| number.is_finite());
+        self.words(node, finite, "finite numbers")
+    }
+
+    fn indices(&self, node: Node) -> Result<Vec<u32>> {
+        self.words(
+            node,
+            |word| u32::from_str(word).ok(),
+            "whole numbers from 0",
+        )
+    }
+
+    /// Returns the N numbers in an element's text.
+    fn exactly<const N: usize>(&self, node: Node) -> Result<[f64; N]> {
+        let numbers = self.numbers(node)?;
+        let n = numbers.len();
+        <[f64; N]>::try_from(numbers).map_err(|_| {
+            let given = format!("<{}> with {n} numbers", node.tag_name().name());
+            self.refuse(node, given, format!("{N} numbers"))
+        })
+    }
+
+    /// Returns an attribute that contains a count, or `default` if it is missing.
+    fn count(&self, node: Node, attribute: &str, default: Option<usize>) -> Result<usize> {
+        let text = node.attribute(attribute);
+        let given = text.and_then(|text| usize::from_str(text.trim()).ok());
+        match (given, text, default) {
+            (Some(count), _, _) | (None, None, Some(count)) => Ok(count),
+            _ => {
+                let text = text.unwrap_or("nothing");
+                let given = format!("<{}> with `{attribute}` {text}", node.tag_name().name());
+                Err(self.refuse(node, given, "a whole number from 0"))
+            }
+        }
+    }
+
+    /// Returns an error if an element's `count` differs from the number of its parts.
+    fn check_count(&self, node: Node, n: usize, what: &str) -> Result<()> {
+        let count = self.count(node, "count", Some(n))?;
+        if count == n {
+            return Ok(());
+        }
+        let given = format!(
+            "<{}> with `count` {count}, but {n} {what}",
+            node.tag_name().name()
+        );
+        Err(self.refuse(node, given, "the same number, or no `count`"))
+    }
+
+    /// Returns the points of a `<source>`.
+    fn points(&self, source: Node<'a, 'a>) -> Result<Vec<DVec3>> {
+        let accessor =
+            child(source, "technique_common").and_then(|common| child(common, "accessor"));
+        let Some(accessor) = accessor else {
+            return Err(self.refuse(source, "<source> without <accessor>", "one"));
+        };
+        let array = self.target(accessor, "source")?;
+        let numbers = self.numbers(array)?;
+        self.check_count(array, numbers.len(), "numbers")?;
+        let count = self.count(accessor, "count", None)?;
+        let stride = self.count(accessor, "stride", Some(1))?;
+        let offset = self.count(accessor, "offset", Some(0))?;
+        let last = count
+            .checked_mul(stride)
+            .and_then(|n| n.checked_add(offset));
+        if stride < 3 || last.is_none_or(|last| last > numbers.len()) {
+            let given = format!(
+                "{count} points with `stride` {stride}, but {} numbers",
+                numbers.len()
+            );
+            return Err(self.refuse(accessor, given, "three or more numbers for each point"));
+        }
+        // A parameter without a name is skipped.
+        let parameters = accessor.children().filter(|node| is(*node, "param"));
+        let named = parameters
+            .enumerate()
+            .filter(|(_, parameter)| parameter.has_attribute("name"))
+            .map(|(index, _)| index);
+        let mut places: Vec<usize> = named.filter(|index| *index < stride).collect();
+        if places.len() < 3 {
+            places = vec![0, 1, 2];
+        }
+        let points = numbers[offset..].chunks_exact(stride).take(count);
+        Ok(points
+            .map(|point| DVec3::new(point[places[0]], point[places[1]], point[places[2]]))
+            .collect())
+    }
+
+    /// Returns the polygons of `<triangles>`, `<polylist>` and similar elements, and the source of their positions; `None` for other elements, such as lines.
+    fn polygons(&self, primitive: Node<'a, 'a>) -> Result<Option<(Vec<Vec<u32>>, Node<'a, 'a>)>> {
+        let tag = primitive.tag_name().name();
+        if !["triangles", "polylist", "polygons", "trifans", "tristrips"].contains(&tag) {
+            return Ok(None);
+        }
+        let (mut stride, mut vertex) = (1, None);
+        for input in primitive.children().filter(|node| is(*node, "input")) {
+            let offset = self.count(input, "offset", Some(0))?;
+            if offset > 100 {
+                return Err(self.refuse(input, format!("`offset` {offset}"), "at most 100"));
+            }
+            stride = stride.max(offset + 1);
+            if input.attribute("semantic") == Some("VERTEX") {
+                vertex = Some((offset, self.target(input, "source")?));
+            }
+        }
+        let Some((offset, vertices)) = vertex else {
+            let given = format!("<{tag}> without an <input semantic=\"VERTEX\">");
+            return Err(self.refuse(primitive, given, "one"));
+        };
+        let inputs = vertices.children().filter(|node| is(*node, "input"));
+        let mut positions = inputs.filter(|input| input.attribute("semantic") == Some("POSITION"));
+        let source = match positions.next() {
+            Some(position) => self.target(position, "source")?,
+            None => {
+                return Err(self.refuse(
+                    vertices,
+                    "<vertices> without positions",
+                    "an <input semantic=\"POSITION\">",
+                ));
+            }
+        };
+        if let Some(hole) = primitive.children().find(|node| is(*node, "ph")) {
+            return Err(self.refuse(
+                hole,
+                "a polygon with holes",
+                "polygons without holes, or triangles",
+            ));
+        }
+        let mut lists = Vec::new();
+        for list in primitive.children().filter(|node| is(*node, "p")) {
+            let indices = self.indices(list)?;
+            if indices.len() % stride != 0 {
+                let given = format!("{} indices for {stride} inputs", indices.len());
+                return Err(self.refuse(list, given, "as many for each corner as inputs"));
+            }
+            let corners = indices.chunks_exact(stride).map(|corner| corner[offset]);
+            lists.push(corners.collect::<Vec<u32>>());
+        }
+        let polygons = match tag {
+            "triangles" => {
+                let corners = lists.concat();
+                if corners.len() % 3 != 0 {
+                    let given = format!("{} corners of triangles", corners.len());
+                    return Err(self.refuse(primitive, given, "three for each triangle"));
+                }
+                corners.chunks_exact(3).map(<[u32]>::to_vec).collect()
+            }
+            "polylist" => self.listed(primitive, &lists.concat())?,
+            "polygons" => lists,
+            "trifans" => lists.iter().flat_map(|fan| triangles_of_fan(fan)).collect(),
+            _ => lists
+                .iter()
+                .flat_map(|strip| triangles_of_strip(strip))
+                .collect(),
+        };
+        match tag {
+            "trifans" | "tristrips" => {}
+            _ => self.check_count(primitive, polygons.len(), "faces")?,
+        }
+        Ok(Some((polygons, source)))
+    }
+
+    /// Returns the polygons of a `<polylist>`, whose `<vcount>` contains their numbers of corners.
+    fn listed(&self, primitive: Node, corners: &[u32]) -> Result<Vec<Vec<u32>>> {
+        let counts = match child(primitive, "vcount") {
+            Some(counts) => self.indices(counts)?,
+            None => Vec::new(),
+        };
+        let n: usize = counts.iter().map(|count| *count as usize).sum();
+        if n != corners.len() {
+            let given = format!("<vcount> of {n} corners, but <p> with {}", corners.len());
+            return Err(self.refuse(primitive, given, "the same number"));
+        }
+        let mut rest = corners;
+        let polygons = counts.iter().map(|&count| {
+            let (polygon, after) = rest.split_at(count as usize);
+            rest = after;
+            polygon.to_vec()
+        });
+        Ok(polygons.collect())
+    }
+
+    /// Returns the product of the transforms of a node, in their order.
+    fn transform(&self, node: Node) -> Result<DAffine3> {
+        let mut all = DAffine3::IDENTITY;
+        for element in node.children().filter(Node::is_element) {
+            all = all
+                * match element.tag_name().name() {
+                    "matrix" | "bind_shape_matrix" => self.matrix(element)?,
+                    "translate" => DAffine3::from_translation(DVec3::from(self.exactly(element)?)),
+                    "scale" => DAffine3::from_scale(DVec3::from(self.exactly(element)?)),
+                    "rotate" => {
+                        let [x, y, z, degrees] = self.exactly(element)?;
+                        let axis = DVec3::new(x, y, z).try_normalize().ok_or_else(|| {
+                            self.refuse(
+                                element,
+                                "<rotate> about an axis of length zero",
+                                "a direction",
+                            )
+                        })?;
+                        DAffine3::from_quat(DQuat::from_axis_angle(axis, degrees.to_radians()))
+                    }
+                    tag @ ("skew" | "lookat") => {
+                        let allowed = "<matrix>, <translate>, <rotate> or <scale>";
+                        return Err(self.refuse(element, format!("<{tag}>"), allowed));
+                    }
+                    _ => continue,
+                };
+        }
+        Ok(all)
+    }
+
+    /// Returns the affine map of sixteen numbers, row by row.
+    fn matrix(&self, element: Node) -> Result<DAffine3> {
+        let rows = DMat4::from_cols_array(&self.exactly(element)?);
+        if rows.w_axis != glam::DVec4::W {
+            let given = format!("a matrix with the last row {}", rows.w_axis);
+            return Err(self.refuse(element, given, "0 0 0 1"));
+        }
+        let matrix = rows.transpose();
+        Ok(DAffine3::from_mat3_translation(
+            DMat3::from_mat4(matrix),
+            matrix.w_axis.truncate(),
+        ))
+    }
+}
+
+/// Geometries that have been read so far.
+struct Reading<'a, 'f> {
+    file: &'f Collada<'a>,
+    /// Points of each `<source>`, by the position of the element in the file.
+    positions: HashMap<usize, Vec<DVec3>>,
+    parts: JoinedParts,
+}
+
+impl<'a> Reading<'a, '_> {
+    /// Adds the geometries of a node and of the nodes in it.
+    fn add_node(&mut self, node: Node<'a, 'a>, above: &DAffine3, depth: usize) -> Result<()> {
+        let file = self.file;
+        if depth > MAX_DEPTH {
+            let given = format!("nodes inside each other, {MAX_DEPTH} deep");
+            return Err(file.refuse(node, given, "a tree of nodes"));
+        }
+        let transform = *above * file.transform(node)?;
+        for element in node.children().filter(Node::is_element) {
+            match element.tag_name().name() {
+                "node" => self.add_node(element, &transform, depth + 1)?,
+                "instance_node" => {
+                    self.add_node(file.target(element, "url")?, &transform, depth + 1)?;
+                }
+                "instance_geometry" => {
+                    self.add_geometry(file.target(element, "url")?, &transform)?
+                }
+                "instance_controller" => {
+                    let controller = file.target(element, "url")?;
+                    let mut parts = controller.children().filter(Node::is_element);
+                    let Some(part) = parts.find(|part| is(*part, "skin") || is(*part, "morph"))
+                    else {
+                        return Err(file.refuse(controller, "<controller> without <skin>", "one"));
+                    };
+                    let bound = transform * file.transform(part)?;
+                    self.add_geometry(file.target(part, "source")?, &bound)?;
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn add_geometry(&mut self, geometry: Node<'a, 'a>, transform: &DAffine3) -> Result<()> {
+        let file = self.file;
+        let Some(mesh) = child(geometry, "mesh") else {
+            return Ok(());
+        };
+        for primitive in mesh.children().filter(Node::is_element) {
+            let Some((polygons, source)) = file.polygons(primitive)? else {
+                continue;
+            };
+            let key = source.range().start;
+            if !self.positions.contains_key(&key) {
+                self.positions.insert(key, file.points(source)?);
+            }
+            let line = primitive
+                .document()
+                .text_pos_at(primitive.range().start)
+                .row;
+            let place = format!("{}, line {line}", file.place);
+            self.parts
+                .add(&place, transform, &self.positions[&key], &polygons)?;
+        }
+        Ok(())
+    }
+}
+
+fn is(node: Node, tag: &str) -> bool {
+    node.is_element() && node.tag_name().name() == tag
+}
+
+fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
+    node.children().find(|node| is(*node, tag))
+}

@@ -1,0 +1,105 @@
+//! Settings of the elements `<compiler>`.
+
+use crate::error::Result;
+use crate::world::robot::xml::Element;
+use std::f64::consts::PI;
+
+/// Settings that determine how angles, limits and file names of a model are read.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Compiler {
+    /// Radians per unit of angle: π/180 for degrees, the default, and 1 for radians.
+    pub angle: f64,
+    /// Axes of three Euler angles: x, y and z turn with the body; X, Y and Z are fixed.
+    pub euler_sequence: String,
+    /// Whether a joint with a range and without `limited` is limited.
+    pub has_auto_limits: bool,
+    /// Folder of mesh files, relative to the folder of the model.
+    pub mesh_folder: String,
+    /// Whether folders in the names of mesh files are removed.
+    pub strips_paths: bool,
+}
+
+impl Compiler {
+    /// Reads all `<compiler>` elements of a model; later ones replace attributes of earlier ones.
+    ///
+    /// # Errors
+    /// If an attribute is invalid, or the model has global coordinates, which MuJoCo no longer reads.
+    pub fn read(root: Element) -> Result<Self> {
+        let mut compiler = Self {
+            angle: PI / 180.0,
+            euler_sequence: "xyz".to_owned(),
+            has_auto_limits: true,
+            mesh_folder: String::new(),
+            strips_paths: false,
+        };
+        for element in root.children("compiler") {
+            element.check_attributes(&[
+                "autolimits",
+                "boundmass",
+                "boundinertia",
+                "settotalmass",
+                "balanceinertia",
+                "strippath",
+                "coordinate",
+                "angle",
+                "fitaabb",
+                "eulerseq",
+                "meshdir",
+                "texturedir",
+                "discardvisual",
+                "convexhull",
+                "usethread",
+                "fusestatic",
+                "inertiafromgeom",
+                "inertiagrouprange",
+                "exactmeshinertia",
+                "assetdir",
+                "alignfree",
+                "saveinertial",
+            ])?;
+            let attribute = |name| element.node.attribute(name);
+            if attribute("coordinate") == Some("global") {
+                let allowed =
+                    "local coordinates: MuJoCo 2.3.3 converts a model when it loads and saves it";
+                return Err(element.refuse("`coordinate` \"global\"", allowed));
+            }
+            if let Some(is_radian) =
+                element.one_of("angle", &[("degree", false), ("radian", true)])?
+            {
+                compiler.angle = if is_radian { 1.0 } else { PI / 180.0 };
+            }
+            if let Some(sequence) = attribute("eulerseq") {
+                let is_axis = |axis| "xyzXYZ".contains(axis);
+                if sequence.len() != 3 || !sequence.chars().all(is_axis) {
+                    let given = format!("`eulerseq` \"{sequence}\"");
+                    return Err(element.refuse(given, "three of x, y, z, X, Y, Z"));
+                }
+                compiler.euler_sequence = sequence.to_owned();
+            }
+            const FLAGS: [(&str, bool); 2] = [("false", false), ("true", true)];
+            if let Some(flag) = element.one_of("autolimits", &FLAGS)? {
+                compiler.has_auto_limits = flag;
+            }
+            if let Some(flag) = element.one_of("strippath", &FLAGS)? {
+                compiler.strips_paths = flag;
+            }
+            if let Some(folder) = attribute("meshdir").or(attribute("assetdir")) {
+                compiler.mesh_folder = folder.to_owned();
+            }
+        }
+        Ok(compiler)
+    }
+
+    /// Returns the path of a mesh file relative to the folder of the model.
+    pub fn mesh_path(&self, file: &str) -> String {
+        let file = match self.strips_paths {
+            true => file.rsplit(['/', '\\']).next().unwrap_or(file),
+            false => file,
+        };
+        let folder = self.mesh_folder.trim_end_matches('/');
+        match self.mesh_folder.is_empty() || file.starts_with('/') {
+            true => file.to_owned(),
+            false => format!("{folder}/{file}"),
+        }
+    }
+}

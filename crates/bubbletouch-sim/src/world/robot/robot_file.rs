@@ -1,0 +1,66 @@
+//! Readers of robots from a URDF or MJCF file, its bytes, or its text.
+
+use super::Robot;
+use super::mjcf::read_mjcf;
+use super::text::{decoded, root_name};
+use super::urdf::{check_sensors, read_urdf};
+use crate::error::{Error, Result};
+use std::path::Path;
+
+impl Robot {
+    /// Reads a robot from the text of a URDF file. Faults that do not affect the poses of links are omitted with a note.
+    ///
+    /// # Errors
+    /// If a part that determines poses of links is invalid. The message begins with `place`, the file's name, and contains the line.
+    pub fn from_urdf(place: &str, text: &str) -> Result<Self> {
+        read_urdf(place, text)
+    }
+
+    /// Checks the tactile sensors in the text of a URDF file, which `from_urdf` omits with a note if they are invalid.
+    ///
+    /// # Errors
+    /// If the text is no XML, or a tactile sensor is invalid. The message begins with `place`, the file's name, and contains the line.
+    pub fn check_tactile_sensors(place: &str, text: &str) -> Result<()> {
+        check_sensors(place, text)
+    }
+
+    /// Reads a robot from the text of an MJCF file; `place` is the path of the file. Files of `<include>` are read from the folder of the file. The links are
+    /// the bodies in the order of MuJoCo's model, from `world`, and after them the sites with a name.
+    ///
+    /// # Errors
+    /// If a part that determines poses of bodies is invalid, or an included file cannot be read. The message contains the file and the line.
+    pub fn from_mjcf(place: &str, text: &str) -> Result<Self> {
+        read_mjcf(place, text)
+    }
+
+    /// Reads a robot from a URDF or MJCF file in UTF-8, UTF-16 with a byte order mark, or Latin-1. The root element, `<robot>` or `<mujoco>`, decides on the
+    /// format. Mesh files are not opened.
+    ///
+    /// # Errors
+    /// If the file cannot be read or its text is invalid.
+    pub fn read(path: &Path) -> Result<Self> {
+        let place = path.display().to_string();
+        let bytes = crate::files::read(path).map_err(|e| {
+            Error::input(
+                &place,
+                format!("cannot be read ({e})"),
+                "a URDF or MJCF file",
+            )
+        })?;
+        Self::from_bytes(&place, &bytes)
+    }
+
+    /// Reads a robot from the bytes of a URDF or MJCF file; `place` is the file's path.
+    ///
+    /// # Errors
+    /// If the bytes cannot be decoded or the text is invalid.
+    pub fn from_bytes(place: &str, bytes: &[u8]) -> Result<Self> {
+        let (text, note) = decoded(place, bytes);
+        let mut robot = match root_name(&text).as_deref() {
+            Some("mujoco") => read_mjcf(place, &text)?,
+            _ => read_urdf(place, &text)?,
+        };
+        robot.notes.splice(0..0, note);
+        Ok(robot)
+    }
+}

@@ -1,0 +1,451 @@
+//! Meshes from Collada and glTF files: units, transforms of nodes, instances, mirrored nodes, and wrong files.
+
+use bubbletouch_sim::geometry::Pose;
+use bubbletouch_sim::mesh::{LengthUnit, MeshFormat, TriangleMesh};
+use glam::{DQuat, DVec3};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+use crate::mesh_shapes::cuboid;
+
+const SIDES: DVec3 = DVec3::new(0.25, 0.5, 1.0);
+
+fn read(format: MeshFormat, bytes: &[u8]) -> bubbletouch_sim::Result<TriangleMesh> {
+    format.read("m", None, bytes)?.into_mesh("m")
+}
+
+/// Returns the corners of all triangles in order.
+fn corners(mesh: &TriangleMesh) -> Vec<DVec3> {
+    (0..mesh.n_triangles())
+        .flat_map(|t| mesh.triangle(t).0)
+        .collect()
+}
+
+#[track_caller]
+fn assert_same(mesh: &TriangleMesh, expected: &[DVec3]) {
+    let own = corners(mesh);
+    assert_eq!(own.len(), expected.len());
+    for (own, expected) in own.iter().zip(expected) {
+        assert!((own - expected).length() < 1e-15, "{own}, {expected}");
+    }
+}
+
+/// Returns a Collada file of a cuboid; `primitives` are its faces, `unit` an element of `<asset>`, and `nodes` the nodes of the scene.
+fn collada(unit: &str, primitives: &str, nodes: &str) -> String {
+    let cube = cuboid(SIDES);
+    let points: String = cube.vertices().iter().fold(String::new(), |mut text, v| {
+        write!(text, "{} {} {} ", v.x, v.y, v.z).unwrap();
+        text
+    });
+    let count = cube.vertices().len();
+    format!(
+        r##"<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset>{unit}<up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="box"><mesh>
+<source id="points"><float_array id="numbers" count="{n}">{points}</float_array>
+<technique_common><accessor source="#numbers" count="{count}" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<source id="normals"><float_array id="other" count="3">0 0 1</float_array></source>
+<vertices id="vertices"><input semantic="POSITION" source="#points"/></vertices>
+{primitives}
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="scene">{nodes}</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#scene"/></scene></COLLADA>"##,
+        n = 3 * count
+    )
+}
+
+/// Returns the faces of the cuboid as `<triangles>` with an index of a normal beside each vertex.
+fn triangles() -> String {
+    let cube = cuboid(SIDES);
+    let corners = cube.triangles().iter().flatten();
+    let corners: String = corners.fold(String::new(), |mut text, corner| {
+        write!(text, "{corner} 0 ").unwrap();
+        text
+    });
+    format!(
+        r##"<triangles count="{}"><input semantic="VERTEX" source="#vertices" offset="0"/><input semantic="NORMAL" source="#normals" offset="1"/><p>{corners}</p></triangles>"##,
+        cube.n_triangles()
+    )
+}
+
+const NODE: &str = r##"<node><instance_geometry url="#box"/></node>"##;
+
+#[test]
+fn collada_files_have_their_unit_and_keep_their_axes() {
+    let cube = corners(&cuboid(SIDES));
+    for (unit, metres) in [("", 1.0), (r#"<unit name="inch" meter="0.0254"/>"#, 0.0254)] {
+        let text = collada(unit, &triangles(), NODE);
+        let expected: Vec<DVec3> = cube.iter().map(|corner| *corner * metres).collect();
+        assert_same(
+            &read(MeshFormat::Collada, text.as_bytes()).unwrap(),
+            &expected,
+        );
+        // A unit that the user gives replaces that of the file.
+        let file = MeshFormat::Collada.read("m", Some(LengthUnit::Millimetre), text.as_bytes());
+        let expected: Vec<DVec3> = cube.iter().map(|corner| *corner * 1e-3).collect();
+        assert_same(&file.unwrap().into_mesh("m").unwrap(), &expected);
+    }
+}
+
+#[test]
+fn collada_polygons_of_all_kinds_are_one_mesh() {
+    let input = r##"<input semantic="VERTEX" source="#vertices" offset="0"/>"##;
+    let quads = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let all = quads.map(|quad| quad.map(|corner| corner.to_string()).join(" "));
+    let lists: String = all.iter().map(|quad| format!("<p>{quad}</p>")).collect();
+    let quad_list = format!(
+        "<polylist count=\"6\">{input}<vcount>4 4 4 4 4 4</vcount><p>{}</p></polylist>",
+        all.join(" ")
+    );
+    let fans =
+        format!("<lines count=\"1\">{input}<p>0 1</p></lines><trifans>{input}{lists}</trifans>");
+    let strips: String = quads
+        .iter()
+        .map(|[a, b, c, d]| format!("<p>{a} {b} {d} {c}</p>"))
+        .collect();
+    for primitives in [
+        quad_list,
+        fans,
+        format!("<polygons count=\"6\">{input}{lists}</polygons>"),
+        format!("<tristrips count=\"6\">{input}{strips}</tristrips>"),
+    ] {
+        let text = collada("", &primitives, NODE);
+        let mesh = read(MeshFormat::Collada, text.as_bytes()).unwrap();
+        assert_eq!(mesh.n_triangles(), 12);
+        let volume: f64 = (0..12)
+            .map(|t| {
+                let [a, b, c] = mesh.triangle(t).0;
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum();
+        assert!((volume - 1.0).abs() < 1e-14, "{primitives}: {volume}");
+    }
+}
+
+/// Transform of two nodes inside each other: moved by (1, 2, 3), turned by a quarter about z, mirrored along x, and scaled along z.
+fn placed(corner: DVec3) -> DVec3 {
+    let turned =
+        DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2) * (corner * DVec3::new(-1.0, 1.0, 2.0));
+    turned + DVec3::new(1.0, 2.0, 3.0)
+}
+
+#[test]
+fn transforms_of_collada_nodes_are_applied_and_mirrored_faces_stay_outward() {
+    let inner = r##"<node><scale>-1 1 2</scale><instance_geometry url="#box"/></node>"##;
+    let by_parts =
+        format!("<node><translate>1 2 3</translate><rotate>0 0 2 90</rotate>{inner}</node>");
+    let by_matrix =
+        format!("<node><matrix>0 -1 0 1 1 0 0 2 0 0 1 3 0 0 0 1</matrix>{inner}</node>");
+    for nodes in [by_parts.clone(), by_matrix] {
+        let mesh = read(
+            MeshFormat::Collada,
+            collada("", &triangles(), &nodes).as_bytes(),
+        )
+        .unwrap();
+        check_placed(&mesh);
+    }
+    // Two instances of one geometry, one of them through another node.
+    let twice = format!(
+        "{by_parts}<node id=\"n\"><instance_geometry url=\"#box\"/></node><node><translate>5 0 0</translate><instance_node url=\"#n\"/></node>"
+    );
+    let mesh = read(
+        MeshFormat::Collada,
+        collada("", &triangles(), &twice).as_bytes(),
+    )
+    .unwrap();
+    assert_eq!(mesh.n_triangles(), 36);
+    let last = mesh.moved(&Pose::from_translation(DVec3::new(-5.0, 0.0, 0.0)));
+    assert_eq!(corners(&last)[72..], corners(&cuboid(SIDES)));
+}
+
+/// Checks the places of the corners, and that the triangles of the mirrored cuboid face outwards.
+fn check_placed(mesh: &TriangleMesh) {
+    let mut own = corners(mesh);
+    let mut expected: Vec<DVec3> = corners(&cuboid(SIDES)).into_iter().map(placed).collect();
+    let by_place = |a: &DVec3, b: &DVec3| a.to_array().partial_cmp(&b.to_array()).unwrap();
+    let rounded = |all: &mut Vec<DVec3>| {
+        all.iter_mut()
+            .for_each(|corner| *corner = (*corner * 1e9).round());
+        all.sort_by(by_place);
+    };
+    let center = DVec3::new(1.0, 2.0, 3.0);
+    for t in 0..mesh.n_triangles() {
+        let [a, b, c] = mesh.triangle(t).0;
+        assert!(
+            (b - a).cross(c - a).dot(a - center) > 0.0,
+            "triangle {t} faces inwards"
+        );
+    }
+    rounded(&mut own);
+    rounded(&mut expected);
+    assert_eq!(own, expected);
+}
+
+#[test]
+fn ids_that_meshes_repeat_mean_those_of_the_own_mesh() {
+    let good = collada("", &triangles(), NODE);
+    let (start, end) = (
+        good.find("<geometry").unwrap(),
+        good.find("</library_geometries>").unwrap(),
+    );
+    // A smaller geometry with the same ids before the one of the scene.
+    let other = good[start..end]
+        .replacen("id=\"box\"", "id=\"other\"", 1)
+        .replace("0.25", "0.125");
+    let both = [&good[..start], &other, &good[start..]].concat();
+    assert_same(
+        &read(MeshFormat::Collada, both.as_bytes()).unwrap(),
+        &corners(&cuboid(SIDES)),
+    );
+}
+
+#[test]
+fn wrong_collada_files_are_refused_with_the_line() {
+    let good = collada("", &triangles(), NODE);
+    let with = |old: &str, new: &str| {
+        assert!(good.contains(old), "{old}");
+        good.replacen(old, new, 1)
+    };
+    let circle = r##"<node id="a"><node><instance_node url="#a"/></node></node>"##;
+    for (text, said) in [
+        (good[..good.len() / 2].to_owned(), "well-formed XML"),
+        (String::new(), "well-formed XML"),
+        ("<mujoco/>".to_owned(), "<mujoco> as the root; a <COLLADA>"),
+        (
+            with("count=\"24\"", "count=\"30\""),
+            "line 4: <float_array> with `count` 30, but 24 numbers",
+        ),
+        (
+            with("count=\"8\"", "count=\"9\""),
+            "9 points with `stride` 3, but 24 numbers",
+        ),
+        (
+            with("-0.25", "nan"),
+            "line 4: <float_array>, number 1: \"nan\"; finite numbers",
+        ),
+        (with("-0.25", "1e999"), "finite numbers"),
+        (with("<p>0 0 4", "<p>0 0 99"), "vertex index 99; 0 to 7"),
+        (
+            with("<p>0 0 4", "<p>0 0 -4"),
+            "number 3: \"-4\"; whole numbers from 0",
+        ),
+        (with("<p>0 0 4 0", "<p>0 0 4"), "indices for 2 inputs"),
+        (
+            with("<triangles count=\"12\"", "<triangles count=\"11\""),
+            "`count` 11, but 12 faces",
+        ),
+        (
+            with("semantic=\"VERTEX\"", "semantic=\"NORMAL\""),
+            "without an <input semantic=\"VERTEX\">",
+        ),
+        (with("url=\"#box\"", "url=\"#bx\""), "`url` \"#bx\""),
+        (
+            with("<node>", "<node><matrix>1 0 0</matrix>"),
+            "<matrix> with 3 numbers",
+        ),
+        (
+            with("<node>", "<node><rotate>0 0 0 90</rotate>"),
+            "axis of length zero",
+        ),
+        (with("<node>", "<node><skew>0 0 0 0 0 0 0</skew>"), "<skew>"),
+        (collada("", &triangles(), circle), "nodes inside each other"),
+        (
+            collada("<unit meter=\"0\"/>", &triangles(), NODE),
+            "`meter` \"0\"; a positive number",
+        ),
+        (collada("", "", NODE), "no faces"),
+    ] {
+        let error = read(MeshFormat::Collada, text.as_bytes()).unwrap_err();
+        assert!(
+            error.to_string().starts_with('m') && error.to_string().contains(said),
+            "{said}: {error}"
+        );
+        assert_eq!(error.exit_code(), 2);
+    }
+}
+
+/// Returns the description and the buffer of a glTF file of the cuboid: positions as f32 and indices as u16.
+fn gltf() -> (Value, Vec<u8>) {
+    let cube = cuboid(SIDES);
+    let mut buffer = Vec::new();
+    for v in cube.vertices() {
+        buffer.extend(v.to_array().map(|x| (x as f32).to_le_bytes()).concat());
+    }
+    let n_bytes = buffer.len();
+    for corner in cube.triangles().iter().flatten() {
+        buffer.extend((*corner as u16).to_le_bytes());
+    }
+    let description = json!({
+        "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }],
+        "nodes": [
+            { "translation": [1.0, 2.0, 3.0], "rotation": [0.0, 0.0, 0.5f64.sqrt(), 0.5f64.sqrt()], "children": [1] },
+            { "scale": [-1.0, 1.0, 2.0], "mesh": 0 },
+        ],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 7 }, "indices": 1, "mode": 4 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR" },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": n_bytes },
+            { "buffer": 0, "byteOffset": n_bytes, "byteLength": buffer.len() - n_bytes },
+        ],
+        "buffers": [{ "byteLength": buffer.len() }],
+    });
+    (description, buffer)
+}
+
+fn glb(description: &Value, buffer: &[u8]) -> Vec<u8> {
+    let mut json = serde_json::to_vec(description).unwrap();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut binary = buffer.to_vec();
+    binary.resize(binary.len().next_multiple_of(4), 0);
+    let length = 12 + 8 + json.len() + 8 + binary.len();
+    let mut bytes = b"glTF".to_vec();
+    for number in [2, length as u32, json.len() as u32] {
+        bytes.extend(number.to_le_bytes());
+    }
+    bytes.extend(b"JSON");
+    bytes.extend(json);
+    bytes.extend((binary.len() as u32).to_le_bytes());
+    bytes.extend(b"BIN\0");
+    bytes.extend(binary);
+    bytes
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let groups = bytes.chunks(3).map(|group| {
+        let bits = group
+            .iter()
+            .fold(0, |bits, &byte| bits << 8 | u32::from(byte))
+            << (8 * (3 - group.len()));
+        let letters = (0..4).map(|at| match at <= group.len() {
+            true => char::from(LETTERS[(bits >> (18 - 6 * at)) as usize & 63]),
+            false => '=',
+        });
+        letters.collect::<String>()
+    });
+    groups.collect()
+}
+
+#[test]
+fn gltf_files_are_read_with_buffers_inside_beside_and_in_the_address() {
+    let (description, buffer) = gltf();
+    check_placed(&read(MeshFormat::Gltf, &glb(&description, &buffer)).unwrap());
+    let mut inside = description.clone();
+    inside["buffers"][0]["uri"] =
+        format!("data:application/octet-stream;base64,{}", base64(&buffer)).into();
+    check_placed(&read(MeshFormat::Gltf, inside.to_string().as_bytes()).unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("my data.bin"), &buffer).unwrap();
+    let mut beside = description.clone();
+    beside["buffers"][0]["uri"] = "my%20data.bin".into();
+    let place = folder.path().join("m.gltf").display().to_string();
+    let file = MeshFormat::Gltf.read(&place, None, beside.to_string().as_bytes());
+    check_placed(&file.unwrap().into_mesh("m").unwrap());
+    beside["buffers"][0]["uri"] = "none.bin".into();
+    let missing = MeshFormat::Gltf
+        .read(&place, None, beside.to_string().as_bytes())
+        .unwrap_err();
+    assert!(
+        missing.to_string().contains("buffer 0: ") && missing.exit_code() == 2,
+        "{missing}"
+    );
+}
+
+#[test]
+fn wrong_gltf_files_are_refused_with_the_part() {
+    let (description, buffer) = gltf();
+    let whole = glb(&description, &buffer);
+    for length in (0..whole.len()).step_by(7) {
+        let error = read(MeshFormat::Gltf, &whole[..length]).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{length}: {error}");
+    }
+    let mut nan = buffer.clone();
+    nan[4..8].copy_from_slice(&f32::NAN.to_le_bytes());
+    let mut far = buffer.clone();
+    far[96..98].copy_from_slice(&999u16.to_le_bytes());
+    let with = |pointer: &str, value: Value| {
+        let mut changed = description.clone();
+        *changed.pointer_mut(pointer).expect(pointer) = value;
+        glb(&changed, &buffer)
+    };
+    for (bytes, said) in [
+        (
+            glb(&description, &nan),
+            "accessor 0: element 0: NaN; finite numbers",
+        ),
+        (
+            glb(&description, &far),
+            "mesh 0, primitive 0: face 1: vertex index 999; 0 to 7",
+        ),
+        (
+            with("/accessors/0/count", json!(9)),
+            "accessor 0: 9 elements",
+        ),
+        (
+            with("/accessors/0/count", json!(0)),
+            "accessor 0: 0 elements",
+        ),
+        (with("/accessors/0/count", json!(u64::MAX)), "accessor 0: "),
+        (
+            with("/accessors/1/count", json!(35)),
+            "35 corners of triangles",
+        ),
+        (
+            with("/accessors/0/type", json!("VEC2")),
+            "accessor 0: `type` VEC2; VEC3",
+        ),
+        (
+            with("/accessors/1/componentType", json!(5126)),
+            "vertex indices with `componentType` 5126",
+        ),
+        (
+            with("/accessors/0/componentType", json!(7)),
+            "`componentType` 7",
+        ),
+        (
+            with("/bufferViews/1/byteOffset", json!(4000)),
+            "accessor 1: 36 elements",
+        ),
+        (with("/bufferViews/1/buffer", json!(3)), "buffer 3; 0 to 0"),
+        (
+            with("/buffers/0/byteLength", json!(4000)),
+            "buffer 0: 168 bytes; `byteLength` 4000",
+        ),
+        (with("/nodes/1/mesh", json!(1)), "mesh 1; 0 to 0"),
+        (with("/nodes/1/scale", json!([1.0, 1.0])), "invalid length"),
+        (
+            with("/nodes/0/rotation", json!([0.0, 0.0, 0.0, 0.0])),
+            "node 0: a transform that is not affine",
+        ),
+        (
+            with("/nodes/0/children", json!([0])),
+            "nodes inside each other",
+        ),
+        (with("/nodes/0/children", json!([7])), "node 7; 0 to 1"),
+        (with("/scene", json!(2)), "scene 2; 0 to 0"),
+        (with("/meshes/0/primitives/0/mode", json!(1)), "no faces"),
+    ] {
+        let error = read(MeshFormat::Gltf, &bytes).unwrap_err();
+        assert!(
+            error.to_string().starts_with('m') && error.to_string().contains(said),
+            "{said}: {error}"
+        );
+        assert_eq!(error.exit_code(), 2);
+    }
+    let mut packed = description.clone();
+    packed["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    let error = read(MeshFormat::Gltf, &glb(&packed, &buffer))
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("KHR_draco_mesh_compression"), "{error}");
+}
