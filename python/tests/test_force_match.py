@@ -124,6 +124,33 @@ def test_a_thin_plate_deep_in_the_skin_does_not_slip_behind_it() -> None:
             assert abs(residuals[0, 0]) < 1e-9, (height, force, residuals)
 
 
+@pytest.mark.parametrize("kind", ["grid", "disc"])
+def test_the_bodies_of_one_object_press_together(kind: str, box: bt.Mesh) -> None:
+    patch = grid() if kind == "grid" else bt.Patch.disc(0.012, 2e-3, 4e-3, stiffness=STIFFNESS)
+    bodies = [box, BALL, box]  # the balls and boxes share taxels
+    at, places = poses([0, 0, 0]), poses([0.01, 0, 1e-3], [0, 0, 0.0195], [-0.03, 0, 5e-4])
+    apart, together = bt.Skin([patch], bodies), bt.Skin([patch], bodies, objects=[0, 1, 0])
+    plain = apart.read(at, places)
+    assert np.array_equal(plain, together.read(at, places))
+    for gap in (0.0, 2e-3, -5e-3):
+        places[:, 2] += gap
+        forces, travels, residuals = (np.empty((1, 2)) for _ in range(3))
+        arrays = dict(pair_forces=forces, travels=travels, residuals=residuals)
+        read = together.read(at, places, forces=[[3.0, 0.0]], **arrays)
+        # The boxes alone, moved by the travel, have the whole force.
+        moved = places.copy()
+        moved[:, 2] -= travels[0, 0]
+        moved[1, 2] = 1.0
+        assert abs(STIFFNESS * read.sum() - 3.0) < 1e-9 and np.abs(residuals).max() < 1e-9
+        assert np.abs(apart.read(at, moved) - read).max() < 1e-12
+        one = bt.Skin([patch], bodies, objects=[0, 0, 0])
+        read = one.read(at, places, forces=[[3.0]])
+        assert abs(STIFFNESS * read.sum() - 3.0) < 1e-9
+    for wrong, message in [([0, 1], "2 indices; one for each of 3"), ([0, 2, 0], "no body of object 1"), ([1, 1, 2], "object 0")]:
+        with pytest.raises(ValueError, match=f"objects: .*{message}"):
+            bt.Skin([patch], bodies, objects=wrong)
+
+
 def test_a_batch_is_its_sets_one_by_one_with_all_results(box: bt.Mesh) -> None:
     rng = np.random.default_rng(1)
     skin = bt.Skin([grid(), bt.Patch.disc(0.01, 2e-3, 4e-3)], [BALL, box])

@@ -31,6 +31,8 @@ def things(rng: np.random.Generator) -> list[str]:
         f'<geom name="thing" type="capsule" size="{a} 0.02"/>',
         f'<geom name="thing" type="cylinder" size="{a} {b}"/>',
         f'<geom name="thing" type="ellipsoid" size="{a} {b} {c}"/>',
+        # Two boxes side by side and a ball: all press the same taxels.
+        f'<geom name="thing" type="box" size="{a} {b} {c}"/><geom type="box" size="{a} {b} {c}" pos="{a} 0 0"/><geom type="sphere" size="{c}"/>',
         f'<geom name="thing" type="mesh" mesh="hull"/>|<asset><mesh name="hull" vertex="{hull}"/></asset>',
     ]
 
@@ -38,7 +40,7 @@ def things(rng: np.random.Generator) -> list[str]:
 @pytest.mark.parametrize("kind", ["grid", "hexagonal"])
 def test_the_sum_of_forces_is_the_engine_s_in_random_grasps(kind: str) -> None:
     rng = np.random.default_rng(5)
-    for _ in range(17):  # 102 grasps
+    for _ in range(15):  # 105 grasps
         for text in things(rng):
             geoms, _, others = text.partition("|")
             turn = rng.normal(size=4)
@@ -47,15 +49,16 @@ def test_the_sum_of_forces_is_the_engine_s_in_random_grasps(kind: str) -> None:
             model = with_object("gripper", geoms, pose, others)
             data = mujoco.MjData(model)
             close_gripper(model, data, n_steps=int(rng.integers(120, 400)))
-            skin = Skin(model, pads(kind), geoms=["thing"])
-            pair_forces, residuals, travels = np.empty((2, 1)), np.empty((2, 1)), np.empty((2, 1))
+            skin = Skin(model, pads(kind))
+            assert skin.bodies == ["gripper_base", "object"]
+            pair_forces, residuals, travels = np.empty((2, 2)), np.empty((2, 2)), np.empty((2, 2))
             read = skin.read(
                 data, output="force", **MATCH, pair_forces=pair_forces, residuals=residuals, travels=travels
             )
             forces = normal_forces(model, data)
             engine = np.array([forces.get(f"{side}_finger", 0.0) for side in ("left", "right")])
             assert engine.max() > 0.1
-            assert np.abs(pair_forces[:, 0] - engine).max() < 1e-6 and np.abs(residuals).max() < 1e-6, (text, residuals)
+            assert np.abs(pair_forces[:, 1] - engine).max() < 1e-6 and np.abs(residuals).max() < 1e-6, (text, residuals)
             assert abs(read.sum() - engine.sum()) < 1e-6
 
 
@@ -166,10 +169,10 @@ def test_matched_forces_of_the_hand_reach_a_user_sensor() -> None:
             close_hand(model, data)
         finally:
             mujoco.set_mjcb_sensor(None)
-        residuals, forces = (np.empty((len(layout), len(skin.geoms))) for _ in range(2))
+        residuals, forces = (np.empty((len(layout), len(skin.bodies))) for _ in range(2))
         read = skin.read(data, output="force", **MATCH, residuals=residuals, pair_forces=forces)
         assert np.array_equal(data.sensordata[: len(read)], read)
-        of_object = [name in ("ball", "box") for name in skin.geoms]
+        of_object = [name == "object" for name in skin.bodies]
         carriers = {model.body(model.site(name).bodyid[0]).name for name in layout}
         engine = sum(force for body, force in normal_forces(model, data).items() if body in carriers)
         assert abs((forces + residuals)[:, of_object].sum() - engine) < 1e-9

@@ -68,7 +68,7 @@ impl PressedObjects {
             let moved = MovedObject {
                 patch: &patch.skin,
                 objects: &plan.models,
-                moving: pressed.object,
+                moving: Some(pressed.object),
                 direction: skin.pose.rotation.conjugate() * press.direction,
             };
             pressed.wanted = press.force_at(time);

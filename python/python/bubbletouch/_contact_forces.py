@@ -18,11 +18,11 @@ FACING = 0.5
 
 
 class WantedForces(NamedTuple):
-    """Forces of the pairs of patch and geometry, (n_patches, n_geometries), newtons."""
+    """Forces of the pairs of patch and object, (n_patches, n_objects), newtons."""
 
     # Forces that the patches are to have.
     forces: Array
-    # Directions of the patches' travels in their frames, (n_patches, n_geometries, 3), or None if all patches are flat.
+    # Directions of the patches' travels in their frames, (n_patches, n_objects, 3), or None if all patches are flat.
     directions: Array | None
     # Contact forces on the bodies of the patches that press on no patch; each belongs to the nearest patch.
     beside: Array
@@ -44,7 +44,8 @@ class Contact(NamedTuple):
 class ContactForces:
     """Distributes an engine's contact forces over patches.
 
-    patches: patches of the skin. carriers: body of each patch. bodies: body of each geometry of the engine. touching: geometries that can touch the skin.
+    patches: patches of the skin. carriers: body of each patch. bodies: body of each geometry of the engine. objects: number of
+    the rigid object of each geometry that can touch the skin.
     """
 
     def __init__(
@@ -52,12 +53,12 @@ class ContactForces:
         patches: Sequence[_core.Patch],
         carriers: Sequence[Hashable],
         bodies: Mapping[Any, Hashable],
-        touching: Sequence[Hashable],
+        objects: Mapping[Any, int],
     ) -> None:
         self._centers = [np.asarray(patch.centers) for patch in patches]
         self._axes = [np.asarray(patch.axes) for patch in patches]
         self._is_flat = [bool((axes == [0.0, 0.0, 1.0]).all()) for axes in self._axes]
-        self._columns = {geometry: column for column, geometry in enumerate(touching)}
+        self._columns = objects
         of_body = {body: [p for p, carrier in enumerate(carriers) if carrier == body] for body in carriers}
         self._patches_of = {geometry: of_body[body] for geometry, body in bodies.items() if body in of_body}
 
@@ -65,7 +66,7 @@ class ContactForces:
         """Returns the forces that the pairs are to have.
 
         poses: positions (n_patches, 3) and rotation matrices (n_patches, 9) of the patches. overlaps: normal forces of the pairs at the engine's poses,
-        (n_patches, n_geometries), by which the force of a contact is divided if several patches of one body face it.
+        (n_patches, n_objects), by which the force of a contact is divided if several patches of one body face it.
         """
         forces, beside = np.zeros(overlaps.shape), np.zeros(overlaps.shape)
         directions = np.zeros((*overlaps.shape, 3))

@@ -172,10 +172,15 @@ class Skin:
     """Patches of skin and bodies that may touch them, read at given poses in one call.
 
     `Skin(patches, bodies)`: patches, a sequence of Patch; bodies, a sequence of Mesh or SphereUnion. A taxel that several bodies deflect has the largest
-    of the deflections. Several threads may read one skin at the same time. Raises ValueError for an empty sequence of patches.
+    of the deflections. Several threads may read one skin at the same time.
+
+    objects: index of the rigid object that each body is a part of, (n_bodies,), from 0; None: each body is an object. Wanted forces are forces between
+    patches and objects: the bodies of an object press a patch together.
+
+    Raises ValueError for an empty sequence of patches, and for indices of objects that skip one.
     """
 
-    def __new__(cls, patches: Sequence[Patch], bodies: Sequence[_Model]) -> Skin: ...
+    def __new__(cls, patches: Sequence[Patch], bodies: Sequence[_Model], *, objects: Sequence[int] | None = None) -> Skin: ...
     @property
     def n_taxels(self) -> int:
         """Number of taxels of all patches."""
@@ -208,21 +213,21 @@ class Skin:
         (…, k, 3, 3) as matrices by rows, as MuJoCo has them. A single patch or body needs no axis k: (7,), (4, 4).
         output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
 
-        forces: wanted normal forces of the pairs of patch and body, newtons, (n_patches, n_bodies) or (n, n_patches, n_bodies), zero or more. The normal
-        force of a pair is the sum of the forces of the patch's taxels along their axes under this body alone. The patch travels from its pose until it
-        has the wanted force. A pair with force 0 does not touch, also if patch and body overlap. A pair with NaN is read at its pose.
-        directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_bodies, 3); default z.
-        reach: largest travel towards the body, metres; default: the patch's largest stroke plus its largest taxel diameter. If the force is not reached,
-        the press ends there, or before the body is behind the substrate.
+        forces: wanted normal forces of the pairs of patch and object, newtons, (n_patches, n_objects) or (n, n_patches, n_objects), zero or more. The normal
+        force of a pair is the sum of the forces of the patch's taxels along their axes under this object alone. The patch travels from its pose until it
+        has the wanted force. A pair with force 0 does not touch, also if patch and object overlap. A pair with NaN is read at its pose.
+        directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_objects, 3); default z.
+        reach: largest travel towards the object, metres; default: the patch's largest stroke plus its largest taxel diameter. If the force is not reached,
+        the press ends there, or before the object is behind the substrate.
         shear: ShearState of this skin, which is advanced by one step; wrenches then contain friction and the lateral forces of inclined contacts.
 
         The following arrays are filled; float64 except contacts, C order, with a first axis n for n sets of poses.
         out: the frame; this array is returned.
         wrenches: (n_patches, 6), force and torque of the normal forces on each patch, in the patch's frame about its origin, newtons and newton metres.
         contacts: (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke.
-        pair_forces: (n_patches, n_bodies), normal force of each pair, newtons.
-        residuals: (n_patches, n_bodies), wanted force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
-        travels: (n_patches, n_bodies), travel of the patch of each pair, metres; NaN for pairs with force 0.
+        pair_forces: (n_patches, n_objects), normal force of each pair, newtons.
+        residuals: (n_patches, n_objects), wanted force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
+        travels: (n_patches, n_objects), travel of the patch of each pair, metres; NaN for pairs with force 0.
         """
 
     def shear_state(self, stiffness: ArrayLike, friction: ArrayLike, *, n: int | None = None) -> ShearState:

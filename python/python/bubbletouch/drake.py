@@ -48,8 +48,12 @@ class Skin:
             if unknown := [name for name in geometries if name not in names]:
                 raise ValueError(f"geometries: {unknown[0]!r}; one of {', '.join(names)}")
             self._touching = [names[name] for name in geometries]
-        self.skin = _core.Skin(list(layout.values()), [shape_surface(of.GetShape(i), tolerance) for i in self._touching])
-        self._contact_forces = ContactForces(list(layout.values()), carriers, bodies, self._touching)
+        # The geometries of one body press a patch together.
+        self.bodies = list(dict.fromkeys(bodies[i] for i in self._touching))
+        objects = {i: self.bodies.index(bodies[i]) for i in self._touching}
+        surfaces = [shape_surface(of.GetShape(i), tolerance) for i in self._touching]
+        self.skin = _core.Skin(list(layout.values()), surfaces, objects=list(objects.values()))
+        self._contact_forces = ContactForces(list(layout.values()), carriers, bodies, objects)
 
     def read(self, context: Context, *, match: Literal["normal_force"] | None = None, **options: Any) -> Array:
         """Returns the readings at the poses of the diagram's context, (n_taxels,). The options are those of bubbletouch.Skin.read; `match` is the one of
@@ -62,7 +66,7 @@ class Skin:
             raise ValueError(f'match: {match!r}; None or "normal_force"')
         if match is None:
             return self.skin.read(patches, bodies, **options)
-        overlaps = np.empty((len(self._frames), len(self._touching)))
+        overlaps = np.empty((len(self._frames), len(self.bodies)))
         self.skin.read(patches, bodies, pair_forces=overlaps)
         results = self._plant.get_contact_results_output_port().Eval(plant)
         forces, directions, beside = self._contact_forces.wanted(_contacts(results), patches, overlaps)

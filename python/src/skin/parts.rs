@@ -29,6 +29,15 @@ pub struct Body {
     bounds: Aabb,
 }
 
+/// Bodies that move together as one rigid object.
+#[derive(Default)]
+pub struct RigidObject {
+    /// Indices of the bodies.
+    pub members: Vec<usize>,
+    /// Contact models of the bodies, in the order of `members`.
+    pub models: Vec<Model>,
+}
+
 impl Body {
     /// Prepares a contact model for presses.
     pub fn new(model: Model) -> Self {
@@ -73,11 +82,17 @@ impl SkinPatch {
         center.distance_squared(nearest) <= reach * reach
     }
 
-    /// Presses the patch under one body at its pose; the deflections are in the workspace. Returns the sum of the forces of the taxels, newtons.
-    pub fn press(&self, body: &Body, patch_from_body: Pose, workspace: &mut Workspace) -> f64 {
+    /// Raises the deflections of a frame to those under one body at its pose.
+    pub fn press(
+        &self,
+        body: &Body,
+        patch_from_body: Pose,
+        frame: &mut [f64],
+        workspace: &mut Workspace,
+    ) {
         let model = std::slice::from_ref(&body.model);
         press_at_pose(&self.patch, model, &[patch_from_body], workspace);
-        self.total_force(workspace.deflections())
+        raise(frame, workspace.deflections());
     }
 
     /// Returns the sum of the forces of the taxels along their axes, newtons, for their deflections, metres.
@@ -125,5 +140,12 @@ impl SkinPatch {
         for (index, value) in frame.iter_mut().enumerate() {
             *value *= self.patch.taxels().at(index).stiffness;
         }
+    }
+}
+
+/// Raises each deflection of a frame to the given one, if that is larger.
+pub fn raise(frame: &mut [f64], deflections: &[f64]) {
+    for (taxel, deflection) in frame.iter_mut().zip(deflections) {
+        *taxel = taxel.max(*deflection);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::filled::{fill, read_optional};
 use super::force_match::{WantedForce, press_pair};
-use super::parts::{Body, SkinPatch};
+use super::parts::{Body, RigidObject, SkinPatch, raise};
 use super::poses::read_poses;
 use super::shear_state::ShearState;
 use crate::arrays::each;
@@ -10,7 +10,7 @@ use crate::batch::Spare;
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
 use crate::patch::Patch;
-use bubbletouch::contact::{HeldForce, Workspace};
+use bubbletouch::contact::Workspace;
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Model;
 use bubbletouch::world::{Shear, Shears};
@@ -24,11 +24,17 @@ const OUT_OF_REACH: f64 = 1e6;
 /// Patches of skin and bodies that may touch them, read at given poses in one call.
 ///
 /// `Skin(patches, bodies)`: patches, a sequence of Patch; bodies, a sequence of Mesh or SphereUnion. A taxel that several bodies deflect has the largest
-/// of the deflections. Several threads may read one skin at the same time. Raises ValueError for an empty sequence of patches.
+/// of the deflections. Several threads may read one skin at the same time.
+///
+/// objects: index of the rigid object that each body is a part of, (n_bodies,), from 0; None: each body is an object. Wanted forces are forces between
+/// patches and objects: the bodies of an object press a patch together.
+///
+/// Raises ValueError for an empty sequence of patches, and for indices of objects that skip one.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Skin {
     parts: Vec<SkinPatch>,
     bodies: Vec<Body>,
+    objects: Vec<RigidObject>,
     /// Contact models of all bodies in one sequence, as presses with shear springs need them.
     models: Vec<Model>,
     /// Number of taxels of all patches.
@@ -44,6 +50,9 @@ struct SkinWorkspace {
     body_poses: Vec<Pose>,
     /// Poses of all bodies in the frame of one patch.
     placed: Vec<Pose>,
+    /// Scratch memory for the poses of one object, and for the deflections under it.
+    object_poses: Vec<Pose>,
+    object_frame: Vec<f64>,
     /// Wanted force of each pair, newtons; empty if every pair is read at its pose.
     forces: Vec<f64>,
     /// Direction of each pair, three numbers a pair; empty for z.
@@ -54,10 +63,10 @@ struct SkinWorkspace {
     pairs: PairResults,
 }
 
-/// Results for each pair of patch and body.
+/// Results for each pair of patch and object.
 #[derive(Default)]
 struct PairResults {
-    /// Force of the body alone, newtons.
+    /// Force of the object alone, newtons.
     forces: Vec<f64>,
     /// Wanted minus reached force, newtons.
     residuals: Vec<f64>,
@@ -85,7 +94,12 @@ struct ReadOptions {
 #[pymethods]
 impl Skin {
     #[new]
-    fn new(patches: Vec<Bound<Patch>>, bodies: Vec<Bound<PyAny>>) -> PyResult<Self> {
+    #[pyo3(signature = (patches, bodies, *, objects=None))]
+    fn new(
+        patches: Vec<Bound<Patch>>,
+        bodies: Vec<Bound<PyAny>>,
+        objects: Option<Vec<usize>>,
+    ) -> PyResult<Self> {
         guarded(|| {
             if patches.is_empty() {
                 return Err(bad_input("patches", "none", "at least one Patch"));
@@ -103,6 +117,7 @@ impl Skin {
             });
             let bodies: Vec<Body> = bodies.collect::<PyResult<_>>()?;
             Ok(Self {
+                objects: rigid_objects(&bodies, objects)?,
                 models: bodies.iter().map(|body| body.model.clone()).collect(),
                 bodies,
                 parts,
@@ -132,21 +147,21 @@ impl Skin {
     /// (…, k, 3, 3) as matrices by rows, as MuJoCo has them. A single patch or body needs no axis k: (7,), (4, 4).
     /// output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
     ///
-    /// forces: wanted normal forces of the pairs of patch and body, newtons, (n_patches, n_bodies) or (n, n_patches, n_bodies), zero or more. The normal
-    /// force of a pair is the sum of the forces of the patch's taxels along their axes under this body alone. The patch travels from its pose until it
-    /// has the wanted force. A pair with force 0 does not touch, also if patch and body overlap. A pair with NaN is read at its pose.
-    /// directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_bodies, 3); default z.
-    /// reach: largest travel towards the body, metres; default: the patch's largest stroke plus its largest taxel diameter. If the force is not reached,
-    /// the press ends there, or before the body is behind the substrate.
+    /// forces: wanted normal forces of the pairs of patch and object, newtons, (n_patches, n_objects) or (n, n_patches, n_objects), zero or more. The normal
+    /// force of a pair is the sum of the forces of the patch's taxels along their axes under this object alone. The patch travels from its pose until it
+    /// has the wanted force. A pair with force 0 does not touch, also if patch and object overlap. A pair with NaN is read at its pose.
+    /// directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_objects, 3); default z.
+    /// reach: largest travel towards the object, metres; default: the patch's largest stroke plus its largest taxel diameter. If the force is not reached,
+    /// the press ends there, or before the object is behind the substrate.
     /// shear: ShearState of this skin, which is advanced by one step; wrenches then contain friction and the lateral forces of inclined contacts.
     ///
     /// The following arrays are filled; float64 except contacts, C order, with a first axis n for n sets of poses.
     /// out: the frame; this array is returned.
     /// wrenches: (n_patches, 6), force and torque of the normal forces on each patch, in the patch's frame about its origin, newtons and newton metres.
     /// contacts: (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke.
-    /// pair_forces: (n_patches, n_bodies), normal force of each pair, newtons.
-    /// residuals: (n_patches, n_bodies), wanted force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
-    /// travels: (n_patches, n_bodies), travel of the patch of each pair, metres; NaN for pairs with force 0.
+    /// pair_forces: (n_patches, n_objects), normal force of each pair, newtons.
+    /// residuals: (n_patches, n_objects), wanted force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
+    /// travels: (n_patches, n_objects), travel of the patch of each pair, metres; NaN for pairs with force 0.
     #[pyo3(signature = (patch_poses, body_poses, *, output="deflection", forces=None, directions=None, reach=None, shear=None, out=None, wrenches=None, contacts=None, pair_forces=None, residuals=None, travels=None))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
     fn read<'py>(
@@ -177,10 +192,10 @@ impl Skin {
             let shape = |last: &[usize]| -> Vec<usize> {
                 n_sets.into_iter().chain(last.iter().copied()).collect()
             };
-            let (n_patches, n_bodies) = (self.parts.len(), self.bodies.len());
-            let pairs = shape(&[n_patches, n_bodies]);
+            let (n_patches, n_objects) = (self.parts.len(), self.objects.len());
+            let pairs = shape(&[n_patches, n_objects]);
             read_optional("forces", forces, &pairs, &mut scratch.forces)?;
-            let vectors = shape(&[n_patches, n_bodies, 3]);
+            let vectors = shape(&[n_patches, n_objects, 3]);
             read_optional("directions", directions, &vectors, &mut scratch.directions)?;
             check_pairs(&scratch.forces, &scratch.directions)?;
             let mut shear = match shear {
@@ -316,13 +331,13 @@ impl Skin {
         options: ReadOptions,
         mut shear: Option<&mut ShearState>,
     ) {
-        let (n_patches, n_bodies) = (self.parts.len(), self.bodies.len());
+        let (n_patches, n_objects) = (self.parts.len(), self.objects.len());
         let n_read = n * n_patches;
         clear(&mut scratch.frame, n * self.n_taxels);
         clear(&mut scratch.wrenches, n_read * 6);
-        clear(&mut scratch.pairs.forces, n_read * n_bodies);
-        clear(&mut scratch.pairs.residuals, n_read * n_bodies);
-        clear(&mut scratch.pairs.travels, n_read * n_bodies);
+        clear(&mut scratch.pairs.forces, n_read * n_objects);
+        clear(&mut scratch.pairs.residuals, n_read * n_objects);
+        clear(&mut scratch.pairs.travels, n_read * n_objects);
         scratch.contacts.clear();
         for index in 0..n_read {
             let (set, number) = (index / n_patches, index % n_patches);
@@ -352,8 +367,8 @@ impl Skin {
         }
     }
 
-    /// Presses one patch under each body within reach, and writes the largest deflections into the frame of zeros. The poses of the bodies in the frame of
-    /// the patch are in `placed` afterwards. Returns whether a body is within reach.
+    /// Presses one patch under each object within reach, and writes the largest deflections into the frame of zeros. The poses of the bodies in the frame
+    /// of the patch, after the travel, are in `placed` afterwards. Returns whether a body is within reach.
     ///
     /// If the call has a state of shear springs, the frame comes from a press under all bodies together, and only requested results of pairs are computed.
     fn press_pairs(
@@ -367,68 +382,100 @@ impl Skin {
         let set = index / self.parts.len();
         let n_bodies = self.bodies.len();
         let patch_from_world = scratch.patch_poses[index].inverse();
-        let frame = &mut scratch.frame[set * self.n_taxels + part.first..][..part.patch.n_taxels()];
         let poses = &scratch.body_poses[set * n_bodies..][..n_bodies];
-        let has_forces = !scratch.forces.is_empty();
-        let reads_pairs = !has_shear || has_forces || options.wants_pairs;
+        scratch.placed.clear();
+        let placed = poses.iter().map(|pose| patch_from_world.compose(pose));
+        scratch.placed.extend(placed);
+        let frame = &mut scratch.frame[set * self.n_taxels + part.first..][..part.patch.n_taxels()];
+        let reads_pairs = !has_shear || !scratch.forces.is_empty() || options.wants_pairs;
         let reach = options.reach.unwrap_or(part.reach);
         let mut any_near = false;
-        scratch.placed.clear();
-        for (at, (body, pose)) in (index * n_bodies..).zip(self.bodies.iter().zip(poses)) {
-            let mut placed = patch_from_world.compose(pose);
+        for (at, object) in (index * self.objects.len()..).zip(&self.objects) {
             let wanted = scratch.forces.get(at).copied().unwrap_or(f64::NAN);
+            let margin = if wanted.is_nan() { 0.0 } else { reach };
+            let is_near = |placed: &[Pose], member: usize| {
+                part.is_near(&self.bodies[member], &placed[member], margin)
+            };
+            let members = object.members.iter().copied();
+            if wanted == 0.0 {
+                for member in members {
+                    scratch.placed[member].translation.z += OUT_OF_REACH;
+                }
+                scratch.pairs.travels[at] = f64::NAN;
+                continue;
+            }
+            let first = members
+                .clone()
+                .position(|member| is_near(&scratch.placed, member));
+            let Some(first) = first else {
+                if !wanted.is_nan() {
+                    scratch.pairs.travels[at] = reach;
+                    scratch.pairs.residuals[at] = wanted;
+                }
+                continue;
+            };
+            any_near = true;
+            if !reads_pairs {
+                continue;
+            }
+            let workspace = &mut scratch.workspace;
+            if wanted.is_nan() {
+                let of_object = &mut scratch.object_frame;
+                clear(of_object, frame.len());
+                for member in members.skip(first) {
+                    if is_near(&scratch.placed, member) {
+                        let pose = scratch.placed[member];
+                        part.press(&self.bodies[member], pose, of_object, workspace);
+                    }
+                }
+                scratch.pairs.forces[at] = part.total_force(of_object);
+                raise(frame, of_object);
+                continue;
+            }
             let direction = match scratch.directions.get(3 * at..3 * at + 3) {
                 Some(direction) => DVec3::from_slice(direction),
                 None => DVec3::Z,
             };
-            let margin = if wanted.is_nan() { 0.0 } else { reach };
-            let is_near = part.is_near(body, &placed, margin);
-            let pressed = if wanted == 0.0 {
-                placed.translation.z += OUT_OF_REACH;
-                HeldForce {
-                    travel: f64::NAN,
-                    force: 0.0,
-                }
-            } else if !is_near {
-                HeldForce {
-                    travel: if wanted.is_nan() { 0.0 } else { reach },
-                    force: 0.0,
-                }
-            } else if !reads_pairs {
-                any_near = true;
-                HeldForce::default()
-            } else {
-                any_near = true;
-                let workspace = &mut scratch.workspace;
-                let held = match wanted.is_nan() {
-                    true => HeldForce {
-                        travel: 0.0,
-                        force: part.press(body, placed, workspace),
-                    },
-                    false => {
-                        let wanted = WantedForce {
-                            force: wanted,
-                            direction,
-                            reach,
-                        };
-                        press_pair(part, body, placed, wanted, workspace)
-                    }
-                };
-                for (taxel, deflection) in frame.iter_mut().zip(workspace.deflections()) {
-                    *taxel = taxel.max(*deflection);
-                }
-                placed.translation -= held.travel * direction;
-                held
+            let wanted = WantedForce {
+                force: wanted,
+                direction,
+                reach,
             };
-            scratch.placed.push(placed);
-            scratch.pairs.forces[at] = pressed.force;
-            scratch.pairs.travels[at] = pressed.travel;
-            if !wanted.is_nan() {
-                scratch.pairs.residuals[at] = wanted - pressed.force;
+            let poses = (&scratch.placed[..], &mut scratch.object_poses);
+            let held = press_pair(part, object, poses, wanted, workspace);
+            raise(frame, workspace.deflections());
+            for member in members {
+                scratch.placed[member].translation -= held.travel * direction;
             }
+            scratch.pairs.forces[at] = held.force;
+            scratch.pairs.travels[at] = held.travel;
+            scratch.pairs.residuals[at] = wanted.force - held.force;
         }
         any_near
     }
+}
+
+/// Groups bodies into rigid objects by the index of the object of each body.
+fn rigid_objects(bodies: &[Body], objects: Option<Vec<usize>>) -> PyResult<Vec<RigidObject>> {
+    let of_bodies = objects.unwrap_or_else(|| (0..bodies.len()).collect());
+    if of_bodies.len() != bodies.len() {
+        let given = format!("{} indices", of_bodies.len());
+        let allowed = format!("one for each of {} bodies", bodies.len());
+        return Err(bad_input("objects", given, allowed));
+    }
+    let n_objects = of_bodies.iter().max().map_or(0, |last| last + 1);
+    let missing = |object: &usize| !of_bodies.contains(object);
+    if let Some(object) = (0..n_objects.min(bodies.len() + 1)).find(missing) {
+        let given = format!("no body of object {object}");
+        return Err(bad_input("objects", given, "indices from 0 without a gap"));
+    }
+    let mut grouped: Vec<RigidObject> = Vec::new();
+    grouped.resize_with(n_objects, RigidObject::default);
+    for (number, (body, object)) in bodies.iter().zip(of_bodies).enumerate() {
+        grouped[object].members.push(number);
+        grouped[object].models.push(body.model.clone());
+    }
+    Ok(grouped)
 }
 
 /// Fills a vector with `n` zeros.

@@ -1,4 +1,4 @@
-//! Motion of one object along a line until a skin carries a given force, within travel limits.
+//! Motion of one object, or of all objects together, along a line until a skin carries a given force, within travel limits.
 
 use super::force_goal::FORCE_ACCURACY;
 use super::root_search::crossing;
@@ -18,15 +18,15 @@ pub struct HeldForce {
     pub force: f64,
 }
 
-/// Skin, and one of several objects that moves onto the skin along a line.
+/// Skin, and one of several objects, or all of them, that move onto the skin along a line.
 #[derive(Clone, Copy, Debug)]
 pub struct MovedObject<'a> {
     /// Patch of the skin.
     pub patch: &'a Patch,
     /// All objects of the scene.
     pub objects: &'a [Model],
-    /// Index of the moved object.
-    pub moving: usize,
+    /// Index of the moved object; `None` if all objects move together.
+    pub moving: Option<usize>,
     /// Direction of the motion, unit vector, in the patch frame.
     pub direction: DVec3,
 }
@@ -49,11 +49,15 @@ impl MovedObject<'_> {
         workspace: &mut Workspace,
     ) -> HeldForce {
         let [back, here, ahead] = travels;
-        let start = poses[self.moving].translation;
+        let range = self.moving.map_or(0..poses.len(), |moved| moved..moved + 1);
+        let starts = poses[range.clone()].iter().map(|pose| pose.translation);
+        let starts: Vec<DVec3> = starts.collect();
         let mut carried = |travel: f64| {
-            poses[self.moving].translation = start + travel * self.direction;
+            for (pose, start) in poses[range.clone()].iter_mut().zip(&starts) {
+                pose.translation = *start + travel * self.direction;
+            }
             press_with_contacts(self.patch, self.objects, poses, workspace);
-            let is_moved = |number| number == self.moving;
+            let is_moved = |number| range.contains(&number);
             sample(self.patch, workspace.contacts(), self.direction, is_moved)
         };
         let tolerance = FORCE_ACCURACY * force;

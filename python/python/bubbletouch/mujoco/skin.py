@@ -53,9 +53,12 @@ class Skin:
             raise ValueError("geoms: none that can touch the skin; at least one")
         self._geoms = np.array(found, dtype=np.intp)
         bodies = [geom_surface(model, geom, tolerance) for geom in found]
-        self._skin = _core.Skin(list(self._patches.values()), bodies)
-        of_geoms = dict(enumerate(model.geom_bodyid.tolist()))
-        self._contact_forces = ContactForces(list(self._patches.values()), carriers, of_geoms, found)
+        # The geoms of one body press a patch together.
+        of_geoms: dict[int, int] = dict(enumerate(model.geom_bodyid.tolist()))
+        self._bodies = list(dict.fromkeys(of_geoms[geom] for geom in found))
+        objects = {geom: self._bodies.index(of_geoms[geom]) for geom in found}
+        self._skin = _core.Skin(list(self._patches.values()), bodies, objects=list(objects.values()))
+        self._contact_forces = ContactForces(list(self._patches.values()), carriers, of_geoms, objects)
         names = zip(self._patches, self._skin.ranges, strict=True)
         self._slices = {name: slice(first, last) for name, (first, last) in names}
 
@@ -73,6 +76,11 @@ class Skin:
     def geoms(self) -> list[str]:
         """Names of the geoms that can touch the skin; an unnamed geom has the name geom_ID."""
         return [self._model.geom(geom).name or f"geom_{geom}" for geom in self._geoms]
+
+    @property
+    def bodies(self) -> list[str]:
+        """Names of the bodies of these geoms, in the order of pair_forces; an unnamed body has the name body_ID."""
+        return [self._model.body(body).name or f"body_{body}" for body in self._bodies]
 
     def read(
         self,
@@ -93,26 +101,26 @@ class Skin:
 
         Call mj_step, mj_forward or mj_kinematics before; `match` needs the contact forces of mj_step or mj_forward.
 
-        match: None reads the patches at the engine's poses. "normal_force" lets each patch travel until its normal force under each geom is the engine's.
-            The engine's normal force of a pair of patch and geom is the sum over their contacts of the force along the contact normal (first number of
-            mj_contactForce). A contact of the patch's body counts if the force on the patch is within 60° of the reversed axis of the taxel nearest to the
+        match: None reads the patches at the engine's poses. "normal_force" lets each patch travel until its normal force under each body is the engine's.
+            The engine's normal force of a pair of patch and body is the sum over their contacts of the force along the contact normal (first number of
+            mj_contactForce). All geoms of the body press the patch together. A contact of the patch's body counts if the force on the patch is within 60° of the reversed axis of the taxel nearest to the
             contact. If several patches of one body face a contact, its force is divided among them by their normal forces at the engine's poses, and
             otherwise the nearest one has it. Flat patches travel along z, other patches against the mean contact force.
-            A geom without contact force reads zero, also where it overlaps taxels. A contact without overlap moves the patch to the geom. A contact
+            A body without contact force reads zero, also where it overlaps taxels. A contact without overlap moves the patch to the body. A contact
             that faces no patch presses nothing; its force is in the residual of the nearest patch.
-        reach: largest travel towards a geom with `match`, metres; default: the patch's largest stroke plus its largest taxel diameter.
+        reach: largest travel towards a body with `match`, metres; default: the patch's largest stroke plus its largest taxel diameter.
         shear: state of shear_state(), which is advanced by one step.
 
         The following arrays are filled: out (n_taxels,), which is returned; wrenches (n_patches, 6), force and torque on each patch in its own frame;
-        contacts (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke; pair_forces, residuals and travels (n_patches, n_geoms):
-        normal force, the engine's force minus the normal force (0 without `match`), newtons, and travel of the patch, metres.
+        contacts (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke; pair_forces, residuals and travels (n_patches, n_bodies),
+        in the order of `bodies`: normal force, the engine's force minus the normal force (0 without `match`), newtons, and travel of the patch, metres.
         """
         patch_poses = self._frames.poses(data)
         body_poses = (data.geom_xpos[self._geoms], data.geom_xmat[self._geoms])
         if match is None:
             forces = directions = beside = None
         elif match == "normal_force":
-            overlaps = np.empty((len(self._patches), len(self._geoms)))
+            overlaps = np.empty((len(self._patches), len(self._bodies)))
             self._skin.read(patch_poses, body_poses, pair_forces=overlaps)
             forces, directions, beside = self._contact_forces.wanted(_contacts(self._model, data), patch_poses, overlaps)
         else:
