@@ -37,7 +37,7 @@ pub(crate) struct MeshBlocks {
     pub radius: f64,
 }
 
-/// Node with up to eight children; unused lanes contain NaN.
+/// Node with up to eight children.
 #[derive(Clone, Debug)]
 pub(crate) struct BlockNode {
     /// Centres and half sizes of the bounding boxes of the children's triangles, metres.
@@ -48,9 +48,11 @@ pub(crate) struct BlockNode {
     pub spread: Lane,
     /// Children: twice the index of a node, or twice the index of a block plus one.
     pub children: [u32; LANES],
+    /// One bit for each lane that contains a child.
+    pub used: u32,
 }
 
-/// Up to eight triangles; unused lanes contain NaN.
+/// Up to eight triangles.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     /// Corners of the triangles, metres.
@@ -61,6 +63,8 @@ pub(crate) struct Block {
     pub spread: Lane,
     /// Index of the first triangle; the triangles of the other lanes follow.
     pub first: u32,
+    /// One bit for each lane that contains a triangle.
+    pub used: u32,
 }
 
 /// Triangle in double precision with its contact data, stored together because they are read together.
@@ -71,7 +75,7 @@ pub(crate) struct ContactTriangle {
     pub face: ContactFace,
 }
 
-const UNUSED: Lane = [f32::NAN; LANES];
+const UNUSED: Lane = [0.0; LANES];
 
 impl MeshBlocks {
     /// Builds the blocks of triangles with their contact data, in equal order; at least one triangle.
@@ -115,10 +119,12 @@ impl Builder<'_> {
             axis: [UNUSED; 3],
             spread: UNUSED,
             children: [0; LANES],
+            used: 0,
         };
         self.built.nodes.push(node.clone());
         for (lane, part) in self.parts(range).into_iter().enumerate() {
             self.summarise(&mut node, lane, part.clone());
+            node.used |= 1 << lane;
             node.children[lane] = match part.len() <= LANES {
                 true => 2 * self.block(part) + 1,
                 false => 2 * self.node(part),
@@ -190,6 +196,7 @@ impl Builder<'_> {
             normal: [UNUSED; 3],
             spread: UNUSED,
             first: self.built.triangles.len() as u32,
+            used: 0,
         };
         for (lane, &place) in self.order[range].iter().enumerate() {
             let face = self.faces[place as usize];
@@ -201,6 +208,7 @@ impl Builder<'_> {
                 block.normal[k][lane] = face.normal[k] as f32;
             }
             block.spread[lane] = face.spread as f32;
+            block.used |= 1 << lane;
             self.built.triangles.push(ContactTriangle { corners, face });
         }
         self.built.blocks.push(block);

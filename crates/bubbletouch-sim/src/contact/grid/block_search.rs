@@ -4,6 +4,8 @@
 //! ([`mesh_blocks`](crate::objects::mesh_blocks)). The taxel comes from below, so d points down. Normals that certainly point down, or up, determine the side
 //! of the surface. If the side is not certain, d is any unit vector.
 //!
+//! The loops over lanes are short and without branches, and `max` and `min` replace comparisons, so that the compiler turns them into vector instructions.
+//!
 //! All bounds are enlarged by `slack`, far more than the rounding of single precision, so they never exclude a contact.
 
 use super::lines::{GridLines, Lines};
@@ -60,23 +62,11 @@ impl LaneLines {
         for k in 0..LANES {
             let first = (low[k] - self.first) * self.density + 0.5;
             let last = (high[k] - self.first) * self.density + 0.5;
-            ranges[0][k] = nearest_whole(smaller(larger(first, 0.0), self.n));
-            ranges[1][k] = nearest_whole(smaller(larger(last, 0.0), self.n));
+            ranges[0][k] = nearest_whole(first.max(0.0).min(self.n));
+            ranges[1][k] = nearest_whole(last.max(0.0).min(self.n));
         }
         ranges
     }
-}
-
-/// Returns the larger of two numbers, the second if one is NaN. Unlike `f32::max`, it is one vector instruction.
-#[inline(always)]
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-/// Returns the smaller of two numbers, the second if one is NaN.
-#[inline(always)]
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
 }
 
 /// Returns the whole number nearest to a number from 0 to 2²². Unlike `f32::round`, it is two vector instructions on any processor.
@@ -97,12 +87,6 @@ fn negative(values: &Lane) -> u32 {
     bits
 }
 
-/// Returns −1 for true and 1 for false.
-#[inline(always)]
-fn sign_of(is_true: bool) -> f32 {
-    if is_true { -1.0 } else { 1.0 }
-}
-
 /// Taxels that the triangles of each lane may stop, and a lower bound of their heights.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidates {
@@ -118,6 +102,20 @@ pub(super) struct Candidates {
 }
 
 impl Candidates {
+    /// Removes lanes with one candidate and a positive value.
+    #[inline(always)]
+    fn remove_if_positive(&mut self, values: &Lane) {
+        let mut kept = [0.0; LANES];
+        for lane in 0..LANES {
+            let n_columns = self.columns[1][lane] - self.columns[0][lane];
+            let n_rows = self.rows[1][lane] - self.rows[0][lane];
+            let is_one = (1.5 - n_columns).min(1.5 - n_rows);
+            // Positive if the lane has one candidate and is to be removed.
+            kept[lane] = -is_one.min(values[lane]);
+        }
+        self.lanes &= !negative(&kept);
+    }
+
     /// Returns the columns and the rows of the candidates in a lane.
     #[inline(always)]
     pub fn rectangle(&self, lane: usize) -> [Range<usize>; 2] {
@@ -197,7 +195,65 @@ impl BlockSearch {
             // Triangles that reach in front of the substrate are looked at one by one.
             bounds.back[lane] = bounds.top[lane] + self.reach;
         }
-        self.candidates(&bounds, limit)
+        let mut candidates = self.candidates(&bounds, limit, node.used);
+        let mut middle = [[0.0; LANES]; 2];
+        for k in 0..2 {
+            for lane in 0..LANES {
+                middle[k][lane] = center[k][lane] + shift[lane] * axis[k][lane];
+            }
+        }
+        self.rule_out_boxes(&mut candidates, (&middle, &node.half), &spread);
+        candidates
+    }
+
+    /// Removes lanes with one candidate taxel that is beside the shadow of the bounding box, with the centre `middle` and enlarged by `spread`.
+    ///
+    /// A line with the direction u through the point o misses a box with half sizes h about the origin if |o × u| exceeds `h_j |u_k| + h_k |u_j|` in a
+    /// component i. In the frame of the mesh, u is the third row of the rotation matrix.
+    #[inline(always)]
+    fn rule_out_boxes(
+        &self,
+        candidates: &mut Candidates,
+        (middle, half): (&[Lane; 2], &[Lane; 3]),
+        spread: &Lane,
+    ) {
+        let [to_x, to_y, up] = self.rows;
+        let [mut x, mut y] = self.first_candidates(candidates);
+        for lane in 0..LANES {
+            x[lane] -= middle[0][lane];
+            y[lane] -= middle[1][lane];
+        }
+        let mut gap = [f32::NEG_INFINITY; LANES];
+        for (j, k) in [(1, 2), (2, 0), (0, 1)] {
+            let (along_x, along_y) = (
+                to_x[j] * up[k] - to_x[k] * up[j],
+                to_y[j] * up[k] - to_y[k] * up[j],
+            );
+            let (up_j, up_k) = (up[j].abs(), up[k].abs());
+            for lane in 0..LANES {
+                let cross = (along_x * x[lane] + along_y * y[lane]).abs();
+                let reach = half[j][lane] * up_k + half[k][lane] * up_j;
+                gap[lane] = gap[lane].max(cross - reach);
+            }
+        }
+        for lane in 0..LANES {
+            gap[lane] -= spread[lane] + 2.0 * self.slack;
+        }
+        candidates.remove_if_positive(&gap);
+    }
+
+    /// Returns the positions of the first candidate of each lane, metres.
+    #[inline(always)]
+    fn first_candidates(&self, candidates: &Candidates) -> [Lane; 2] {
+        let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            x[lane] = self.columns.first + candidates.columns[0][lane] * self.columns.pitch;
+        }
+        for lane in 0..LANES {
+            y[lane] =
+                self.rows_of_taxels.first + candidates.rows[0][lane] * self.rows_of_taxels.pitch;
+        }
+        [x, y]
     }
 
     /// Returns the candidates of the triangles of a block below a limit, metres.
@@ -216,7 +272,7 @@ impl BlockSearch {
         let [a, b, c] = &corners;
         let mut bottom = [0.0; LANES];
         for lane in 0..LANES {
-            bottom[lane] = smaller(smaller(a[2][lane], b[2][lane]), c[2][lane]);
+            bottom[lane] = a[2][lane].min(b[2][lane]).min(c[2][lane]);
         }
         let (shift, spread) = self.directions(&normal[2], &block.spread, &bottom);
         let mut bounds = Bounds {
@@ -226,21 +282,21 @@ impl BlockSearch {
             back: bottom,
         };
         for lane in 0..LANES {
-            bounds.top[lane] = larger(larger(a[2][lane], b[2][lane]), c[2][lane]);
+            bounds.top[lane] = a[2][lane].max(b[2][lane]).max(c[2][lane]);
         }
         for k in 0..3 {
             for lane in 0..LANES {
                 let (a, b, c) = (a[k][lane], b[k][lane], c[k][lane]);
-                let low = smaller(smaller(a, b), c);
-                let high = larger(larger(a, b), c);
+                let low = a.min(b).min(c);
+                let high = a.max(b).max(c);
                 let (shift, wide) = (shift[lane] * normal[k][lane], spread[lane] + self.slack);
                 // No direction is longer than one.
                 let far = self.reach + self.slack;
-                bounds.low[k][lane] = larger(low + shift - wide, low - far);
-                bounds.high[k][lane] = smaller(high + shift + wide, high + far);
+                bounds.low[k][lane] = (low + shift - wide).max(low - far);
+                bounds.high[k][lane] = (high + shift + wide).min(high + far);
             }
         }
-        let mut candidates = self.candidates(&bounds, limit);
+        let mut candidates = self.candidates(&bounds, limit, block.used);
         self.rule_out(&mut candidates, &corners, &normal, (&shift, &spread));
         candidates
     }
@@ -254,30 +310,29 @@ impl BlockSearch {
         normal: &[Lane; 3],
         (shift, spread): (&Lane, &Lane),
     ) {
-        let mut beside = [0.0; LANES];
+        let [mut x, mut y] = self.first_candidates(candidates);
+        let mut sign = [0.0; LANES];
+        let mut gap = [f32::NEG_INFINITY; LANES];
         for lane in 0..LANES {
-            let (column, row) = (candidates.columns[0][lane], candidates.rows[0][lane]);
-            let is_one = (candidates.columns[1][lane] == column + 1.0)
-                & (candidates.rows[1][lane] == row + 1.0);
-            let x = self.columns.first + column * self.columns.pitch;
-            let y = self.rows_of_taxels.first + row * self.rows_of_taxels.pitch;
-            let x = x - shift[lane] * normal[0][lane];
-            let y = y - shift[lane] * normal[1][lane];
+            x[lane] -= shift[lane] * normal[0][lane];
+            y[lane] -= shift[lane] * normal[1][lane];
+        }
+        for lane in 0..LANES {
             // Positive if the triangle is counter-clockwise seen from above.
             let (ux, uy) = (b[0][lane] - a[0][lane], b[1][lane] - a[1][lane]);
             let (vx, vy) = (c[0][lane] - a[0][lane], c[1][lane] - a[1][lane]);
-            let sign = if ux * vy - uy * vx > 0.0 { 1.0 } else { -1.0 };
-            let wide = spread[lane] + 2.0 * self.slack;
-            let mut is_beside = false;
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                let (ex, ey) = (to[0][lane] - from[0][lane], to[1][lane] - from[1][lane]);
-                let side = ex * (y - from[1][lane]) - ey * (x - from[0][lane]);
-                // The length of the side is at most |ex| + |ey|.
-                is_beside |= sign * side < -wide * (ex.abs() + ey.abs());
-            }
-            beside[lane] = sign_of(is_one & is_beside);
+            sign[lane] = if ux * vy - uy * vx > 0.0 { 1.0 } else { -1.0 };
         }
-        candidates.lanes &= !negative(&beside);
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            for lane in 0..LANES {
+                let (ex, ey) = (to[0][lane] - from[0][lane], to[1][lane] - from[1][lane]);
+                let side = ey * (x[lane] - from[0][lane]) - ex * (y[lane] - from[1][lane]);
+                // The length of the side is at most |ex| + |ey|.
+                let wide = (spread[lane] + 2.0 * self.slack) * (ex.abs() + ey.abs());
+                gap[lane] = gap[lane].max(sign[lane] * side - wide);
+            }
+        }
+        candidates.remove_if_positive(&gap);
     }
 
     #[inline(always)]
@@ -316,25 +371,33 @@ impl BlockSearch {
     }
 
     #[inline(always)]
-    fn candidates(&self, bounds: &Bounds, limit: f32) -> Candidates {
+    fn candidates(&self, bounds: &Bounds, limit: f32, used: u32) -> Candidates {
         let columns = self.columns.between(&bounds.low[0], &bounds.high[0]);
         let rows = self.rows_of_taxels.between(&bounds.low[1], &bounds.high[1]);
-        let (mut near, mut behind) = ([0.0; LANES], [0.0; LANES]);
+        let [first_column, end_column] = &columns;
+        let [first_row, end_row] = &rows;
+        // Negative if there are candidates.
+        let mut beside = [0.0; LANES];
         for lane in 0..LANES {
-            let is_met = (columns[0][lane] < columns[1][lane]) & (rows[0][lane] < rows[1][lane]);
-            // Comparisons with the NaN of unused lanes are false.
-            let is_near = (bounds.low[2][lane] < limit)
-                & (bounds.top[lane] + self.reach + self.slack >= self.behind);
-            let is_behind = bounds.back[lane] - self.slack < self.behind;
-            near[lane] = sign_of(is_met & is_near);
-            behind[lane] = sign_of(is_met & is_behind);
+            let no_column = first_column[lane] - end_column[lane] + 0.5;
+            let no_row = first_row[lane] - end_row[lane] + 0.5;
+            beside[lane] = no_column.max(no_row);
+        }
+        let mut near = [0.0; LANES];
+        for lane in 0..LANES {
+            let hidden = self.behind - self.reach - self.slack - bounds.top[lane];
+            near[lane] = beside[lane].max(hidden).max(bounds.low[2][lane] - limit);
+        }
+        let mut behind = [0.0; LANES];
+        for lane in 0..LANES {
+            behind[lane] = beside[lane].max(bounds.back[lane] - self.slack - self.behind);
         }
         Candidates {
             columns,
             rows,
             low: bounds.low[2],
-            lanes: negative(&near),
-            behind: negative(&behind),
+            lanes: negative(&near) & used,
+            behind: negative(&behind) & used,
         }
     }
 }

@@ -183,11 +183,10 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
             let candidates = bounds.block(block, limit);
             sweep.note_behind(&candidates);
             for lane in lanes(candidates.lanes) {
-                if !sweep.is_hidden(&candidates, lane) {
-                    sweep.lower(
-                        &blocks.triangles[block.first as usize + lane],
-                        candidates.rectangle(lane),
-                    );
+                let rectangle = candidates.rectangle(lane);
+                if !sweep.is_hidden(&rectangle, candidates.low[lane]) {
+                    let triangle = &blocks.triangles[block.first as usize + lane];
+                    sweep.lower(triangle, rectangle);
                 }
             }
             continue;
@@ -198,10 +197,10 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
         // The children are sorted, the lowest last, so that it is visited first.
         let start = n_waiting;
         for lane in lanes(candidates.lanes) {
-            if sweep.is_hidden(&candidates, lane) {
+            let low = candidates.low[lane];
+            if sweep.is_hidden(&candidates.rectangle(lane), low) {
                 continue;
             }
-            let low = candidates.low[lane];
             let mut at = n_waiting;
             while at > start && stack[at - 1].0 < low {
                 stack[at] = stack[at - 1];
@@ -244,30 +243,27 @@ impl Sweep<'_> {
         }
     }
 
-    /// Returns whether the few candidates in a lane are already stopped below the lane's triangles.
+    /// Returns whether the taxels of a rectangle, if they are few, are already stopped below triangles with the lower bound `low`, metres.
     #[inline(always)]
-    fn is_hidden(&self, candidates: &Candidates, lane: usize) -> bool {
-        let [columns, rows] = candidates.rectangle(lane);
-        if columns.len() * rows.len() > FEW {
-            return false;
+    fn is_hidden(&self, [columns, rows]: &[Range<usize>; 2], low: f32) -> bool {
+        let (low, n_columns) = (f64::from(low), self.envelope.n_columns);
+        let first = rows.start * n_columns + columns.start;
+        match columns.len() * rows.len() {
+            1 => self.envelope.heights[first] <= low,
+            2..=FEW => rows.clone().all(|row| {
+                let heights = &self.envelope.heights[row * n_columns..][columns.clone()];
+                heights.iter().all(|&height| height <= low)
+            }),
+            _ => false,
         }
-        let low = f64::from(candidates.low[lane]);
-        for row in rows {
-            let heights = &self.envelope.heights[row * self.envelope.n_columns..];
-            if heights[columns.clone()].iter().any(|&height| height > low) {
-                return false;
-            }
-        }
-        true
     }
 
     /// Lowers the heights of a rectangle of taxels to the heights at which a triangle stops them.
     #[inline(always)]
     fn lower(&mut self, triangle: &ContactTriangle, [columns, rows]: [Range<usize>; 2]) {
         let place = |corner: DVec3| self.rotation * corner + self.translation;
-        let corners = triangle.corners.map(place);
-        cover(&mut self.envelope.rows, rows.clone());
-        cover(&mut self.envelope.columns, columns.clone());
+        let [a, b, c] = triangle.corners;
+        let corners = [place(a), place(b), place(c)];
         let lowest = corners[0].z.min(corners[1].z).min(corners[2].z);
         if lowest - self.reach < self.behind {
             return self.lower_by_rule(&Triangle(corners), [columns, rows]);
@@ -281,6 +277,8 @@ impl Sweep<'_> {
         }
         if let Some(swept) = swept {
             self.lower_to_face(&swept, [columns.clone(), rows.clone()]);
+            cover(&mut self.envelope.rows, rows.clone());
+            cover(&mut self.envelope.columns, columns.clone());
         }
         for k in 0..3 {
             if face.has_edge[k] {
@@ -348,6 +346,8 @@ impl Sweep<'_> {
         if height < *lowest {
             *lowest = height;
             self.envelope.first = self.envelope.first.min(height);
+            cover(&mut self.envelope.rows, row..row + 1);
+            cover(&mut self.envelope.columns, column..column + 1);
         }
     }
 

@@ -59,8 +59,9 @@ impl SweptFace {
             return None;
         }
         let shift = if normal.z > 0.0 { -radius } else { radius } * normal;
+        let [a, b, c] = [corners[0].xy(), corners[1].xy(), corners[2].xy()];
         Some(Self {
-            corners: corners.map(|corner| (corner + shift).xy()),
+            corners: [a + shift.xy(), b + shift.xy(), c + shift.xy()],
             normal,
             height_of_first: corners[0].z + shift.z,
         })
@@ -77,11 +78,12 @@ impl SweptFace {
     pub fn is_outside(&self, at: DVec2, slack: f64) -> [bool; 3] {
         let [a, b, c] = self.corners;
         let sign = if self.normal.z > 0.0 { 1.0 } else { -1.0 };
-        [(a, b), (b, c), (c, a)].map(|(from, to)| {
+        let is_outside = |from: DVec2, to: DVec2| {
             let side = to - from;
             let length = side.x.abs() + side.y.abs();
             sign * side.perp_dot(at - from) < -slack * length
-        })
+        };
+        [is_outside(a, b), is_outside(b, c), is_outside(c, a)]
     }
 
     /// Returns the height at which the plane of the face stops the ball, metres.

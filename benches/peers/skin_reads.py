@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+"""Times readings of skin from Python as a simulation loop makes them, beside MuJoCo's own sensors; all in one process, in turn, one thread.
+
+Three parts: 16 x 16 taxels at one pose and in batches, on meshes of 12 to 101,250 triangles; 64 x 64 taxels on meshes of a folder, exact and
+packed; and a hand of 20 patches under five bodies, beside a step of the engine. Times are medians over rounds of the means of repeated calls.
+Needs mujoco, trimesh, numpy and bubbletouch (pip install ./python).
+"""
+
+import argparse
+import csv
+import datetime
+import statistics
+import sys
+import time
+import warnings
+from pathlib import Path
+
+import bubbletouch as bt
+import contact
+import mujoco
+import numpy as np
+import trimesh
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "python" / "tests"))
+
+import hands  # noqa: E402
+
+SIDE, PITCH, RADIUS, STROKE, DEPTH = 16, 2e-3, 1e-3, 5e-3, 2e-3
+COLUMNS = ["date", "machine", "part", "object", "n_triangles", "n_taxels", "program", "method", "us", "ratio", "limit_us"]
+TOUCH_GRID = """
+<mujoco>
+  <extension><plugin plugin="mujoco.sensor.touch_grid"/></extension>
+  <worldbody>
+    <body name="pad"><geom type="box" size="0.02 0.02 0.01" pos="0 0 -0.01"/><site name="pad"/></body>
+    <body pos="0 0 0.028"><freejoint/><geom type="sphere" size="0.03"/></body>
+  </worldbody>
+  <sensor>
+    <plugin name="grid" plugin="mujoco.sensor.touch_grid" objtype="site" objname="pad">
+      <config key="size" value="16 16"/><config key="fov" value="45 45"/><config key="nchannel" value="1"/>
+    </plugin>
+  </sensor>
+</mujoco>
+"""
+
+
+def torus(n=225, far=0.03, near=0.012):
+    """Vertices and triangles of a ring, 2 n² triangles."""
+    turns = 2 * np.pi * np.arange(n) / n
+    around, across = [turns.ravel() for turns in np.meshgrid(turns, turns, indexing="ij")]
+    out = far + near * np.cos(across)
+    vertices = np.stack([out * np.cos(around), out * np.sin(around), near * np.sin(across)], axis=1)
+    first = np.arange(n * n)
+    i, j = first // n, first % n
+    right, up = (i + 1) % n * n + j, i * n + (j + 1) % n
+    both = (i + 1) % n * n + (j + 1) % n
+    return vertices, np.concatenate([np.stack([first, right, both], 1), np.stack([first, both, up], 1)])
+
+
+def alternate(calls, rounds, repeat):
+    """Median over rounds of the mean time of each call, microseconds; in each round all calls take turns."""
+    times = {name: [] for name in calls}
+    for _ in range(rounds):
+        for name, call in calls.items():
+            start = time.thread_time()
+            for _ in range(repeat):
+                call()
+            times[name].append(1e6 * (time.thread_time() - start) / repeat)
+    return {name: statistics.median(of_call) for name, of_call in times.items()}
+
+
+def contact_poses(patch, mesh, n, depth, seed):
+    """Poses at which the patch is `depth` metres past first contact with the mesh: n x (x, y, z, qw, qx, qy, qz)."""
+    poses = contact.draw_poses(np.asarray(mesh.bounds), n, seed)
+    poses[:, 2] -= patch.press(mesh, poses, depth=depth, contacts=True)[1].travel
+    return poses
+
+
+class Table:
+    """Rows of the results."""
+
+    def __init__(self):
+        self.rows = []
+        self.fixed = {"date": datetime.date.today().isoformat(), "machine": contact.machine()}
+
+    def add(self, part, of_object, n_triangles, n_taxels, program, method, us, ratio=None, limit=None):
+        row = {"part": part, "object": of_object, "n_triangles": n_triangles, "n_taxels": n_taxels, "program": program, "method": method}
+        row |= {"us": f"{us:.2f}", "ratio": "" if ratio is None else f"{ratio:.2f}", "limit_us": "" if limit is None else f"{limit:g}"}
+        self.rows.append(self.fixed | row)
+        print("  ".join(f"{value!s:>12}" for value in row.values()), flush=True)
+
+    def write(self, path):
+        with path.open("w", newline="") as file:
+            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(self.rows)
+
+
+def small_patch(table, options):
+    """16 x 16 taxels: one pose a call, and 1,024 poses a call."""
+    contact.SIDE = SIDE
+    box, ball = trimesh.creation.box([0.04, 0.03, 0.02]), trimesh.creation.icosphere(3, 0.03)
+    shapes = {
+        "box": (np.asarray(box.vertices), np.asarray(box.faces), 6.0),
+        "icosphere": (np.asarray(ball.vertices), np.asarray(ball.faces), 12.0),
+        "torus": (*torus(), 100.0),
+    }
+    patch = bt.Patch.grid(SIDE, SIDE, PITCH, STROKE, taxel_radius=RADIUS)
+    out, many = np.zeros((SIDE, SIDE)), np.zeros((1024, SIDE, SIDE))
+    for name, (vertices, triangles, limit) in shapes.items():
+        mesh = bt.Mesh(vertices, triangles)
+        poses = contact_poses(patch, mesh, 16, DEPTH, seed=len(triangles))
+        batch = np.tile(poses, (64, 1))
+        sensor = contact.TactileSensor(trimesh.Trimesh(vertices, triangles, process=False), 6)
+        calls = {
+            "one pose": lambda: [patch.press(mesh, pose, out=out) for pose in poses],
+            "batch": lambda: patch.press(mesh, batch, out=many, threads=1),
+            "tactile": lambda: [sensor.evaluate(pose) for pose in poses],
+        }
+        times = alternate(calls, options.rounds, 4)
+        one, each, peer = times["one pose"] / 16, times["batch"] / 1024, times["tactile"] / 16
+        of_shape = (name, len(triangles), SIDE * SIDE)
+        table.add("read", *of_shape, "bubbletouch", "one pose", one, peer / one, limit)
+        table.add("read", *of_shape, "bubbletouch", "batch of 1,024", each, peer / each, 0.8 * limit)
+        table.add("read", *of_shape, "MuJoCo", "tactile sensor", peer)
+    model = mujoco.MjModel.from_xml_string(TOUCH_GRID)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    us = alternate({"grid": lambda: mujoco.mj_sensorAcc(model, data)}, options.rounds, 200)["grid"]
+    table.add("read", "sphere", 0, SIDE * SIDE, "MuJoCo", "touch_grid", us)
+
+
+def packed_within(path, mesh, folder):
+    """The spheres of a mesh packed within 0.25 mm, kept in a folder; an open mesh is packed as a sheet."""
+    kept = folder / f"{path.stem}_0.25.npz"
+    if not kept.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        try:
+            packed = mesh.pack(0.25e-3)
+        except ValueError:
+            packed = mesh.pack(0.25e-3, sheet=True)
+        np.savez(kept, centers=packed.centers, radii=packed.radii)
+    arrays = np.load(kept)
+    return bt.SphereUnion(arrays["centers"], arrays["radii"])
+
+
+def large_patch(table, options):
+    """64 x 64 taxels on meshes, exact and packed within 0.25 mm."""
+    patch = bt.Patch.grid(64, 64, PITCH, STROKE, taxel_radius=RADIUS)
+    out, ratios = np.zeros((64, 64)), []
+    for path in sorted(options.objects.glob("*.ply")):
+        if options.names and path.stem not in options.names:
+            continue
+        mesh = bt.Mesh.read(path)
+        packed = packed_within(path, mesh, options.packings)
+        poses = contact_poses(patch, mesh, 16, 3e-3, seed=len(mesh))
+        things = {"exact": mesh, f"packed within 0.25 mm: {len(packed)} spheres": packed}
+        calls = {
+            name: lambda thing=thing: [patch.press(thing, pose, out=out) for pose in poses] for name, thing in things.items()
+        }
+        times = alternate(calls, options.rounds, 4)
+        exact, spheres = (us / 16 for us in times.values())
+        ratios.append(exact / spheres)
+        for method, us in zip(times, (exact, spheres), strict=True):
+            table.add("64 x 64", path.stem, len(mesh), 4096, "bubbletouch", method, us, us / spheres)
+    if ratios:
+        print(f"exact / packed: median {statistics.median(ratios):.2f}, largest {max(ratios):.2f}")
+
+
+def hand(table, options):
+    """A hand with 20 patches of 64 taxels, three of them in contact, under five bodies."""
+    for meshes, limit in ((False, 60.0), (True, 150.0)):
+        model, data, skin = hands.full_hand(meshes)
+        out = np.zeros(skin.n_taxels)
+        name = "five bodies, " + ("meshes" if meshes else "primitives")
+        state = mujoco.mj_getState
+        size = mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_INTEGRATION)
+        before = np.zeros(size)
+        state(model, data, before, mujoco.mjtState.mjSTATE_INTEGRATION)
+
+        def step(model=model, data=data, before=before):
+            mujoco.mj_setState(model, data, before, mujoco.mjtState.mjSTATE_INTEGRATION)
+            mujoco.mj_step(model, data)
+
+        calls = {"mj_step": step, "read": lambda skin=skin, data=data, out=out: skin.read(data, out=out)}
+        mujoco.mj_forward(model, data)
+        times = alternate(calls, options.rounds, 50)
+        table.add("hand", name, "", skin.n_taxels, "bubbletouch", "Skin.read", times["read"], times["mj_step"] / times["read"], limit)
+        table.add("hand", name, "", skin.n_taxels, "MuJoCo", "mj_step", times["mj_step"])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--objects", type=Path, help="a folder of PLY meshes in metres, for 64 x 64 taxels")
+    parser.add_argument("--names", nargs="*", help="only these meshes (names without ending); all when left out")
+    parser.add_argument("--rounds", type=int, default=15, help="how often all take turns")
+    parser.add_argument("--packings", type=Path, default=ROOT / "target" / "peers", help="folder that keeps packings")
+    parser.add_argument("--out", type=Path, default=ROOT / "results" / "peers" / "skin_reads.csv")
+    options = parser.parse_args()
+    warnings.simplefilter("ignore", UserWarning)
+    table = Table()
+    small_patch(table, options)
+    hand(table, options)
+    if options.objects:
+        large_patch(table, options)
+    table.write(options.out)
+
+
+if __name__ == "__main__":
+    main()
