@@ -25,6 +25,8 @@ pub struct KeyAbout {
     pub scale: Option<Scale>,
     /// Display names of the key's values; see [`Column::names`].
     pub names: Option<&'static [(&'static str, &'static str)]>,
+    /// Rank of the key's column among the settings that charts omit if other settings determine them; see [`Column::gives_way`].
+    pub gives_way: Option<u8>,
 }
 
 /// Place at which a key may have a list of values that are swept.
@@ -96,6 +98,7 @@ impl KeyAbout {
             unit: None,
             scale: None,
             names: None,
+            gives_way: None,
         }
     }
 
@@ -138,7 +141,10 @@ impl KeyAbout {
     pub fn column(&self, name: &'static str) -> Column {
         let scale = self.scale.expect("a key with a column has a scale");
         let column = Column::new(name, self.role, self.title(), self.unit(), scale);
-        column.named(self.names.unwrap_or_default())
+        Column {
+            gives_way: self.gives_way,
+            ..column.named(self.names.unwrap_or_default())
+        }
     }
 }
 

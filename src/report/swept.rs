@@ -6,27 +6,6 @@
 use crate::table::{Column, Data, Role, Table, Value};
 use std::collections::HashSet;
 
-/// Names of settings that charts omit if other settings determine them; the first name is omitted first. For one array, `measurements` and `ratio` determine
-/// each other; if `nx` is constant, `size_mm` depends on `pitch_mm`. Settings that a study can only choose directly come last.
-const GIVEN_UP_FIRST: [&str; 16] = [
-    "nx",
-    "ny",
-    "measurements",
-    "ratio",
-    "size_mm",
-    "pitch_mm",
-    "c",
-    "train_touches",
-    "mislabelled_fraction",
-    "class_imbalance",
-    "touches_per_decision",
-    "smoothing_mm",
-    "noise_std",
-    "frames",
-    "temporal_features",
-    "features",
-];
-
 /// Setting of a table (choice, condition or subject): a column and its values.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
@@ -129,11 +108,7 @@ impl<'a> Swept<'a> {
         let (mut free, fixed): (Vec<Setting>, Vec<Setting>) =
             all.partition(|one| !rows.is_empty() && one.varies(rows));
         let mut order = free.clone();
-        order.sort_by_key(|one| {
-            let mut given_up = GIVEN_UP_FIRST.iter();
-            let place = given_up.position(|name| *name == one.column.name);
-            place.unwrap_or(GIVEN_UP_FIRST.len())
-        });
+        order.sort_by_key(|one| one.column.gives_way.unwrap_or(u8::MAX));
         let mut following = Vec::new();
         for one in order {
             let others = without(&free, &one);

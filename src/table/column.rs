@@ -73,6 +73,8 @@ pub struct Column {
     pub meaning: Words,
     /// Whether the column may be missing in a file, because only some studies have it.
     pub is_optional: bool,
+    /// Rank of a setting among the settings that charts omit if other settings determine them. The smallest rank is omitted first; `None` is omitted last.
+    pub gives_way: Option<u8>,
 }
 
 impl Column {
@@ -94,6 +96,7 @@ impl Column {
             names: &[],
             meaning: Words::default(),
             is_optional: false,
+            gives_way: None,
         }
     }
 
