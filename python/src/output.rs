@@ -1,7 +1,7 @@
 //! Quantity that a frame contains: deflections or forces.
 
 use crate::errors::bad_input;
-use bubbletouch::world::Patch;
+use bubbletouch::world::{Patch, Taxels};
 use pyo3::prelude::*;
 
 /// Quantity that a frame contains: deflections, metres, or forces along the axes of the taxels, newtons.
@@ -34,10 +34,18 @@ impl Output {
         if self == Self::Deflection {
             return;
         }
-        let n_each = values.len() / patch.n_taxels();
-        for (taxel, values) in values.chunks_exact_mut(n_each).enumerate() {
+        let scale = |values: &mut [T], stiffness: f64| {
             for value in values.iter_mut().filter(|value| **value != T::default()) {
-                *value = value.scaled(patch.taxels().at(taxel).stiffness);
+                *value = value.scaled(stiffness);
+            }
+        };
+        match patch.taxels() {
+            Taxels::Equal(taxel) => scale(values, taxel.stiffness),
+            Taxels::Each(taxels) => {
+                let n_each = values.len() / taxels.len();
+                for (taxel, values) in taxels.iter().zip(values.chunks_exact_mut(n_each)) {
+                    scale(values, taxel.stiffness);
+                }
             }
         }
     }

@@ -5,13 +5,15 @@ use super::mount::Mount;
 use super::plan_robot::PlannedRobot;
 use super::plan_signal::PlannedSignal;
 use super::reader::{MM, Reader};
-use super::spec::{FileLayoutSpec, LayoutSpec, ObjectSpec, PatchSpec, RegionSpec};
+use super::spec::{
+    FileLayoutSpec, LayoutSpec, ObjectSpec, PatchSpec, ProjectedGridSpec, RegionSpec,
+};
 use crate::error::Result;
 use crate::geometry::Aabb;
 use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::inputs::object_files::read_mesh;
 use crate::inputs::range::positive;
-use crate::mesh::{MeshFormat, SizeLimits, obj_group};
+use crate::mesh::{MeshFormat, SizeLimits, TriangleMesh, obj_group};
 use crate::random::Seed;
 use crate::world::{DrapeRegion, Grid, Layout, Patch, PerTaxel, Shears};
 use std::path::Path;
@@ -128,6 +130,7 @@ impl Reader<'_> {
                 mesh: ref path,
                 unit,
                 ref region,
+                ref grid,
                 ..
             } => {
                 let region_key = &format!("{key}.region");
@@ -177,10 +180,36 @@ impl Reader<'_> {
                     Some(region) => self.region(region_key, region, path.as_deref())?,
                     None => DrapeRegion::default(),
                 };
-                Layout::draped_on(&mesh, pitch, &region, seed)
+                match grid {
+                    Some(grid) => self.projected(key, (&mesh, &region), pitch, grid),
+                    None => Layout::draped_on(&mesh, pitch, &region, seed),
+                }
             }
         };
         self.under(key, layout)
+    }
+
+    /// Returns a flat grid of taxels that is wrapped around a surface.
+    fn projected(
+        &self,
+        key: &str,
+        (surface, region): (&TriangleMesh, &DrapeRegion),
+        pitch: f64,
+        spec: &ProjectedGridSpec,
+    ) -> Result<Layout> {
+        if *region != DrapeRegion::default() {
+            let allowed = "a grid alone: its taxels cover the surface below it";
+            return Err(self.check.error(
+                &format!("{key}.region"),
+                "a part of the surface beside a grid",
+                allowed,
+            ));
+        }
+        let at = self.pose(&format!("{key}.grid.at"), &spec.at)?;
+        let (nx, ny) = (spec.nx, spec.ny);
+        let projected =
+            Layout::projected(surface, &at, &Grid { nx, ny, pitch }, spec.missing.into());
+        projected.map(|projected| projected.layout)
     }
 
     /// Returns the taxels of a layout file or of a robot's tactile sensor, and their radii in mm; `None` for other layouts. A patch with the taxels of a sensor

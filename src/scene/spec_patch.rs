@@ -7,7 +7,7 @@ use crate::inputs::sensor_errors::{NOISES, all_strengths, noise_words, strength_
 use crate::mesh::LengthUnit;
 use crate::scene::spec_motion::PoseSpec;
 use crate::signal::MAX_STRENGTHS;
-use crate::world::ShapeRole;
+use crate::world::{MissingTaxels, ShapeRole};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -199,7 +199,45 @@ pub enum LayoutSpec {
         /// Part of the surface that carries taxels. Default: the whole outer surface.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         region: Option<Box<RegionSpec>>,
+        /// Flat grid of taxels that is wrapped around the surface. Default: the taxels are distributed over the surface.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        grid: Option<Box<ProjectedGridSpec>>,
     },
+}
+
+/// Flat grid of taxels that is wrapped around a surface. Each taxel moves along −z of the grid to the surface and takes the surface normal there as its axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ProjectedGridSpec {
+    /// Number of columns, along the grid's x axis, `pitch_mm` apart.
+    pub nx: usize,
+    /// Number of rows, along the grid's y axis, `pitch_mm` apart.
+    pub ny: usize,
+    /// Pose of the grid's middle in the frame of the mesh or link: in front of the surface, with its z axis away from the surface.
+    pub at: PoseSpec,
+    /// Treatment of taxels that do not meet the surface: `error` refuses the scene, `drop` omits them. Default: `error`.
+    #[serde(default)]
+    pub missing: MissingSpec,
+}
+
+/// Treatment of taxels of a projected grid that do not meet the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MissingSpec {
+    /// The scene is refused.
+    #[default]
+    Error,
+    /// The taxels are omitted.
+    Drop,
+}
+
+impl From<MissingSpec> for MissingTaxels {
+    fn from(spec: MissingSpec) -> Self {
+        match spec {
+            MissingSpec::Error => Self::Refuse,
+            MissingSpec::Drop => Self::Drop,
+        }
+    }
 }
 
 /// Layout file, as `file = "palm.csv"` or `file = { path = "points.json", mesh = "fingertip.stl" }`.

@@ -44,6 +44,8 @@ pub(super) const RANGES: &[(&str, Allowed)] = &[
     }),
     ("patches.layout.sphere_cap.pitch_mm", positive),
     ("patches.layout.draped.pitch_mm", positive),
+    ("patches.layout.draped.grid.nx", COUNT),
+    ("patches.layout.draped.grid.ny", COUNT),
     ("patches.taxel_radius_mm", positive),
     ("patches.stroke_mm", positive),
     ("patches.stiffness_n_per_m", positive),

@@ -10,6 +10,7 @@ mod stored;
 mod human_touch;
 mod layout_files;
 mod layout_formats;
+mod projected;
 mod scene_by_hand;
 mod scene_cut;
 mod scene_errors;
