@@ -274,7 +274,7 @@ fn what_cannot_be_draped_over_a_link_is_refused_with_the_key() {
     refused(
         &format!("mesh = \"hand_description/meshes/cube.obj\", {link}"),
         robot,
-        "mesh and region.link; mesh = \"FILE\" or",
+        "mesh and region.link; mesh = \"FILE\", on = \"collision\"",
     );
     refused("", robot, "neither mesh nor a link");
     refused(
