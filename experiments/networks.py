@@ -15,7 +15,7 @@ import bubbletouch as bt
 class Network:
     """Convolutional network if the features are an image of side x side taxels, and a dense network for other features."""
 
-    def __init__(self, side: int, epochs: int = 30, random_state: int | None = None) -> None:
+    def __init__(self, side: int, epochs: int = 20, random_state: int | None = None) -> None:
         self.side, self.epochs, self.random_state = side, epochs, random_state
 
     def layers(self, n_features: int, n_classes: int) -> nn.Module:
@@ -64,7 +64,7 @@ class Network:
 
 
 def main() -> None:
-    out, epochs = sys.argv[1], int([*sys.argv, "30"][2])
+    out, epochs = sys.argv[1], int([*sys.argv, "20"][2])
     study = bt.run(Path(__file__).with_name("networks.toml"), out, classifiers={"network": (Network(32, epochs), f"{epochs}-epochs")}, processes=2)
     summary, timing = study["summary"], study["timing"]
     for table in (summary, timing):

@@ -6,7 +6,7 @@ use crate::foreign::{Given, Raised, provide};
 use crate::threads::{Stop, aside};
 use bubbletouch::Error;
 use bubbletouch::Result;
-use bubbletouch::kinds::{Source, check_folder, load, read_tables};
+use bubbletouch::kinds::{Source, about, check_folder, load, read_tables};
 use bubbletouch::report::advice::{self, Candidates, Requirement};
 use bubbletouch::report::advice_answers::{answers, answers_json};
 use bubbletouch::report::study_folder::ChartFormat;
@@ -125,6 +125,13 @@ fn run(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Result<V
 fn run_here(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Result<Vec<Table>> {
     let started = SystemTime::now();
     let is_foreign = asked.given.iter().any(|given| !given.is_empty());
+    if is_foreign
+        && let Some(about) = about(&asked.source.text)
+        && about.table != "recognition"
+    {
+        let allowed = "classifiers and features of the program for a study that recognises objects";
+        return Err(Error::input(&asked.source.place, about.words, allowed));
+    }
     let _provided = provide(asked.given, raised)?;
     let Source {
         results,

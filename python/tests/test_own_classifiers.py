@@ -271,6 +271,9 @@ def test_what_is_no_classifier_is_refused(tmp_path: Path) -> None:
         assert not (tmp_path / "out").exists()
     with pytest.raises(ValueError, match="mine"):
         bt.run(with_keys(classifier="mine"), tmp_path / "out")
+    with pytest.raises(ValueError, match="study: .*; classifiers and features of the program for a study that recognises objects"):
+        bt.run({"question": "q", "stability": {}}, tmp_path / "out", classifiers={"mine": Nearest()})
+    assert not (tmp_path / "out").exists()
 
 
 def test_the_command_reports_such_a_study_and_does_not_run_it(tmp_path: Path, command: Command) -> None:
