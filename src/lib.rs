@@ -139,6 +139,7 @@
 //! - `[GWN]` Jacobson, Kavan, Sorkine-Hornung, *Robust inside-outside segmentation using generalized winding numbers*, 2013.
 //! - `[FWN]` Barill et al., *Fast winding numbers for soups and clouds*, 2018.
 //! - `[URDF]` The Unified Robot Description Format, XML specification, <https://wiki.ros.org/urdf/XML>.
+//! - `[MJCF]` MuJoCo's XML reference, <https://mujoco.readthedocs.io/en/latest/XMLreference.html>.
 //! - `[FC]` Fritsch, Carlson, *Monotone piecewise cubic interpolation*, SIAM J. Numer. Anal. 1980; the slopes are those of
 //!   Fritsch, Butland, *A method for constructing local monotone piecewise cubic interpolants*, SISSC 1984.
 //! - `[KKS]` Kim, Kim, Shin, *A general construction scheme for unit quaternion curves with simple high order derivatives*,
