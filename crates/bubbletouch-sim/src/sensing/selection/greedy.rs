@@ -9,7 +9,7 @@
 use crate::error::{Error, Result};
 use crate::random::Seed;
 use crate::sensing::TrainingFrames;
-use ndarray::{Array2, ArrayView1, ArrayView2, Axis};
+use ndarray::{Array2, ArrayView2, Axis};
 use rand::seq::index::sample;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -25,10 +25,10 @@ const MAX_CANDIDATES: usize = 256;
 /// Number of distances that are compared together, one per lane of vector registers.
 const LANES: usize = 16;
 
-/// Returns m taxels in the order of their selection.
+/// Returns m ≤ n taxels in the order of their selection. Taxels whose readings are equal in all frames tell nothing, and are selected last.
 ///
 /// # Errors
-/// If the classes of the frames are unknown, or fewer than m taxels have readings that differ between frames.
+/// If the classes of the frames are unknown.
 pub(crate) fn greedy_taxels(
     training: &TrainingFrames,
     m: usize,
@@ -39,16 +39,10 @@ pub(crate) fn greedy_taxels(
         return Err(Error::input("selection", "greedy without labels", allowed));
     }
     let mut validated = Validated::new(training);
-    let mut left = validated.varying_taxels();
-    if left.len() < m {
-        let given = format!("{m} selected taxels");
-        let found = left.len();
-        let allowed = format!("at most {found}, the taxels whose training readings differ");
-        return Err(Error::input("measurements", given, allowed));
-    }
+    let (mut left, constant) = validated.varying_taxels();
     let mut rng = seed.rng();
     let mut selected = Vec::with_capacity(m);
-    while selected.len() < m {
+    while selected.len() < m && !left.is_empty() {
         let mut candidates: Vec<usize> = match left.len() <= MAX_CANDIDATES {
             true => (0..left.len()).collect(),
             false => sample(&mut rng, left.len(), MAX_CANDIDATES).into_vec(),
@@ -61,11 +55,13 @@ pub(crate) fn greedy_taxels(
         let best = scores
             .into_iter()
             .reduce(|a, b| if b.1 > a.1 { b } else { a });
-        let (place, _) = best.expect("at least m taxels");
+        let (place, _) = best.expect("a taxel is left");
         let taxel = left.remove(place);
         validated.add(taxel);
         selected.push(taxel);
     }
+    selected.extend(constant);
+    selected.truncate(m);
     Ok(selected)
 }
 
@@ -106,11 +102,11 @@ impl Validated {
         }
     }
 
-    fn varying_taxels(&self) -> Vec<usize> {
-        let varies = |readings: ArrayView1<f32>| readings.iter().any(|&value| value != 0.0);
-        let taxels = self.readings.outer_iter().enumerate();
-        let varying = taxels.filter(|(_, readings)| varies(*readings));
-        varying.map(|(taxel, _)| taxel).collect()
+    /// Returns the taxels whose readings differ between frames, and the other taxels, both in ascending order.
+    fn varying_taxels(&self) -> (Vec<usize>, Vec<usize>) {
+        let readings = |taxel: usize| self.readings.row(taxel);
+        let varies = |taxel: &usize| readings(*taxel).iter().any(|&value| value != 0.0);
+        (0..self.readings.nrows()).partition(varies)
     }
 
     /// Returns the score of the selected taxels together with a candidate.
@@ -283,18 +279,16 @@ mod tests {
     }
 
     #[test]
-    fn taxels_that_never_change_are_not_selected() {
+    fn taxels_that_never_change_are_selected_last() {
         let (mut frames, labels, groups) = training();
-        frames.slice_mut(ndarray::s![.., 4..]).fill(0.25);
+        frames.slice_mut(ndarray::s![.., 2..16]).fill(0.25);
         let training = TrainingFrames {
             labels: &labels,
             groups: &groups,
             ..TrainingFrames::from(frames.view())
         };
-        let mut taxels = greedy_taxels(&training, 4, &Seed::new(1)).unwrap();
-        taxels.sort_unstable();
-        assert_eq!(taxels, [0, 1, 2, 3]);
-        let error = greedy_taxels(&training, 5, &Seed::new(1)).unwrap_err();
-        assert!(error.to_string().contains("at most 4"), "{error}");
+        let mut taxels = greedy_taxels(&training, 6, &Seed::new(1)).unwrap();
+        taxels[..4].sort_unstable();
+        assert_eq!(taxels, [0, 1, 16, 17, 2, 3]);
     }
 }
