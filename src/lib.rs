@@ -112,6 +112,7 @@
 //! | [`report`] | tables and frames → charts, pages, pictures, terminal output |
 //! | [`schema`] | specifications of studies and scenes → JSON Schemas, reference pages |
 //! | [`studies`] | TOML → plan → work items → tables, charts, page |
+//! | [`audit`] | recorded frames with labels → findings about the data |
 //!
 //! [`recognition`], [`study`] and [`kinds`] re-export names of these stages under shorter paths.
 //!
@@ -166,6 +167,7 @@
 // `println!` panics on a closed pipe; output goes through the command.
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+pub mod audit;
 pub mod engine;
 pub mod guide;
 pub mod inputs;

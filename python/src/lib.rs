@@ -4,6 +4,7 @@
 //! Arguments are checked and converted from arrays, the library is called without the interpreter's lock, and results are converted to arrays.
 
 mod arrays;
+mod audit;
 mod batch;
 mod catalogue;
 mod contacts;
@@ -39,6 +40,8 @@ use pyo3::prelude::*;
 mod _core {
     use super::*;
 
+    #[pymodule_export]
+    use audit::run_audit;
     #[pymodule_export]
     use catalogue::{Catalogue, Solid};
     #[pymodule_export]

@@ -94,7 +94,7 @@ impl Progress for CallbackProgress {
 }
 
 /// File name, title, note and columns of a table.
-type Said<'py> = (String, String, String, Bound<'py, PyDict>);
+pub type Said<'py> = (String, String, String, Bound<'py, PyDict>);
 
 /// Text of a study, its result folder, and the part of the study to run.
 struct StudySource {
@@ -259,7 +259,8 @@ pub fn run_study<'py>(
     })
 }
 
-fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<Said<'py>> {
+/// Converts a table to its file name, title, note and columns.
+pub fn columns<'py>(py: Python<'py>, table: &Table) -> PyResult<Said<'py>> {
     let values = PyDict::new(py);
     for (column, data) in table.columns.iter().zip(&table.data) {
         match data {

@@ -142,7 +142,7 @@ pub fn calibrate(args: &Args) -> Result<()> {
 }
 
 /// `ROWS,COLUMNS`.
-fn grid(text: &str) -> std::result::Result<[usize; 2], String> {
+pub fn grid(text: &str) -> std::result::Result<[usize; 2], String> {
     let sides = text.split_once([',', 'x', '×']);
     let sides = sides.map(|(rows, columns)| (rows.trim().parse(), columns.trim().parse()));
     match sides {
@@ -152,7 +152,7 @@ fn grid(text: &str) -> std::result::Result<[usize; 2], String> {
 }
 
 /// `FROM..TO`.
-fn range(text: &str) -> std::result::Result<Range<usize>, String> {
+pub fn range(text: &str) -> std::result::Result<Range<usize>, String> {
     let ends = text
         .split_once("..")
         .map(|(from, to)| (from.trim().parse(), to.trim().parse()));

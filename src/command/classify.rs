@@ -1,6 +1,6 @@
 //! `bubbletouch classify`: trains and tests one classifier on a folder of features, and measures the times.
 
-use crate::command::classify_parameters::ParameterOptions;
+use crate::command::options::classifier_parameters::ParameterOptions;
 use crate::command::options::study_args::set_threads;
 use crate::command::options::unused::check_used;
 use crate::command::terminal::streams::say;

@@ -1,9 +1,9 @@
 //! Command line: one file for each subcommand. The doc comments of its `Args` are its help.
 
 mod advise;
+mod audit;
 mod calibrate;
 mod classify;
-mod classify_parameters;
 mod compare;
 mod features;
 mod layout;
@@ -56,6 +56,7 @@ enum Command {
     Features(features::Args),
     Classify(classify::Args),
     Calibrate(calibrate::Args),
+    Audit(audit::Args),
     Press(press::Args),
     Objects(objects::Args),
     Layout(layout::Args),
@@ -92,6 +93,7 @@ pub fn dispatch() -> Result<()> {
         Some(Command::Touches(args)) => touches::touches(&args),
         Some(Command::Features(args)) => features::features(&args),
         Some(Command::Classify(args)) => classify::classify(&args),
+        Some(Command::Audit(args)) => audit::audit(&args),
         Some(Command::Calibrate(args)) => calibrate::calibrate(&args),
         Some(Command::Simulate(args)) => simulate::simulate(&args),
         Some(Command::Press(args)) => press::press(&args),

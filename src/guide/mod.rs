@@ -21,6 +21,9 @@ pub mod recorded_frames {}
 #[doc = include_str!("../../guide/own_methods.md")]
 pub mod own_methods {}
 
+#[doc = include_str!("../../guide/audit.md")]
+pub mod audit {}
+
 #[doc = include_str!("../../guide/scenes.md")]
 pub mod scenes {}
 

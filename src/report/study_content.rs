@@ -31,6 +31,8 @@ pub struct Found<'a> {
 pub struct Beyond {
     /// Pictures that are not charts, for example of frames or objects.
     pub pictures: Vec<NamedPicture>,
-    /// Additional sections of the study's HTML page.
+    /// Additional sections of the study's HTML page after the answer.
+    pub first_sections: Vec<Section>,
+    /// Additional sections of the study's HTML page before the tables.
     pub sections: Vec<Section>,
 }

@@ -19,6 +19,7 @@ mod stored;
 #[path = "../fixtures/study/mod.rs"]
 mod study;
 
+mod audit;
 mod bad_input;
 mod calibrate;
 mod classify;

@@ -11,6 +11,7 @@ mod study;
 use bubbletouch_sim::statistics::standard_errors;
 
 mod accuracy;
+mod audit;
 mod axes;
 mod calibration;
 mod experiments;

@@ -95,6 +95,7 @@
 #![warn(clippy::missing_errors_doc)]
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+pub mod audit;
 pub mod calibration;
 pub mod contact;
 pub mod dynamics;

@@ -63,6 +63,7 @@
 //! | [`predict`] | solved problems and rows → decision values and labels |
 //! | [`cross_validation`] | candidates of C and γ → the best ones |
 //! | [`linear_svm`], [`classifiers`] | a data set → linear SVMs and other classifiers |
+//! | [`audit`] | labelled rows → nearest rows, scores of held-out rows, permutation tests |
 //!
 //! # Solvers
 //!
@@ -87,6 +88,7 @@
 #![warn(clippy::missing_errors_doc)]
 #![cfg_attr(not(test), deny(clippy::print_stdout, clippy::print_stderr))]
 
+pub mod audit;
 mod binary_problem;
 pub mod class_model;
 pub mod classifiers;

@@ -29,12 +29,15 @@ from bubbletouch._core import (
     touch_poses,
     write_frame,
 )
+from bubbletouch.data_audit import Audit, Finding, audit
 from bubbletouch.study import Study, Table, advise, run, simulate
 
 __all__ = [
+    "Audit",
     "Catalogue",
     "Chain",
     "Contacts",
+    "Finding",
     "InternalError",
     "Joint",
     "Mesh",
@@ -51,6 +54,7 @@ __all__ = [
     "Study",
     "Table",
     "advise",
+    "audit",
     "run",
     "simulate",
     "touch_poses",

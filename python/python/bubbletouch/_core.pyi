@@ -1264,6 +1264,25 @@ def touch_poses(
     Returns (7,) if all arguments are single values, otherwise (n, 7). Raises ValueError if an argument is invalid.
     """
 
+def run_audit(
+    frames: ArrayLike,
+    grid: tuple[int, int] | None,
+    labels: list[int] | None,
+    classes: list[str],
+    groups: list[int] | None,
+    sessions: list[int] | None,
+    times: list[float] | None,
+    full_scale: float | None,
+    before_contact: tuple[int, int] | None,
+    seed: int,
+    permutations: int,
+    name: str,
+    out: _Path,
+) -> tuple[list[tuple[Any, ...]], list[tuple[str, str, str, dict[str, Any]]]]:
+    """Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Writes the page, tables and charts to a
+    folder. Returns the findings and the tables.
+    """
+
 def run_study(
     text: str,
     place: str,

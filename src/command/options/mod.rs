@@ -1,5 +1,6 @@
 //! Options that several subcommands share.
 
+pub(crate) mod classifier_parameters;
 pub(crate) mod memory_limit;
 pub(crate) mod results_folder;
 pub(crate) mod study_args;

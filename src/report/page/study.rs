@@ -32,12 +32,17 @@ pub(crate) struct Beside {
 /// Returns the page of a study as HTML.
 pub(crate) fn page(about: &StudyAbout, found: &Found, beside: &Beside) -> String {
     let pictures = beside.beyond.pictures.iter().map(picture_html).collect();
-    let mut sections = vec![
-        Section::new("answer", "Answer", sentences_html(found.answers)),
+    let mut sections = vec![Section::new(
+        "answer",
+        "Answer",
+        sentences_html(found.answers),
+    )];
+    sections.extend_from_slice(&beside.beyond.first_sections);
+    sections.extend([
         Section::new("charts", "Charts", charts_html(about, found, beside)),
         Section::new("choices", "What to choose", choices_html(found)),
         Section::new("pictures", "Pictures", pictures),
-    ];
+    ]);
     sections.extend_from_slice(&beside.beyond.sections);
     let provenance = about.manifest.as_ref().map(provenance_html);
     sections.extend([

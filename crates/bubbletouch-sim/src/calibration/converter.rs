@@ -21,31 +21,25 @@ pub fn step_of(bits: f64) -> f64 {
     }
 }
 
+/// Returns the step of the readings: the largest number of which all differences of readings are multiples, as a fraction of the full scale. Returns `None` if
+/// there is no step above the rounding of single precision, or all readings are equal. Readings of at least `saturation` are omitted.
+pub fn step(skin: &RecordedSkin, saturation: f64) -> Option<f64> {
+    let readings = different_readings(skin, saturation);
+    let gaps = readings.windows(2).map(|pair| pair[1] - pair[0]);
+    let step = gaps.reduce(|divisor, gap| common_divisor(gap, divisor))?;
+    (step >= LEAST * ROUNDING).then(|| refined(step, &readings))
+}
+
 /// Estimates the number of bits of the analogue-to-digital converter; 0 if readings have no step. Readings of at least `saturation` are omitted, because the
 /// clipping level need not be a multiple of the step.
 pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
-    let mut readings: Vec<f64> = Vec::new();
-    for frames in [&skin.touched, &skin.untouched] {
-        let stride = (2 * frames.len() / N_READINGS).max(1);
-        let frames = frames.iter().step_by(stride);
-        readings.extend(frames.filter(|&&reading| reading < saturation));
-    }
-    readings.sort_by(f64::total_cmp);
-    readings.dedup_by(|a, b| *a - *b < ROUNDING);
-    if readings.len() < FEWEST {
-        let n = readings.len();
+    let n = different_readings(skin, saturation).len();
+    if n < FEWEST {
         return Estimate::unknown(format!("there are only {n} different readings"));
     }
-    let gaps = readings.windows(2).map(|pair| pair[1] - pair[0]);
-    let Some(step) = gaps.fold(None, |divisor, gap| {
-        Some(divisor.map_or(gap, |divisor| common_divisor(gap, divisor)))
-    }) else {
-        return Estimate::unknown("there are no readings");
-    };
-    if step < LEAST * ROUNDING {
+    let Some(step) = step(skin, saturation) else {
         return Estimate::exactly(0.0);
-    }
-    let step = refined(step, &readings);
+    };
     let bits = (1.0 / step + 1.0).log2();
     match (bits - bits.round()).abs() < 1e-3 {
         true => Estimate::exactly(bits.round()),
@@ -54,6 +48,19 @@ pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
             1.0 / step
         )),
     }
+}
+
+/// Returns the different readings below `saturation` in ascending order, of at most about [`N_READINGS`] readings.
+fn different_readings(skin: &RecordedSkin, saturation: f64) -> Vec<f64> {
+    let mut readings: Vec<f64> = Vec::new();
+    for frames in [&skin.touched, &skin.untouched] {
+        let stride = (2 * frames.len() / N_READINGS).max(1);
+        let frames = frames.iter().step_by(stride);
+        readings.extend(frames.filter(|&&reading| reading < saturation));
+    }
+    readings.sort_by(f64::total_cmp);
+    readings.dedup_by(|a, b| *a - *b < ROUNDING);
+    readings
 }
 
 /// Returns the greatest common divisor of two real numbers, up to rounding errors.

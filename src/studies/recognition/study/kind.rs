@@ -203,6 +203,7 @@ impl Study for RecognitionStudy {
         Ok(Beyond {
             pictures: self.pictures(tables)?,
             sections: self.sections(tables)?,
+            ..Beyond::default()
         })
     }
 }

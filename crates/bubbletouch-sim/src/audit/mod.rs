@@ -1,0 +1,19 @@
+//! Statistics of recorded frames for an audit of a data set.
+//!
+//! | module | question |
+//! |---|---|
+//! | [`missing`] | Which readings are missing, and what replaces them? |
+//! | [`taxels`] | Which taxels read what, and which of them nothing ever touches? |
+//! | [`pooled`] | Which few numbers represent a touch for a cheap classifier? |
+//! | [`duplicates`] | Which rows are so near to another row that chance does not explain it? |
+//! | [`dependence`] | Are rows that are neighbours in time, or members of a group, more alike than other rows of their class? |
+//! | [`hot`] | Which taxels read a pressure or noise while the taxels around them are at rest? |
+//!
+//! Faults of taxels, saturation and converters are found by [`calibration`](crate::calibration). Rows are touches in the order of recording.
+
+pub mod dependence;
+pub mod duplicates;
+pub mod hot;
+pub mod missing;
+pub mod pooled;
+pub mod taxels;

@@ -1,0 +1,256 @@
+//! Statistics of single taxels, and taxels that nothing ever touches.
+//!
+//! The readings of an untouched taxel are noise around a level, which may depend on the class if the recordings are confounded. Contact is one-sided and
+//! rare or strong. A taxel counts as untouched if its readings, less the mean of their class, fulfil all of the following conditions over n rows:
+//!
+//! - Skewness and excess kurtosis are at most those of a normal distribution, plus five standard errors (√(6/n), √(24/n)). If readings are clipped at the
+//!   zero, the moments are those of a clipped normal distribution with the same fraction of clipped readings, which must be 30 to 70 %: contact in fewer
+//!   rows looks like strongly clipped noise.
+//! - The correlation with the sum of the more active taxels is within four standard errors (1/√n).
+//! - The standard deviation is at most half of that of the active taxels (their 95 % quantile); a quarter if readings are clipped.
+//!
+//! With contact in a fraction p of rows and of A standard deviations of the noise, the excess kurtosis is about p A⁴ / (1 + p A²)². A single touch of ten
+//! standard deviations in 1,000 rows is therefore found.
+
+use crate::statistics::quantile::{of_sorted, quantile};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis};
+use statrs::distribution::{Continuous, ContinuousCDF, Normal};
+
+/// Bound of skewness and kurtosis in standard errors. With 4,096 taxels, noise exceeds the bound at no taxel with a probability of 99.8 %.
+const MOMENT_ERRORS: f64 = 5.0;
+/// Bound of the correlation with the active taxels in standard errors.
+const CORRELATION_ERRORS: f64 = 4.0;
+/// Maximum standard deviation of an untouched taxel, relative to active taxels.
+const MAX_STD: f64 = 0.5;
+/// Minimum fraction of readings at the least reading of a taxel that count as clipped.
+const CLIPPED: f64 = 0.05;
+/// Fractions of clipped readings between which clipped noise can be told from rare contact.
+const CLIPPED_NOISE: [f64; 2] = [0.3, 0.7];
+/// Maximum standard deviation of an untouched taxel with clipped readings, relative to active taxels.
+const MAX_CLIPPED_STD: f64 = 0.25;
+
+/// Mean, spread and range of the readings of a taxel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TaxelReadings {
+    /// Mean of all readings.
+    pub mean: f64,
+    /// Standard deviation of all readings.
+    pub std: f64,
+    /// Smallest reading.
+    pub least: f64,
+    /// Median of all readings.
+    pub median: f64,
+    /// Largest reading.
+    pub largest: f64,
+}
+
+impl TaxelReadings {
+    /// Returns whether all readings are equal.
+    pub fn is_constant(&self) -> bool {
+        self.least == self.largest
+    }
+}
+
+/// Returns mean, spread and range of the readings of each taxel; frames are rows.
+pub fn taxel_readings(frames: ArrayView2<f64>) -> Vec<TaxelReadings> {
+    let n = frames.nrows().max(1) as f64;
+    let empty = TaxelReadings {
+        least: f64::INFINITY,
+        largest: f64::NEG_INFINITY,
+        ..TaxelReadings::default()
+    };
+    let mut all = vec![empty; frames.ncols()];
+    for frame in frames.rows() {
+        for (taxel, &reading) in all.iter_mut().zip(frame) {
+            taxel.mean += reading / n;
+            taxel.least = taxel.least.min(reading);
+            taxel.largest = taxel.largest.max(reading);
+        }
+    }
+    for frame in frames.rows() {
+        for (taxel, &reading) in all.iter_mut().zip(frame) {
+            taxel.std += (reading - taxel.mean).powi(2) / n;
+        }
+    }
+    for (taxel, readings) in all.iter_mut().zip(frames.columns()) {
+        taxel.std = match taxel.is_constant() {
+            true => 0.0,
+            false => taxel.std.sqrt(),
+        };
+        taxel.median = quantile(&mut readings.to_vec(), 0.5);
+    }
+    all
+}
+
+/// Returns the readings of taxels at rest: each reading, but at most as far above the taxel's median as its 10 % quantile is below. Readings of contact are
+/// cut, while noise and changes of the level remain if contact is in fewer than half of the rows.
+pub fn rest_readings(rows: ArrayView2<f64>) -> Array2<f64> {
+    let mut rest = rows.to_owned();
+    for mut readings in rest.columns_mut() {
+        let mut sorted = readings.to_vec();
+        let median = quantile(&mut sorted, 0.5);
+        let most = 2.0 * median - of_sorted(&sorted, 0.1);
+        readings.mapv_inplace(|reading| reading.min(most));
+    }
+    rest
+}
+
+/// Subtracts from each row the mean of the rows of its class.
+pub fn without_class_means(rows: ArrayView2<f64>, labels: &[usize]) -> Array2<f64> {
+    let n_classes = labels.iter().max().map_or(0, |largest| largest + 1);
+    let mut means = Array2::<f64>::zeros((n_classes, rows.ncols()));
+    let mut counts = vec![0.0; n_classes];
+    for (row, &label) in rows.rows().into_iter().zip(labels) {
+        let mut mean = means.row_mut(label);
+        mean += &row;
+        counts[label] += 1.0;
+    }
+    for (mut mean, count) in means.rows_mut().into_iter().zip(counts) {
+        mean /= f64::max(count, 1.0);
+    }
+    let mut rest = rows.to_owned();
+    for (mut row, &label) in rest.rows_mut().into_iter().zip(labels) {
+        row -= &means.row(label);
+    }
+    rest
+}
+
+/// Returns whether nothing ever touches each taxel. `rows` are the readings, one row per touch; `residuals` are [`without_class_means`]; `contact` is a
+/// number per row that grows with the contact, such as the sum of the readings of active taxels in the same touch.
+pub fn untouched_taxels(
+    rows: ArrayView2<f64>,
+    residuals: ArrayView2<f64>,
+    contact: &[f64],
+    active_std: f64,
+) -> Vec<bool> {
+    let n = rows.nrows();
+    let contact = standardised(contact);
+    let taxels = 0..rows.ncols();
+    taxels
+        .map(|taxel| {
+            let residuals = residuals.column(taxel);
+            let std = (residuals.dot(&residuals) / n as f64).sqrt();
+            if n < 8 || std > MAX_STD * active_std {
+                return false;
+            }
+            if std == 0.0 {
+                return true;
+            }
+            let readings = rows.column(taxel);
+            let clipped = clipped_share(readings);
+            let [least, most] = CLIPPED_NOISE;
+            let is_clipped = clipped > CLIPPED;
+            if is_clipped
+                && (clipped < least || clipped > most || std > MAX_CLIPPED_STD * active_std)
+            {
+                return false;
+            }
+            let correlation = residuals.dot(&contact) / (n as f64 * std);
+            correlation.abs() * (n as f64).sqrt() <= CORRELATION_ERRORS
+                && has_light_tails(residuals, std, if is_clipped { clipped } else { 0.0 })
+        })
+        .collect()
+}
+
+/// Returns the 95 % quantile over taxels of the standard deviations of their readings.
+pub fn active_std(residuals: ArrayView2<f64>) -> f64 {
+    let mut stds = residuals.std_axis(Axis(0), 0.0).to_vec();
+    quantile(&mut stds, 0.95)
+}
+
+/// Returns the sum of the readings of the active taxels of each row: taxels with at least half of the standard deviation `active_std`.
+pub fn contact_sums(residuals: ArrayView2<f64>, active_std: f64) -> Vec<f64> {
+    let stds = residuals.std_axis(Axis(0), 0.0);
+    let is_active = stds.mapv(|std| if std > MAX_STD * active_std { 1.0 } else { 0.0 });
+    residuals.dot(&is_active).to_vec()
+}
+
+fn standardised(values: &[f64]) -> Array1<f64> {
+    let values = Array1::from_iter(values.iter().copied());
+    let mean = values.mean().unwrap_or(0.0);
+    let std = values.std(0.0);
+    values.mapv(|x| if std > 0.0 { (x - mean) / std } else { 0.0 })
+}
+
+/// Returns the fraction of readings that equal the least reading.
+fn clipped_share(readings: ArrayView1<f64>) -> f64 {
+    let least = readings.iter().copied().fold(f64::INFINITY, f64::min);
+    let n_clipped = readings.iter().filter(|&&x| x == least).count();
+    n_clipped as f64 / readings.len() as f64
+}
+
+/// Returns whether skewness and kurtosis of residuals are those of a normal distribution of which the fraction `clipped` is clipped.
+fn has_light_tails(residuals: ArrayView1<f64>, std: f64, clipped: f64) -> bool {
+    let n = residuals.len() as f64;
+    let moment = |power: i32| residuals.iter().map(|x| (x / std).powi(power)).sum::<f64>() / n;
+    let [skewness, kurtosis] = match clipped > 0.0 {
+        true => clipped_moments(clipped),
+        false => [0.0, 0.0],
+    };
+    // The standard errors of the moments of a clipped normal distribution grow with its kurtosis.
+    let errors = MOMENT_ERRORS * (1.0 + kurtosis.max(0.0));
+    moment(3) <= skewness + errors * (6.0 / n).sqrt()
+        && moment(4) - 3.0 <= kurtosis + errors * (24.0 / n).sqrt()
+}
+
+/// Returns skewness and excess kurtosis of max(t, Z) for a standard normal Z, where the fraction `clipped` of values equals t.
+fn clipped_moments(clipped: f64) -> [f64; 2] {
+    let normal = Normal::standard();
+    let t = normal.inverse_cdf(clipped);
+    let density = normal.pdf(t);
+    // Moments of Z above t: E[Zᵏ; Z > t] = tᵏ⁻¹ φ(t) + (k − 1) E[Zᵏ⁻²; Z > t].
+    let mut above = [1.0 - clipped, density, 0.0, 0.0, 0.0];
+    for k in 2..5 {
+        above[k] = t.powi(k as i32 - 1) * density + (k as f64 - 1.0) * above[k - 2];
+    }
+    let raw: Vec<f64> = (0..5)
+        .map(|k| above[k] + clipped * t.powi(k as i32))
+        .collect();
+    let mean = raw[1];
+    let variance = raw[2] - mean * mean;
+    let third = raw[3] - 3.0 * mean * raw[2] + 2.0 * mean.powi(3);
+    let fourth = raw[4] - 4.0 * mean * raw[3] + 6.0 * mean * mean * raw[2] - 3.0 * mean.powi(4);
+    [
+        third / variance.powf(1.5),
+        fourth / (variance * variance) - 3.0,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Seed;
+    use rand::Rng;
+    use rand_distr::StandardNormal;
+
+    #[test]
+    fn clipped_moments_are_those_of_half_a_normal_distribution() {
+        // max(0, Z): mean 1/√(2π), variance 1/2 − 1/(2π), third and fourth central moments by integration.
+        let [skewness, kurtosis] = clipped_moments(0.5);
+        assert!((skewness - 1.6406).abs() < 1e-3, "{skewness}");
+        assert!((kurtosis - 2.4076).abs() < 1e-3, "{kurtosis}");
+    }
+
+    #[test]
+    fn noise_offsets_and_clipping_are_untouched_and_rare_contact_is_not() {
+        let mut rng = Seed::new(4).named("taxels").rng();
+        let n = 400;
+        let labels: Vec<usize> = (0..n).map(|row| row % 4).collect();
+        let mut rows =
+            Array2::from_shape_simple_fn((n, 6), || rng.sample::<f64, _>(StandardNormal));
+        let touch: Vec<f64> = (0..n).map(|_| rng.r#gen()).collect();
+        for (row, mut readings) in rows.rows_mut().into_iter().enumerate() {
+            // Taxels: noise; an offset of the class; clipped noise; three contacts; contact in each row; strong contact.
+            readings[1] += labels[row] as f64;
+            readings[2] = readings[2].max(0.0);
+            readings[3] += if row % 130 == 5 { 12.0 } else { 0.0 };
+            readings[4] += 2.0 * touch[row];
+            readings[5] = 20.0 * touch[row];
+        }
+        let residuals = without_class_means(rows.view(), &labels);
+        let active = active_std(residuals.view());
+        let contact = contact_sums(residuals.view(), active);
+        let found = untouched_taxels(rows.view(), residuals.view(), &contact, active);
+        assert_eq!(found, [true, true, true, false, false, false]);
+    }
+}

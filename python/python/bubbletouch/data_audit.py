@@ -1,0 +1,155 @@
+"""Audit of a data set: whether recorded frames with labels can carry a claim about recognition."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bubbletouch import _core
+from bubbletouch.study import Table
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Finding of an audit.
+
+    check: name of the check, such as "near_duplicates".
+    subject: part of the data, such as "group split"; may be empty.
+    verdict: "fault", "note", "passed" or "not_checked".
+    value: measured number; NaN if there is none. Its meaning is in the sentence.
+    interval: lower and upper end of the 95 % interval of the value; NaN if there is none.
+    baseline: value without the fault, such as the accuracy by chance; NaN if there is none.
+    p_value, p_holm: p-value of the test, and the p-value after Holm's correction over all tests; None for counts.
+    sentence: what was found.
+    advice: what to do; empty if nothing has to be done.
+    """
+
+    check: str
+    subject: str
+    verdict: str
+    value: float
+    interval: tuple[float, float]
+    baseline: float
+    p_value: float | None
+    p_holm: float | None
+    sentence: str
+    advice: str
+
+
+class Audit:
+    """Findings of an audit, the tables behind them, and the folder with report.html, charts and pictures."""
+
+    def __init__(
+        self,
+        folder: Path,
+        findings: list[tuple[Any, ...]],
+        tables: list[tuple[str, str, str, dict[str, Any]]],
+        kept: tempfile.TemporaryDirectory[str] | None = None,
+    ) -> None:
+        self.folder = folder
+        self.findings = [Finding(*said[:4], tuple(said[4]), *said[5:]) for said in findings]
+        self.tables = {Path(table[0]).stem: Table(*table) for table in tables}
+        self._kept = kept
+
+    @property
+    def faults(self) -> list[Finding]:
+        """Findings that are faults of the data."""
+        return [finding for finding in self.findings if finding.verdict == "fault"]
+
+    @property
+    def page(self) -> Path:
+        """Path of the page with all findings, charts and tables."""
+        return self.folder / "report.html"
+
+    def __repr__(self) -> str:
+        names = ", ".join(sorted({finding.check for finding in self.faults}))
+        return f"<bubbletouch.Audit in {self.folder}: {names or 'no faults'}>"
+
+
+def audit(
+    frames: ArrayLike,
+    labels: ArrayLike | None = None,
+    groups: ArrayLike | None = None,
+    *,
+    sessions: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+    order: str | None = None,
+    full_scale: float | None = None,
+    before_contact: tuple[int, int] | None = None,
+    out: str | PathLike[str] | None = None,
+    seed: int = 2018,
+    permutations: int = 999,
+) -> Audit:
+    """Audits a data set, as `bubbletouch audit` does.
+
+    frames: readings, shape (n, rows, columns), (n, n_frames, rows, columns) or (n, n_taxels); NaN for a missing reading.
+    labels: class of each touch, numbers or texts, shape (n,). None: only checks without classes are made.
+    groups, sessions: group (grasp, pose, subject) and session (file, day, mounting) of each touch, shape (n,).
+    times: time of each touch, shape (n,). None: the order of the touches is taken as their order in time.
+    order: one letter for each axis of `frames`: n touches, t frames, y rows, x columns, c taxels. None: "nc", "nyx" or "ntyx".
+    full_scale: reading at full scale. None: a plateau of the largest readings counts as saturation.
+    before_contact: range (start, stop) of the frames of each touch before the contact. None: frames without contact are found.
+    out: folder of the page, tables and charts. None: a temporary folder that is deleted with the Audit.
+    seed, permutations: seed of splits and permutations, and number of permutations of each test.
+
+    Raises ValueError if an argument is invalid, and OSError if a file cannot be written.
+    """
+    array, n_frames, grid = _arranged(np.asarray(frames), order)
+    if not 99 <= permutations <= 100_000:
+        raise ValueError(f"permutations: {permutations}; 99 to 100000")
+    classes, numbers = _numbered("labels", labels)
+    kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
+    folder = Path(kept.name) if kept is not None else Path(out or "")
+    findings, tables = _core.run_audit(
+        array.reshape(len(array), n_frames, -1),
+        grid,
+        numbers,
+        classes,
+        _numbered("groups", groups)[1],
+        _numbered("sessions", sessions)[1],
+        None if times is None else np.asarray(times, dtype=np.float64).ravel().tolist(),
+        full_scale,
+        before_contact,
+        seed,
+        permutations,
+        "arrays" if out is None else folder.name,
+        folder,
+    )
+    return Audit(folder, findings, tables, kept)
+
+
+def _arranged(frames: np.ndarray[Any, Any], order: str | None) -> tuple[np.ndarray[Any, Any], int, tuple[int, int] | None]:
+    """Returns the frames with the axes touch, frame, taxel or row and column; the number of frames; and the grid."""
+    usual = {2: "nc", 3: "nyx", 4: "ntyx"}.get(frames.ndim)
+    letters = "".join((order or usual or "").split())
+    is_grid = "y" in letters
+    allowed = {"n", "t", "y", "x"} if is_grid else {"n", "t", "c"}
+    is_order = len(letters) == frames.ndim and set(letters) <= allowed and letters.count("n") == 1
+    if not is_order or (is_grid and letters.count("x") != 1) or (not is_grid and "c" not in letters):
+        given = f"shape {frames.shape} in the order {order or usual!r}"
+        raise ValueError(f"frames: {given}; a letter for each axis: n touches, t frames, y rows and x columns, or c taxels")
+    axes = [place for letter in "ntcyx" for place, own in enumerate(letters) if own == letter]
+    lengths = dict(zip(letters, frames.shape, strict=True))
+    grid = (lengths["y"], lengths["x"]) if is_grid else None
+    return np.ascontiguousarray(frames.transpose(axes)), lengths.get("t", 1), grid
+
+
+def _numbered(name: str, values: ArrayLike | None) -> tuple[list[str], list[int] | None]:
+    """Returns the distinct values as texts and the number of each value."""
+    if values is None:
+        return [], None
+    array = np.asarray(values)
+    if array.ndim != 1:
+        raise ValueError(f"{name}: shape {array.shape}; one dimension, a value for each touch")
+    if array.dtype.kind == "f" and np.isnan(array).any():
+        raise ValueError(f"{name}: NaN; a value for each touch")
+    distinct, numbers = np.unique(array, return_inverse=True)
+    names: Sequence[Any] = distinct.tolist()
+    return [str(name) for name in names], numbers.tolist()

@@ -1,0 +1,128 @@
+//! Audit of arrays, as in `bubbletouch audit`.
+
+use crate::arrays::{numbers, shape_of};
+use crate::errors::{bad_input, exception, guarded};
+use crate::study::{Said, columns};
+use crate::threads::aside;
+use bubbletouch::audit::{AuditData, AuditOptions, Finding, audit, audit_files};
+use bubbletouch::report::folder::write_files;
+use ndarray::Ix2;
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// Finding of an audit: check, subject, verdict, value, interval, baseline, p-value, corrected p-value, sentence and advice.
+type SaidFinding = (
+    String,
+    String,
+    String,
+    f64,
+    [f64; 2],
+    f64,
+    Option<f64>,
+    Option<f64>,
+    String,
+    String,
+);
+
+fn said(finding: &Finding) -> SaidFinding {
+    (
+        finding.check.to_owned(),
+        finding.subject.clone(),
+        finding.verdict.word().to_owned(),
+        finding.value,
+        finding.interval,
+        finding.baseline,
+        finding.p_value,
+        finding.p_holm,
+        finding.sentence.clone(),
+        finding.advice.clone(),
+    )
+}
+
+/// Audits frames, shape (n_touches, n_frames, n_taxels), with one label, group, session and time per touch. Writes the page, tables and charts to a
+/// folder. Returns the findings and the tables.
+#[pyfunction]
+#[pyo3(signature = (frames, grid, labels, classes, groups, sessions, times, full_scale, before_contact, seed, permutations, name, out))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "called by bubbletouch.audit alone"
+)]
+pub fn run_audit<'py>(
+    py: Python<'py>,
+    frames: &Bound<'py, PyAny>,
+    grid: Option<(usize, usize)>,
+    labels: Option<Vec<usize>>,
+    classes: Vec<String>,
+    groups: Option<Vec<usize>>,
+    sessions: Option<Vec<usize>>,
+    times: Option<Vec<f64>>,
+    full_scale: Option<f64>,
+    before_contact: Option<(usize, usize)>,
+    seed: u64,
+    permutations: usize,
+    name: String,
+    out: PathBuf,
+) -> PyResult<(Vec<SaidFinding>, Vec<Said<'py>>)> {
+    guarded(|| {
+        let array = numbers("frames", frames)?;
+        let [n, n_frames, n_taxels] = *array.shape() else {
+            let given = shape_of(array.shape());
+            return Err(bad_input(
+                "frames",
+                given,
+                "(n_touches, n_frames, n_taxels)",
+            ));
+        };
+        let rows = array.to_owned_array();
+        let rows = rows.into_shape_with_order((n * n_frames, n_taxels));
+        let rows = rows.map_err(|error| bad_input("frames", error, "an array in C order"))?;
+        let rows = rows.into_dimensionality::<Ix2>();
+        let mut data = AuditData {
+            frames: rows.expect("two axes"),
+            n_frames,
+            grid,
+            labels,
+            classes,
+            groups,
+            sessions,
+            full_scale,
+            is_in_order_of_time: false,
+        };
+        data.check().map_err(exception)?;
+        if let Some(times) = times {
+            if times.len() != n || times.iter().any(|time| !time.is_finite()) {
+                let given = format!("{} times", times.len());
+                return Err(bad_input("times", given, format!("{n} finite numbers")));
+            }
+            data.sort_by_time(&times);
+        }
+        let before_contact = before_contact.map(|(from, to)| from..to);
+        if let Some(range) = &before_contact
+            && (range.is_empty() || range.end > n_frames)
+        {
+            let given = format!("{}..{}", range.start, range.end);
+            let allowed = format!("(start, stop) with start < stop ≤ {n_frames}");
+            return Err(bad_input("before_contact", given, allowed));
+        }
+        let options = AuditOptions {
+            seed,
+            n_permutations: permutations,
+            before_contact,
+        };
+        let found = aside(py, move |_| -> bubbletouch::Result<_> {
+            let found = audit(data, options)?;
+            let (findings, tables) = (found.findings.clone(), found.tables.clone());
+            let command = "bubbletouch.audit(frames, labels, …)";
+            let files = audit_files(found, &name, command)?;
+            write_files(&out, files)?;
+            Ok((findings, tables))
+        });
+        let (findings, tables) = found?.map_err(exception)?;
+        let tables = tables.iter().map(|table| columns(py, table));
+        Ok((
+            findings.iter().map(said).collect(),
+            tables.collect::<PyResult<_>>()?,
+        ))
+    })
+}

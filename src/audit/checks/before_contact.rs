@@ -1,0 +1,122 @@
+//! Labels that can be read from frames before the contact.
+
+use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result, Source};
+use crate::audit::finding::percent;
+use bubbletouch_sim::audit::taxels::{untouched_taxels, without_class_means};
+use ndarray::{Array2, Axis};
+
+/// Maximum number of readings from which the label is read.
+pub const MAX_READINGS: usize = 256;
+
+pub const ABOUT: CheckAbout = CheckAbout {
+    name: "before_contact",
+    title: "Frames before contact",
+    run,
+};
+
+pub const SOURCE: Source = Source {
+    name: "before_contact",
+    rows,
+};
+
+/// All taxels in the quietest frame, which may contain contact.
+pub const QUIETEST: Source = Source {
+    name: "quietest_frame",
+    rows: |context| Some(some_columns(&quietest_frame(context)?.0, |_| true)),
+};
+
+/// Minimum fraction of the taxels that contact reaches in other frames, but not in a frame before the contact.
+const MIN_UNTOUCHED: f64 = 0.9;
+
+/// Returns readings of taxels that nothing touches in the first or the last frame of a touch, but in other frames. If the options name frames before the
+/// contact, returns the means of all taxels in these frames.
+fn rows(context: &Context) -> Option<Array2<f64>> {
+    let n_frames = context.data.n_frames;
+    if let Some(range) = &context.options.before_contact {
+        let frames = range.start..range.end.min(n_frames);
+        let n = frames.len() as f64;
+        let sum = frames
+            .map(|frame| context.frame_of_touches(frame))
+            .reduce(|sum, frame| sum + frame)?;
+        return Some(some_columns(&(sum / n), |_| true));
+    }
+    if n_frames < 2 {
+        return None;
+    }
+    let (rows, residuals) = quietest_frame(context)?;
+    let is_untouched = untouched_taxels(
+        rows.view(),
+        residuals.view(),
+        &context.contact,
+        context.active_std,
+    );
+    // Taxels that no touch reaches are another check.
+    let active = (0..rows.ncols()).filter(|&taxel| !context.is_untouched[taxel]);
+    let (n_active, n_untouched) = active.fold((0, 0), |(n, untouched), taxel| {
+        (n + 1, untouched + usize::from(is_untouched[taxel]))
+    });
+    if (n_untouched as f64) < MIN_UNTOUCHED * f64::from(n_active) {
+        return None;
+    }
+    let is_counted = |taxel: usize| is_untouched[taxel] && !context.is_untouched[taxel];
+    let rows = some_columns(&rows, is_counted);
+    (rows.ncols() > 0).then_some(rows)
+}
+
+/// Returns the first or the last frame of the sampled touches, whichever varies less within classes, and its readings less the means of their classes.
+fn quietest_frame(context: &Context) -> Option<(Array2<f64>, Array2<f64>)> {
+    let n_frames = context.data.n_frames;
+    let ends = [0, n_frames - 1].into_iter().filter(|_| n_frames > 1);
+    let frames = ends.map(|frame| {
+        let rows = context.frame_of_touches(frame);
+        let residuals = without_class_means(rows.view(), &context.sample_labels);
+        let squares = residuals.iter().map(|x| x * x).sum::<f64>();
+        (rows, residuals, squares)
+    });
+    let quietest = frames.min_by(|a, b| a.2.total_cmp(&b.2));
+    quietest.map(|(rows, residuals, _)| (rows, residuals))
+}
+
+/// Returns at most [`MAX_READINGS`] columns for which `is_counted` is true, and their mean.
+pub fn some_columns(rows: &Array2<f64>, is_counted: impl Fn(usize) -> bool) -> Array2<f64> {
+    let counted: Vec<usize> = (0..rows.ncols())
+        .filter(|&column| is_counted(column))
+        .collect();
+    let step = counted.len().div_ceil(MAX_READINGS).max(1);
+    let chosen: Vec<usize> = counted.into_iter().step_by(step).collect();
+    rows.select(Axis(1), &chosen)
+}
+
+fn run(context: &Context) -> Result<Vec<Finding>> {
+    if !context.has_classes() {
+        return Ok(vec![Finding::not_checked("", NO_LABELS)]);
+    }
+    let Some(found) = context.readable.get(SOURCE.name) else {
+        let Some(quietest) = context.readable.get(QUIETEST.name) else {
+            let why =
+                "Each touch is a single frame, so that there are no frames before the contact.";
+            return Ok(vec![Finding::not_checked("", why)]);
+        };
+        let sentence = format!(
+            "The quietest frame at an end of the touches names the class of {} of the touches, but may contain contact; permuted labels give {}.",
+            percent(quietest.accuracy),
+            percent(quietest.chance)
+        );
+        let note = Finding::note("", quietest.accuracy, sentence)
+            .against(quietest.chance)
+            .advice("If this frame precedes the contact, name it (before_contact) to test whether it names the class.")
+            .shown_in("confounds");
+        return Ok(vec![note]);
+    };
+    let sentence = format!(
+        "Frames before the contact name the class of {} of the touches; permuted labels give {}.",
+        percent(found.accuracy),
+        percent(found.chance)
+    );
+    let advice = "Subtract the frame before contact from each touch, or record the classes in random order; otherwise the classifier may name the session.";
+    let finding = Finding::tested("", found.accuracy, sentence, (found.p_value, true))
+        .against(found.chance)
+        .advice(advice)
+        .shown_in("confounds");
+    Ok(vec![finding])
+}

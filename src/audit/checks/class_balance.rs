@@ -1,0 +1,82 @@
+//! Numbers of touches of the classes.
+
+use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
+use crate::audit::finding::percent;
+use crate::audit::splits::touches_of_classes;
+use crate::table::short_number;
+use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF};
+
+/// Smallest ratio between the largest and the smallest class that matters.
+const RELEVANT: f64 = 1.5;
+/// Smallest number of touches of a class that can be trained on and tested in five folds.
+const MIN_TOUCHES: usize = 10;
+
+pub const ABOUT: CheckAbout = CheckAbout {
+    name: "class_balance",
+    title: "Class balance",
+    run,
+};
+
+fn run(context: &Context) -> Result<Vec<Finding>> {
+    if !context.has_classes() {
+        return Ok(vec![Finding::not_checked("", NO_LABELS)]);
+    }
+    let classes = touches_of_classes(&context.labels);
+    let name = |class: usize| context.data.classes[class].clone();
+    let sizes: Vec<(usize, String)> = classes
+        .iter()
+        .map(|(&class, touches)| (touches.len(), name(class)))
+        .collect();
+    let expected = context.labels.len() as f64 / sizes.len() as f64;
+    let statistic: f64 = sizes
+        .iter()
+        .map(|(size, _)| (*size as f64 - expected).powi(2) / expected)
+        .sum();
+    let (Some(least), Some(largest)) = (sizes.iter().min(), sizes.iter().max()) else {
+        return Ok(Vec::new());
+    };
+    let n_classes = sizes.len() as f64;
+    let n = context.labels.len() as u64;
+    let chi_squared = ChiSquared::new(n_classes - 1.0).map_or(1.0, |of| of.sf(statistic));
+    // A single small or large class is clearer by its own size.
+    let tails = Binomial::new(1.0 / n_classes, n).map_or([1.0; 2], |of| {
+        [of.cdf(least.0 as u64), of.sf(largest.0 as u64 - 1)]
+    });
+    let tails = n_classes * tails[0].min(tails[1]);
+    let p_value = (2.0 * chi_squared.min(tails)).min(1.0);
+    let ratio = largest.0 as f64 / least.0 as f64;
+    let sentence = format!(
+        "The largest class ({}) has {} touches, the smallest ({}) {}: {} times fewer. Always naming the largest class gives {}.",
+        largest.1,
+        largest.0,
+        least.1,
+        least.0,
+        short_number(ratio),
+        percent(context.chance())
+    );
+    let balance = Finding::tested("", ratio, sentence, (p_value, ratio >= RELEVANT))
+        .about("ratio")
+        .against(1.0)
+        .advice("Report the mean accuracy over classes, or draw as many touches of each class.")
+        .shown_in("classes");
+    let few: Vec<&str> = sizes
+        .iter()
+        .filter(|(size, _)| *size < MIN_TOUCHES)
+        .map(|(_, name)| &name[..])
+        .collect();
+    let sentence = match few.is_empty() {
+        true => format!("Each class has at least {MIN_TOUCHES} touches."),
+        false => format!(
+            "{} of {} classes have fewer than {MIN_TOUCHES} touches, such as {}.",
+            few.len(),
+            sizes.len(),
+            few[0]
+        ),
+    };
+    let few = Finding::counted("", few.len() as f64, sentence, !few.is_empty())
+        .about("small classes")
+        .against(0.0)
+        .advice("Record more touches of these classes, or leave the classes out.")
+        .shown_in("classes");
+    Ok(vec![balance, few])
+}

@@ -1,0 +1,69 @@
+//! Dead and stuck taxels: constant readings while the taxels around them change.
+
+use crate::audit::check::{CheckAbout, Context, Finding, Result};
+use crate::audit::finding::percent;
+use crate::calibration::faults::{self, Fault};
+
+pub const ABOUT: CheckAbout = CheckAbout {
+    name: "dead_taxels",
+    title: "Dead and stuck taxels",
+    run,
+};
+
+/// Reading of a touched taxel, as a fraction of the full scale.
+const TOUCHED: f64 = 0.1;
+/// Minimum number of frames in which a constant taxel lies between two touched ones.
+const MIN_FRAMES: usize = 3;
+
+/// Returns the faulty taxels. On a grid, a fault counts only if the taxel lies between two touched taxels in some frames: contact may never reach a constant
+/// taxel at the edge of the contact area.
+pub fn found(context: &Context) -> Vec<Fault> {
+    let faults = faults::find(&context.skin).faults.into_iter();
+    let Some((rows, columns)) = context.data.grid else {
+        return faults.collect();
+    };
+    let is_between = |fault: &Fault| {
+        let (y, x) = (fault.taxel / columns, fault.taxel % columns);
+        let pairs = [
+            (x > 0 && x + 1 < columns).then(|| [fault.taxel - 1, fault.taxel + 1]),
+            (y > 0 && y + 1 < rows).then(|| [fault.taxel - columns, fault.taxel + columns]),
+        ];
+        let frames = context.skin.touched.outer_iter().filter(|frame| {
+            let mut pairs = pairs.iter().flatten();
+            pairs.any(|pair| pair.iter().all(|&taxel| frame[taxel] > TOUCHED))
+        });
+        frames.take(MIN_FRAMES).count() == MIN_FRAMES
+    };
+    faults.filter(|fault| is_between(fault)).collect()
+}
+
+fn run(context: &Context) -> Result<Vec<Finding>> {
+    let found = found(context);
+    let n_taxels = context.taxels.len();
+    let count = |is_dead: bool| found.iter().filter(|f| f.is_dead == is_dead).count();
+    let finding = |n: usize, subject: &str, level: &str| {
+        let list: Vec<String> = found
+            .iter()
+            .filter(|fault| fault.is_dead == (subject == "dead"))
+            .take(5)
+            .map(|fault| fault.taxel.to_string())
+            .collect();
+        let sentence = match n {
+            0 => format!("No taxel stays at {level} while the taxels around it change."),
+            _ => format!(
+                "{n} of {n_taxels} taxels ({}) stay at {level} while the taxels around them change, such as number {}.",
+                percent(n as f64 / n_taxels as f64),
+                list.join(", ")
+            ),
+        };
+        Finding::counted("", n as f64 / n_taxels as f64, sentence, n > 0)
+            .about(subject)
+            .against(0.0)
+            .advice("Mask these taxels in all recordings, also in those of other sessions, and state their number.")
+            .shown_in("taxels")
+    };
+    Ok(vec![
+        finding(count(true), "dead", "the zero"),
+        finding(count(false), "stuck", "another level"),
+    ])
+}

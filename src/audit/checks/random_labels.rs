@@ -1,0 +1,102 @@
+//! Accuracy that a random labelling of whole groups reaches by a random split.
+//!
+//! The label of each group and class is replaced by a random one; touches of a group keep a common label. The nearest neighbour outside the own fold then
+//! names the label as often as it belongs to the same group. Without groups, sessions are used; without both, tenths of each class in the order of the file.
+
+use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
+use crate::audit::finding::percent;
+use crate::audit::splits::touches_of_classes;
+use rand::seq::SliceRandom;
+use std::collections::BTreeMap;
+
+/// Number of blocks of each class that stand for groups if there are none.
+const N_BLOCKS: usize = 10;
+/// Smallest excess over chance that matters.
+const RELEVANT: f64 = 0.05;
+
+pub const ABOUT: CheckAbout = CheckAbout {
+    name: "random_labels",
+    title: "Accuracy of a random labelling",
+    run,
+};
+
+/// Returns the group of each touch, and the display name of the groups.
+fn units(context: &Context) -> (Vec<usize>, &'static str) {
+    let data = &context.data;
+    match (&data.groups, &data.sessions) {
+        (Some(groups), _) => (groups.clone(), "groups"),
+        (None, Some(sessions)) => (sessions.clone(), "sessions"),
+        (None, None) => {
+            let mut blocks = vec![0; context.labels.len()];
+            for touches in touches_of_classes(&context.labels).into_values() {
+                for (place, &touch) in touches.iter().enumerate() {
+                    blocks[touch] = place * N_BLOCKS / touches.len();
+                }
+            }
+            (blocks, "blocks of consecutive touches")
+        }
+    }
+}
+
+fn run(context: &Context) -> Result<Vec<Finding>> {
+    let Some(scores) = &context.scores else {
+        return Ok(vec![Finding::not_checked("", NO_LABELS)]);
+    };
+    let (units, words) = units(context);
+    let mut numbers = BTreeMap::new();
+    let cells = context.labels.iter().zip(&units).map(|(&label, &unit)| {
+        let next = numbers.len();
+        *numbers.entry((label, unit)).or_insert(next)
+    });
+    let cells: Vec<usize> = cells.collect();
+    let n_cells = numbers.len();
+    if n_cells == context.n_classes || 2 * n_cells > context.labels.len() {
+        let why = format!("Each class is in one of the {words}, or most of the {words} are single touches.");
+        return Ok(vec![Finding::not_checked("", why)]);
+    }
+    let pairs = scores.nearest_outside.iter().enumerate();
+    let pairs: Vec<(usize, usize)> = pairs.filter_map(|(row, other)| Some((row, (*other)?))).collect();
+    let n = pairs.len().max(1) as f64;
+    let share = |of: &[usize]| pairs.iter().filter(|(a, b)| of[*a] == of[*b]).count() as f64 / n;
+    let mut rng = context.seed(ABOUT.name).rng();
+    // A random labelling of the cells, with as many cells of each label as before.
+    let mut labels: Vec<usize> = numbers.keys().map(|&(label, _)| label).collect();
+    let mut reached = 0.0;
+    let n_labellings = context.options.n_permutations.clamp(1, 100);
+    for _ in 0..n_labellings {
+        labels.shuffle(&mut rng);
+        let labels: Vec<usize> = cells.iter().map(|&cell| labels[cell]).collect();
+        reached += share(&labels) / n_labellings as f64;
+    }
+    // Touches of a class exchange their groups: the neighbours' groups are then independent of the touch.
+    let observed = share(&cells);
+    let classes: Vec<Vec<usize>> = touches_of_classes(&context.labels).into_values().collect();
+    let (mut at_least, mut chance) = (0, 0.0);
+    let mut permuted = cells.clone();
+    for _ in 0..context.options.n_permutations {
+        for touches in &classes {
+            let mut shuffled: Vec<usize> = touches.iter().map(|&touch| cells[touch]).collect();
+            shuffled.shuffle(&mut rng);
+            for (&touch, cell) in touches.iter().zip(shuffled) {
+                permuted[touch] = cell;
+            }
+        }
+        let same = share(&permuted);
+        at_least += usize::from(same >= observed);
+        let of_cells: Vec<usize> = permuted.iter().map(|&cell| labels[cell]).collect();
+        chance += share(&of_cells) / context.options.n_permutations as f64;
+    }
+    let p_value = (1 + at_least) as f64 / (1 + context.options.n_permutations) as f64;
+    let sentence = format!(
+        "If the {words} are labelled at random, a random split still gives {}; {} if the {words} had nothing in common.",
+        percent(reached),
+        percent(chance)
+    );
+    let finding = Finding::tested("", reached, sentence, (p_value, reached - chance >= RELEVANT))
+        .against(chance)
+        .advice(format!(
+            "The random split rewards the recognition of {words}, whatever the labels mean. Hold out whole {words}."
+        ))
+        .shown_in("accuracy_by_split");
+    Ok(vec![finding])
+}

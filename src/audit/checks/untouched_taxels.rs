@@ -1,0 +1,50 @@
+//! Labels that can be read from taxels that nothing ever touches.
+
+use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result, Source};
+use crate::audit::checks::before_contact::some_columns;
+use crate::audit::finding::percent;
+use ndarray::Array2;
+
+pub const ABOUT: CheckAbout = CheckAbout {
+    name: "untouched_taxels",
+    title: "Taxels that nothing touches",
+    run,
+};
+
+pub const SOURCE: Source = Source {
+    name: "untouched_taxels",
+    rows,
+};
+
+fn rows(context: &Context) -> Option<Array2<f64>> {
+    let is_counted = |taxel: usize| {
+        context.is_untouched[taxel] && !context.taxels[taxel].is_constant()
+    };
+    let rows = some_columns(&context.sample_rows, is_counted);
+    (rows.ncols() > 0).then_some(rows)
+}
+
+fn run(context: &Context) -> Result<Vec<Finding>> {
+    if !context.has_classes() {
+        return Ok(vec![Finding::not_checked("", NO_LABELS)]);
+    }
+    let n = context.is_untouched.iter().filter(|&&is| is).count();
+    let Some(found) = context.readable.get(SOURCE.name) else {
+        let why = match n {
+            0 => "Contact reaches all taxels.",
+            _ => "The taxels that nothing touches always read the same.",
+        };
+        return Ok(vec![Finding::not_checked("", why)]);
+    };
+    let sentence = format!(
+        "The {n} taxels that nothing touches name the class of {} of the touches; permuted labels give {}.",
+        percent(found.accuracy),
+        percent(found.chance)
+    );
+    let advice = "Subtract the level of the untouched taxels from each frame, mask them, and record the classes in random order.";
+    let finding = Finding::tested("", found.accuracy, sentence, (found.p_value, true))
+        .against(found.chance)
+        .advice(advice)
+        .shown_in("confounds");
+    Ok(vec![finding])
+}

@@ -1,0 +1,305 @@
+//! Quantities that several checks of an audit need, computed once.
+
+use crate::audit::data::AuditData;
+use crate::audit::scores::{Features, Scores, Tested, scores};
+use crate::audit::splits::{AuditSplit, splits, touches_of_classes};
+use crate::calibration::{RecordedSkin, plateau};
+use crate::error::Result;
+use crate::quantile::quantile;
+use crate::random::Seed;
+use bubbletouch_sim::audit::missing::{count_missing, fill_missing};
+use bubbletouch_sim::audit::pooled::{blocks_of, pooled, spans};
+use bubbletouch_sim::audit::taxels::{
+    TaxelReadings, active_std, contact_sums, taxel_readings, untouched_taxels, without_class_means,
+};
+use bubbletouch_sim::features::{Cut, ImageFeature, ImageFeatures, Join, Workspace};
+use bubbletouch_svm::audit::{Readability, readability};
+use ndarray::{Array1, Array2, ArrayView2, Axis};
+use rand::seq::SliceRandom;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Maximum number of touches in permutation tests and in statistics of taxels. More touches find smaller effects and take time in proportion to the square.
+const MAX_SAMPLE: usize = 1000;
+/// Maximum number of block means of a touch of a single frame, and of a touch of several frames.
+const MAX_BLOCKS: [usize; 2] = [256, 512];
+/// Maximum number of pixels of the image from which shift-invariant features are computed.
+const MAX_PIXELS: usize = 1024;
+
+/// Options of an audit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AuditOptions {
+    /// Seed of splits and permutations.
+    pub seed: u64,
+    /// Number of permutations of each test. With fewer than 20 times the number of tests, no corrected p-value is significant.
+    pub n_permutations: usize,
+    /// Frames of each touch that are known to precede the contact; `None` to find them.
+    pub before_contact: Option<Range<usize>>,
+}
+
+impl Default for AuditOptions {
+    fn default() -> Self {
+        Self {
+            seed: 2018,
+            n_permutations: 999,
+            before_contact: None,
+        }
+    }
+}
+
+/// Data of an audit, and quantities that several checks need.
+pub struct Context {
+    /// Data set; missing readings are replaced.
+    pub data: AuditData,
+    /// Options of the audit.
+    pub options: AuditOptions,
+    /// Number of missing readings of each taxel.
+    pub n_missing: Vec<usize>,
+    /// Class of each touch; 0 without labels.
+    pub labels: Vec<usize>,
+    /// Number of classes that have touches.
+    pub n_classes: usize,
+    /// Randomly drawn touches, in the order of recording.
+    pub sample: Vec<usize>,
+    /// Class of each sampled touch.
+    pub sample_labels: Vec<usize>,
+    /// Mean frame of each sampled touch, shape (n_sample, n_taxels).
+    pub sample_rows: Array2<f64>,
+    /// Mean frames of sampled touches less the means of their classes.
+    pub residuals: Array2<f64>,
+    /// Standard deviation of the readings of active taxels within a class.
+    pub active_std: f64,
+    /// Sum of the readings of active taxels for each sampled touch.
+    pub contact: Vec<f64>,
+    /// Whether nothing ever touches each taxel.
+    pub is_untouched: Vec<bool>,
+    /// Mean, spread and range of each taxel over sampled frames.
+    pub taxels: Vec<TaxelReadings>,
+    /// Sampled frames as fractions of the full scale.
+    pub skin: RecordedSkin,
+    /// Reading of an untouched taxel, and the reading at full scale.
+    pub scale: (f64, f64),
+    /// Reading that several taxels share in many frames, as a fraction of the full scale, if it is the largest.
+    pub plateau: Option<f64>,
+    /// Features of all touches.
+    pub features: Features,
+    /// Splits; empty without labels.
+    pub splits: Vec<AuditSplit>,
+    /// Results of the classifiers; `None` without labels.
+    pub scores: Option<Scores>,
+    /// Readability of the labels from sources other than the contact, by name of the source.
+    pub readable: BTreeMap<&'static str, Readability>,
+}
+
+impl Context {
+    /// Computes the common quantities of all checks.
+    ///
+    /// # Errors
+    /// If the data are inconsistent.
+    pub fn new(mut data: AuditData, options: AuditOptions) -> Result<Self> {
+        data.check()?;
+        let seed = Seed::new(options.seed).named("audit");
+        let n_missing = count_missing(data.frames.view());
+        fill_missing(&mut data.frames, &n_missing);
+        let n = data.n_touches();
+        let labels = data.labels.clone().unwrap_or_else(|| vec![0; n]);
+        let classes = labels.iter().collect::<std::collections::BTreeSet<_>>();
+        let n_classes = classes.len();
+        let sample = sample(n, &seed);
+        let sample_labels: Vec<usize> = sample.iter().map(|&touch| labels[touch]).collect();
+        let frames_of = |touch: &usize| touch * data.n_frames..(touch + 1) * data.n_frames;
+        let sampled: Vec<usize> = sample.iter().flat_map(frames_of).collect();
+        let sampled = data.frames.select(Axis(0), &sampled);
+        let sample_rows = spans(sampled.view(), data.n_frames, 1);
+        let residuals = without_class_means(sample_rows.view(), &sample_labels);
+        let active_std = active_std(residuals.view());
+        let contact = contact_sums(residuals.view(), active_std);
+        let is_untouched =
+            untouched_taxels(sample_rows.view(), residuals.view(), &contact, active_std);
+        // Touches of many frames need no more frames than touches of one.
+        let step = sampled.nrows().div_ceil(2 * MAX_SAMPLE);
+        let some: Vec<usize> = (0..sampled.nrows()).step_by(step).collect();
+        let some = sampled.select(Axis(0), &some);
+        let taxels = taxel_readings(some.view());
+        let (scale, skin) = skin(&data, &some, &taxels);
+        let features = features(&data, &taxels);
+        let has_classes = data.labels.is_some() && n_classes > 1;
+        let (groups, sessions) = (data.groups.as_deref(), data.sessions.as_deref());
+        let splits = match has_classes {
+            true => splits(&labels, groups, sessions, &seed),
+            false => Vec::new(),
+        };
+        let n_labels = data.classes.len().max(1);
+        let scores = match has_classes {
+            true => Some(scores(&features, (&labels, n_labels), &splits, &seed)?),
+            false => None,
+        };
+        let plateau = plateau_of(&skin, &taxels);
+        Ok(Self {
+            n_missing,
+            labels,
+            n_classes,
+            sample,
+            sample_labels,
+            sample_rows,
+            residuals,
+            active_std,
+            contact,
+            is_untouched,
+            taxels,
+            skin,
+            scale,
+            plateau,
+            features,
+            splits,
+            scores,
+            readable: BTreeMap::new(),
+            data,
+            options,
+        })
+    }
+
+    /// Returns the random stream of a check.
+    pub fn seed(&self, name: &str) -> Seed {
+        Seed::new(self.options.seed).named("audit").named(name)
+    }
+
+    /// Returns whether the labels contain at least two classes.
+    pub fn has_classes(&self) -> bool {
+        self.scores.is_some()
+    }
+
+    /// Tests whether the labels of the sampled touches can be read from some features.
+    pub fn readability(&self, rows: ArrayView2<f64>, name: &str) -> Option<Readability> {
+        let seed = self.seed(name);
+        readability(
+            rows,
+            &self.sample_labels,
+            self.options.n_permutations,
+            &seed,
+        )
+    }
+
+    /// Returns frame `frame` of each sampled touch, shape (n_sample, n_taxels).
+    pub fn frame_of_touches(&self, frame: usize) -> Array2<f64> {
+        let rows = self
+            .sample
+            .iter()
+            .map(|touch| touch * self.data.n_frames + frame);
+        self.data.frames.select(Axis(0), &rows.collect::<Vec<_>>())
+    }
+
+    /// Returns the results of a split by its index.
+    pub fn tested(&self, split: usize) -> impl Iterator<Item = &Tested> {
+        let tested = self.scores.iter().flat_map(|scores| &scores.tested);
+        tested.filter(move |tested| tested.split == split)
+    }
+
+    /// Returns the most accurate classifier by the random split; `None` without labels.
+    pub fn best_at_random(&self) -> Option<&Tested> {
+        self.tested(0)
+            .max_by(|a, b| a.accuracy().total_cmp(&b.accuracy()))
+    }
+
+    /// Returns the rows of block means of the sampled touches.
+    pub fn sample_features(&self) -> Array2<f64> {
+        self.features.blocks.select(Axis(0), &self.sample)
+    }
+
+    /// Returns the accuracy of always naming the most frequent class.
+    pub fn chance(&self) -> f64 {
+        let largest = touches_of_classes(&self.labels)
+            .into_values()
+            .map(|touches| touches.len())
+            .max();
+        largest.unwrap_or(0) as f64 / self.labels.len() as f64
+    }
+}
+
+/// Draws touches at random and returns them in the order of recording.
+fn sample(n: usize, seed: &Seed) -> Vec<usize> {
+    let mut touches: Vec<usize> = (0..n).collect();
+    touches.shuffle(&mut seed.named("sample").rng());
+    touches.truncate(MAX_SAMPLE);
+    touches.sort_unstable();
+    touches
+}
+
+/// Returns the readings at zero and at full scale, and the frames as fractions of the full scale.
+fn skin(
+    data: &AuditData,
+    frames: &Array2<f64>,
+    taxels: &[TaxelReadings],
+) -> ((f64, f64), RecordedSkin) {
+    // At least a quarter of the taxels is at rest in most frames.
+    let mut medians: Vec<f64> = taxels.iter().map(|taxel| taxel.median).collect();
+    let zero = quantile(&mut medians, 0.25);
+    let largest = taxels.iter().map(|taxel| taxel.largest);
+    let largest = largest.fold(f64::NEG_INFINITY, f64::max);
+    let full_scale = data
+        .full_scale
+        .filter(|&full| full > zero)
+        .unwrap_or(largest);
+    let range = if full_scale > zero {
+        full_scale - zero
+    } else {
+        1.0
+    };
+    let skin = RecordedSkin {
+        shape: data.grid.unwrap_or((1, frames.ncols())),
+        touched: frames.mapv(|reading| (reading - zero) / range),
+        touched_times: Array1::linspace(0.0, 1.0, frames.nrows()),
+        untouched: Array2::zeros((0, frames.ncols())),
+        untouched_times: Array1::zeros(0),
+        forces: None,
+        stroke: None,
+    };
+    ((zero, full_scale), skin)
+}
+
+/// Returns the level at which readings are clipped: the full scale if it is known, otherwise a plateau of the largest readings. Constant taxels do not count.
+fn plateau_of(skin: &RecordedSkin, taxels: &[TaxelReadings]) -> Option<f64> {
+    let is_constant: Vec<bool> = taxels.iter().map(|taxel| taxel.is_constant()).collect();
+    plateau(|| {
+        skin.touched.outer_iter().map(|frame| {
+            let readings = frame.into_iter().zip(&is_constant);
+            readings.map(|(&reading, &is_constant)| if is_constant { f64::NAN } else { reading })
+        })
+    })
+}
+
+/// Computes the features of all touches.
+fn features(data: &AuditData, taxels: &[TaxelReadings]) -> Features {
+    let max_blocks = MAX_BLOCKS[usize::from(data.n_frames > 1)];
+    let blocks = pooled(data.frames.view(), data.n_frames, data.grid, max_blocks);
+    let is_image = |grid: &(usize, usize)| grid.0.min(grid.1) >= 4;
+    let invariant = data.grid.filter(is_image).map(|grid| {
+        let mean = spans(data.frames.view(), data.n_frames, 1);
+        let least: Array1<f64> = taxels.iter().map(|taxel| taxel.least).collect();
+        let images = pooled((mean - &least).view(), 1, Some(grid), MAX_PIXELS);
+        let (shape, _) = blocks_of(grid, MAX_PIXELS);
+        fourier_magnitudes(&images, shape)
+    });
+    Features { blocks, invariant }
+}
+
+/// Computes the Fourier magnitudes of images, one image per row.
+fn fourier_magnitudes(images: &Array2<f64>, shape: (usize, usize)) -> Array2<f64> {
+    let feature = ImageFeature::FourierMagnitude;
+    let n_values = (feature.about().n_values)(shape);
+    let full_scale = images.iter().copied().fold(0.0, f64::max);
+    let join = Join::new(&[feature]).expect("a join of one feature");
+    let prepared = ImageFeatures::new(join, shape, full_scale, Cut::default());
+    let mut rows = Array2::zeros((images.nrows(), n_values));
+    rows.axis_chunks_iter_mut(Axis(0), 64)
+        .into_par_iter()
+        .zip(images.axis_chunks_iter(Axis(0), 64).into_par_iter())
+        .for_each_init(Workspace::default, |workspace, (mut rows, images)| {
+            for (mut row, image) in rows.rows_mut().into_iter().zip(images.rows()) {
+                let (image, row) = (image.to_vec(), row.as_slice_mut());
+                prepared.write(&image, workspace, row.expect("rows of one array"));
+            }
+        });
+    rows
+}

@@ -1,0 +1,91 @@
+//! Data set that an audit examines: frames, labels, groups and sessions.
+
+use crate::error::{Error, Result};
+use ndarray::{Array2, Axis};
+
+/// Recorded frames with optional labels, groups and sessions. Rows are touches in the order of recording.
+#[derive(Clone, Debug, Default)]
+pub struct AuditData {
+    /// Frames of all touches, shape (n_touches · n_frames, n_taxels). NaN and infinite numbers are missing readings.
+    pub frames: Array2<f64>,
+    /// Number of frames of each touch; at least 1.
+    pub n_frames: usize,
+    /// Numbers of rows and columns of the taxels; `None` if the taxels form no grid.
+    pub grid: Option<(usize, usize)>,
+    /// Class number of each touch, from 0; `None` without labels.
+    pub labels: Option<Vec<usize>>,
+    /// Name of each class.
+    pub classes: Vec<String>,
+    /// Group of each touch, such as its grasp or day; `None` without groups.
+    pub groups: Option<Vec<usize>>,
+    /// Session or file of each touch; `None` without sessions.
+    pub sessions: Option<Vec<usize>>,
+    /// Reading at full scale; `None` if unknown.
+    pub full_scale: Option<f64>,
+    /// Whether the touches are known to be in the order of their times.
+    pub is_in_order_of_time: bool,
+}
+
+impl AuditData {
+    /// Returns the number of touches.
+    pub fn n_touches(&self) -> usize {
+        self.frames.nrows() / self.n_frames.max(1)
+    }
+
+    /// Sorts the touches by their times, and notes that their order is that of recording.
+    ///
+    /// # Panics
+    /// If there are fewer times than touches.
+    pub fn sort_by_time(&mut self, times: &[f64]) {
+        let mut order: Vec<usize> = (0..self.n_touches()).collect();
+        order.sort_by(|&a, &b| times[a].total_cmp(&times[b]).then(a.cmp(&b)));
+        let frames_of = |touch: &usize| touch * self.n_frames..(touch + 1) * self.n_frames;
+        let frames: Vec<usize> = order.iter().flat_map(frames_of).collect();
+        self.frames = self.frames.select(Axis(0), &frames);
+        for list in [&mut self.labels, &mut self.groups, &mut self.sessions] {
+            if let Some(list) = list.as_mut().filter(|list| list.len() == order.len()) {
+                *list = order.iter().map(|&touch| list[touch]).collect();
+            }
+        }
+        self.is_in_order_of_time = true;
+    }
+
+    /// Checks that frames, labels, groups and sessions belong together.
+    ///
+    /// # Errors
+    /// If there are no frames, or a list has another length than the number of touches.
+    pub fn check(&self) -> Result<()> {
+        let n = self.n_touches();
+        if self.n_frames == 0 || n < MIN_TOUCHES || self.frames.ncols() == 0 {
+            let given = format!("{n} touches of {} taxels", self.frames.ncols());
+            let allowed = format!("at least {MIN_TOUCHES} touches of one taxel");
+            return Err(Error::input("frames", given, allowed));
+        }
+        let lists = [
+            ("labels", &self.labels),
+            ("groups", &self.groups),
+            ("sessions", &self.sessions),
+        ];
+        for (name, list) in lists {
+            if let Some(list) = list
+                && list.len() != n
+            {
+                let given = format!("{} numbers", list.len());
+                let allowed = format!("{n}, one for each touch");
+                return Err(Error::input(name, given, allowed));
+            }
+        }
+        let n_classes = self.classes.len();
+        let is_wrong = |label: &&usize| **label >= n_classes;
+        match self.labels.iter().flatten().find(is_wrong) {
+            Some(label) => {
+                let allowed = format!("0 to {}", n_classes.saturating_sub(1));
+                Err(Error::input("labels", label, allowed))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Smallest number of touches of an audit. No test finds anything in fewer touches.
+const MIN_TOUCHES: usize = 20;

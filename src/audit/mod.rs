@@ -1,0 +1,28 @@
+//! Audit of a data set: whether recorded frames with labels can carry a claim about recognition.
+//!
+//! Each check is a file of [`checks`] with a constant `ABOUT`; its name in the list [`checks::CHECKS`] adds it to the audit. A check returns findings with a
+//! number, a p-value or a count, one sentence, and advice. The p-values of all findings are corrected together (Holm), so that an audit of faultless data
+//! reports a fault with a probability of at most 5 %.
+//!
+//! The statistics of frames are in `bubbletouch_sim::audit`, those of labelled rows in `bubbletouch_svm::audit`.
+
+mod check;
+pub mod checks;
+mod context;
+mod data;
+mod finding;
+mod pictures;
+mod reader;
+mod report;
+mod run;
+mod scores;
+mod splits;
+mod tables;
+
+pub use check::{CheckAbout, Source};
+pub use context::{AuditOptions, Context};
+pub use data::AuditData;
+pub use finding::{ALPHA, Finding, Verdict};
+pub use reader::AuditFiles;
+pub use report::{AUDIT_FILES, audit_files, audit_text};
+pub use run::{Audit, audit};

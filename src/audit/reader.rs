@@ -1,0 +1,302 @@
+//! Files of an audit: frames with labels, groups and sessions in the formats that studies with recorded frames read.
+
+use crate::audit::data::AuditData;
+use crate::error::{Error, Result};
+use crate::inputs::arrays::file_array::FileArray;
+use crate::inputs::arrays::{
+    ClassLabels, KeyValue, group_keys, is_member, read_class_values, read_group_values,
+};
+use crate::studies::recognition::spec::recorded::RecordedSpec;
+use ndarray::{Array2, Axis, concatenate};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// Endings of files with arrays.
+const ENDINGS: [&str; 5] = ["npy", "npz", "csv", "tsv", "txt"];
+/// File of a folder that names the files of a recording.
+const RECORDED: &str = "recorded.toml";
+
+/// Paths and options of the data of an audit.
+#[derive(Clone, Debug, Default)]
+pub struct AuditFiles {
+    /// File with the frames; or a folder with `recorded.toml`, with a file `frames`, or with one archive for each session.
+    pub data: PathBuf,
+    /// File with the class of each touch; `None` for an array or file `labels` beside the frames.
+    pub labels: Option<PathBuf>,
+    /// File with the group of each touch; `None` for an array or file `groups` beside the frames, if there is one.
+    pub groups: Option<PathBuf>,
+    /// File with the session of each touch; `None` for an array or file `sessions` beside the frames, if there is one.
+    pub sessions: Option<PathBuf>,
+    /// File with the time of each touch, a number; `None` for an array or file `times` beside the frames, if there is one.
+    pub times: Option<PathBuf>,
+    /// Order of the axes of the frames, one letter per axis, as in `recorded.order`; `None` for the default order.
+    pub order: Option<String>,
+    /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
+    pub grid: Option<[usize; 2]>,
+    /// Reading at full scale; `None` if unknown.
+    pub full_scale: Option<f64>,
+}
+
+/// Table `[recorded]` of a study; other tables are ignored.
+#[derive(Deserialize)]
+struct RecordedToml {
+    recorded: RecordedSpec,
+}
+
+/// Arrays of one file or session.
+struct Part {
+    frames: Array2<f64>,
+    n_frames: usize,
+    grid: Option<(usize, usize)>,
+    labels: Option<Vec<KeyValue>>,
+    groups: Option<Vec<KeyValue>>,
+    sessions: Option<Vec<KeyValue>>,
+    times: Option<Vec<f64>>,
+}
+
+impl AuditFiles {
+    /// Reads the data. Touches with times are sorted by time.
+    ///
+    /// # Errors
+    /// If a file cannot be read or does not fit the others; the error names it.
+    pub fn read(&self) -> Result<AuditData> {
+        if let Some(full_scale) = self.full_scale.filter(|full| !full.is_finite()) {
+            return Err(Error::input("full scale", full_scale, "a finite number"));
+        }
+        if !self.data.is_dir() {
+            return assembled(vec![self.part(&self.data, None)?], self.full_scale);
+        }
+        let recorded = self.data.join(RECORDED);
+        if recorded.is_file() {
+            return self.with_recorded(&recorded);
+        }
+        let frames = ENDINGS.map(|ending| self.data.join(format!("frames.{ending}")));
+        if let Some(frames) = frames.iter().find(|path| path.is_file()) {
+            return assembled(vec![self.part(frames, Some(&self.data))?], self.full_scale);
+        }
+        self.of_sessions()
+    }
+
+    /// Reads the recording that `recorded.toml` of the folder describes.
+    fn with_recorded(&self, path: &Path) -> Result<AuditData> {
+        let allowed = "a study with a table [recorded]";
+        let text = crate::files::read_to_string(path)
+            .map_err(|error| Error::unreadable(path, allowed, error))?;
+        let refuse = |error: toml::de::Error| {
+            Error::input(path.display(), error.message().to_owned(), allowed)
+        };
+        let read = || toml::from_str::<RecordedToml>(&text);
+        let spec = crate::files::with_folder(self.data.clone(), read).map_err(refuse)?;
+        let mut spec = spec.recorded;
+        for file in spec.files_mut() {
+            *file = self.data.join(&*file);
+        }
+        let given = |name: &str| spec.file_of(name).map(Path::to_owned);
+        let files = Self {
+            data: spec.frames.clone(),
+            labels: self.labels.clone().or_else(|| given("labels")),
+            groups: self.groups.clone().or_else(|| given("groups")),
+            order: self.order.clone().or_else(|| spec.order.clone()),
+            grid: self.grid.or(spec.grid),
+            full_scale: self.full_scale.or(spec.full_scale),
+            ..self.clone()
+        };
+        assembled(
+            vec![files.part(&files.data, Some(&self.data))?],
+            files.full_scale,
+        )
+    }
+
+    /// Reads all archives of the folder, each as a session.
+    fn of_sessions(&self) -> Result<AuditData> {
+        let entries = std::fs::read_dir(&self.data);
+        let entries = entries.map_err(|error| Error::io(&self.data, "read", error))?;
+        let mut archives: Vec<PathBuf> = entries
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .filter(|path| path.extension().is_some_and(|ending| ending == "npz"))
+            .collect();
+        archives.sort();
+        if archives.is_empty() {
+            let allowed = "recorded.toml, a file frames.npy (.npz, .csv), or one .npz archive for each session";
+            return Err(Error::input(
+                self.data.display(),
+                "a folder without frames",
+                allowed,
+            ));
+        }
+        let given = [
+            ("labels", &self.labels),
+            ("groups", &self.groups),
+            ("sessions", &self.sessions),
+            ("times", &self.times),
+        ];
+        if let Some((name, Some(path))) = given.into_iter().find(|(_, path)| path.is_some()) {
+            let allowed = format!(
+                "an array `{name}` in each archive of {}",
+                self.data.display()
+            );
+            return Err(Error::input(
+                path.display(),
+                "one file for several archives",
+                allowed,
+            ));
+        }
+        let parts = archives.iter().map(|path| {
+            let mut part = self.part(path, None)?;
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let n = part.frames.nrows() / part.n_frames;
+            let session = vec![KeyValue::Text(name.into_owned()); n];
+            part.sessions.get_or_insert(session);
+            Ok(part)
+        });
+        let parts = parts.collect::<Result<Vec<Part>>>()?;
+        for (part, path) in parts.iter().zip(&archives).skip(1) {
+            let shape = |part: &Part| (part.frames.ncols(), part.n_frames);
+            if shape(part) != shape(&parts[0]) || part.grid != parts[0].grid {
+                let given = format!(
+                    "{} frames of {} taxels a touch",
+                    part.n_frames,
+                    part.frames.ncols()
+                );
+                let (n_taxels, n_frames) = shape(&parts[0]);
+                let allowed = format!("{n_frames} of {n_taxels}, as {}", archives[0].display());
+                return Err(Error::input(path.display(), given, allowed));
+            }
+        }
+        assembled(parts, self.full_scale)
+    }
+
+    /// Reads the frames of a file, and the arrays that belong to them. If `folder` is given, files beside the frames are found by their names.
+    fn part(&self, frames: &Path, folder: Option<&Path>) -> Result<Part> {
+        let spec = RecordedSpec::of_frames(frames, self.order.as_deref(), self.grid);
+        let key = |error: Error| match error {
+            Error::Input {
+                place,
+                given,
+                allowed,
+            } => {
+                let option = |text: String| text.replace("recorded.", "--");
+                Error::input(option(place), option(given), option(allowed))
+            }
+            other => other,
+        };
+        let shape = spec.shape_of("frames").map_err(key)?;
+        let array = FileArray::read(frames, "frames")?;
+        let readings = shape.arrange(array.into_numbers()?);
+        let n = shape.n_touches;
+        let file = |given: &Option<PathBuf>, name: &str| {
+            let beside = || {
+                let folder = folder?;
+                let paths = ENDINGS.map(|ending| folder.join(format!("{name}.{ending}")));
+                paths.into_iter().find(|path| path.is_file())
+            };
+            let within = || is_member(frames, name).then(|| frames.to_owned());
+            given.clone().or_else(within).or_else(beside)
+        };
+        let of_length = |values: Vec<KeyValue>, path: &Path| match values.len() == n {
+            true => Ok(values),
+            false => {
+                let allowed = format!("{n}, one for each touch of {}", frames.display());
+                Err(Error::input(
+                    path.display(),
+                    format!("{} values", values.len()),
+                    allowed,
+                ))
+            }
+        };
+        let classes = |given: &Option<PathBuf>, name: &str| match file(given, name) {
+            None => Ok(None),
+            Some(path) => read_class_values(&path, name, n)
+                .and_then(|values| of_length(values, &path))
+                .map(Some),
+        };
+        let units = |given: &Option<PathBuf>, name: &str| match file(given, name) {
+            None => Ok(None),
+            Some(path) => read_group_values(&path, name, n)
+                .and_then(|values| of_length(values, &path))
+                .map(Some),
+        };
+        let times = match file(&self.times, "times") {
+            None => None,
+            Some(path) => {
+                let times = FileArray::read(&path, "times")?.into_numbers()?;
+                let place = path.display();
+                if times.len() != n {
+                    let allowed = format!("{n}, one for each touch of {}", frames.display());
+                    return Err(Error::input(
+                        place,
+                        format!("{} times", times.len()),
+                        allowed,
+                    ));
+                }
+                if let Some(time) = times.iter().find(|time| !time.is_finite()) {
+                    return Err(Error::input(place, time, "finite numbers"));
+                }
+                Some(times.into_iter().collect())
+            }
+        };
+        Ok(Part {
+            n_frames: shape.n_frames,
+            grid: shape.has_grid.then_some((shape.rows, shape.columns)),
+            frames: readings,
+            labels: classes(&self.labels, "labels")?,
+            groups: units(&self.groups, "groups")?,
+            sessions: units(&self.sessions, "sessions")?,
+            times,
+        })
+    }
+}
+
+/// Joins the arrays of all parts, one after the other, and sorts the touches by time if all parts have times.
+fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
+    let joined = |of: fn(&Part) -> &Option<Vec<KeyValue>>| {
+        let lists = parts.iter().map(|part| of(part).as_ref());
+        let lists: Option<Vec<&Vec<KeyValue>>> = lists.collect();
+        lists.map(|lists| {
+            lists
+                .into_iter()
+                .flatten()
+                .cloned()
+                .collect::<Vec<KeyValue>>()
+        })
+    };
+    let labels = joined(|part| &part.labels).map(|values| ClassLabels::new(&values));
+    let groups = joined(|part| &part.groups).map(|values| group_keys(&values));
+    let sessions = joined(|part| &part.sessions).map(|values| group_keys(&values));
+    let times = parts.iter().map(|part| part.times.clone());
+    let times: Option<Vec<Vec<f64>>> = times.collect();
+    let times: Option<Vec<f64>> = times.map(|times| times.concat());
+    let (n_frames, grid) = (parts[0].n_frames, parts[0].grid);
+    let mut all: Vec<Array2<f64>> = parts.into_iter().map(|part| part.frames).collect();
+    let frames = match all.len() {
+        1 => all.remove(0),
+        _ => {
+            let views: Vec<_> = all.iter().map(Array2::view).collect();
+            concatenate(Axis(0), &views)
+                .map_err(|error| Error::input("frames", error, "frames of equal shape"))?
+        }
+    };
+    let name = |class: &KeyValue| match class {
+        KeyValue::Integer(number) => format!("class {number}"),
+        KeyValue::Text(text) => text.clone(),
+    };
+    let mut data = AuditData {
+        frames,
+        n_frames,
+        grid,
+        classes: labels
+            .iter()
+            .flat_map(|labels| &labels.classes)
+            .map(name)
+            .collect(),
+        labels: labels.map(|labels| labels.labels),
+        groups,
+        sessions,
+        full_scale,
+        is_in_order_of_time: times.is_some(),
+    };
+    if let Some(times) = times {
+        data.sort_by_time(&times);
+    }
+    Ok(data)
+}

@@ -1,0 +1,161 @@
+//! `bubbletouch audit` reads recordings as studies do, writes a page with tables, and its errors state what is wrong.
+
+use crate::command::Case;
+use bubbletouch::random::Seed;
+use bubbletouch::study::{write_integers, write_npy, write_texts};
+use ndarray::{Array3, Array4, s};
+use rand::Rng;
+use rand_distr::StandardNormal;
+
+const N: usize = 90;
+const SIDE: usize = 8;
+
+fn label(touch: usize) -> usize {
+    touch * 7 % 3
+}
+
+/// Returns frames of a disc whose size depends on the class, at random places, with noise.
+fn frames() -> Array3<f32> {
+    let mut rng = Seed::new(6).rng();
+    let mut frames = Array3::zeros((N, SIDE, SIDE));
+    for (touch, mut frame) in frames.outer_iter_mut().enumerate() {
+        let (y, x): (f32, f32) = (rng.gen_range(3.0..4.0), rng.gen_range(3.0..4.0));
+        for ((row, column), reading) in frame.indexed_iter_mut() {
+            let away = (row as f32 - y).hypot(column as f32 - x);
+            let noise: f32 = rng.sample(StandardNormal);
+            *reading = (1.0 + label(touch) as f32 - away).clamp(0.0, 1.0) + 0.02 * noise;
+        }
+    }
+    frames
+}
+
+fn with_recording() -> Case {
+    let case = Case::new();
+    std::fs::create_dir(case.path("skin")).unwrap();
+    write_npy(&case.path("skin/frames.npy"), &frames()).unwrap();
+    write_integers(&case.path("skin/labels.npy"), (0..N).map(label)).unwrap();
+    case
+}
+
+const FEW: [&str; 2] = ["--permutations", "99"];
+
+fn audit<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    [&["audit"], arguments, &FEW[..]].concat()
+}
+
+/// Returns the verdicts of a check in `findings.csv`.
+fn verdicts(case: &Case, folder: &str, check: &str) -> Vec<String> {
+    let mut reader = csv::Reader::from_path(case.path(folder).join("findings.csv")).unwrap();
+    let rows = reader.records().map(Result::unwrap);
+    let rows = rows.filter(|row| &row[0] == check);
+    rows.map(|row| row[2].to_owned()).collect()
+}
+
+#[test]
+fn a_folder_becomes_a_page_with_tables() {
+    let case = with_recording();
+    let (said, _) = case.succeeds(&audit(&["skin"]));
+    assert!(
+        said.contains("Page: results/skin_audit/report.html"),
+        "{said}"
+    );
+    let page = std::fs::read_to_string(case.path("results/skin_audit/report.html")).unwrap();
+    assert!(page.contains("id=\"findings\"") && page.contains("picture-taxels"));
+    assert_eq!(
+        verdicts(&case, "results/skin_audit", "missing_readings"),
+        ["passed"]
+    );
+    assert_eq!(
+        verdicts(&case, "results/skin_audit", "before_contact"),
+        ["not_checked"]
+    );
+    // The same command replaces its own files, and the tables are equal.
+    let table = || std::fs::read(case.path("results/skin_audit/findings.csv")).unwrap();
+    let first = table();
+    case.succeeds(&[&audit(&["skin"])[..], &["--threads", "1"]].concat());
+    assert_eq!(table(), first);
+}
+
+#[test]
+fn axes_texts_and_archives_of_sessions_are_read() {
+    let case = with_recording();
+    let frames = frames();
+    let names: Vec<String> = (0..N)
+        .map(|touch| ["cup", "ball", "pen"][label(touch)].to_owned())
+        .collect();
+    write_texts(&case.path("names.npy"), &names).unwrap();
+    // Three frames of each touch, time as the last axis.
+    let over_time = Array4::from_shape_fn((N, SIDE, SIDE, 3), |(touch, y, x, t)| {
+        frames[(touch, y, x)] * t as f32 / 2.0
+    });
+    write_npy(&case.path("over_time.npy"), &over_time).unwrap();
+    let given = [
+        "over_time.npy",
+        "--order",
+        "n y x t",
+        "--labels",
+        "names.npy",
+        "--before-contact",
+        "0..1",
+        "--out",
+        "timed",
+    ];
+    case.succeeds(&audit(&given));
+    // The frame before contact is exactly zero, so that it names no class.
+    assert_eq!(verdicts(&case, "timed", "before_contact"), ["passed"]);
+    assert!(
+        std::fs::read_to_string(case.path("timed/classes.csv"))
+            .unwrap()
+            .contains("cup,30")
+    );
+    std::fs::create_dir(case.path("sessions")).unwrap();
+    for (session, from) in [("a", 0), ("b", 30), ("c", 60)] {
+        let path = case.path("sessions").join(format!("{session}.npz"));
+        let mut archive = ndarray_npy::NpzWriter::new(std::fs::File::create(path).unwrap());
+        let own = frames.slice(s![from..from + 30, .., ..]).to_owned();
+        archive.add_array("frames", &own).unwrap();
+        // Session b has a class of its own.
+        let labels =
+            (from..from + 30).map(|touch| if from == 30 { 3 } else { label(touch) as i64 });
+        archive
+            .add_array("labels", &ndarray::Array1::from_iter(labels))
+            .unwrap();
+        archive.finish().unwrap();
+    }
+    case.succeeds(&audit(&["sessions", "--out", "by_session"]));
+    assert_eq!(verdicts(&case, "by_session", "session_labels"), ["fault"]);
+}
+
+#[test]
+fn bad_input_is_named_and_nothing_is_written() {
+    let case = with_recording();
+    write_integers(&case.path("few.npy"), 0..N - 1).unwrap();
+    let refused = |arguments: &[&str], said: &str| {
+        let output = case.run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains(said), "{arguments:?}: {error}");
+        assert!(!case.path("results").exists(), "{arguments:?}");
+    };
+    refused(
+        &audit(&["skin", "--groups", "few.npy"]),
+        "few.npy: 89 values; 90, one for each touch of",
+    );
+    refused(&audit(&["nowhere.npz"]), "nowhere.npz: cannot be read");
+    refused(&audit(&["skin", "--order", "n y"]), "--order");
+    refused(
+        &audit(&["skin", "--before-contact", "0..2"]),
+        "--before-contact: 0..2; FROM..TO with FROM below TO, at most 1",
+    );
+    refused(
+        &["audit", "skin", "--permutations", "3"],
+        "--permutations: 3; 99 to 100000",
+    );
+    std::fs::create_dir(case.path("empty")).unwrap();
+    refused(
+        &audit(&["empty"]),
+        "empty: a folder without frames; recorded.toml, a file frames.npy",
+    );
+    // The output is not written over the input.
+    refused(&audit(&["skin", "--out", "skin/frames.npy"]), "frames.npy");
+}

@@ -1,0 +1,560 @@
+//! Faults planted into simulated data, three strengths each, are found, and no fault is found in clean data.
+
+use bubbletouch::audit::{AuditData, AuditOptions, Finding, Verdict, audit};
+use bubbletouch::contact::{Workspace, press_to_depth};
+use bubbletouch::objects::Catalogue;
+use bubbletouch::random::Seed;
+use bubbletouch::world::{Grid, Patch, Placement, RestPoses, Spread, Taxel, touches};
+use ndarray::{Array2, Axis};
+use rand::Rng;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+use std::collections::BTreeSet;
+use std::sync::LazyLock;
+
+const SIDE: usize = 20;
+const N_TAXELS: usize = SIDE * SIDE;
+const OBJECTS: [&str; 5] = ["golf", "dice", "soup_can", "banana", "croquet"];
+const PER_OBJECT: usize = 60;
+/// Noise, as a fraction of the full scale.
+const NOISE: f64 = 0.02;
+/// Number of permutations; fewer than the default keep the test short.
+const N_PERMUTATIONS: usize = 399;
+
+/// Simulated frames without noise, as fractions of the full scale, and the object of each frame.
+static SIMULATED: LazyLock<(Array2<f64>, Vec<usize>)> = LazyLock::new(simulated);
+
+fn simulated() -> (Array2<f64>, Vec<usize>) {
+    let grid = Grid {
+        nx: SIDE,
+        ny: SIDE,
+        pitch: 5e-3,
+    };
+    let stroke = 6e-3;
+    let taxel = Taxel {
+        radius: 2.5e-3,
+        stiffness: 100.0,
+        damping: 0.0,
+        stroke,
+    };
+    let patch = Patch::grid(grid, taxel).unwrap();
+    let catalogue = Catalogue::builtin().unwrap();
+    let within = |low: f64, high: f64| Spread::Uniform { low, high };
+    let placement = Placement {
+        rest: RestPoses::AsModelled,
+        offset_x: within(-10e-3, 10e-3),
+        offset_y: within(-10e-3, 10e-3),
+        yaw: within(0.0, 6.28),
+        tilt_x: Spread::Values(vec![0.0]),
+        tilt_y: Spread::Values(vec![0.0]),
+        depth: within(2e-3, 4e-3),
+        per_object: Some(PER_OBJECT),
+    };
+    let mut frames = Array2::zeros((OBJECTS.len() * PER_OBJECT, N_TAXELS));
+    let mut labels = Vec::new();
+    let mut workspace = Workspace::new();
+    for (label, name) in OBJECTS.into_iter().enumerate() {
+        let object = catalogue.object(name).unwrap().build(0.5e-3).unwrap();
+        let rests = placement.rest.poses(&object.model);
+        let touches = touches(&placement, &rests, &Seed::new(3).named(name)).unwrap();
+        for touch in touches {
+            let pose = touch.patch_from_object(&rests[touch.rest]);
+            let models = [object.model.clone()];
+            press_to_depth(&patch, &models, &[pose], touch.depth, &mut workspace).unwrap();
+            let mut frame = frames.row_mut(labels.len());
+            for (reading, deflection) in frame.iter_mut().zip(workspace.deflections()) {
+                *reading = deflection / stroke;
+            }
+            labels.push(label);
+        }
+    }
+    (frames, labels)
+}
+
+/// Data of the test: frames of single-frame touches in random order, with groups and sessions that mean nothing.
+struct Planted {
+    frames: Array2<f64>,
+    n_frames: usize,
+    labels: Vec<usize>,
+    groups: Vec<usize>,
+    sessions: Vec<usize>,
+    rng: ChaCha8Rng,
+}
+
+impl Planted {
+    fn clean(seed: u64) -> Self {
+        Self::with_noise(seed, NOISE)
+    }
+
+    fn with_noise(seed: u64, noise: f64) -> Self {
+        let (frames, labels) = &*SIMULATED;
+        let mut rng = Seed::new(seed).named("planted").rng();
+        let mut order: Vec<usize> = (0..labels.len()).collect();
+        order.shuffle(&mut rng);
+        let frames = frames.select(Axis(0), &order);
+        let frames = frames.mapv(|reading| reading + noise * normal(&mut rng));
+        let n = labels.len();
+        Self {
+            labels: order.iter().map(|&touch| labels[touch]).collect(),
+            groups: (0..n).map(|_| rng.gen_range(0..30)).collect(),
+            sessions: (0..n).map(|_| rng.gen_range(0..8)).collect(),
+            n_frames: 1,
+            frames,
+            rng,
+        }
+    }
+
+    fn n(&self) -> usize {
+        self.labels.len()
+    }
+
+    /// Keeps the touches of an order, also a shorter one.
+    fn select(&mut self, order: &[usize]) {
+        self.frames = self.frames.select(Axis(0), order);
+        for list in [&mut self.labels, &mut self.groups, &mut self.sessions] {
+            *list = order.iter().map(|&touch| list[touch]).collect();
+        }
+    }
+
+    /// Gives each class `n` groups of its own.
+    fn nest_groups(&mut self, n: usize) {
+        let mut counts = [0; OBJECTS.len()];
+        for (group, &label) in self.groups.iter_mut().zip(&self.labels) {
+            *group = label * n + counts[label] % n;
+            counts[label] += 1;
+        }
+    }
+
+    /// Adds a pattern of normal numbers for each value of `of`, times `size`, to the taxels for which `is_counted` is true.
+    fn add_patterns(&mut self, of: &[usize], size: f64, is_counted: impl Fn(usize) -> bool) {
+        let n = of.iter().max().unwrap() + 1;
+        let rng = &mut self.rng;
+        let patterns = Array2::from_shape_simple_fn((n, N_TAXELS), || size * normal(rng));
+        for (mut frame, &of) in self.frames.rows_mut().into_iter().zip(of) {
+            for (taxel, reading) in frame
+                .iter_mut()
+                .enumerate()
+                .filter(|(taxel, _)| is_counted(*taxel))
+            {
+                *reading += patterns[(of, taxel)];
+            }
+        }
+    }
+
+    /// Draws different taxels of the middle 8 × 8.
+    fn middle(&mut self, n: usize) -> Vec<usize> {
+        let all: Vec<usize> = (0..64).map(|k| (6 + k / 8) * SIDE + 6 + k % 8).collect();
+        all.choose_multiple(&mut self.rng, n).copied().collect()
+    }
+
+    fn audited(self) -> Vec<Finding> {
+        let data = AuditData {
+            frames: self.frames,
+            n_frames: self.n_frames,
+            grid: Some((SIDE, SIDE)),
+            labels: Some(self.labels),
+            classes: OBJECTS.map(str::to_owned).to_vec(),
+            groups: Some(self.groups),
+            sessions: Some(self.sessions),
+            ..AuditData::default()
+        };
+        let options = AuditOptions {
+            n_permutations: N_PERMUTATIONS,
+            ..AuditOptions::default()
+        };
+        audit(data, options).unwrap().findings
+    }
+}
+
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    rng.sample(StandardNormal)
+}
+
+fn faults(findings: &[Finding]) -> BTreeSet<&'static str> {
+    let faults = findings.iter().filter(|f| f.verdict == Verdict::Fault);
+    faults.map(|finding| finding.check).collect()
+}
+
+/// Fault of the test: the check that finds it, other faults that it entails, and how it is planted with strength 0, 1 or 2.
+struct Plant {
+    check: &'static str,
+    entails: &'static [&'static str],
+    plant: fn(&mut Planted, usize),
+}
+
+const GROUPED: &[&str] = &[
+    "accuracy_by_split",
+    "random_labels",
+    "sample_size",
+    "method_order",
+    // The pattern of a group is also on taxels that nothing touches.
+    "untouched_taxels",
+    "hot_taxels",
+];
+
+const PLANTS: &[Plant] = &[
+    Plant {
+        check: "near_duplicates",
+        entails: &[],
+        plant: |data, strength| {
+            let n = data.n();
+            for copy in 0..[3, 10, 30][strength] {
+                let row = data
+                    .frames
+                    .row(copy)
+                    .mapv(|x| x + 0.25 * NOISE * normal(&mut data.rng));
+                data.frames.row_mut(n - 1 - copy).assign(&row);
+                data.labels[n - 1 - copy] = data.labels[copy];
+            }
+        },
+    },
+    Plant {
+        check: "accuracy_by_split",
+        entails: GROUPED,
+        plant: |data, strength| {
+            data.nest_groups(6);
+            let groups = data.groups.clone();
+            data.add_patterns(&groups, [0.06, 0.1, 0.2][strength], |_| true);
+        },
+    },
+    Plant {
+        check: "method_order",
+        entails: GROUPED,
+        plant: |data, strength| {
+            // A weak pattern of the class, and a strong pattern of the group that only memory can use.
+            data.nest_groups(12);
+            data.frames *= 0.1;
+            let (labels, groups) = (data.labels.clone(), data.groups.clone());
+            data.add_patterns(&labels, [0.035, 0.04, 0.045][strength], |_| true);
+            data.add_patterns(&groups, 0.15, |_| true);
+            let rng = &mut data.rng;
+            data.frames.mapv_inplace(|x| x + 0.15 * normal(rng));
+        },
+    },
+    Plant {
+        check: "before_contact",
+        entails: &["untouched_taxels", "hot_taxels"],
+        plant: |data, strength| {
+            before_contact(data);
+            let size = [0.3, 0.6, 2.0][strength] * NOISE;
+            let patterns: Vec<f64> = (0..OBJECTS.len() * N_TAXELS)
+                .map(|_| size * normal(&mut data.rng))
+                .collect();
+            for (touch, &label) in data.labels.iter().enumerate() {
+                for (taxel, x) in data.frames.row_mut(3 * touch).iter_mut().enumerate() {
+                    *x += patterns[label * N_TAXELS + taxel];
+                }
+            }
+        },
+    },
+    Plant {
+        check: "untouched_taxels",
+        entails: &["hot_taxels"],
+        plant: |data, strength| {
+            let is_border = |taxel: usize| {
+                [taxel / SIDE, taxel % SIDE]
+                    .iter()
+                    .any(|&at| at == 0 || at == SIDE - 1)
+            };
+            let labels = data.labels.clone();
+            data.add_patterns(&labels, [0.3, 0.6, 1.5][strength] * NOISE, is_border);
+        },
+    },
+    Plant {
+        check: "mean_reading",
+        entails: &["label_noise"],
+        plant: |data, strength| {
+            // The label is the force with which any of the objects is pressed.
+            for label in &mut data.labels {
+                *label = data.rng.gen_range(0..OBJECTS.len());
+            }
+            let exponent = [1.0, 1.5, 2.0][strength];
+            for (mut frame, &label) in data.frames.rows_mut().into_iter().zip(&data.labels) {
+                let force = exponent * (label as f64 - 4.0) / 2.0;
+                let sum = frame.sum();
+                frame *= force.exp() * 10.0 / sum;
+            }
+        },
+    },
+    Plant {
+        check: "row_order",
+        entails: &[],
+        plant: |data, strength| {
+            let n = data.n();
+            let mut places: Vec<usize> = (0..n).collect();
+            places.shuffle(&mut data.rng);
+            places.truncate(n * [40, 60, 90][strength] / 100);
+            places.sort_unstable();
+            let mut sorted = places.clone();
+            sorted.sort_by_key(|&touch| data.labels[touch]);
+            let mut order: Vec<usize> = (0..n).collect();
+            for (place, touch) in places.into_iter().zip(sorted) {
+                order[place] = touch;
+            }
+            data.select(&order);
+        },
+    },
+    Plant {
+        check: "session_labels",
+        entails: &["accuracy_by_split"],
+        plant: |data, strength| {
+            for (session, &label) in data.sessions.iter_mut().zip(&data.labels) {
+                if data.rng.gen_bool([0.3, 0.6, 0.9][strength]) {
+                    *session = label;
+                }
+            }
+        },
+    },
+    Plant {
+        check: "random_labels",
+        entails: GROUPED,
+        plant: |data, strength| {
+            data.nest_groups(10);
+            let groups = data.groups.clone();
+            data.add_patterns(&groups, [0.04, 0.06, 0.1][strength], |_| true);
+        },
+    },
+    Plant {
+        check: "sample_size",
+        entails: GROUPED,
+        plant: |data, strength| {
+            data.nest_groups(6);
+            let groups = data.groups.clone();
+            data.add_patterns(&groups, [0.08, 0.12, 0.2][strength], |_| true);
+        },
+    },
+    Plant {
+        check: "label_noise",
+        entails: &[],
+        plant: |data, strength| {
+            let n = data.n();
+            for touch in 0..n * [8, 12, 20][strength] / 100 {
+                data.labels[touch] = (data.labels[touch] + data.rng.gen_range(1..5)) % 5;
+            }
+        },
+    },
+    Plant {
+        check: "class_balance",
+        entails: &[],
+        plant: |data, strength| {
+            let all = 0..data.n();
+            let kept = all.filter(|&touch| {
+                data.labels[touch] != 2 || data.rng.gen_bool([0.4, 0.25, 0.1][strength])
+            });
+            let kept: Vec<usize> = kept.collect();
+            data.select(&kept);
+        },
+    },
+    Plant {
+        check: "missing_readings",
+        entails: &[],
+        plant: |data, strength| {
+            for _ in 0..[1, 20, 400][strength] {
+                let place = (
+                    data.rng.gen_range(0..data.n()),
+                    data.rng.gen_range(0..N_TAXELS),
+                );
+                data.frames[place] = [f64::NAN, f64::INFINITY][place.0 % 2];
+            }
+        },
+    },
+    Plant {
+        check: "saturation",
+        entails: &[],
+        plant: |data, strength| {
+            let largest = data
+                .frames
+                .rows()
+                .into_iter()
+                .map(|row| row.iter().copied().fold(0.0, f64::max));
+            let mut largest: Vec<f64> = largest.collect();
+            largest.sort_by(f64::total_cmp);
+            let level = largest[data.n() * [95, 85, 50][strength] / 100];
+            data.frames.mapv_inplace(|x| x.min(level));
+        },
+    },
+    Plant {
+        check: "dead_taxels",
+        entails: &[],
+        plant: |data, strength| {
+            for taxel in data.middle([1, 3, 8][strength]) {
+                data.frames.column_mut(taxel).fill(0.0);
+            }
+        },
+    },
+    Plant {
+        check: "dead_taxels",
+        entails: &[],
+        plant: |data, strength| {
+            // Stuck at another level.
+            for taxel in data.middle([1, 3, 8][strength]) {
+                let level = data.rng.gen_range(0.1..0.9);
+                data.frames.column_mut(taxel).fill(level);
+            }
+        },
+    },
+    Plant {
+        check: "hot_taxels",
+        entails: &[],
+        plant: |data, strength| {
+            for taxel in data.middle([1, 3, 6][strength]) {
+                let level = [0.15, 0.2, 0.4][strength];
+                data.frames.column_mut(taxel).mapv_inplace(|x| x + level);
+            }
+        },
+    },
+    Plant {
+        check: "hot_taxels",
+        entails: &[],
+        plant: |data, strength| {
+            // Strong noise.
+            for taxel in data.middle([1, 3, 6][strength]) {
+                let rng = &mut data.rng;
+                let noise = [0.12, 0.2, 0.4][strength];
+                data.frames
+                    .column_mut(taxel)
+                    .mapv_inplace(|x| x + noise * normal(rng));
+            }
+        },
+    },
+    Plant {
+        check: "drift",
+        entails: &[
+            "sample_size",
+            "hot_taxels",
+            "accuracy_by_split",
+            "random_labels",
+        ],
+        plant: |data, strength| {
+            // The zero of each taxel is a random walk.
+            let step = [0.02, 0.05, 0.1][strength] / (data.n() as f64).sqrt();
+            let mut zero = vec![0.0; N_TAXELS];
+            for mut frame in data.frames.rows_mut() {
+                for (reading, zero) in frame.iter_mut().zip(&mut zero) {
+                    *zero += step * normal(&mut data.rng);
+                    *reading += *zero;
+                }
+            }
+        },
+    },
+    Plant {
+        check: "quantisation",
+        // Frames of few levels are equal by chance.
+        entails: &["near_duplicates"],
+        plant: |data, strength| {
+            let steps = [15.0, 7.0, 3.0][strength];
+            data.frames
+                .mapv_inplace(|x| (x.clamp(0.0, 1.0) * steps).round() / steps);
+        },
+    },
+];
+
+/// Replaces each touch by three frames: before the contact, half of the press, and the whole press.
+fn before_contact(data: &mut Planted) {
+    let mut frames = Array2::zeros((3 * data.n(), N_TAXELS));
+    for touch in 0..data.n() {
+        for (frame, share) in [0.0, 0.5, 1.0].into_iter().enumerate() {
+            let noise = data
+                .frames
+                .row(touch)
+                .mapv(|x| share * x + NOISE * normal(&mut data.rng));
+            frames.row_mut(3 * touch + frame).assign(&noise);
+        }
+    }
+    data.frames = frames;
+    data.n_frames = 3;
+}
+
+#[test]
+fn planted_faults_of_three_strengths_are_found() {
+    let mut table = String::new();
+    let mut is_right = true;
+    for (
+        number,
+        Plant {
+            check,
+            entails,
+            plant,
+        },
+    ) in PLANTS.iter().enumerate()
+    {
+        for strength in 0..3 {
+            let mut data = Planted::clean(100 + number as u64);
+            plant(&mut data, strength);
+            let findings = data.audited();
+            let found = faults(&findings);
+            let others: Vec<&str> = found
+                .iter()
+                .copied()
+                .filter(|f| f != check && !entails.contains(f))
+                .collect();
+            let is_found = found.contains(check);
+            is_right &= is_found && others.is_empty();
+            table += &format!("{check} {strength}: found {is_found}, others {others:?}\n");
+            if !is_found {
+                for finding in findings.iter().filter(|finding| finding.check == *check) {
+                    table += &format!("    {:?} {}\n", finding.p_value, finding.sentence);
+                }
+            }
+        }
+    }
+    assert!(is_right, "\n{table}");
+}
+
+#[test]
+fn no_fault_is_invented_in_clean_data() {
+    let mut variants: Vec<(String, Planted)> = Vec::new();
+    for seed in 0..6 {
+        variants.push((format!("noise {seed}"), Planted::clean(seed)));
+    }
+    let mut data = Planted::clean(7);
+    data.frames.mapv_inplace(|x| x.max(0.0));
+    variants.push(("clipped at zero".to_owned(), data));
+    let mut data = Planted::clean(8);
+    data.frames
+        .mapv_inplace(|x| (255.0 * x.clamp(0.0, 1.0)).round());
+    variants.push(("8 bits".to_owned(), data));
+    let mut data = Planted::clean(9);
+    data.frames.mapv_inplace(|x| 5000.0 + 1000.0 * x);
+    variants.push(("offset".to_owned(), data));
+    let mut data = Planted::clean(10);
+    before_contact(&mut data);
+    variants.push(("frames before contact".to_owned(), data));
+    let mut data = Planted::clean(11);
+    before_contact(&mut data);
+    // The first frame of each touch has a quarter of the contact.
+    for touch in 0..data.n() {
+        let first = data.frames.row(3 * touch + 2).mapv(|x| 0.25 * x);
+        data.frames.row_mut(3 * touch).assign(&first);
+    }
+    variants.push(("light first contact".to_owned(), data));
+    variants.push(("no noise".to_owned(), Planted::with_noise(12, 0.0)));
+    let mut data = Planted::clean(13);
+    let mut order: Vec<usize> = (0..data.n()).collect();
+    order.sort_by_key(|&touch| data.labels[touch]);
+    data.select(&order);
+    variants.push(("sorted by class".to_owned(), data));
+    for (name, data) in variants {
+        let findings = data.audited();
+        let invented: Vec<String> = findings
+            .iter()
+            .filter(|finding| finding.verdict == Verdict::Fault)
+            .map(|finding| format!("{}: {}", finding.check, finding.sentence))
+            .collect();
+        assert!(invented.is_empty(), "{name}: {invented:#?}");
+    }
+}
+
+#[test]
+fn an_audit_depends_on_data_and_seed_alone() {
+    let tables = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| Planted::clean(3).audited())
+    };
+    let [first, second] = [1, 3].map(tables).map(|findings| format!("{findings:?}"));
+    assert_eq!(first, second);
+}
