@@ -25,7 +25,7 @@ def test_faults_are_objects_with_numbers(tmp_path: Path) -> None:
     frames, labels = data()
     frames[3, 5, 5] = np.nan
     frames[:, 6, 6] = 0.5
-    found = bt.audit(frames, labels, out=tmp_path / "audit", permutations=99)
+    found = bt.audit(frames, labels, out=tmp_path / "audit", permutations=399)
     assert {fault.check for fault in found.faults} >= {"missing_readings", "dead_taxels"}
     missing = next(finding for finding in found.findings if finding.check == "missing_readings")
     assert missing.verdict == "fault" and missing.value == 1 / frames.size and missing.advice
@@ -36,8 +36,8 @@ def test_faults_are_objects_with_numbers(tmp_path: Path) -> None:
 def test_axes_are_ordered_and_a_temporary_folder_is_kept() -> None:
     frames, labels = data()
     touches = np.repeat(frames[:, None], 2, axis=1)
-    whole = bt.audit(touches, labels, permutations=99)
-    moved = bt.audit(np.moveaxis(touches, 1, -1), labels, order="n y x t", permutations=99)
+    whole = bt.audit(touches, labels, permutations=399)
+    moved = bt.audit(np.moveaxis(touches, 1, -1), labels, order="n y x t", permutations=399)
     assert repr(whole.findings) == repr(moved.findings)
     assert whole.page.exists()
 

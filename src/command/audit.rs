@@ -78,11 +78,11 @@ pub struct Args {
 
 pub fn audit(args: &Args) -> Result<()> {
     set_threads(args.threads)?;
-    if !(99..=100_000).contains(&args.permutations) {
+    if !(399..=100_000).contains(&args.permutations) {
         return Err(Error::input(
             "--permutations",
             args.permutations,
-            "99 to 100000",
+            "399 to 100000",
         ));
     }
     let name = name_of(&args.data);
@@ -90,6 +90,10 @@ pub fn audit(args: &Args) -> Result<()> {
         .out
         .clone()
         .unwrap_or_else(|| Path::new("results").join(format!("{name}_audit")));
+    if out.exists() && !out.is_dir() {
+        let allowed = "a folder, or a name that is free";
+        return Err(Error::input(out.display(), "is not a folder", allowed));
+    }
     DataFolder::claim(&out, "audit", AUDIT_FILES.iter().copied())?;
     let files = AuditFiles {
         data: args.data.clone(),

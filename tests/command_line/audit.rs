@@ -37,7 +37,7 @@ fn with_recording() -> Case {
     case
 }
 
-const FEW: [&str; 2] = ["--permutations", "99"];
+const FEW: [&str; 2] = ["--permutations", "399"];
 
 fn audit<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
     [&["audit"], arguments, &FEW[..]].concat()
@@ -149,7 +149,7 @@ fn bad_input_is_named_and_nothing_is_written() {
     );
     refused(
         &["audit", "skin", "--permutations", "3"],
-        "--permutations: 3; 99 to 100000",
+        "--permutations: 3; 399 to 100000",
     );
     std::fs::create_dir(case.path("empty")).unwrap();
     refused(

@@ -102,8 +102,8 @@ def audit(
     Raises ValueError if an argument is invalid, and OSError if a file cannot be written.
     """
     array, n_frames, grid = _arranged(np.asarray(frames), order)
-    if not 99 <= permutations <= 100_000:
-        raise ValueError(f"permutations: {permutations}; 99 to 100000")
+    if not 399 <= permutations <= 100_000:
+        raise ValueError(f"permutations: {permutations}; 399 to 100000")
     classes, numbers = _numbered("labels", labels)
     kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
     folder = Path(kept.name) if kept is not None else Path(out or "")
