@@ -30,6 +30,7 @@ __all__ = [
     "_panic",
     "advise",
     "choose_svm",
+    "run_audit",
     "run_study",
     "toml_of",
     "touch_poses",
