@@ -24,7 +24,7 @@ class Finding:
     subject: part of the data, such as "group split"; may be empty.
     verdict: "fault", "note", "passed" or "not_checked".
     value: measured number; NaN if there is none. Its meaning is in the sentence.
-    interval: lower and upper end of the 95 % interval of the value; NaN if there is none.
+    interval: list of the lower and upper end of the 95 % interval of the value; NaN if there is none.
     baseline: value without the fault, such as the accuracy by chance; NaN if there is none.
     p_value, p_holm: p-value of the test, and the p-value after Holm's correction over all tests; None for counts.
     sentence: what was found.
@@ -35,7 +35,7 @@ class Finding:
     subject: str
     verdict: str
     value: float
-    interval: tuple[float, float]
+    interval: list[float]
     baseline: float
     p_value: float | None
     p_holm: float | None
@@ -54,7 +54,8 @@ class Audit:
         kept: tempfile.TemporaryDirectory[str] | None = None,
     ) -> None:
         self.folder = folder
-        self.findings = [Finding(*said[:4], tuple(said[4]), *said[5:]) for said in findings]
+        names = Finding.__dataclass_fields__
+        self.findings = [Finding(**dict(zip(names, said, strict=True))) for said in findings]
         self.tables = {Path(table[0]).stem: Table(*table) for table in tables}
         self._kept = kept
 
