@@ -106,7 +106,7 @@ fn taxel_picture(context: &Context, shape: (usize, usize)) -> Result<NamedPictur
         "hot" => [204, 20, 60],
         _ => grey(mean),
     });
-    let mut colours: Vec<Rgb> = colours.map(Rgb::from).collect();
+    let mut colours: Vec<Rgb> = colours.collect();
     for (taxel, _) in context
         .n_missing
         .iter()
@@ -180,7 +180,7 @@ impl Panels {
                     let start = 3 * (y * size.0 + left + column * side);
                     let pixels = &mut rgb[start..start + 3 * side];
                     for pixel in pixels.chunks_exact_mut(3) {
-                        pixel.copy_from_slice(&<[u8; 3]>::from(*colour));
+                        pixel.copy_from_slice(colour);
                     }
                 }
             }

@@ -11,6 +11,7 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 const SIDE: usize = 20;
@@ -45,7 +46,7 @@ fn simulated() -> (Array2<f64>, Vec<usize>) {
         rest: RestPoses::AsModelled,
         offset_x: within(-10e-3, 10e-3),
         offset_y: within(-10e-3, 10e-3),
-        yaw: within(0.0, 6.28),
+        yaw: within(0.0, TAU),
         tilt_x: Spread::Values(vec![0.0]),
         tilt_y: Spread::Values(vec![0.0]),
         depth: within(2e-3, 4e-3),

@@ -215,7 +215,7 @@ impl ContactFace {
             return UNKNOWN;
         }
         let mut spread = 0.0_f64;
-        for k in 0..3 {
+        for (k, around) in around.into_iter().enumerate() {
             if self.has_edge[k] {
                 spread = spread.max(match self.across[k] == DVec3::ZERO {
                     true => UNKNOWN,
@@ -223,7 +223,7 @@ impl ContactFace {
                 });
             }
             if self.has_corner[k] {
-                spread = spread.max(around[k]);
+                spread = spread.max(around);
             }
         }
         if spread > MAX_SPREAD { UNKNOWN } else { spread }

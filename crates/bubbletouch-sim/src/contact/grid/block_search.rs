@@ -8,6 +8,11 @@
 //!
 //! All bounds are enlarged by `slack`, far more than the rounding of single precision, so they never exclude a contact.
 
+#![expect(
+    clippy::needless_range_loop,
+    reason = "a loop over the lanes of several arrays is clearer with an index"
+)]
+
 use super::lines::{GridLines, Lines};
 use crate::geometry::Pose;
 use crate::objects::mesh_blocks::{Block, BlockNode, LANES, Lane, MeshBlocks};

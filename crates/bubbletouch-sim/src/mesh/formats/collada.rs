@@ -7,6 +7,7 @@ use crate::mesh::MeshFile;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::io::BufRead;
 use std::str::FromStr;
 
@@ -336,28 +337,27 @@ impl<'a> Collada<'a> {
     fn transform(&self, node: Node) -> Result<DAffine3> {
         let mut all = DAffine3::IDENTITY;
         for element in node.children().filter(Node::is_element) {
-            all = all
-                * match element.tag_name().name() {
-                    "matrix" | "bind_shape_matrix" => self.matrix(element)?,
-                    "translate" => DAffine3::from_translation(DVec3::from(self.exactly(element)?)),
-                    "scale" => DAffine3::from_scale(DVec3::from(self.exactly(element)?)),
-                    "rotate" => {
-                        let [x, y, z, degrees] = self.exactly(element)?;
-                        let axis = DVec3::new(x, y, z).try_normalize().ok_or_else(|| {
-                            self.refuse(
-                                element,
-                                "<rotate> about an axis of length zero",
-                                "a direction",
-                            )
-                        })?;
-                        DAffine3::from_quat(DQuat::from_axis_angle(axis, degrees.to_radians()))
-                    }
-                    tag @ ("skew" | "lookat") => {
-                        let allowed = "<matrix>, <translate>, <rotate> or <scale>";
-                        return Err(self.refuse(element, format!("<{tag}>"), allowed));
-                    }
-                    _ => continue,
-                };
+            all *= match element.tag_name().name() {
+                "matrix" | "bind_shape_matrix" => self.matrix(element)?,
+                "translate" => DAffine3::from_translation(DVec3::from(self.exactly(element)?)),
+                "scale" => DAffine3::from_scale(DVec3::from(self.exactly(element)?)),
+                "rotate" => {
+                    let [x, y, z, degrees] = self.exactly(element)?;
+                    let axis = DVec3::new(x, y, z).try_normalize().ok_or_else(|| {
+                        self.refuse(
+                            element,
+                            "<rotate> about an axis of length zero",
+                            "a direction",
+                        )
+                    })?;
+                    DAffine3::from_quat(DQuat::from_axis_angle(axis, degrees.to_radians()))
+                }
+                tag @ ("skew" | "lookat") => {
+                    let allowed = "<matrix>, <translate>, <rotate> or <scale>";
+                    return Err(self.refuse(element, format!("<{tag}>"), allowed));
+                }
+                _ => continue,
+            };
         }
         Ok(all)
     }
@@ -429,16 +429,16 @@ impl<'a> Reading<'a, '_> {
                 continue;
             };
             let key = source.range().start;
-            if !self.positions.contains_key(&key) {
-                self.positions.insert(key, file.points(source)?);
-            }
+            let positions = match self.positions.entry(key) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(place) => place.insert(file.points(source)?),
+            };
             let line = primitive
                 .document()
                 .text_pos_at(primitive.range().start)
                 .row;
             let place = format!("{}, line {line}", file.place);
-            self.parts
-                .add(&place, transform, &self.positions[&key], &polygons)?;
+            self.parts.add(&place, transform, positions, &polygons)?;
         }
         Ok(())
     }

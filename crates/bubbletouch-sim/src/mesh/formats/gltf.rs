@@ -127,7 +127,7 @@ fn triangles(place: &str, primitive: &Primitive, corners: &[u32]) -> Result<Vec<
     Ok(match primitive.mode {
         Some(STRIP) => triangles_of_strip(corners),
         Some(FAN) => triangles_of_fan(corners),
-        _ if corners.len() % 3 != 0 => {
+        _ if !corners.len().is_multiple_of(3) => {
             let given = format!("{} corners of triangles", corners.len());
             return Err(Error::input(place, given, "three for each triangle"));
         }
