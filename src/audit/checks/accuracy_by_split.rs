@@ -55,8 +55,12 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
             continue;
         };
         let units = split.units.as_deref();
-        let Some(difference) = paired_difference(&best.is_correct, &tested.is_correct, units) else {
-            let why = format!("There are fewer than five units in the split by {}.", split.name);
+        let Some(difference) = paired_difference(&best.is_correct, &tested.is_correct, units)
+        else {
+            let why = format!(
+                "There are fewer than five units in the split by {}.",
+                split.name
+            );
             findings.push(Finding::not_checked("", why).about(format!("{} split", split.name)));
             continue;
         };

@@ -1,9 +1,9 @@
 //! Drift: levels of untouched taxels that change in the order of recording.
 
-use bubbletouch_sim::audit::taxels::{rest_readings, without_class_means};
-use bubbletouch_sim::audit::dependence::{change_of_level, serial_dependence};
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
+use bubbletouch_sim::audit::dependence::{change_of_level, serial_dependence};
+use bubbletouch_sim::audit::taxels::{rest_readings, without_class_means};
 use ndarray::{Array2, Axis};
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -20,17 +20,27 @@ fn at_rest(context: &Context) -> (Array2<f64>, &'static str) {
         return (rows, "untouched taxels");
     }
     let rest = rest_readings(context.sample_rows.view());
-    let varies = |taxel: &usize| rest.column(*taxel).iter().any(|&reading| reading != rest[(0, *taxel)]);
+    let varies = |taxel: &usize| {
+        rest.column(*taxel)
+            .iter()
+            .any(|&reading| reading != rest[(0, *taxel)])
+    };
     let varying: Vec<usize> = (0..rest.ncols()).filter(varies).collect();
-    let rest = without_class_means(rest.select(Axis(1), &varying).view(), &context.sample_labels);
+    let rest = without_class_means(
+        rest.select(Axis(1), &varying).view(),
+        &context.sample_labels,
+    );
     (rest, "taxels at rest")
 }
 
 /// Returns the readings of untouched taxels that vary, less the means of their classes, shape (n_sample, m).
 pub fn untouched(context: &Context) -> Array2<f64> {
     let taxels = 0..context.taxels.len();
-    let counted = taxels.filter(|&taxel| context.is_untouched[taxel] && !context.taxels[taxel].is_constant());
-    context.residuals.select(Axis(1), &counted.collect::<Vec<_>>())
+    let counted =
+        taxels.filter(|&taxel| context.is_untouched[taxel] && !context.taxels[taxel].is_constant());
+    context
+        .residuals
+        .select(Axis(1), &counted.collect::<Vec<_>>())
 }
 
 fn run(context: &Context) -> Result<Vec<Finding>> {

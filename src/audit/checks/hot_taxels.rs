@@ -1,8 +1,8 @@
 //! Hot taxels: a pressure or strong noise while the taxels around them are at rest.
 
-use bubbletouch_sim::audit::hot::{HotTaxel, hot_taxels};
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
+use bubbletouch_sim::audit::hot::{HotTaxel, hot_taxels};
 
 pub const ABOUT: CheckAbout = CheckAbout {
     name: "hot_taxels",
@@ -12,7 +12,11 @@ pub const ABOUT: CheckAbout = CheckAbout {
 
 /// Finds the hot taxels; constant taxels are stuck, not hot.
 pub fn found(context: &Context) -> Vec<HotTaxel> {
-    let is_sound: Vec<bool> = context.taxels.iter().map(|taxel| !taxel.is_constant()).collect();
+    let is_sound: Vec<bool> = context
+        .taxels
+        .iter()
+        .map(|taxel| !taxel.is_constant())
+        .collect();
     hot_taxels(context.skin.touched.view(), context.data.grid, &is_sound)
 }
 
@@ -21,7 +25,8 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     let n_taxels = context.taxels.len();
     let share = found.len() as f64 / n_taxels as f64;
     let sentence = match found.first() {
-        None => "No taxel reads a pressure or strong noise while the taxels around it are at rest.".to_owned(),
+        None => "No taxel reads a pressure or strong noise while the taxels around it are at rest."
+            .to_owned(),
         Some(hot) => format!(
             "{} of {n_taxels} taxels read a pressure or strong noise while the taxels around them are at rest, such as number {} by {} of the full scale.",
             found.len(),

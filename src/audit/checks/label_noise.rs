@@ -76,18 +76,24 @@ pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
     let mut doubtful = Vec::new();
     for class in 0..n_classes {
         let is_right = |touch: usize| context.labels[touch] == class;
-        let within = touches.iter().filter(|(_, predicted, _)| *predicted == class);
+        let within = touches
+            .iter()
+            .filter(|(_, predicted, _)| *predicted == class);
         let right = within.clone().filter(|(touch, ..)| is_right(*touch));
         let mut margins: Vec<f64> = right.map(|(_, _, margin)| *margin).collect();
         if margins.is_empty() {
             continue;
         }
         let median = crate::quantile::quantile(&mut margins, 0.5);
-        let deep = within.filter(|(touch, _, margin)| *margin >= median && is_confirmed(*touch, class));
+        let deep =
+            within.filter(|(touch, _, margin)| *margin >= median && is_confirmed(*touch, class));
         for &(touch, _, margin) in deep {
             found.n_deep += 1;
             if !is_right(touch) {
-                doubtful.push((margin / median.abs().max(f64::MIN_POSITIVE), Doubtful { touch, class }));
+                doubtful.push((
+                    margin / median.abs().max(f64::MIN_POSITIVE),
+                    Doubtful { touch, class },
+                ));
             }
         }
     }

@@ -43,7 +43,10 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
                 n_pairs += 1;
                 // Both differences must be real, so the larger p-value counts (intersection-union test).
                 let p_value = before.p_value.max(after.p_value);
-                if strongest.as_ref().is_none_or(|known| p_value < known.p_value) {
+                if strongest
+                    .as_ref()
+                    .is_none_or(|known| p_value < known.p_value)
+                {
                     strongest = Some(Reversal {
                         better_at_random: at_random[first],
                         better_held_out: at_random[second],

@@ -1,8 +1,8 @@
 //! Touches that are nearer to another touch than chance explains, such as copies and neighbouring frames of one recording.
 
-use bubbletouch_sim::audit::duplicates::test_duplicates;
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
+use bubbletouch_sim::audit::duplicates::test_duplicates;
 use ndarray::Axis;
 
 /// Probability with which chance makes any touch a near-duplicate.

@@ -17,7 +17,9 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     let saturation = context.plateau.unwrap_or(1.0);
     let Some(step) = converter::step(&context.skin, saturation) else {
         let sentence = "The readings have no common step.".to_owned();
-        return Ok(vec![Finding::counted("", 0.0, sentence, false).against(0.0)]);
+        return Ok(vec![
+            Finding::counted("", 0.0, sentence, false).against(0.0),
+        ]);
     };
     let std = context.active_std / (context.scale.1 - context.scale.0);
     // A step q adds errors of variance q²/12.

@@ -51,11 +51,15 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     let cells: Vec<usize> = cells.collect();
     let n_cells = numbers.len();
     if n_cells == context.n_classes || 2 * n_cells > context.labels.len() {
-        let why = format!("Each class is in one of the {words}, or most of the {words} are single touches.");
+        let why = format!(
+            "Each class is in one of the {words}, or most of the {words} are single touches."
+        );
         return Ok(vec![Finding::not_checked("", why)]);
     }
     let pairs = scores.nearest_outside.iter().enumerate();
-    let pairs: Vec<(usize, usize)> = pairs.filter_map(|(row, other)| Some((row, (*other)?))).collect();
+    let pairs: Vec<(usize, usize)> = pairs
+        .filter_map(|(row, other)| Some((row, (*other)?)))
+        .collect();
     let n = pairs.len().max(1) as f64;
     let share = |of: &[usize]| pairs.iter().filter(|(a, b)| of[*a] == of[*b]).count() as f64 / n;
     let mut rng = context.seed(ABOUT.name).rng();

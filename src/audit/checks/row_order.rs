@@ -14,7 +14,11 @@ pub const SOURCE: Source = Source {
     name: "row_order",
     rows: |context| {
         let n = context.sample.len();
-        Array2::from_shape_vec((n, 1), context.sample.iter().map(|&row| row as f64).collect()).ok()
+        Array2::from_shape_vec(
+            (n, 1),
+            context.sample.iter().map(|&row| row as f64).collect(),
+        )
+        .ok()
     },
 };
 

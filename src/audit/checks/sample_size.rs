@@ -1,9 +1,9 @@
 //! Effective sample size: independent touches that contain as much information as all touches.
 
-use bubbletouch_sim::audit::dependence::{group_dependence, serial_dependence};
-use bubbletouch_sim::audit::taxels::without_class_means;
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::table::short_number;
+use bubbletouch_sim::audit::dependence::{group_dependence, serial_dependence};
+use bubbletouch_sim::audit::taxels::without_class_means;
 use ndarray::Axis;
 use rand::seq::SliceRandom;
 use std::collections::BTreeMap;

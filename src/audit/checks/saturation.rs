@@ -18,7 +18,9 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     };
     let Some(level) = level else {
         let sentence = "The largest reading is not shared by many frames.".to_owned();
-        return Ok(vec![Finding::counted("", 0.0, sentence, false).against(0.0)]);
+        return Ok(vec![
+            Finding::counted("", 0.0, sentence, false).against(0.0),
+        ]);
     };
     let frames = context.skin.touched.outer_iter();
     let is_constant = |taxel: usize| context.taxels[taxel].is_constant();

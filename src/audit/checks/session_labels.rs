@@ -19,7 +19,12 @@ pub const SOURCE: Source = Source {
 /// Returns one column per session with 1 for the touches of the session.
 fn rows(context: &Context) -> Option<Array2<f64>> {
     let sessions = context.data.sessions.as_ref()?;
-    let all: Vec<usize> = sessions.iter().copied().collect::<BTreeSet<_>>().into_iter().collect();
+    let all: Vec<usize> = sessions
+        .iter()
+        .copied()
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .collect();
     if all.len() < 2 || all.len() > context.sample.len() / 2 {
         return None;
     }

@@ -17,9 +17,8 @@ pub const SOURCE: Source = Source {
 };
 
 fn rows(context: &Context) -> Option<Array2<f64>> {
-    let is_counted = |taxel: usize| {
-        context.is_untouched[taxel] && !context.taxels[taxel].is_constant()
-    };
+    let is_counted =
+        |taxel: usize| context.is_untouched[taxel] && !context.taxels[taxel].is_constant();
     let rows = some_columns(&context.sample_rows, is_counted);
     (rows.ncols() > 0).then_some(rows)
 }
