@@ -1,10 +1,10 @@
 //! Measurement of the speed of the press kernel alone.
 
 use crate::errors::exception;
-use crate::goal::Goal;
 use crate::model::model_of;
 use crate::patch::Patch;
 use crate::poses::Poses;
+use crate::press::goal::Goal;
 use bubbletouch::contact::Workspace;
 use pyo3::prelude::*;
 use std::slice::from_ref;

@@ -7,16 +7,12 @@ mod arrays;
 mod audit;
 mod batch;
 mod catalogue;
-mod contacts;
 mod errors;
 mod foreign;
-mod goal;
-mod jacobian;
 mod kernel_pace;
 mod length_unit;
 mod mesh;
 mod model;
-mod output;
 mod patch;
 mod picture;
 mod placement;
@@ -28,7 +24,6 @@ mod robot;
 mod signal;
 mod simulation;
 mod skin;
-mod slide;
 mod sphere_union;
 mod study;
 mod svm;
@@ -45,8 +40,6 @@ mod _core {
     #[pymodule_export]
     use catalogue::{Catalogue, Solid};
     #[pymodule_export]
-    use contacts::Contacts;
-    #[pymodule_export]
     use errors::{_panic, InternalError};
     #[pymodule_export]
     use kernel_pace::_kernel_pace;
@@ -58,6 +51,8 @@ mod _core {
     use picture::write_frame;
     #[pymodule_export]
     use placement::touch_poses;
+    #[pymodule_export]
+    use press::contacts::Contacts;
     #[pymodule_export]
     use projection::Projection;
     #[pymodule_export]

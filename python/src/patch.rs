@@ -4,9 +4,9 @@ use crate::arrays::{each, points, to_column, to_rows, view, whole_number};
 use crate::batch::Spare;
 use crate::errors::{bad_input, check_folder, exception, guarded};
 use crate::mesh::Mesh;
-use crate::output::Output;
 use crate::poses::Poses;
-use crate::slide::{Motion, press_and_slide};
+use crate::press::output::Output;
+use crate::press::slide::{Motion, press_and_slide};
 use bubbletouch::contact::Workspace;
 use bubbletouch::geometry::Aabb;
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutOptions};
@@ -743,10 +743,10 @@ impl Patch {
         jacobian: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
-            let goal = crate::goal::Goal::from_arguments(depth, travel, force)?;
-            crate::press::press(
+            let goal = crate::press::goal::Goal::from_arguments(depth, travel, force)?;
+            crate::press::batch_press::press(
                 py,
-                crate::press::PatchToPress {
+                crate::press::batch_press::PatchToPress {
                     patch: &self.patch,
                     sides: &self.shape,
                     spare: &self.spare,
@@ -754,7 +754,7 @@ impl Patch {
                 (object, poses, goal),
                 (out, dtype),
                 threads,
-                crate::press::Wanted {
+                crate::press::batch_press::Wanted {
                     output: Output::from_argument(output)?,
                     contacts,
                     jacobian,

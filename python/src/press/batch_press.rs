@@ -2,13 +2,13 @@
 
 use crate::arrays::shape_of;
 use crate::batch::{Spare, for_each, n_threads};
-use crate::contacts::{Contacts, OfPose};
 use crate::errors::{bad_input, exception};
-use crate::goal::Goal;
-use crate::jacobian;
 use crate::model::Objects;
-use crate::output::{Output, Scale};
 use crate::poses::Poses;
+use crate::press::contacts::{Contacts, OfPose};
+use crate::press::goal::Goal;
+use crate::press::jacobian;
+use crate::press::output::{Output, Scale};
 use bubbletouch::contact::{Row, Workspace};
 use bubbletouch::geometry::Pose;
 use bubbletouch::world;

@@ -3,9 +3,9 @@
 use crate::arrays::{each, numbers, shape_of};
 use crate::batch::{Spare, for_each, n_threads};
 use crate::errors::{bad_input, exception};
-use crate::goal::Goal;
 use crate::model::Objects;
 use crate::poses::Poses;
+use crate::press::goal::Goal;
 use bubbletouch::contact::{Approach, ContactMode, FrictionState, Workspace};
 use bubbletouch::world::{self, Shear, Shears};
 use glam::DVec3;
