@@ -32,7 +32,7 @@ impl AuditData {
         self.frames.nrows() / self.n_frames.max(1)
     }
 
-    /// Sorts the touches by their times, and notes that their order is that of recording.
+    /// Sorts the touches by their times, and marks their order as the order of recording.
     ///
     /// # Panics
     /// If there are fewer times than touches.

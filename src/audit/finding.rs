@@ -63,9 +63,9 @@ pub struct Finding {
     pub p_value: Option<f64>,
     /// p-value after Holm's correction over all tests of the audit.
     pub p_holm: Option<f64>,
-    /// What was found, in one or two sentences.
+    /// Result of the check in one or two sentences.
     pub sentence: String,
-    /// What to do about a fault; empty if nothing has to be done.
+    /// Recommended action against a fault; empty if no action is needed.
     pub advice: String,
     /// Name of the chart or picture that shows the finding; empty if there is none.
     pub picture: &'static str,
@@ -90,7 +90,7 @@ impl Finding {
         }
     }
 
-    /// Creates a finding from a test. It is a fault if the corrected p-value is at most [`ALPHA`] and the effect is relevant.
+    /// Creates a finding from a test. The finding is a fault if the corrected p-value is at most [`ALPHA`] and the effect is relevant.
     pub fn tested(
         check: &'static str,
         value: f64,

@@ -4,7 +4,7 @@
 //! number, a p-value or a count, one sentence, and advice. The p-values of all findings are corrected together (Holm), so that an audit of faultless data
 //! reports a fault with a probability of at most 5 %.
 //!
-//! The statistics of frames are in `bubbletouch_sim::audit`, those of labelled rows in `bubbletouch_svm::audit`.
+//! Statistics of frames are in `bubbletouch_sim::audit`. Statistics of labelled rows are in `bubbletouch_svm::audit`.
 
 mod check;
 pub mod checks;

@@ -1,4 +1,4 @@
-//! Pictures of an audit: the state of each taxel, and frames of touches to look at.
+//! Pictures of an audit: the state of each taxel, and frames of doubtful touches.
 
 use crate::audit::checks::{label_noise, near_duplicates};
 use crate::audit::context::Context;

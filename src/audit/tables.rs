@@ -43,9 +43,9 @@ pub struct FindingRow {
     p_value: Option<f64> => Note "p": Log;
     /// p-value after Holm's correction over all tests of the audit.
     p_holm: Option<f64> => Note "p, Holm": Log;
-    /// What was found.
+    /// Result of the check in one or two sentences.
     sentence: String => Note;
-    /// What to do.
+    /// Recommended action against a fault.
     advice: String => Note;
 } }
 
@@ -114,7 +114,7 @@ pub struct ClassRow {
 } }
 
 row! {
-/// Touch to look at.
+/// Touch to inspect: a near-duplicate, or a touch with a doubtful label.
 pub struct DoubtfulRow {
     /// Number of the touch in the file, from 0.
     touch: usize => Subject: Linear;

@@ -33,7 +33,7 @@ pub enum Better {
     More,
     /// Smaller values are better.
     Less,
-    /// Neither larger nor smaller values are better.
+    /// No direction is better.
     Neither,
 }
 

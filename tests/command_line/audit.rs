@@ -69,7 +69,7 @@ fn a_folder_becomes_a_page_with_tables() {
         verdicts(&case, "results/skin_audit", "before_contact"),
         ["not_checked"]
     );
-    // The same command replaces its own files, and the tables are equal.
+    // A second run of the command replaces the files of the first, and the tables are equal.
     let table = || std::fs::read(case.path("results/skin_audit/findings.csv")).unwrap();
     let first = table();
     case.succeeds(&[&audit(&["skin"])[..], &["--threads", "1"]].concat());

@@ -59,7 +59,7 @@ fn what_it_writes_is_the_signal_of_a_study() {
     assert!(table.contains("# gain_std: not identifiable: "), "{table}");
     case.file("study.toml", format!("{STUDY}{table}"));
     case.succeeds(&["plan", "study.toml"]);
-    // The same output, written to a file.
+    // With `--output`, the command writes the table to a file.
     let to_file = [&given[..], &["--output", "signal.toml"]].concat();
     let (said, _) = case.succeeds(&to_file);
     assert_eq!(said, "");

@@ -169,7 +169,7 @@ impl Drop for Cluster {
 fn configuration(folder: &Path) -> String {
     let host = fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
     let host = host.trim().split('.').next().unwrap();
-    // Both ports are held at the same time, so that they differ.
+    // The two ports are held at the same time, so that they differ.
     let free = [(); 2].map(|()| TcpListener::bind("127.0.0.1:0").unwrap());
     let [ctld, d] = free.map(|listener| listener.local_addr().unwrap().port());
     let cpus = std::thread::available_parallelism().unwrap();
@@ -346,7 +346,7 @@ fn runs_into_other_folders_or_with_other_seeds_are_other_jobs() {
         let said = submit_two(&case, run);
         assert!(said.contains("submitted 2 of 2 shards"), "{run:?}: {said}");
     }
-    // The same run is in the queue, for any form of its path.
+    // For any form of a path, the command finds the run that is in the queue.
     for run in [&["--out", "a"], &["--out", "./a"], &["--out", "sub/../a"]] {
         let said = submit_two(&case, run);
         assert!(

@@ -117,7 +117,7 @@ fn opposite_blocks_share_no_offset_and_no_yaw_and_each_is_tested_in_turn() {
             assert!(is_above || tested[tested.len() - 1] < learned[0]);
             is_above
         });
-        // Both sides contain all tilts and depths.
+        // Training and test touches contain all tilts and depths.
         for side in [train, test] {
             assert_eq!(values(side, tilt).len(), 4);
             assert_eq!(values(side, |touch| tenths_of_mm(touch.depth)).len(), 3);

@@ -1,4 +1,4 @@
-//! Which taxels a study reads: selected taxels, adaptive blocks, and arrays whose pitch varies.
+//! Taxels that a study reads: selected taxels, adaptive blocks, and arrays whose pitch varies.
 
 use crate::study::{Study, laid_out};
 use bubbletouch::sensing::Selection;

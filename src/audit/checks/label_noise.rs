@@ -1,10 +1,10 @@
-//! Wrong labels: held-out touches that a classifier confidently gives another label.
+//! Wrong labels: held-out touches for which a classifier confidently predicts another label.
 //!
-//! If two classes overlap like normal distributions and a classifier recognises the fraction a = Φ(μ) of them, the margin of a touch to the true class is
-//! N(μ, 1). A touch then lies deeper in another class than its median member with the probability Φ(−2μ), and half of the touches lie as deep in their own
-//! class. Of the touches deep in a class, the fraction q = Φ(−2μ) / (1/2 + Φ(−2μ)) therefore has another label, although all labels are right. More such
-//! touches are wrong labels; the test is binomial. Since real classes overlap in other ways, too, the nearest touches must confirm the class: only touches
-//! whose five nearest touches all have the label of the class count.
+//! Suppose that two classes overlap like normal distributions, and that a classifier recognises the fraction a = Φ(μ) of their touches. The margin of a touch
+//! to the true class is then N(μ, 1). A touch lies deeper in the other class than the median member of that class with the probability Φ(−2μ). Half of the
+//! touches lie as deep in their own class. Therefore the fraction q = Φ(−2μ) / (1/2 + Φ(−2μ)) of all touches deep in a class has another label, although all
+//! labels are right. A larger number of touches with another label indicates wrong labels; the test is binomial. Real classes can also overlap otherwise, so
+//! the nearest touches must confirm the class. A touch counts only if its five nearest touches all have the label of the class.
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
 use crate::audit::finding::percent;
@@ -16,7 +16,7 @@ use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal};
 const TOLERATED: f64 = 0.005;
 /// Number of nearest touches that confirm a class.
 const N_CONFIRMING: usize = 5;
-/// Smallest accuracy by which a classifier can judge labels.
+/// Minimum accuracy of a classifier from which labels are tested.
 const MIN_ACCURACY: f64 = 0.7;
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -29,7 +29,7 @@ pub const ABOUT: CheckAbout = CheckAbout {
 pub struct Doubtful {
     /// Index of the touch.
     pub touch: usize,
-    /// Class that the classifier gives the touch.
+    /// Class that the classifier predicts.
     pub class: usize,
 }
 
@@ -37,7 +37,7 @@ pub struct Doubtful {
 pub struct DeepTouches {
     /// Touches with another label than the class in which they lie, the deepest first.
     pub doubtful: Vec<Doubtful>,
-    /// Number of all such touches.
+    /// Number of touches that lie as deep in a class as its median member, with any label.
     pub n_deep: usize,
     /// Accuracy of the classifier.
     pub accuracy: f64,

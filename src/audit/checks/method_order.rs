@@ -41,7 +41,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
                     continue;
                 };
                 n_pairs += 1;
-                // Both differences must be real, so the larger p-value counts (intersection-union test).
+                // A reversal requires two real differences, so the larger p-value counts (intersection-union test).
                 let p_value = before.p_value.max(after.p_value);
                 if strongest
                     .as_ref()

@@ -9,7 +9,7 @@ use crate::audit::splits::touches_of_classes;
 use rand::seq::SliceRandom;
 use std::collections::BTreeMap;
 
-/// Number of blocks of each class that stand for groups if there are none.
+/// Number of blocks of each class that replace groups if the data have no groups.
 const N_BLOCKS: usize = 10;
 /// Smallest excess over chance that matters.
 const RELEVANT: f64 = 0.05;

@@ -40,7 +40,7 @@ impl LayoutFormat {
         ("urdf", Self::Urdf),
     ];
 
-    /// Returns the format that the extension of a file name stands for; `None` if it stands for none.
+    /// Returns the format that belongs to the extension of a file name; `None` if the extension is unknown.
     pub fn from_path(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         Some(match &ending[..] {
@@ -82,12 +82,12 @@ impl LayoutFile {
     /// The reader returns the same layout: bitwise equal in `.csv` and `.npz` files and in the position files of iCub, otherwise up to rounding.
     ///
     /// # Errors
-    /// If the extension of the file name stands for another format or for none, the file cannot be written, or the running command reads it.
+    /// If the extension of the file name belongs to another format or is unknown, the file cannot be written, or the running command reads it.
     pub fn write(&self, path: &Path, format: Option<LayoutFormat>) -> Result<Vec<String>> {
         let of_path = LayoutFormat::from_path(path);
         let place = path.display();
         let format = match (format, of_path) {
-            // Both formats of NumPy archives have one extension.
+            // The two formats of NumPy archives share one extension.
             (Some(LayoutFormat::Dex01), Some(LayoutFormat::Npz)) => LayoutFormat::Dex01,
             (Some(given), Some(known)) if given == known => given,
             (None, Some(known)) => known,

@@ -1,6 +1,6 @@
 //! Conversion between decimal numbers of millimetres in files and metres, rounded only once, so that a layout keeps its bits when it is written and read again.
 
-/// Returns the number of metres that a decimal number of millimetres stands for; `None` if the text is no finite number.
+/// Converts a decimal number of millimetres to metres; returns `None` if the text is no finite number.
 pub(super) fn metres(mm: &str) -> Option<f64> {
     let (digits, exponent) = match mm.find(['e', 'E']) {
         Some(at) => (&mm[..at], mm[at + 1..].parse::<i64>().ok()?),

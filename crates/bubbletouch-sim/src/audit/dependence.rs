@@ -108,8 +108,8 @@ fn test(
     })
 }
 
-/// Returns the standard deviation over taxels of the change of their level from the first to the last third of the rows, without the part that noise
-/// explains. `residuals` are the readings of untouched taxels, less the means of their classes.
+/// Returns the standard deviation over taxels of the change of their level between the first and the last third of the rows. The part that noise explains
+/// is subtracted. `residuals` are the readings of untouched taxels, less the means of their classes.
 pub fn change_of_level(residuals: ArrayView2<f64>) -> f64 {
     let n = residuals.nrows() / 3;
     if n < 2 {

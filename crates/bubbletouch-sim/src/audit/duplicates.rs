@@ -3,7 +3,7 @@
 //! Let r₁ ≤ r₂ ≤ … be the distances of a row to its nearest rows. If rows are drawn from a smooth density in d dimensions, the ratio of volumes
 //! u = (r₁/r_k)ᵈ is the smallest of k − 1 uniform numbers: P(u ≤ x) = 1 − (1 − x)ᵏ⁻¹, whatever the density (Facco et al., *Estimating the intrinsic
 //! dimension of datasets by a minimal neighborhood information*, 2017). The dimension d follows from the median of r₁/r_k. A row with a copy has r₁ ≈ 0, and
-//! its p-value is far below those of the other rows.
+//! its p-value is far below the p-values of other rows.
 
 use std::collections::BTreeMap;
 

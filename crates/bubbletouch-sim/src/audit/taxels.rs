@@ -3,11 +3,11 @@
 //! The readings of an untouched taxel are noise around a level, which may depend on the class if the recordings are confounded. Contact is one-sided and
 //! rare or strong. A taxel counts as untouched if its readings, less the mean of their class, fulfil all of the following conditions over n rows:
 //!
-//! - Skewness and excess kurtosis are at most those of a normal distribution, plus five standard errors (√(6/n), √(24/n)). If readings are clipped at the
-//!   zero, the moments are those of a clipped normal distribution with the same fraction of clipped readings, which must be 30 to 70 %: contact in fewer
-//!   rows looks like strongly clipped noise.
+//! - Skewness and excess kurtosis exceed the values of a normal distribution by at most five standard errors (√(6/n), √(24/n)). If readings are clipped at
+//!   zero, a clipped normal distribution with an equal fraction of clipped readings replaces the normal distribution. This fraction must be 30 to 70 %, because
+//!   contact in few rows resembles strongly clipped noise.
 //! - The correlation with the sum of the more active taxels is within four standard errors (1/√n).
-//! - The standard deviation is at most half of that of the active taxels (their 95 % quantile); a quarter if readings are clipped.
+//! - The standard deviation is at most half the 95 % quantile of the standard deviations of the active taxels; a quarter if readings are clipped.
 //!
 //! With contact in a fraction p of rows and of A standard deviations of the noise, the excess kurtosis is about p A⁴ / (1 + p A²)². A single touch of ten
 //! standard deviations in 1,000 rows is therefore found.
@@ -24,7 +24,7 @@ const CORRELATION_ERRORS: f64 = 4.0;
 const MAX_STD: f64 = 0.5;
 /// Minimum fraction of readings at the least reading of a taxel that count as clipped.
 const CLIPPED: f64 = 0.05;
-/// Fractions of clipped readings between which clipped noise can be told from rare contact.
+/// Fractions of clipped readings between which clipped noise can be distinguished from rare contact.
 const CLIPPED_NOISE: [f64; 2] = [0.3, 0.7];
 /// Maximum standard deviation of an untouched taxel with clipped readings, relative to active taxels.
 const MAX_CLIPPED_STD: f64 = 0.25;
@@ -179,7 +179,7 @@ fn clipped_share(readings: ArrayView1<f64>) -> f64 {
     n_clipped as f64 / readings.len() as f64
 }
 
-/// Returns whether skewness and kurtosis of residuals are those of a normal distribution of which the fraction `clipped` is clipped.
+/// Returns whether skewness and kurtosis of residuals agree with a normal distribution of which the fraction `clipped` is clipped.
 fn has_light_tails(residuals: ArrayView1<f64>, std: f64, clipped: f64) -> bool {
     let n = residuals.len() as f64;
     let moment = |power: i32| residuals.iter().map(|x| (x / std).powi(power)).sum::<f64>() / n;

@@ -14,7 +14,7 @@ use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Maximum number of letters of a name or a version. Longer ones do not fit into a column of a table.
+/// Maximum number of letters of a name or a version. Longer texts do not fit into a column of a table.
 const MAX_LETTERS: usize = 64;
 
 /// Features from outside of this crate. Several threads may compute them at the same time.
@@ -38,7 +38,7 @@ struct ForeignAbout {
     n_values: Mutex<BTreeMap<usize, usize>>,
 }
 
-/// All identities that this process has used. They are never removed, because every configuration of a study refers to its identity.
+/// All identities that this process has used. Identities are never removed, because every configuration of a study refers to its identity.
 static KNOWN: Mutex<Vec<Foreign>> = Mutex::new(Vec::new());
 
 thread_local! {

@@ -2,7 +2,7 @@
 //!
 //! Let e be the tolerance. Each sphere is the largest ball inside the solid that touches its surface at some point (the foot), with radius r, enlarged by e/2.
 //! No point of it lies more than e/2 outside. The sphere comes within e of every surface point p with |p − c| ≤ r + h, h = 3e/2. The feet are chosen so that
-//! the spheres cover the whole surface. On a flat face a ball covers a disc of radius sqrt(h(2r + h)) around its foot, so few large balls suffice. At a
+//! the spheres cover the whole surface. On a flat face a ball covers a disc of radius sqrt(h(2r + h)) around its foot. Therefore few large balls suffice. At a
 //! right-angled edge a ball needs r ≤ h/(√2 − 1) to reach the edge. Each form has its own closed layout of feet (`block`, `lathe`, `sphere_sweep`, `torus`), or
 //! cells that are divided until they are covered (`prism`).
 //!

@@ -18,7 +18,7 @@ pub struct Phase {
 /// Pose of a body over time: a start pose, then phases of constant velocity, then standstill.
 ///
 /// Rotations are integrated exactly, `R(t) = exp(ω t) R(0)`. Differences from \[BT\]: the original program adds ω × R to the rotation matrix R at each step,
-/// so that the matrix grows. It also switches phases one step early.
+/// so that the matrix grows. The original program also switches phases one step early.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VelocityPlan {
     start: Pose,

@@ -1,7 +1,7 @@
-//! Classifiers from outside of this crate. A study trains and tests them like its own kinds.
+//! Classifiers from outside of this crate. A study trains and tests such classifiers like the kinds of this crate.
 //!
 //! A [`Foreign`] is the identity of such a classifier: a name and a version. The code behind it is a [`ForeignClassifier`], which a program
-//! [provides](Foreign::provide) while it runs a study. [`LinfaClassifier`] makes one of any classifier that implements linfa's traits.
+//! [provides](Foreign::provide) while it runs a study. [`LinfaClassifier`] adapts any classifier that implements linfa's traits.
 
 use crate::class_model::{ClassModel, log_priors, log_vote_shares};
 use crate::classifiers::ClassifierKind;
@@ -20,7 +20,7 @@ use std::hash::{Hash, Hasher};
 use std::marker::PhantomData;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Maximum number of letters of a name or a version. Longer ones do not fit into a column of a table.
+/// Maximum number of letters of a name or a version. Longer texts do not fit into a column of a table.
 const MAX_LETTERS: usize = 64;
 
 /// Classifier from outside of this crate. Several threads may train it at the same time.
@@ -62,7 +62,7 @@ struct ForeignAbout {
     provided: Mutex<Vec<Arc<dyn ForeignClassifier>>>,
 }
 
-/// All identities that this process has used. They are never removed, because every configuration of a study refers to its identity.
+/// All identities that this process has used. Identities are never removed, because every configuration of a study refers to its identity.
 static KNOWN: Mutex<Vec<Foreign>> = Mutex::new(Vec::new());
 
 thread_local! {

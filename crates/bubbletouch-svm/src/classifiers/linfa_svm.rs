@@ -1,7 +1,7 @@
 //! Linear SVM of the crate linfa-svm, for comparison with [`linear_svm`](super::linear_svm).
 //!
 //! linfa-svm solves binary problems. Its multi-class scheme is linfa's `MultiClassModel`: one SVM separates each class from all others, Platt scaling fits a
-//! probability to its decision values on the training rows, and the class with the highest probability wins. Of equal probabilities, the lower label wins.
+//! probability to its decision values on the training rows, and the class with the highest probability wins. If probabilities are equal, the lower label wins.
 
 use crate::class_model::ClassModel;
 use crate::classifiers::classifier_about::ClassifierAbout;
@@ -76,7 +76,7 @@ impl ClassModel for LinfaSvm {
     }
 
     fn n_capped(&self) -> usize {
-        // linfa-svm tells the reason for stopping only in its text.
+        // linfa-svm gives the reason for stopping only in the text of a model.
         let is_capped = |model: &&Svm<f64, Pr>| model.to_string().starts_with("Reached");
         self.models.iter().filter(is_capped).count()
     }

@@ -59,8 +59,8 @@ impl LaneLines {
         }
     }
 
-    /// Returns the first line at or above `low` and the line after the last line at or below `high`. Both are whole numbers, rounded outwards up to the slack
-    /// of the bounds.
+    /// Returns the first line at or above `low` and the line after the last line at or below `high`. The results are whole numbers, rounded outwards up to the
+    /// slack of the bounds.
     #[inline(always)]
     fn between(&self, low: &Lane, high: &Lane) -> [Lane; 2] {
         let mut ranges = [[0.0; LANES]; 2];
@@ -74,7 +74,7 @@ impl LaneLines {
     }
 }
 
-/// Returns the whole number nearest to a number from 0 to 2²². Unlike `f32::round`, it is two vector instructions on any processor.
+/// Returns the whole number nearest to a number from 0 to 2²². Unlike `f32::round`, the function takes two vector instructions on any processor.
 #[inline(always)]
 fn nearest_whole(number: f32) -> f32 {
     /// In single precision, numbers of this size have no fractions.

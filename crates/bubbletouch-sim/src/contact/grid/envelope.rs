@@ -134,8 +134,8 @@ fn cover(range: &mut Range<usize>, part: Range<usize>) {
 /// triangles; if smaller, small triangles are evaluated needlessly.
 const FEW: usize = 4;
 
-/// Distance by which a face extends beyond its sides, relative to the radius of a taxel. It closes the gaps at sides between triangles in one plane, which are
-/// not evaluated: gaps of [`FLAT`](crate::objects::FLAT) radii, and of rounding.
+/// Distance by which a face extends beyond its sides, relative to the radius of a taxel. Sides between triangles in one plane are not evaluated. The extension
+/// closes the gaps at these sides, which are due to the tolerance [`FLAT`](crate::objects::FLAT), in radii, and to rounding.
 const FACE_SLACK: f64 = 1.5 * crate::objects::FLAT;
 
 /// State of the search over one mesh.

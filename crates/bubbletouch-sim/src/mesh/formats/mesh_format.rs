@@ -68,8 +68,8 @@ impl MeshFormat {
         }
     }
 
-    /// Reads a file of this format and converts it to metres. Without a unit, the numbers of a Collada file are in the unit that the file contains, and those of
-    /// other files are metres.
+    /// Reads a file of this format and converts it to metres. Without a unit, the numbers of a Collada file are in the unit that the file contains. The
+    /// numbers of other files are then metres.
     ///
     /// # Errors
     /// If the file is invalid; errors begin with `place`, the path of the file.

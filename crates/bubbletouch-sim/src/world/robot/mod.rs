@@ -14,7 +14,7 @@
 //! | ball | roll, pitch, yaw, rad | turn about the anchor: `Rz(yaw) Ry(pitch) Rx(roll)` |
 //!
 //! In MJCF, hinges turn about an axis through their anchor, hinges and slides do not move their link at their reference position `ref`, and several joints
-//! can move one link. Such joints act one after the other, in the order of the file.
+//! can move one link. The joints of one link act one after the other, in the order of the file.
 //!
 //! Links, joints and their origins determine poses and must be valid. A joint whose axis or type cannot be read is fixed. Limits, shapes and `<mimic>` that
 //! cannot be read are omitted. Each of these cases is reported in a note of the robot.

@@ -194,7 +194,7 @@ impl Robot {
     /// Returns the index of the joint position with the given name.
     ///
     /// # Errors
-    /// If there is no such position. If the name is that of a mimicking joint, the error contains the joint that it follows; otherwise similar names.
+    /// If there is no such position. If a mimicking joint has the name, the error contains the joint that it follows; otherwise similar names.
     pub fn position(&self, name: &str) -> Result<usize> {
         let place = format!("joint of robot `{}`", self.name);
         let mut joints = self.joints.iter().filter(|joint| joint.name == name);

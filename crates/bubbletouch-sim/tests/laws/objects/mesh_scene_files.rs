@@ -80,7 +80,7 @@ fn collada_files_have_their_unit_and_keep_their_axes() {
             &read(MeshFormat::Collada, text.as_bytes()).unwrap(),
             &expected,
         );
-        // A unit that the user gives replaces that of the file.
+        // A unit from the user replaces the unit of the file.
         let file = MeshFormat::Collada.read("m", Some(LengthUnit::Millimetre), text.as_bytes());
         let expected: Vec<DVec3> = cube.iter().map(|corner| *corner * 1e-3).collect();
         assert_same(&file.unwrap().into_mesh("m").unwrap(), &expected);

@@ -1,8 +1,8 @@
 //! Foveated grid: rows and columns that are closest in the middle.
 //!
 //! Let u and v from −1 to 1 be the coordinates of a taxel in the square grid, divided by half the side. The taxel is at the same half side times
-//! (u (1 + u²) / 2, v (1 + v²) / 2). Rows and columns are half a pitch apart in the middle and two pitches apart at the edge, so the middle has four times the
-//! density of the grid. The number of taxels and the side are those of the grid.
+//! (u (1 + u²) / 2, v (1 + v²) / 2). Rows and columns are half a pitch apart in the middle and two pitches apart at the edge. The middle therefore has
+//! four times the density of the grid. The number of taxels and the side equal the values of the grid.
 
 use super::about::LayoutAbout;
 use crate::world::Layout;
