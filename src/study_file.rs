@@ -16,7 +16,7 @@ macro_rules! toml_file {
 }
 pub(crate) use toml_file;
 
-/// Defines the type of a study file, with the keys that all study files share and the keys of one kind.
+/// Defines the type of a study file, with the keys that all study files share and the keys of a kind.
 macro_rules! study_file {
     (pub struct $study:ident { $($(#[$of_field:meta])* pub $field:ident: $type:ty,)* }) => {
         /// Contents of a study file.

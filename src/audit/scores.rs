@@ -211,9 +211,10 @@ pub struct PairedDifference {
     pub p_value: f64,
 }
 
-/// Compares two lists of results of the same touches by a t-test over units, or over touches without units. The mean is
-/// a ratio of sums. Its standard error follows from the deviation of each unit: the sum of the unit's differences, minus its number of touches times the mean
-/// difference. Returns `None` for fewer than five units.
+/// Compares two lists of results of the same touches by a t-test over units, or over touches if there are no units.
+///
+/// The mean difference is a ratio of sums. Its standard error follows from the deviation of each unit: the sum of the unit's differences, minus its number of
+/// touches times the mean difference. Returns `None` for fewer than five units.
 pub fn paired_difference(
     first: &[Option<bool>],
     second: &[Option<bool>],

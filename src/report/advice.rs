@@ -430,7 +430,7 @@ fn refuse_none<T>(found: &[T], (option, given): (&str, &str), mut known: Vec<&st
     }
 }
 
-/// Returns those of the given rows that satisfy a condition of the form `noise=0.05`.
+/// Returns the given rows that satisfy a condition of the form `noise=0.05`.
 fn given_rows(table: &Table, rows: Vec<usize>, text: &str) -> Result<Vec<usize>> {
     let refuse = || Error::input("--given", text, "a condition and its value: noise=0.05");
     let (key, value) = text.split_once('=').ok_or_else(refuse)?;

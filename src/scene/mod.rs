@@ -11,13 +11,13 @@
 //!    grow, smaller while they shrink, and equal at rest. If a target cannot be reached, the object stops at its maximum travel without an error; each frame
 //!    contains the actual force.
 //! 3. Free objects move to a common equilibrium on skin, planes ([`PlaneSpec`]), imposed objects and one another ([`balance`](crate::contact::equilibrium)).
-//!    Each starts at its last pose. Skin carries them by its springs, by the dampers' forces within the step, and by the reactions of rigid stops at the
-//!    end of the stroke; the equilibrium determines these reactions.
+//!    Each starts at its last pose. Skin carries them by its springs, the dampers' forces within the step, and the reactions of rigid stops at the end of
+//!    the stroke. The equilibrium determines these reactions.
 //! 4. Each patch computes its contacts, unless no object is within its reach. Taxels without contact relax ([`DamperState`](crate::contact::DamperState)). On
-//!    a patch with friction, the tips of the tangential springs move with the contacting objects ([`FrictionState`](crate::contact::FrictionState)), whether
+//!    a patch with friction, the ends of the tangential springs move with the contacting objects ([`FrictionState`](crate::contact::FrictionState)), whether
 //!    the patch or the object moves.
 //!
-//! A scene starts in the steady state of its poses at t = 0. A scene without dampers, friction, free objects and pressed objects has no memory; it is therefore
+//! A scene starts in the steady state of its poses at t = 0. A scene without dampers, friction, free objects and pressed objects has no memory. Such a scene is
 //! evaluated only at its frames, with equal results.
 //!
 //! The model has these limits:

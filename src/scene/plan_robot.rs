@@ -81,7 +81,7 @@ impl Reader<'_> {
         Ok((robot, MeshFolders::beside(&path, packages)))
     }
 
-    /// Checks the way-points of a robot's joints and returns the joint motion.
+    /// Checks the waypoints of a robot's joints and returns the joint motion.
     pub fn joints(
         &self,
         key: &str,

@@ -133,7 +133,8 @@ impl SkinState {
         &self.damper.deflection
     }
 
-    /// Makes a step and writes the reading of the patch. The forces and tangential springs of free objects are in `loads` and `tips`, in taxel order.
+    /// Makes a step and writes the reading of the patch. The forces of free objects are in `loads`, and the states of their tangential springs are in `tips`,
+    /// in taxel order.
     pub fn step_and_read(
         &mut self,
         patch: &PlannedPatch,
@@ -204,7 +205,7 @@ impl SkinState {
         self.damper
             .step(patch.skin.taxels(), dt, workspace.deflections());
         if let Some(friction) = &mut self.friction {
-            // Moves the tips of the tangential springs with the contacting objects.
+            // Moves the ends of the tangential springs with the contacting objects.
             let normal = NormalForce::Dampers(&self.damper);
             let contacts = workspace.contacts();
             self.contact_modes =
@@ -270,7 +271,7 @@ pub(super) enum Detail {
     Contacts,
 }
 
-/// Returns the force and torque on the patch, opposite to those of the taxels on an object; negative zeros become positive.
+/// Returns the force and torque on the patch, opposite to the force and torque of the taxels on an object; negative zeros become positive.
 fn on_patch(on_object: Wrench) -> Wrench {
     Wrench::default() + -on_object
 }

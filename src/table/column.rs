@@ -215,7 +215,7 @@ impl<A: Columns, B: Columns, C: Columns> Columns for (A, B, C) {
     }
 }
 
-/// Returns the name of the column that belongs to a key of a study file; `noise` stands for `noise_std`.
+/// Returns the name of the column that belongs to a key of a study file; the key `noise` has the column `noise_std`.
 pub fn column_name(key: &str) -> &str {
     match key {
         "noise" => "noise_std",

@@ -25,7 +25,7 @@ impl Table {
         groups
     }
 
-    /// Returns a filter for rows whose value in a column equals that of `row`; `None` if the value is absent.
+    /// Returns a filter for rows that have the value of `row` in a column; `None` if the value is absent.
     pub fn shown(&self, column: &str, row: usize) -> Option<Shown> {
         let value = self.column(column)?.1.value(row)?;
         let column = column.to_owned();

@@ -100,7 +100,7 @@ fn every_line_of_a_run_is_an_event_as_the_guide_has_it() {
         .iter()
         .map(|event| event["run_elapsed_s"].as_f64().unwrap());
     assert!(elapsed.is_sorted());
-    // In a second run all work items are finished, and a message says so.
+    // In a second run all work items are finished, and the command prints a message about this.
     let again = self::events(&case.succeeds(&["run", "study.toml", "--json"]).0);
     again.iter().for_each(|event| check(event, &schema));
     assert_eq!(again[0]["event"], "message");

@@ -275,7 +275,7 @@ fn the_page_comes_again_from_the_tables() {
     assert_eq!((&said[..], &remarks[..]), ("Wrote found/report.html\n", ""));
     let again = fs::read_to_string(&file).unwrap();
     assert_eq!(but_for_seconds(&again), but_for_seconds(&written));
-    // Without a manifest, the origin of the tables is unknown, and a message says so.
+    // Without a manifest, the command prints that the origin of the tables is unknown.
     fs::remove_file(case.path("found/manifest.json")).unwrap();
     let (_, remarks) = case.succeeds(&["report", "found"]);
     assert!(

@@ -69,7 +69,7 @@ impl Faults {
         pieces(&self.case.path("whole/journal.jsonl")).len()
     }
 
-    /// Asserts that the tables without times equal those of the whole run, and that none is empty.
+    /// Asserts that the tables without times equal the tables of the whole run, and that no table is empty.
     pub fn assert_same_tables(&self, folder: &str) {
         for name in self.kind.repeatable.iter().chain(&["study.toml"]) {
             let read = |folder: &str| fs::read(self.case.path(folder).join(name)).unwrap();
@@ -237,7 +237,7 @@ impl Faults {
         self.assert_same_tables("below");
     }
 
-    /// Asserts that charts and page made from the files of a folder equal those of the run.
+    /// Asserts that charts and page made from the files of a folder equal the charts and the page of the run.
     fn is_reported_again_from_its_tables(&self) {
         let drawn = || -> BTreeMap<String, Vec<u8>> {
             let files = fs::read_dir(self.case.path("whole")).unwrap();

@@ -1,4 +1,4 @@
-//! An interrupted run can be continued: for any interruption, the tables equal those of an undisturbed run.
+//! An interrupted run can be continued: for any interruption, the tables equal the tables of an undisturbed run.
 #![cfg(unix)]
 
 use crate::command::Case;

@@ -138,7 +138,7 @@ fn an_error_of_the_surface_is_given_only_where_spheres_are_made() {
     plan.unwrap();
 }
 
-/// Hand whose palm is a box, whose tip is a collision ball and a visual cube in centimetres, whose wrist is a capsule, and whose base has no shape.
+/// Hand with a box as palm and a capsule as wrist. Its fingertip has a collision ball and a visual cube in centimetres. Its base has no shape.
 const HAND: &str = r#"<robot name="hand"><link name="base"/>
 <link name="palm"><collision><origin xyz="0 0 0.01"/><geometry><box size="0.04 0.03 0.02"/></geometry></collision></link>
 <link name="tip"><visual><geometry><mesh filename="package://hand_description/meshes/cube.obj" scale="0.01 -0.01 0.01"/></geometry></visual>
@@ -191,7 +191,7 @@ fn skin_is_draped_over_the_shapes_of_a_named_link_which_carries_it() {
         assert!(out.max_element().abs() < 1e-12, "{center}");
         assert!((center - DVec3::new(0.0, 0.0, 0.01)).dot(axis) > 0.0);
     }
-    // The number of taxels equals that of a 2 mm grid on 52 cm².
+    // The number of taxels is close to 52 cm² / (2 mm)², as for a 2 mm grid.
     let area = 8.0 * (half.x * half.y + half.y * half.z + half.z * half.x);
     let share = layout.n_taxels() as f64 * 4e-6 / area;
     assert!((0.9..1.15).contains(&share), "{share}");

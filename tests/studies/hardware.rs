@@ -150,7 +150,7 @@ fn another_skin_reads_test_touches_and_nothing_else() {
     };
     let (train, test) = (&same.split.train, &same.split.test);
     assert_eq!(rows(train, &same), rows(train, &other));
-    // If the gains of one skin are g and those of another h, the same press gives g x and h x.
+    // If two skins have the gains g and h, the same press gives g x and h x.
     let (one, another) = (rows(test, &same), rows(test, &other));
     let mut ratios = vec![None; one.ncols()];
     for ((place, a), b) in one.indexed_iter().zip(&another) {

@@ -18,7 +18,7 @@ fn interval_of_groups_of_rows() -> Result<()> {
         GroupCount, GroupedTest, interval_of_groups,
     };
 
-    // Six yaws with ten touches each, of which so many are recognised.
+    // Numbers of recognised touches among ten touches for each of six yaws.
     let of_yaws = [9, 7, 10, 4, 10, 8].into_iter().enumerate();
     let groups: Vec<GroupCount> = of_yaws
         .map(|(group, n_correct)| GroupCount {
@@ -33,7 +33,7 @@ fn interval_of_groups_of_rows() -> Result<()> {
         groups: &groups,
     };
     let (interval, n_groups) = interval_of_groups(&[test], 0.95)?;
-    // Wilson's of 48 of 60 would say 0.68 to 0.88.
+    // Wilson's interval of 48 of 60 would be 0.68 to 0.88.
     assert!(
         (interval.low - 0.478).abs() < 1e-3
             && (interval.high - 0.946).abs() < 1e-3
@@ -95,7 +95,7 @@ fn corrected_resampled_t_test() -> Result<()> {
         n_test: 100,
     };
     let test = compare(&a, &b, &[size], 0.95)?.expect("there are several trials");
-    // The plain paired t-test would say p = 0.034.
+    // The plain paired t-test would give p = 0.034.
     assert!((test.p_value - 0.125).abs() < 1e-3);
     Ok(())
 }

@@ -15,8 +15,8 @@ const TOUCHED: f64 = 0.1;
 /// Minimum number of frames in which a constant taxel lies between two touched ones.
 const MIN_FRAMES: usize = 3;
 
-/// Returns the faulty taxels. On a grid, a fault counts only if the taxel lies between two touched taxels in some frames: contact may never reach a constant
-/// taxel at the edge of the contact area.
+/// Returns the faulty taxels. On a grid, a fault counts only if the taxel lies between two touched taxels in some frames. Outside the contact area, a faultless
+/// taxel is constant, too.
 pub fn found(context: &Context) -> Vec<Fault> {
     let faults = faults::find(&context.skin).faults.into_iter();
     let Some((rows, columns)) = context.data.grid else {

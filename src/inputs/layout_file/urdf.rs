@@ -1,5 +1,5 @@
-//! Layouts in URDF files, in one of two forms: `<sensor><tactile>` with an `<array>` or `<taxel>`s (urdf_tactile), or three prismatic joints along x, y and z
-//! for each taxel (XELA's uSkin). Positions are in the frame of the link that carries the sensor.
+//! Layouts in URDF files. A layout is `<sensor><tactile>` with an `<array>` or `<taxel>`s (urdf_tactile), or three prismatic joints along x, y and z for each
+//! taxel (XELA's uSkin). Positions are in the frame of the link that carries the sensor.
 
 use super::LayoutFile;
 use crate::error::{Error, Result};
@@ -101,7 +101,8 @@ fn prismatic_taxels(place: &str, robot: &Robot) -> BTreeMap<String, Result<Vec<T
     taxels.into_iter().map(of_link).collect()
 }
 
-/// Returns the taxel at the end of a chain of prismatic joints, in the frame of the chain's link, or a description of a chain that moves no taxel.
+/// Returns the taxel at the end of a chain of prismatic joints, in the frame of the chain's link. If the chain moves no taxel, returns a description of the
+/// chain as the error.
 fn taxel_of_chain(chain: &[&Joint]) -> std::result::Result<Taxel, String> {
     if chain.len() != 3 {
         return Err(format!("a chain of {} prismatic joints", chain.len()));

@@ -154,7 +154,7 @@ fn sentences(found: &[ColumnDifferences]) -> Vec<String> {
     said
 }
 
-/// Returns sentences about all other differences than those of means: outcomes, numbers absent in one run, and other columns.
+/// Returns sentences about all differences except differences of means: outcomes, numbers absent in one run, and other columns.
 pub fn entries_words(found: &[ColumnDifferences], tables: &[TableEntries]) -> Vec<String> {
     let has_moved = |file: &str, column: &str| {
         let mut of_column = found.iter().filter(|one| one.column.name == column);

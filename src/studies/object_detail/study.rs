@@ -23,7 +23,7 @@ use crate::table::{File, Table};
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// Object-detail study that is ready to run: its plan and its meshes.
+/// Object-detail study: its plan and its meshes.
 pub struct ObjectDetailStudy {
     /// Plan of the study: the checked values of its keys, in SI units.
     pub plan: ObjectDetailPlan,

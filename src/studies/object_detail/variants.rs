@@ -1,4 +1,4 @@
-//! Models of a mesh whose deflections are compared with those of the mesh.
+//! Models of a mesh whose deflections are compared with the deflections by the mesh.
 
 use crate::error::Result;
 use crate::geometry::distinct_places;

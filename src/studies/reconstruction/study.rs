@@ -27,7 +27,7 @@ use crate::studies::study::{About, Facts, Findings, Resumes, Study, TableFiles};
 use crate::table::{File, Table};
 use std::collections::BTreeMap;
 
-/// Reconstruction study that is ready to run: its plan, its objects and their touches.
+/// Reconstruction study: its plan, its objects and their touches.
 pub struct ReconstructionStudy {
     /// Plan of the study: the checked values of its keys, in SI units.
     pub plan: ReconstructionPlan,

@@ -98,7 +98,7 @@ fn tiles(sign: &str) -> Mark {
     }
 }
 
-/// Returns those of the given columns that have several values in the given rows.
+/// Returns the given columns that have several values in the given rows.
 fn varying(table: &Table, columns: &[&str], rows: &[usize]) -> Vec<String> {
     let varies = |column: &str| table.groups(&[column], rows.iter().copied()).len() > 1;
     let varying = columns.iter().filter(|column| varies(column));

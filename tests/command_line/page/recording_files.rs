@@ -378,7 +378,7 @@ fn a_changed_byte_is_an_error_or_changes_nothing() {
     let (good, expected) = (fs::read(&path).unwrap(), read_recording(&path).unwrap());
     let broken = folder.path().join("broken.npz");
     let mut n_errors = 0;
-    // Every fifth byte, with all bits in turn: 5 and 8 have no common divisor.
+    // Every fifth byte is changed. All bit positions occur, because 5 and 8 have no common divisor.
     for place in (0..good.len()).step_by(5) {
         let mut bytes = good.clone();
         bytes[place] ^= 1 << (place % 8);

@@ -1,7 +1,7 @@
 //! Near-duplicates: rows that are nearer to another row than the distances to their other neighbours explain.
 //!
 //! Let r₁ ≤ r₂ ≤ … be the distances of a row to its nearest rows. If rows are drawn from a smooth density in d dimensions, the ratio of volumes
-//! u = (r₁/r_k)ᵈ is the smallest of k − 1 uniform numbers: P(u ≤ x) = 1 − (1 − x)ᵏ⁻¹, whatever the density (Facco et al., *Estimating the intrinsic
+//! u = (r₁/r_k)ᵈ is the smallest of k − 1 uniform numbers. Therefore P(u ≤ x) = 1 − (1 − x)ᵏ⁻¹ for any density (Facco et al., *Estimating the intrinsic
 //! dimension of datasets by a minimal neighborhood information*, 2017). The dimension d follows from the median of r₁/r_k. A row with a copy has r₁ ≈ 0, and
 //! its p-value is far below the p-values of other rows.
 

@@ -3,9 +3,9 @@
 //! | module | question |
 //! |---|---|
 //! | [`missing`] | Which readings are missing, and what replaces them? |
-//! | [`taxels`] | Which taxels read what, and which of them nothing ever touches? |
-//! | [`pooled`] | Which few numbers represent a touch for a cheap classifier? |
-//! | [`duplicates`] | Which rows are so near to another row that chance does not explain it? |
+//! | [`taxels`] | What does each taxel read, and which taxels are never touched? |
+//! | [`pooled`] | Which numbers represent a touch for a cheap classifier? |
+//! | [`duplicates`] | Which rows are nearer to another row than chance explains? |
 //! | [`dependence`] | Are rows that are neighbours in time, or members of a group, more alike than other rows of their class? |
 //! | [`hot`] | Which taxels read a pressure or noise while the taxels around them are at rest? |
 //!

@@ -1,4 +1,4 @@
-//! Statistics of single taxels, and taxels that nothing ever touches.
+//! Statistics of single taxels, and taxels that are never touched.
 //!
 //! The readings of an untouched taxel are noise around a level, which may depend on the class if the recordings are confounded. Contact is one-sided and
 //! rare or strong. A taxel counts as untouched if its readings, less the mean of their class, fulfil all of the following conditions over n rows:
@@ -115,8 +115,11 @@ pub fn without_class_means(rows: ArrayView2<f64>, labels: &[usize]) -> Array2<f6
     rest
 }
 
-/// Returns whether nothing ever touches each taxel. `rows` are the readings, one row per touch; `residuals` are [`without_class_means`]; `contact` is a
-/// number per row that grows with the contact, such as the sum of the readings of active taxels in the same touch.
+/// Returns for each taxel whether it is never touched.
+///
+/// `rows` are the readings, one row per touch. `residuals` are the readings without the means of their classes ([`without_class_means`]). `contact` is a number
+/// per row that grows with the contact, such as the sum of the readings of the active taxels in this row. `active_std` is the standard deviation of active
+/// taxels.
 pub fn untouched_taxels(
     rows: ArrayView2<f64>,
     residuals: ArrayView2<f64>,

@@ -54,7 +54,7 @@ impl Foreign {
     /// Returns the identity with this name and version.
     ///
     /// # Errors
-    /// If the name is the name of features of this crate, or if the name or the version has other letters than A to Z, a to z, 0 to 9, `_`, `-` and `.`.
+    /// If features of this crate have the name, or if the name or the version is empty, too long or has other letters than A to Z, a to z, 0 to 9, `_`, `-` and `.`.
     pub fn new(name: &str, version: &str) -> Result<Self> {
         let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_-.".contains(letter);
         let is_word =
@@ -148,7 +148,7 @@ impl Foreign {
         }
     }
 
-    /// Returns the number of features of a frame of m measurements, as the code returns it for a frame of zeros.
+    /// Returns the number of features of a frame of m measurements. If the number is unknown, it is computed for a frame of zeros.
     ///
     /// # Errors
     /// If [`compute`](Self::compute) fails.

@@ -7,7 +7,7 @@
 //! circle:  r (1 − cos(π / n)) ≤ t          sphere:  r (1 − cos(π / n)) ≤ t / 2
 //! ```
 //!
-//! A facet of a sphere deviates twice as far as a chord of its circle, because the diagonal of the facet is √2 times as long as its sides.
+//! The diagonal of a facet of a sphere is √2 times as long as its sides. Therefore a facet deviates twice as far as a chord of the circle.
 
 use super::TriangleMesh;
 use super::triangle_mesh::check_vertices;

@@ -36,8 +36,8 @@ pub struct ContactFace {
     /// triangle. On a smooth surface this normal is therefore approximately minus the normal of this triangle. The normal is zero if there is not exactly one
     /// neighbour, or if the neighbour is too thin.
     pub across: [DVec3; 3],
-    /// For each side, from corner i to the next corner, whether the side belongs to this triangle (and not to the neighbouring triangle), and the triangles do
-    /// not lie in one plane.
+    /// For each side, from corner i to the next corner, whether contact with the side is evaluated for this triangle. The side must belong to this triangle
+    /// (not to the neighbouring triangle), and the two triangles must not lie in one plane.
     pub has_edge: [bool; 3],
     /// For each corner, whether the corner belongs to this triangle (and not to another triangle with the same corner).
     pub has_corner: [bool; 3],

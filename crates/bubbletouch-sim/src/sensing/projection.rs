@@ -58,7 +58,7 @@ impl Projection {
     /// Prepares the projection of any ensemble. Learned ensembles use the frames of training touches (n_frames × n_taxels) with their labels.
     ///
     /// # Errors
-    /// If the array has no taxels, if m = 0 or m > n, if the frames differ in fewer than m directions or taxels, or if labels are needed and missing.
+    /// If the array has no taxels, m = 0, m > n, the frames differ in fewer than m directions or taxels, or required labels are missing.
     ///
     /// # Panics
     /// If a frame does not have n values.

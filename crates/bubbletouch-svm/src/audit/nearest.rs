@@ -10,12 +10,12 @@ pub struct NearestRows {
     pub neighbours: Vec<Vec<usize>>,
     /// Distances to `neighbours`, computed from the differences of the two rows.
     pub distances: Vec<Vec<f64>>,
-    /// Nearest row outside the own fold, for each assignment of folds and each row of the block; `None` if the row is in no fold or all rows are in one fold.
+    /// Nearest row outside the own fold, for each assignment of folds and each row of the block. `None` if the row is in no fold or all rows are in one fold.
     pub outside: Vec<Vec<Option<usize>>>,
 }
 
-/// Returns the `k` nearest other rows of the rows in `block`. Also returns the nearest row outside the own fold for each of the assignments `folds`, which
-/// contain one fold number per row (`None` for a row that is neither trained on nor tested).
+/// Returns the `k` nearest other rows of the rows in `block`. Also returns the nearest row outside the own fold for each of the assignments `folds`. An
+/// assignment contains one fold number per row, or `None` for a row that is neither trained on nor tested.
 ///
 /// Equal distances prefer the smaller index. Distances are compared in the form |a|² + |b|² − 2 a·b.
 pub fn nearest_rows(
@@ -28,7 +28,7 @@ pub fn nearest_rows(
     let k = k.min(n.saturating_sub(1));
     let squares: Vec<f64> = features.rows().into_iter().map(|r| r.dot(&r)).collect();
     let products = features.slice(s![block.clone(), ..]).dot(&features.t());
-    // Numbers instead of options keep the inner loop short; the number n_rows stands for "no fold".
+    // Numbers instead of options keep the inner loop short; the number `usize::MAX` represents "no fold".
     let folds: Vec<Vec<usize>> = folds
         .iter()
         .map(|folds| {

@@ -46,7 +46,7 @@ pub(crate) fn eliminate(rows: &mut [Lanes], width: usize, inverse: &mut [f64], r
     }
 }
 
-/// Solves the triangular system `L v = side` in place for N right-hand sides, block by block from the first to the last.
+/// Solves the triangular system `L v = side` in place for N right-hand sides, block by block in ascending order.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 pub(crate) fn substitute<const N: usize>(
     rows: &[Lanes],

@@ -100,7 +100,7 @@ pub(crate) struct Down<T> {
     /// Variable to decrease while variable `i` increases; `None` if no pair violates the optimality conditions. The variable has the largest second-order gain
     /// of the dual objective [Fan, Chen, Lin 2005].
     pub j: Option<usize>,
-    /// Violation of the optimality conditions: largest gradient of the variables that can increase minus smallest gradient of those that can decrease.
+    /// Violation of the optimality conditions: largest gradient of a variable that can increase minus smallest gradient of a variable that can decrease.
     pub violation: T,
 }
 

@@ -50,10 +50,10 @@ pub struct MeasurementInputs<'a> {
     pub copies: Option<CopyInputs>,
 }
 
-/// Measurement inputs of the test touches, where they differ from those of the training touches.
+/// Measurement inputs of the test touches that differ from the inputs of the training touches.
 #[derive(Clone, Debug)]
 pub struct TestInputs<'a> {
-    /// Array of taxels of the test touches; its frames and those of the training touches have equal shapes.
+    /// Array of taxels of the test touches. Frames of test and training touches have equal shapes.
     pub array: &'a TaxelArray,
     /// Speed at which the array approaches the object when the taxels are read, m/s.
     pub speed: f64,

@@ -26,7 +26,7 @@ impl HumanTouchSpec {
         (self.duration_s * self.frames_hz).round() as usize + 1
     }
 
-    /// Returns the time from the first to the last frame of a recording, seconds.
+    /// Returns the time between the first and the last frame of a recording, seconds.
     pub fn duration(&self) -> f64 {
         (self.n_frames() - 1) as f64 * self.interval()
     }

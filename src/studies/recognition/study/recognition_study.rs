@@ -66,7 +66,7 @@ pub(crate) struct PlacedGroup {
     pub touches: usize,
     /// Index of the group's test touches in the list of all sets of touches; equal to `touches` if the study has no table `[test]`.
     pub tested: usize,
-    /// Index of the first group whose measurements are equal to those of this group.
+    /// Index of the first group whose measurements are equal to the measurements of this group.
     pub measured_as: usize,
 }
 

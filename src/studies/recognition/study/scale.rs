@@ -68,7 +68,7 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
         },
         n_configurations: study.n_configurations(),
         bytes: frames + CELL_BYTES * (study.n_configurations() * first.plan.spec.trials) as f64,
-        // A thread that waits for other threads computes another group meanwhile, so two items can be in memory.
+        // While a thread is blocked by other threads, it computes another group. Two items can therefore be in memory.
         item_bytes: 2.0 * largest(groups().map(measured)) + largest(groups().map(learned)),
     }
 }

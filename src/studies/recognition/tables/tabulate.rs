@@ -12,7 +12,7 @@ use crate::studies::recognition::tables::variance_table::variances;
 use crate::studies::recognition::training::trial::Evaluation;
 use std::collections::BTreeMap;
 
-/// Computes all result tables except those of stages and published accuracies.
+/// Computes all result tables except the tables of stages and published accuracies.
 ///
 /// # Errors
 /// If the trials of a configuration have no rows.

@@ -54,7 +54,7 @@ pub struct FamilyInputs<'a> {
     pub train_touches: Option<usize>,
     /// Fraction of the training touches that are labelled as another object, 0 to 1; `None` if all labels are correct.
     pub mislabelled_fraction: Option<f64>,
-    /// Number of training touches of the most frequent object divided by that of the least frequent, at least 1; `None` without imbalance.
+    /// Ratio of the numbers of training touches of the most and the least frequent object, at least 1; `None` without imbalance.
     pub class_imbalance: Option<f64>,
     /// Classifier, and the candidate values from which its C and γ are selected.
     pub training: TrainingInputs,

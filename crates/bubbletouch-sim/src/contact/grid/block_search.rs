@@ -1,10 +1,10 @@
 //! Bounds, in vectors of single precision, of the places on a grid where the triangles of a mesh can stop taxels.
 //!
-//! A taxel of radius ρ that a triangle stops has its centre at p + ρ d, with p on the triangle and d a direction of contact
+//! If a triangle stops a taxel of radius ρ, the centre of the taxel is at p + ρ d. The point p is on the triangle, and d is a direction of contact
 //! ([`mesh_blocks`](crate::objects::mesh_blocks)). The taxel comes from below, so d points down. Normals that certainly point down, or up, determine the side
 //! of the surface. If the side is not certain, d is any unit vector.
 //!
-//! The loops over lanes are short and without branches, and `max` and `min` replace comparisons, so that the compiler turns them into vector instructions.
+//! The loops over lanes are short and without branches, and use `max` and `min` instead of comparisons. The compiler converts such loops to vector instructions.
 //!
 //! All bounds are enlarged by `slack`, far more than the rounding of single precision, so they never exclude a contact.
 
@@ -22,7 +22,7 @@ use std::ops::Range;
 /// Bound of the rounding errors of single precision, relative to the lengths in the scene. Each bound is computed from about ten numbers, each rounded by 6e-8.
 const ROUNDING: f64 = 2e-6;
 
-/// Transform of a mesh to the frame of a grid, and what limits the search.
+/// Transform of a mesh to the frame of a grid, and the limits of the search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockSearch {
     /// Rows of the rotation matrix.
@@ -213,8 +213,8 @@ impl BlockSearch {
 
     /// Removes lanes with one candidate taxel that is beside the shadow of the bounding box, with the centre `middle` and enlarged by `spread`.
     ///
-    /// A line with the direction u through the point o misses a box with half sizes h about the origin if |o × u| exceeds `h_j |u_k| + h_k |u_j|` in a
-    /// component i. In the frame of the mesh, u is the third row of the rotation matrix.
+    /// Let a line have the direction u and contain the point o, and let a box around the origin have the half sizes h. The line misses the box if |o × u|
+    /// exceeds `h_j |u_k| + h_k |u_j|` in a component i. In the frame of the mesh, u is the third row of the rotation matrix.
     #[inline(always)]
     fn rule_out_boxes(
         &self,

@@ -1,10 +1,10 @@
 //! Heights at which meshes stop the taxels of a flat grid, computed only for triangles that taxels may touch.
 //!
-//! The search descends the tree of each mesh ([`block_search`](super::block_search)) and evaluates the remaining triangles for their candidate taxels:
-//! faces row by row, edges and corners taxel by taxel. Nodes and triangles with few candidates are skipped if these taxels are already stopped below.
+//! The search descends the tree of each mesh ([`block_search`](super::block_search)) and evaluates the remaining triangles for their candidate taxels.
+//! Faces are evaluated row by row, edges and corners taxel by taxel. Nodes and triangles with few candidates are skipped if these taxels are already stopped below.
 //!
-//! A press from the front counts each triangle. At a pose, a triangle counts for a taxel unless its far side is behind the taxel's substrate. Triangles whose
-//! near side is in front of the substrate count for each taxel; the others are evaluated with this rule ([`stop_in_front`]).
+//! In a press from the front, each triangle counts. At a pose, a triangle counts for a taxel unless its far side is behind the taxel's substrate. Triangles whose
+//! near side is in front of the substrate count for each taxel; the rule is evaluated only for other triangles ([`stop_in_front`]).
 
 use super::block_search::{BlockSearch, Candidates};
 use super::lines::GridLines;
@@ -130,8 +130,8 @@ fn cover(range: &mut Range<usize>, part: Range<usize>) {
     };
 }
 
-/// Maximum number of taxels for which the search tests whether they are already stopped below a node or a triangle. If larger, tests are wasted on large
-/// triangles; if smaller, small triangles are evaluated needlessly.
+/// Maximum number of candidate taxels of a node or triangle up to which the search tests whether all of them are already stopped below it. If larger, tests
+/// are wasted on large triangles; if smaller, small triangles are evaluated needlessly.
 const FEW: usize = 4;
 
 /// Distance by which a face extends beyond its sides, relative to the radius of a taxel. Sides between triangles in one plane are not evaluated. The extension
@@ -302,8 +302,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Lowers the height of one taxel to the height at which a triangle stops it. If the taxel is under the face, no edge or corner is lower; otherwise only
-    /// sides with the taxel on their outer side are evaluated, and the corners of these sides.
+    /// Lowers the height of one taxel to the height at which a triangle stops it. If the taxel is under the face, no edge or corner is lower.
+    /// Otherwise the function evaluates the sides that have the taxel on their outer side, and the corners of these sides.
     #[inline(always)]
     fn lower_one(
         &mut self,
@@ -368,8 +368,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Lowers the heights of the taxels that are in the rectangle of candidates and in a rectangle of places (given by two corners) to the value of the
-    /// function `height` at each taxel.
+    /// Lowers the height of each taxel in a rectangle to the value of the function `height` at the taxel. The rectangle is the intersection of the candidates
+    /// (`columns` and `rows`) with the places between the corners `low` and `high`.
     #[inline(always)]
     fn lower_under(
         &mut self,

@@ -189,8 +189,9 @@ impl<'a> AxisView<'a> {
     }
 }
 
-/// Returns the height at which a triangle stops a taxel with the radius `reach` at the position `at`; `None` if the triangle misses the taxel, or if a taxel
-/// on its far side would be behind the substrate at height `behind`. All lengths are in metres.
+/// Returns the height at which a triangle stops a taxel with the radius `reach` at the position `at`, metres.
+///
+/// Returns `None` if the triangle misses the taxel, or if a taxel on its far side would be behind the substrate at height `behind`, metres.
 pub(crate) fn stop_in_front(
     triangle: &Triangle,
     reach: f64,

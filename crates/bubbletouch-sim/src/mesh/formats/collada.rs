@@ -14,8 +14,8 @@ use std::str::FromStr;
 /// Largest depth of the tree of nodes. A deeper tree indicates nodes that contain each other.
 const MAX_DEPTH: usize = 100;
 
-/// Reads the mesh in a Collada file, in the unit of the file, and the length of this unit in metres (1 if the file does not contain it). All geometries of the
-/// scene form one mesh.
+/// Reads the mesh in a Collada file, in the unit of the file. Also returns the length of this unit in metres (1 if the file does not contain it). All
+/// geometries of the scene form one mesh.
 ///
 /// # Errors
 /// If the file is not Collada, has no faces, or contains wrong counts, indices that do not exist or numbers that are not finite. The error begins with `place`

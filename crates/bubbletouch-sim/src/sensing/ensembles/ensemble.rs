@@ -91,7 +91,7 @@ pub trait Operator: Debug + Send + Sync {
     /// Calls `visit(measurement, taxel, value)` for each entry of Φ that can be nonzero, always in one order. An adaptive map visits nothing.
     fn each_entry(&self, visit: &mut dyn FnMut(usize, usize, f64));
 
-    /// Returns the root mean square norm of the rows of Φ; for an adaptive map, an upper bound of the gain from the noise of taxels to the noise of values.
+    /// Returns the root mean square norm of the rows of Φ. For an adaptive map, returns an upper bound of the noise of values divided by the noise of taxels.
     fn row_norm(&self) -> f64;
 
     /// Returns the indices of the taxels that are read, in the order of the measurements, if each measurement is one taxel; otherwise `None`.

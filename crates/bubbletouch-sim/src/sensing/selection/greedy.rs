@@ -2,9 +2,10 @@
 //!
 //! The validated classifier is the nearest neighbour in the selected taxels, each divided by its standard deviation over the training frames. A frame is
 //! validated against all frames of other groups (leave one group out); it is correct if its nearest frame has its class. Let dᵢⱼ be the squared distance of
-//! frames i and j in the taxels selected so far. A candidate with readings a gives dᵢⱼ + (aᵢ − aⱼ)², so that each candidate costs one pass over all pairs. Among
-//! candidates with equally many correct frames, the one with the larger sum of margins (o − s) / (o + s) is added, where s and o are the distances to the nearest
-//! frame of the same class and of other classes.
+//! frames i and j in the taxels selected so far. A candidate with readings a gives dᵢⱼ + (aᵢ − aⱼ)², so that each candidate costs one pass over all pairs.
+//!
+//! Each step adds the candidate with the most correct frames. If these numbers are equal, it adds the candidate with the largest sum of margins (o − s) / (o + s).
+//! Here s is the distance of a frame to the nearest frame of its class, and o is the distance to the nearest frame of other classes.
 
 use crate::error::{Error, Result};
 use crate::random::Seed;
@@ -25,7 +26,7 @@ const MAX_CANDIDATES: usize = 256;
 /// Number of distances that are compared together, one per lane of vector registers.
 const LANES: usize = 16;
 
-/// Returns m ≤ n taxels in the order of their selection. Taxels whose readings are equal in all frames tell nothing, and are selected last.
+/// Returns m ≤ n taxels in the order of their selection. Taxels whose readings are equal in all frames carry no information and are selected last.
 ///
 /// # Errors
 /// If the classes of the frames are unknown.

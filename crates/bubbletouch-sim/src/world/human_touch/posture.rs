@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use rand::Rng;
 use std::f64::consts::FRAC_PI_2;
 
-/// Largest distance between the spheres that represent a hand and the hand's surface, metres. If larger, a finger acts like a row of balls; if smaller, a
+/// Largest distance between the spheres that represent a hand and the hand's surface, metres. If larger, a finger resembles a row of balls; if smaller, a
 /// frame takes longer (10 to 30 µs for 100 spheres).
 const SURFACE_ERROR: f64 = 0.5e-3;
 

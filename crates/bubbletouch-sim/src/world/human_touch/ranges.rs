@@ -4,7 +4,7 @@ use super::TouchKind;
 use crate::error::{Error, Result};
 use std::ops::RangeInclusive;
 
-/// Ranges of the parameters of one kind of touch, drawn uniformly. Parameters that a kind does not use are not drawn.
+/// Ranges of the parameters of a kind of touch, drawn uniformly. Parameters that a kind does not use are not drawn.
 ///
 /// The default ranges were chosen for this project, except for the length of the hand.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub struct TouchRanges {
 }
 
 impl TouchRanges {
-    /// Returns the default ranges of one kind of touch.
+    /// Returns the default ranges of a kind of touch.
     pub fn usual(kind: TouchKind) -> Self {
         let tap = Self {
             hand_length: 0.165..=0.205,

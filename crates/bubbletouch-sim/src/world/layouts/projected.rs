@@ -45,8 +45,8 @@ impl Layout {
     /// outward unit normal of the triangle at this point. A grid that touches or intersects the mesh has taxels that start inside and meet no outer face.
     ///
     /// # Errors
-    /// If the grid is invalid, no taxel meets the mesh, or a taxel misses the mesh and `missing` is [`MissingTaxels::Refuse`]; the error contains the row and
-    /// the column of the taxel, from 0.
+    /// If the grid is invalid, no taxel meets the mesh, or a taxel misses the mesh and `missing` is [`MissingTaxels::Refuse`]. The error then contains the row
+    /// and the column of the taxel, from 0.
     pub fn projected(
         mesh: &TriangleMesh,
         mesh_from_grid: &Pose,

@@ -13,8 +13,8 @@
 //! | floating | x, y, z, m; roll, pitch, yaw, rad | shift, then turn: `Rz(yaw) Ry(pitch) Rx(roll)` |
 //! | ball | roll, pitch, yaw, rad | turn about the anchor: `Rz(yaw) Ry(pitch) Rx(roll)` |
 //!
-//! In MJCF, hinges turn about an axis through their anchor, hinges and slides do not move their link at their reference position `ref`, and several joints
-//! can move one link. The joints of one link act one after the other, in the order of the file.
+//! In MJCF, hinges turn about an axis through their anchor. Hinges and slides do not move their link at their reference position `ref`. Several joints can move
+//! one link. The joints of one link act one after the other, in the order of the file.
 //!
 //! Links, joints and their origins determine poses and must be valid. A joint whose axis or type cannot be read is fixed. Limits, shapes and `<mimic>` that
 //! cannot be read are omitted. Each of these cases is reported in a note of the robot.

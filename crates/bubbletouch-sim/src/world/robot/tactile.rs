@@ -158,7 +158,8 @@ fn sphere_radius(taxel: Element) -> Result<Option<f64>> {
     }
 }
 
-/// Returns the poses, and the rows and columns, of the taxels of `<array rows cols order size spacing offset>`: rows run along x and columns along y, and the taxel (0, 0) is at −offset.
+/// Returns the poses, and the rows and columns, of the taxels of `<array rows cols order size spacing offset>`. Rows run along x and columns along y. The
+/// taxel (0, 0) is at −offset.
 fn array_taxels(array: Element) -> Result<Vec<(Pose, [usize; 2])>> {
     let count = |attribute: &str| -> Result<usize> {
         let [number] = array.needed_numbers::<1>(attribute)?;

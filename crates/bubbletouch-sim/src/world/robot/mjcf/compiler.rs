@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 pub(super) struct Compiler {
     /// Radians per unit of angle: π/180 for degrees, the default, and 1 for radians.
     pub angle: f64,
-    /// Axes of three Euler angles: x, y and z turn with the body; X, Y and Z are fixed.
+    /// Axes of three Euler angles. The axes x, y and z turn with the body; X, Y and Z are fixed.
     pub euler_sequence: String,
     /// Whether a joint with a range and without `limited` is limited.
     pub has_auto_limits: bool,
