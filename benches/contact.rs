@@ -28,7 +28,7 @@ struct Scene {
 
 const DEPTH: f64 = 3e-3;
 
-/// Returns a bumpy egg of n equal spheres on its surface, like the vertex spheres of a scanned object.
+/// Returns n equal spheres on the surface of a bumpy egg, similar to the vertex spheres of a scanned object.
 fn egg(n: usize) -> SphereUnion {
     let mut rng = Seed::new(6).rng();
     let spheres = (0..n).map(|_| {
@@ -168,7 +168,7 @@ fn catalogue(c: &mut Criterion) {
     group.finish();
 }
 
-/// Returns a ball of n triangles with hills, like a scanned object.
+/// Returns the mesh of a ball with hills, similar to a scanned object.
 fn scan(n_rings: usize) -> TriangleMesh {
     let n = n_rings as u32;
     let corner = |ring: u32, k: u32| {

@@ -3,7 +3,7 @@
 //! `cargo bench --bench precision` prints a table. With `-- --write`, the table is also written to `results/whole_body/precision.csv`, and a chart to
 //! `precision.svg` beside it.
 //!
-//! Both precisions use the same kernel, `flat_press.rs`.
+//! Single and double precision use one kernel, `flat_press.rs`.
 
 use bubbletouch::files::{CsvFile, write_bytes};
 use bubbletouch::random::Seed;

@@ -1,7 +1,7 @@
 //! Benchmarks of training, choice of parameters and prediction of SVMs, beside the training and prediction of linfa-svm.
 //!
-//! `cargo bench --bench recognition`: 20 classes with 30 training and 30 test touches each; standardised Gaussian measurements of synthetic frames. Ids end
-//! with the number of measurements m.
+//! `cargo bench --bench recognition` uses 20 classes with 30 training and 30 test touches each. The features are standardised Gaussian measurements of
+//! synthetic frames. Ids end with the number of measurements m.
 
 use bubbletouch::contact::{self, press_to_depth};
 use bubbletouch::kinds::recognition::RecognitionStudy;
@@ -233,7 +233,7 @@ features = "fourier_mellin+polar_harmonics+descriptors"
 classifier = "linear_svm"
 "#;
 
-/// Benchmarks one touch from press to decision: press, noise and smoothing, joined invariant features, classification; on one thread.
+/// Benchmarks one touch on one thread: press, noise and smoothing, joined invariant features, and classification.
 fn touch_to_answer(criterion: &mut Criterion) {
     let plan = StudySpec::parse("bench.toml", TOUCHES).unwrap();
     let plan = Plan::new("bench.toml", plan).unwrap();

@@ -1,8 +1,8 @@
 //! Overhead of the study engine per configuration, without drawing and learning: `cargo bench --bench study`.
 //!
-//! 1. **Items**: 10,000 work items that only return a row, with a journal on disk; then the same study again, in which all items are finished.
+//! 1. **Items**: 10,000 work items that only return a row, with a journal on disk. The study then runs again with all items finished.
 //! 2. **Configurations**: a recognition study of 12,000 configurations on one thread, with a journal on disk. Touches, measurements and fits report their
-//!    times; the remaining time is the engine's: enumeration, journal and tables.
+//!    times. The engine uses the remaining time for enumeration, journal and tables.
 
 use bubbletouch::Result;
 use bubbletouch::kinds::Study;

@@ -212,7 +212,8 @@ fn draped(c: &mut Criterion) {
     group.finish();
 }
 
-/// Hug of two people (the scene of `experiments/whole_body.toml`): the skin of one has two million taxels; the other consists of a trunk, arms and a head.
+/// Hug of two people, the scene of `experiments/whole_body.toml`. The skin of one person has two million taxels. The other consists of a trunk, arms and
+/// a head.
 struct Hug {
     robot: CoveredRobot,
     state: BodyState,

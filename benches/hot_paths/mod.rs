@@ -91,7 +91,7 @@ fn pose(step: usize, depth: f64) -> Pose {
 
 /// Returns the path of a grid patch whose taxels are all touched by every sphere.
 ///
-/// Per sphere and taxel: dx (1), dx² (1), q = S² − dy² − dx² (1), √q, − h (1), maximum of two (1). Read: x, δ; written: δ.
+/// Per sphere and taxel: dx (1), dx² (1), q = S² − dy² − dx² (1), √q, − h (1), maximum of two (1). Each pair reads x and δ, and writes δ.
 pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
     let scene = Scene {
         patch: Patch::grid(grid(n), taxel(0.02)).expect("the grid has taxels"),
@@ -125,9 +125,10 @@ pub fn dense_press(n: usize, n_spheres: usize) -> HotPath {
     }
 }
 
-/// Returns the path of the same press with the kernel of whole bodies.
+/// Returns the path of a press in which every sphere touches all taxels, with the kernel of whole bodies.
 ///
-/// Per sphere and taxel: q = (S² − b²) − d² (1), comparison with zero (1), √q, − h (1), maximum of two (1). Read: S² − b², h, δ; written: δ.
+/// Per sphere and taxel: q = (S² − b²) − d² (1), comparison with zero (1), √q, − h (1), maximum of two (1). Each pair reads
+/// S² − b², h and δ, and writes δ.
 pub fn dense_body(n: usize, n_spheres: usize) -> HotPath {
     let extrusion = Extrusion::grid(&grid(n)).expect("the grid has taxels");
     let patch = Patch::new("patch", extrusion, taxel(0.02)).expect("the taxel is a good one");
@@ -157,7 +158,8 @@ pub fn dense_body(n: usize, n_spheres: usize) -> HotPath {
     }
 }
 
-/// Returns the path of a touch of 64 × 64 taxels by 8,000 spheres on a bumpy egg, each step in another pose; most of the work is the search.
+/// Returns the path of a touch of 64 × 64 taxels by 8,000 spheres on a bumpy egg. Each step has another pose. Most of the work is the search for
+/// spheres near the patch.
 pub fn sparse_press() -> HotPath {
     let mut rng = Seed::new(6).rng();
     let spheres = (0..8_000).map(|_| {
@@ -276,8 +278,8 @@ pub fn sensing() -> HotPath {
 
 /// Returns the path of classifying one touch of 1,024 measurements by a linear SVM, one-vs-one among 20 classes.
 ///
-/// For each of the 190 hyperplanes and each measurement: a product and a sum. Both factors are read, in double precision, because the training set has fewer
-/// than 1,000 rows.
+/// For each of the 190 hyperplanes and each measurement: a product and a sum. The factors of a product are read in double precision, because the training
+/// set has fewer than 1,000 rows.
 pub fn decision() -> HotPath {
     const CLASSES: usize = 20;
     const M: usize = 1024;

@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex};
 /// Name, version and object of a classifier or of features.
 pub type Given = (String, String, Py<PyAny>);
 
-/// First exception that an object raised; it becomes the cause of the study's exception.
+/// First exception of a Python classifier or feature. The exception of the study has it as its cause.
 pub type Raised = Arc<Mutex<Option<PyErr>>>;
 
 /// Classifiers and features that are provided while the value exists.

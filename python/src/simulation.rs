@@ -405,7 +405,7 @@ impl Values<'_> {
     }
 }
 
-/// Returns the arrays of a patch's reading: key, shape, and values; `None` for a signal that does not exist.
+/// Returns the arrays of a patch's reading as keys, shapes and values. The values are `None` for a signal that does not exist.
 fn arrays_of<'a>(
     patch: &PlannedPatch,
     reading: &'a PatchReading,

@@ -33,7 +33,7 @@ struct CallbackProgress {
     stop: Stop,
     callback: Option<Py<PyAny>>,
     stage: Mutex<Stage>,
-    /// Exception that the callback raised.
+    /// Exception from the callback, if any.
     raised: Arc<Mutex<Option<PyErr>>>,
 }
 

@@ -4,10 +4,11 @@
 //! contact i by `g·dx + ((p − o) × g)·dω`, where p is the contact point and g = −n_c / (n_c·n). The change of the travel of the patch depends on the goal:
 //!
 //! - pose or travel: the travel is constant;
-//! - depth past first contact, on a flat patch: the deepest taxel d keeps its deflection, so its derivative is subtracted, `J_i − J_d`;
-//! - force Σ k δ: the travel changes by `dT = −Σ k J / Σ k r`, where r = −g_z is the change of a deflection per travel; the derivative is `J_i + r_i dT`.
+//! - depth past first contact, on a flat patch: the deflection of the deepest taxel d is constant, so the derivative is `J_i − J_d`;
+//! - force Σ k δ: the derivative is `J_i + r_i dT`, where the travel changes by `dT = −Σ k J / Σ k r` and r = −g_z is the change of a deflection per travel.
 //!
-//! The derivative of a saturated or untouched taxel is 0. Of several objects, each contact moves with its own object, and the travel changes with all of them.
+//! The derivative of a saturated or untouched taxel is 0. If there are several objects, each contact moves with its
+//! own object, and the travel changes with all of them.
 
 use crate::errors::bad_input;
 use bubbletouch::contact::{Goal, TaxelContact};

@@ -1,4 +1,5 @@
-//! Presses of a patch from Python: what is sought ([`goal`]), single presses and batches ([`batch_press`]), slides ([`slide`]), and what they return.
+//! Presses of a patch from Python: goals of a press ([`goal`]), single presses and batches ([`batch_press`]), slides ([`slide`]), the type of the
+//! frames ([`output`]), [`contacts`], and derivatives ([`jacobian`]).
 
 pub mod batch_press;
 pub mod contacts;

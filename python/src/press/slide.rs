@@ -21,7 +21,7 @@ pub struct Motion<'a, 'py> {
     pub slide: &'a Bound<'py, PyAny>,
     /// Coefficient of friction: one number, or one per taxel.
     pub friction: &'a Bound<'py, PyAny>,
-    /// Stiffness of the shear springs, N/m: one number, or one per taxel; `None` for the stiffness along the axes.
+    /// Stiffness of the shear springs, N/m: one number, or one per taxel. If `None`, the stiffness along the axes is used.
     pub shear_stiffness: Option<&'a Bound<'py, PyAny>>,
 }
 

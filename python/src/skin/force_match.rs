@@ -1,11 +1,11 @@
-//! Press of a patch on one rigid object until their normal force is a given one, near the object's pose.
+//! Press of a patch on one rigid object to a given normal force, near the object's pose.
 
 use super::parts::{RigidObject, SkinPatch};
 use bubbletouch::contact::{HeldForce, MovedObject, Workspace, press_to_force};
 use bubbletouch::geometry::Pose;
 use glam::DVec3;
 
-/// Wanted normal force of a pair of patch and object, and the path on which it is sought.
+/// Requested normal force of a pair of patch and object, and the path on which the patch travels to reach this force.
 #[derive(Clone, Copy, Debug)]
 pub struct WantedForce {
     /// Sum of the forces of the patch's taxels along their axes, newtons, positive.
@@ -16,10 +16,10 @@ pub struct WantedForce {
     pub reach: f64,
 }
 
-/// Travel away from the object, metres, at which the search for a smaller force ends. It is far larger than any object that a skin touches.
+/// Travel away from the object, metres, at which the search for a smaller force ends. The value is far larger than any object that a skin touches.
 const FARTHEST: f64 = 100.0;
 
-/// Moves the patch along its direction until the force is the wanted one; the deflections are in the workspace. If the force is not reached within the
+/// Moves the patch along its direction until the requested force is reached; the deflections are in the workspace. If the force is not reached within the
 /// reach, the patch ends there, or before the object is behind the substrate. Returns the travel of the patch and the force at its end.
 ///
 /// `placed` contains the poses of all bodies in the patch frame, and `poses` is scratch memory.

@@ -1,8 +1,8 @@
-//! `Skin`: several patches read under several bodies at once, as a simulator's loop needs them.
+//! Class `Skin`: readings of several patches under several bodies in one call, for the loop of a simulator.
 //!
-//! - `skin_class`: the class, its arguments and results;
+//! - `skin_class`: the class with its arguments and results;
 //! - `parts`: patches and bodies, and the press of a patch under bodies at their poses;
-//! - `force_match`: the press of a pair until its normal force is a given one;
+//! - `force_match`: the press of a pair of patch and object to a given normal force;
 //! - `shear_state`: the class `ShearState`, shear springs with friction between successive reads;
 //! - `poses`, `filled`: poses as arguments, and arrays of the caller that are filled.
 
