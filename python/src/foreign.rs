@@ -25,7 +25,7 @@ pub struct Provided {
     _features: Vec<features::Provided>,
 }
 
-/// Object with its name in errors.
+/// Python object with its name for error messages.
 struct Object {
     place: String,
     object: Py<PyAny>,
@@ -33,7 +33,7 @@ struct Object {
 }
 
 impl Object {
-    /// Calls the interpreter. An exception becomes an error that names the object.
+    /// Calls the Python object. Converts an exception to an error that names the object.
     fn call<T>(
         &self,
         allowed: &str,
@@ -85,7 +85,7 @@ impl classifiers::ForeignModel for Model {
             let given = (self.model.bind(py), rows.to_pyarray(py));
             let labels = object.call_method1("predict", given)?;
             let labels = labels.cast_into::<PyArray1<i64>>()?.readonly();
-            // A negative label becomes one that no training row has.
+            // A negative label is replaced by a label that no training row has.
             let label = |&label: &i64| usize::try_from(label).unwrap_or(usize::MAX);
             Ok(labels.as_array().iter().map(label).collect())
         })

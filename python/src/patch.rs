@@ -56,7 +56,7 @@ impl Patch {
         Ok(Self::from_patch(patch.map_err(exception)?))
     }
 
-    /// Creates a patch with the taxels of a layout file. If no radius is given, the radii are those of the file, or its default.
+    /// Creates a patch with the taxels of a layout file. If no radius is given, the radii in the file are used, or else the default radius of the file.
     fn from_file(
         file: LayoutFile,
         stroke: f64,

@@ -1,4 +1,4 @@
-//! Batches of presses that slide: deflections and three-axis forces of skins with friction.
+//! Batches of presses with a slide on skins with friction: deflections and three-axis forces.
 
 use crate::arrays::{each, numbers, shape_of};
 use crate::batch::{Spare, for_each, n_threads};
@@ -91,7 +91,7 @@ pub fn press_and_slide<'py>(
         for contact in workspace.contacts() {
             let taxel = contact.taxel;
             let [x, y, z] = friction.force3()[taxel].to_array();
-            // The reading of a taxel has its force against the axis as z.
+            // The z component of a taxel's reading is the force against the axis of the taxel.
             let force = patch.layout().frame(taxel) * DVec3::new(x, y, -z);
             rows.force3[3 * taxel..][..3].copy_from_slice(&force.to_array());
             rows.is_slipping[taxel] = friction.contact_modes()[taxel] == ContactMode::Slip;

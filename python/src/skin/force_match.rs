@@ -58,7 +58,7 @@ pub fn press_pair(
     };
     let ahead = reach.min(travel_through(part, object, poses, direction));
     let here = ahead.min(0.0);
-    // Backwards, the patch leaves the object at last: each limit is twice as far as the one before.
+    // If the patch travels far enough backwards, it leaves the object. Each search limit is twice the previous limit.
     let mut back = here.min(-reach);
     loop {
         poses.clear();

@@ -73,7 +73,8 @@ impl SkinPatch {
         }
     }
 
-    /// Returns whether a body may come closer to the patch than `margin`, metres: its bounding box in its own frame, and the ball around the patch.
+    /// Returns whether a body may be closer to the patch than `margin`, metres. The test uses the bounding box of the body in its own frame and the ball
+    /// around the patch.
     pub fn is_near(&self, body: &Body, patch_from_body: &Pose, margin: f64) -> bool {
         let (center, radius) = self.ball;
         let center = patch_from_body.inverse().transform_point(center);
@@ -82,7 +83,7 @@ impl SkinPatch {
         center.distance_squared(nearest) <= reach * reach
     }
 
-    /// Raises the deflections of a frame to those under one body at its pose.
+    /// Replaces each deflection of a frame by the deflection under one body at its pose if the latter is larger.
     pub fn press(
         &self,
         body: &Body,
@@ -143,7 +144,7 @@ impl SkinPatch {
     }
 }
 
-/// Raises each deflection of a frame to the given one, if that is larger.
+/// Replaces each deflection of a frame by the given deflection if the given one is larger.
 pub fn raise(frame: &mut [f64], deflections: &[f64]) {
     for (taxel, deflection) in frame.iter_mut().zip(deflections) {
         *taxel = taxel.max(*deflection);

@@ -18,7 +18,7 @@ use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Distance, metres, to which a body without contact is moved while its place in the list of bodies stays.
+/// Distance, metres, to which a body without contact is moved. The body keeps its index in the list of bodies.
 const OUT_OF_REACH: f64 = 1e6;
 
 /// Patches of skin and bodies that may touch them, read at given poses in one call.
@@ -53,9 +53,9 @@ struct SkinWorkspace {
     /// Scratch memory for the poses of one object, and for the deflections under it.
     object_poses: Vec<Pose>,
     object_frame: Vec<f64>,
-    /// Wanted force of each pair, newtons; empty if every pair is read at its pose.
+    /// Requested normal force of each pair, newtons; empty if every pair is read at its pose.
     forces: Vec<f64>,
-    /// Direction of each pair, three numbers a pair; empty for z.
+    /// Direction of travel of each pair, three numbers per pair; empty if all directions are z.
     directions: Vec<f64>,
     frame: Vec<f64>,
     wrenches: Vec<f64>,
