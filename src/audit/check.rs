@@ -5,7 +5,7 @@ pub use crate::audit::finding::Finding;
 pub use crate::error::Result;
 use ndarray::Array2;
 
-/// Description of a check: its name, its title, and the function that makes it.
+/// Description of a check: its name, its title, and the function that runs it.
 pub struct CheckAbout {
     /// Name in tables, such as `near_duplicates`.
     pub name: &'static str,
@@ -23,5 +23,5 @@ pub struct Source {
     pub rows: fn(&Context) -> Option<Array2<f64>>,
 }
 
-/// Sentence of checks that need labels.
+/// Reason for an omitted check that needs labels.
 pub const NO_LABELS: &str = "There are no labels of two classes or more.";

@@ -22,7 +22,7 @@ use std::ops::Range;
 
 /// Maximum number of touches in permutation tests and in statistics of taxels. More touches find smaller effects and take time in proportion to the square.
 const MAX_SAMPLE: usize = 1000;
-/// Maximum number of block means of a touch of a single frame, and of a touch of several frames.
+/// Maximum numbers of block means of a touch: for touches of a single frame, and for touches of several frames.
 const MAX_BLOCKS: [usize; 2] = [256, 512];
 /// Maximum number of pixels of the image from which shift-invariant features are computed.
 const MAX_PIXELS: usize = 1024;
@@ -72,7 +72,7 @@ pub struct Context {
     pub active_std: f64,
     /// Sum of the readings of active taxels for each sampled touch.
     pub contact: Vec<f64>,
-    /// Whether nothing ever touches each taxel.
+    /// Whether each taxel is never touched.
     pub is_untouched: Vec<bool>,
     /// Mean, spread and range of each taxel over sampled frames.
     pub taxels: Vec<TaxelReadings>,
@@ -80,7 +80,7 @@ pub struct Context {
     pub skin: RecordedSkin,
     /// Reading of an untouched taxel, and the reading at full scale.
     pub scale: (f64, f64),
-    /// Reading that several taxels share in many frames, as a fraction of the full scale, if it is the largest.
+    /// Largest reading if several taxels share it in many frames, as a fraction of the full scale; otherwise `None`.
     pub plateau: Option<f64>,
     /// Features of all touches.
     pub features: Features,
@@ -207,7 +207,7 @@ impl Context {
         self.features.blocks.select(Axis(0), &self.sample)
     }
 
-    /// Returns the accuracy of always naming the most frequent class.
+    /// Returns the accuracy of a classifier that always predicts the most frequent class.
     pub fn chance(&self) -> f64 {
         let largest = touches_of_classes(&self.labels)
             .into_values()

@@ -87,5 +87,5 @@ impl AuditData {
     }
 }
 
-/// Smallest number of touches of an audit. No test finds anything in fewer touches.
+/// Minimum number of touches of an audit. With fewer touches, the tests have too little power to find a fault.
 const MIN_TOUCHES: usize = 20;

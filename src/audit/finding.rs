@@ -1,4 +1,4 @@
-//! Findings of an audit: a number, its evidence, and what to do about it.
+//! Findings of an audit: a number, its evidence, and the recommended action.
 
 use crate::statistics::many_tests::holm_of_some;
 use crate::table::short_number;
@@ -11,16 +11,16 @@ pub const ALPHA: f64 = 0.05;
 pub enum Verdict {
     /// The data have this fault.
     Fault,
-    /// A fact that limits what the data can show, but is not a fault.
+    /// The data have a property that limits conclusions, but is not a fault.
     Note,
     /// The check found no fault.
     Passed,
-    /// The check needs something that the data do not contain.
+    /// The data do not contain the inputs of the check.
     NotChecked,
 }
 
 impl Verdict {
-    /// Returns the verdict as it stands in tables.
+    /// Returns the word for the verdict in tables.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Fault => "fault",
@@ -40,7 +40,7 @@ enum Evidence {
     Tested { p_value: f64, is_relevant: bool },
     /// A fact without a test.
     Fact,
-    /// Nothing: the check could not be made.
+    /// No evidence, because the check could not be made.
     None,
 }
 

@@ -1,4 +1,4 @@
-//! Audit of a data set: whether recorded frames with labels can carry a claim about recognition.
+//! Audit of a data set: tests whether recorded frames with labels support a claim about recognition.
 //!
 //! Each check is a file of [`checks`] with a constant `ABOUT`; its name in the list [`checks::CHECKS`] adds it to the audit. A check returns findings with a
 //! number, a p-value or a count, one sentence, and advice. The p-values of all findings are corrected together (Holm), so that an audit of faultless data

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// Endings of files with arrays.
 const ENDINGS: [&str; 5] = ["npy", "npz", "csv", "tsv", "txt"];
-/// File of a folder that names the files of a recording.
+/// Name of a folder's file that lists the files of a recording.
 const RECORDED: &str = "recorded.toml";
 
 /// Paths and options of the data of an audit.

@@ -32,7 +32,7 @@ pub const AUDIT_FILES: &[&str] = &[
     "doubtful_labels.png",
 ];
 
-/// Returns the tables, charts, pictures and the page of an audit. `name` names the data, and `command` reproduces the files.
+/// Returns the tables, charts, pictures and the page of an audit. `name` is the name of the data, and `command` is the command line that reproduces the files.
 ///
 /// # Errors
 /// If a chart cannot be drawn.

@@ -17,7 +17,7 @@ pub struct AuditSplit {
     pub name: &'static str,
     /// Fold of each touch; `None` if its class would have no training touches.
     pub folds: Vec<Option<usize>>,
-    /// Unit that is drawn independently, such as the group of each touch; intervals and tests are over units.
+    /// Unit of each touch, such as its group, for intervals and tests. Units are assumed to be independent; touches of one unit are not.
     pub units: Option<Vec<usize>>,
 }
 
@@ -119,7 +119,7 @@ fn whole_units(labels: &[usize], units: &[usize], seed: &Seed) -> Option<Vec<Opt
         let classes: Vec<usize> = classes.iter().copied().collect();
         strata.entry(classes).or_default().push(*unit);
     }
-    // Folds of few units would have unequal sizes, so that each of them is a fold.
+    // If there are few units, folds of several units would have unequal sizes. Each unit is then a fold.
     let n_folds = match classes.len() {
         n @ ..=MAX_LEFT_OUT => n,
         _ => N_FOLDS,

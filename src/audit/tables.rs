@@ -71,13 +71,13 @@ row! {
 pub struct ConfoundRow {
     /// Source of the features.
     source: String => Choice;
-    /// Given labels, or permuted ones.
+    /// Labels: as given, or permuted.
     labels: String => Condition named LABELS;
-    /// Fraction of touches whose class is named from the other touches.
+    /// Fraction of touches whose class is predicted correctly from the other touches.
     accuracy: f64 => Value(Neither): Share between [accuracy_low, accuracy_high];
-    /// Accuracy; for permuted labels their mean.
+    /// Accuracy; for permuted labels, the mean accuracy.
     accuracy_low: f64 => Note: Share;
-    /// Accuracy; for permuted labels their 95 % quantile.
+    /// Accuracy; for permuted labels, the 95 % quantile of the accuracy.
     accuracy_high: f64 => Note: Share;
     /// Probability of at least this accuracy if source and label are independent.
     p_value: Option<f64> => Note "p": Log;
@@ -369,14 +369,14 @@ pub fn charts(context: &Context, tables: &[Table]) -> Vec<ChartSpec> {
     charts
 }
 
-/// Returns the findings in the order in which a reader needs them: faults first.
+/// Returns the findings in the order of their verdicts, faults first.
 pub fn by_verdict(findings: &[Finding]) -> Vec<&Finding> {
     let mut findings: Vec<&Finding> = findings.iter().collect();
     findings.sort_by_key(|finding| finding.verdict);
     findings
 }
 
-/// Returns the sentences that answer whether the data carry a claim.
+/// Returns the sentences that summarise whether the data support a claim about recognition.
 pub fn answers(findings: &[Finding]) -> Vec<String> {
     let faults = findings
         .iter()

@@ -17,8 +17,8 @@
 //!    a patch with friction, the ends of the tangential springs move with the contacting objects ([`FrictionState`](crate::contact::FrictionState)), whether
 //!    the patch or the object moves.
 //!
-//! A scene starts in the steady state of its poses at t = 0. A scene without dampers, friction, free objects and pressed objects has no memory. Such a scene is
-//! evaluated only at its frames, with equal results.
+//! A scene starts in the steady state of its poses at t = 0. A scene without dampers, friction, free objects and pressed objects has no memory. A scene without
+//! memory is evaluated only at its frames, with equal results.
 //!
 //! The model has these limits:
 //!

@@ -5,8 +5,8 @@ use crate::table::Table;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Compares recomputed table rows with the rows of a result folder; returns the number of equal rows, without tables of computing times. If `is_whole` is set, all
-/// work items were recomputed; missing rows, additional rows and different summaries are then also errors.
+/// Compares recomputed table rows with the rows of a result folder; returns the number of equal rows, without tables of computing times. If `is_whole` is set,
+/// all work items were recomputed; missing rows, additional rows and different summaries are then also errors.
 ///
 /// # Errors
 /// If a row differs; the error names file and line.

@@ -26,8 +26,8 @@ use std::path::{Path, PathBuf};
 
 const PLACE: &str = "input";
 
-/// TOML and XML are read as trees. A node takes up to 1.1 kB, because a TOML table has space for eleven entries from its first one. It takes two characters of
-/// text in `a.a.a.a = 1`, which is 550 bytes per character.
+/// TOML and XML are read as trees. A node takes up to 1.1 kB, because a TOML table has space for eleven entries from its first one. In `a.a.a.a = 1`, a node
+/// takes two characters of text, which is 550 bytes per character.
 const TREE: usize = 600;
 
 /// The end of each field of a CSV row takes eight bytes, twice while the list grows, and one character of text: `,,,,,`.

@@ -4,7 +4,7 @@ use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
 use crate::audit::finding::percent;
 use crate::audit::scores::{METHODS, paired_difference};
 
-/// Smallest difference of two accuracies that matters.
+/// Minimum relevant difference between two accuracies.
 const RELEVANT: f64 = 0.02;
 
 pub const ABOUT: CheckAbout = CheckAbout {

@@ -19,16 +19,16 @@ pub const SOURCE: Source = Source {
     rows,
 };
 
-/// All taxels in the quietest frame, which may contain contact.
+/// Readings of all taxels in the first or the last frame, whichever varies less within classes; the frame may contain contact.
 pub const QUIETEST: Source = Source {
     name: "quietest_frame",
     rows: |context| Some(some_columns(&quietest_frame(context)?.0, |_| true)),
 };
 
-/// Minimum fraction of the taxels that contact reaches in other frames, but not in a frame before the contact.
+/// Minimum fraction of the taxels that must be untouched in a frame before the contact, among the taxels that are touched in other frames.
 const MIN_UNTOUCHED: f64 = 0.9;
 
-/// Returns readings of taxels that nothing touches in the first or the last frame of a touch, but in other frames. If the options name frames before the
+/// Returns readings of taxels that are untouched in the first or the last frame of a touch, and touched in other frames. If the options name frames before the
 /// contact, returns the means of all taxels in these frames.
 fn rows(context: &Context) -> Option<Array2<f64>> {
     let n_frames = context.data.n_frames;
@@ -50,7 +50,7 @@ fn rows(context: &Context) -> Option<Array2<f64>> {
         &context.contact,
         context.active_std,
     );
-    // Taxels that no touch reaches are another check.
+    // Another check covers the taxels that are never touched.
     let active = (0..rows.ncols()).filter(|&taxel| !context.is_untouched[taxel]);
     let (n_active, n_untouched) = active.fold((0, 0), |(n, untouched), taxel| {
         (n + 1, untouched + usize::from(is_untouched[taxel]))

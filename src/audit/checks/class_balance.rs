@@ -6,9 +6,9 @@ use crate::audit::splits::touches_of_classes;
 use crate::table::short_number;
 use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF};
 
-/// Smallest ratio between the largest and the smallest class that matters.
+/// Minimum relevant ratio between the numbers of touches of the largest and the smallest class.
 const RELEVANT: f64 = 1.5;
-/// Smallest number of touches of a class that can be trained on and tested in five folds.
+/// Minimum number of touches of a class for training and tests in five folds.
 const MIN_TOUCHES: usize = 10;
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -38,7 +38,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     let n_classes = sizes.len() as f64;
     let n = context.labels.len() as u64;
     let chi_squared = ChiSquared::new(n_classes - 1.0).map_or(1.0, |of| of.sf(statistic));
-    // A single small or large class is clearer by its own size.
+    // The size of a single small or large class has more power than the χ² test of all classes.
     let tails = Binomial::new(1.0 / n_classes, n).map_or([1.0; 2], |of| {
         [of.cdf(least.0 as u64), of.sf(largest.0 as u64 - 1)]
     });

@@ -10,9 +10,9 @@ pub const ABOUT: CheckAbout = CheckAbout {
     run,
 };
 
-/// Reading of a touched taxel, as a fraction of the full scale.
+/// Reading above which a taxel counts as touched, as a fraction of the full scale.
 const TOUCHED: f64 = 0.1;
-/// Minimum number of frames in which a constant taxel lies between two touched ones.
+/// Minimum number of frames in which a constant taxel lies between two touched taxels.
 const MIN_FRAMES: usize = 3;
 
 /// Returns the faulty taxels. On a grid, a fault counts only if the taxel lies between two touched taxels in some frames. Outside the contact area, a faultless

@@ -13,7 +13,7 @@ pub const ABOUT: CheckAbout = CheckAbout {
 };
 
 /// Returns readings of taxels at rest that vary, less the means of their classes, shape (n_sample, m), and the display name of these taxels. If contact
-/// reaches all taxels, the readings are cut to those at rest.
+/// reaches all taxels, readings during contact are clipped ([`rest_readings`]).
 fn at_rest(context: &Context) -> (Array2<f64>, &'static str) {
     let rows = untouched(context);
     if rows.ncols() > 0 {

@@ -12,7 +12,7 @@ use crate::statistics::interval::Interval;
 use crate::statistics::p_status::CONFIDENCE;
 use statrs::distribution::{Binomial, ContinuousCDF, DiscreteCDF, Normal};
 
-/// Smallest fraction of wrong labels that matters.
+/// Minimum relevant fraction of wrong labels.
 const TOLERATED: f64 = 0.005;
 /// Number of nearest touches that confirm a class.
 const N_CONFIRMING: usize = 5;
@@ -102,7 +102,7 @@ pub fn deep_touches(context: &Context) -> Option<DeepTouches> {
     Some(found)
 }
 
-/// Returns the nearest touches by the features with which the nearest touch names the class best.
+/// Returns the nearest touches of each touch, by the features for which the nearest-neighbour classifier has the highest accuracy.
 fn neighbours(context: &Context) -> Option<&Vec<Vec<usize>>> {
     let scores = context.scores.as_ref()?;
     let accuracy = |name: &str| {

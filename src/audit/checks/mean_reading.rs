@@ -65,7 +65,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         count(&mean.is_correct, &shape.is_correct),
         count(&shape.is_correct, &mean.is_correct),
     ];
-    // McNemar's exact test: if both are equally good, each touch that only one recognises is a fair coin.
+    // McNemar's exact test: if both are equally accurate, each touch that only one of them recognises favours either with probability 1/2.
     let binomial = Binomial::new(0.5, only_mean + only_shape);
     let p_value = match (only_mean, binomial) {
         (1.., Ok(binomial)) => binomial.sf(only_mean - 1),

@@ -5,7 +5,7 @@ use crate::audit::finding::percent;
 use bubbletouch_sim::audit::duplicates::test_duplicates;
 use ndarray::Axis;
 
-/// Probability with which chance makes any touch a near-duplicate.
+/// Probability that, by chance, at least one touch counts as a near-duplicate.
 const ANY: f64 = 0.05;
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -22,7 +22,7 @@ pub fn pairs(context: &Context) -> Option<(Vec<(usize, usize)>, f64)> {
         (None, Some(nearest)) => (&nearest.neighbours, &nearest.distances),
         (None, None) => return None,
     };
-    // Rows in which all blocks read the same contain no contact.
+    // Rows with equal values of all blocks contain no contact.
     let has_contact: Vec<bool> = (context.features.blocks.std_axis(Axis(1), 0.0).iter())
         .map(|&std| std > 0.0)
         .collect();
@@ -39,7 +39,7 @@ pub fn pairs(context: &Context) -> Option<(Vec<(usize, usize)>, f64)> {
     Some((pairs.collect(), (least * n).min(1.0)))
 }
 
-/// Returns the nearest touches of all touches if there are no labels, for which no classifier has found them.
+/// Returns the nearest touches of all touches if there are no labels; with labels, the classifiers have already found them.
 fn nearest_of(context: &Context) -> Option<bubbletouch_svm::audit::NearestRows> {
     let is_needed = context.scores.is_none();
     is_needed.then(|| crate::audit::scores::nearest(context.features.blocks.view(), 8, &[]))

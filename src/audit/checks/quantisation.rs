@@ -4,7 +4,7 @@ use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
 use crate::calibration::converter;
 
-/// Smallest variance of rounding that matters, relative to the variance of the readings of active taxels within a class.
+/// Minimum relevant variance of rounding, relative to the variance of the readings of active taxels within a class.
 const RELEVANT: f64 = 0.01;
 
 pub const ABOUT: CheckAbout = CheckAbout {

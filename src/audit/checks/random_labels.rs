@@ -1,7 +1,8 @@
 //! Accuracy that a random labelling of whole groups reaches by a random split.
 //!
-//! The label of each group and class is replaced by a random one; touches of a group keep a common label. The nearest neighbour outside the own fold then
-//! names the label as often as it belongs to the same group. Without groups, sessions are used; without both, tenths of each class in the order of the file.
+//! The touches of one class in one group are given a common random label. A classifier then predicts the label of a touch from its nearest neighbour in another
+//! fold. If touches of a group are alike, the prediction is correct more often than by chance. Without groups, sessions are used. Without groups and sessions,
+//! tenths of each class in the order of the file are used.
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result};
 use crate::audit::finding::percent;
@@ -11,7 +12,7 @@ use std::collections::BTreeMap;
 
 /// Number of blocks of each class that replace groups if the data have no groups.
 const N_BLOCKS: usize = 10;
-/// Smallest excess over chance that matters.
+/// Minimum relevant excess over chance.
 const RELEVANT: f64 = 0.05;
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -63,7 +64,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     let n = pairs.len().max(1) as f64;
     let share = |of: &[usize]| pairs.iter().filter(|(a, b)| of[*a] == of[*b]).count() as f64 / n;
     let mut rng = context.seed(ABOUT.name).rng();
-    // A random labelling of the cells, with as many cells of each label as before.
+    // Each cell (touches of one class in one group) is given a random label. The number of cells with each label is unchanged.
     let mut labels: Vec<usize> = numbers.keys().map(|&(label, _)| label).collect();
     let mut reached = 0.0;
     let n_labellings = context.options.n_permutations.clamp(1, 100);
@@ -72,7 +73,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         let labels: Vec<usize> = cells.iter().map(|&cell| labels[cell]).collect();
         reached += share(&labels) / n_labellings as f64;
     }
-    // Touches of a class exchange their groups: the neighbours' groups are then independent of the touch.
+    // Touches of a class exchange their groups, so that the group of a neighbour is independent of the touch.
     let observed = share(&cells);
     let classes: Vec<Vec<usize>> = touches_of_classes(&context.labels).into_values().collect();
     let (mut at_least, mut chance) = (0, 0.0);

@@ -8,9 +8,9 @@ use ndarray::Axis;
 use rand::seq::SliceRandom;
 use std::collections::BTreeMap;
 
-/// Largest effective sample size that matters, as a fraction of the touches.
+/// Effective sample size, as a fraction of the touches, below which the check can report a fault.
 const RELEVANT: f64 = 0.9;
-/// Maximum number of touches of the test of groups.
+/// Maximum number of touches in the test of groups.
 const MAX_TOUCHES: usize = 1000;
 
 pub const ABOUT: CheckAbout = CheckAbout {

@@ -1,4 +1,4 @@
-//! Labels that can be read from taxels that nothing ever touches.
+//! Labels that can be read from taxels that are never touched.
 
 use crate::audit::check::{CheckAbout, Context, Finding, NO_LABELS, Result, Source};
 use crate::audit::checks::before_contact::some_columns;

@@ -1,7 +1,7 @@
 //! Permutation tests of dependence between rows: neighbours in time, and members of a group.
 //!
-//! All statistics are sums of inner products of pairs of rows, less the mean of their class. A permutation exchanges rows of the same class, so that it
-//! preserves the classes and their order in time.
+//! All statistics are sums of inner products of pairs of rows, where the mean of the class is subtracted from each row. A permutation exchanges rows of one
+//! class. Therefore the classes and their order in time are preserved.
 
 use crate::random::Seed;
 use ndarray::{Array2, ArrayView2};

@@ -55,7 +55,7 @@ pub fn test_duplicates(
     let dimensions: BTreeMap<usize, f64> = dimensions.collect();
     let p_value = |row: &Vec<f64>, label: &usize| match (ratio(row), dimensions.get(label)) {
         (_, None) => 1.0,
-        // All neighbours are equal: the row has copies.
+        // If all distances are zero, the row has copies.
         (None, _) => f64::from(u8::from(row.len() < 2)),
         (Some(ratio), Some(&dimension)) => -(others * (-ratio.powf(dimension)).ln_1p()).exp_m1(),
     };

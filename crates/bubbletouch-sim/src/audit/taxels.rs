@@ -22,7 +22,7 @@ const MOMENT_ERRORS: f64 = 5.0;
 const CORRELATION_ERRORS: f64 = 4.0;
 /// Maximum standard deviation of an untouched taxel, relative to active taxels.
 const MAX_STD: f64 = 0.5;
-/// Minimum fraction of readings at the least reading of a taxel that count as clipped.
+/// Minimum fraction of a taxel's readings that equal its least reading, from which its readings count as clipped.
 const CLIPPED: f64 = 0.05;
 /// Fractions of clipped readings between which clipped noise can be distinguished from rare contact.
 const CLIPPED_NOISE: [f64; 2] = [0.3, 0.7];

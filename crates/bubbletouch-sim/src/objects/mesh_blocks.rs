@@ -1,9 +1,10 @@
-//! Triangles of a mesh in blocks of eight, below a tree of nodes with eight children, for the search of the triangles that taxels of a grid touch.
+//! Triangles of a mesh in blocks of eight, with a tree of nodes with eight children. The tree is searched for the triangles that taxels of a grid touch.
 //!
 //! A ball of radius ρ that touches the mesh at a point p has its centre at p + ρ d, where the unit vector d is a *direction of contact*. On a face, d is the
 //! normal n of the face. On an edge, d is a vector between the normals of the two faces. On a corner, d is a vector among the normals of the faces around the
-//! corner. The `spread` of a triangle is the largest distance |d − n| between a direction of contact and the normal of the triangle. It covers the face and the
-//! edges and corners that belong to the triangle. A node has an `axis` and a spread that contain the directions of all its triangles. The centres of balls in contact are thereby bounded far more tightly than by boxes enlarged by ρ.
+//! corner. The `spread` of a triangle is the largest distance |d − n| between a direction of contact and the normal of the triangle. The spread covers the
+//! face, and the edges and corners that belong to the triangle. A node has an `axis` and a spread that contain the directions of all its triangles. The centres
+//! of balls in contact are thereby bounded far more tightly than by boxes enlarged by ρ.
 //!
 //! For contact from the other side of the surface, all directions are reversed. A concave edge is touched from the other side only.
 //!

@@ -50,7 +50,8 @@ pub fn darken(rgb: &mut [u8], other: &[u8]) {
     }
 }
 
-/// Compares two pictures of equal size with `width` pixels in a row. Returns the range of rows that differ, and the pixels of these rows with opacity. Pixels that are equal in both pictures are transparent black. Without a picture before, all rows are returned; without a difference, the first row.
+/// Compares two pictures of equal size with `width` pixels in a row. Returns the range of rows that differ, and the pixels of these rows with opacity. Pixels
+/// that are equal in both pictures are transparent black. Without a picture before, all rows are returned; without a difference, the first row.
 pub fn changed_rows(
     before: Option<&[u8]>,
     now: &[u8],

@@ -2,8 +2,8 @@
 //!
 //! | function | input → output |
 //! |---|---|
-//! | [`nearest_rows`] | rows and fold numbers → the nearest other rows, and the nearest row outside the own fold |
-//! | [`HeldOut::scores`](held_out::HeldOut::scores) | rows, labels and folds → scores of rows that the classifier has not learned |
+//! | [`nearest_rows`] | rows and fold numbers → the nearest other rows, and the nearest row in another fold |
+//! | [`HeldOut::scores`](held_out::HeldOut::scores) | rows, labels and folds → scores of rows by a classifier that was trained without them |
 //! | [`readability`] | rows and labels → the accuracy with which the label can be read, and its permutation p-value |
 //!
 //! All functions work on one block of rows or one fold, so that the caller can distribute the work over threads.

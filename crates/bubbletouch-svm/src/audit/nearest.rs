@@ -10,14 +10,14 @@ pub struct NearestRows {
     pub neighbours: Vec<Vec<usize>>,
     /// Distances to `neighbours`, computed from the differences of the two rows.
     pub distances: Vec<Vec<f64>>,
-    /// Nearest row outside the own fold, for each assignment of folds and each row of the block. `None` if the row is in no fold or all rows are in one fold.
+    /// Nearest row in another fold, for each assignment of folds and each row of the block. `None` if the row is in no fold or all rows are in one fold.
     pub outside: Vec<Vec<Option<usize>>>,
 }
 
-/// Returns the `k` nearest other rows of the rows in `block`. Also returns the nearest row outside the own fold for each of the assignments `folds`. An
+/// Returns the `k` nearest other rows of the rows in `block`. Also returns the nearest row in another fold for each of the assignments `folds`. An
 /// assignment contains one fold number per row, or `None` for a row that is neither trained on nor tested.
 ///
-/// Equal distances prefer the smaller index. Distances are compared in the form |a|² + |b|² − 2 a·b.
+/// If distances are equal, the smaller index is returned. Distances are compared in the form |a|² + |b|² − 2 a·b.
 pub fn nearest_rows(
     features: ArrayView2<f64>,
     k: usize,

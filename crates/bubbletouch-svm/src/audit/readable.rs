@@ -2,8 +2,8 @@
 //!
 //! Two classifiers predict each row from all other rows: the nearest class mean, and the vote of the nearest rows. The statistic is the larger of the two
 //! accuracies. The labels are permuted many times. The p-value is (1 + number of permutations with at least the observed accuracy) / (1 + number of
-//! permutations). It is exact for exchangeable rows (Phipson and Smyth, *Permutation p-values should never be zero*, 2010). The two classifiers need only
-//! inner products of rows, so that a permutation costs n² additions for any number of features.
+//! permutations). The p-value is exact for exchangeable rows (Phipson and Smyth, *Permutation p-values should never be zero*, 2010). The two classifiers need
+//! only inner products of rows, so that a permutation costs n² additions for any number of features.
 
 use crate::streams::Streams;
 use ndarray::{Array2, ArrayView2, Axis};

@@ -78,7 +78,7 @@ impl Foreign {
     /// Returns the identity with this name and version.
     ///
     /// # Errors
-    /// If a kind of this crate has the name, or if the name or the version is empty, too long or has other letters than A to Z, a to z, 0 to 9, `_`, `-` and `.`.
+    /// If a kind of this crate has the name. If the name or the version does not consist of 1 to 64 of the letters A to Z, a to z, 0 to 9, `_`, `-` and `.`.
     pub fn new(name: &str, version: &str) -> Result<Self> {
         let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_-.".contains(letter);
         let is_word =

@@ -1,7 +1,8 @@
 //! Linear SVM of the crate linfa-svm, for comparison with [`linear_svm`](super::linear_svm).
 //!
-//! linfa-svm solves binary problems. Its multi-class scheme is linfa's `MultiClassModel`: one SVM separates each class from all others, Platt scaling fits a
-//! probability to its decision values on the training rows, and the class with the highest probability wins. If probabilities are equal, the lower label wins.
+//! linfa-svm solves binary problems. Its multi-class scheme is linfa's `MultiClassModel`: one SVM separates each class from all others. Platt scaling fits a
+//! probability to the decision values of each SVM on the training rows. The class with the highest probability is predicted. If probabilities are equal, the
+//! lower label is predicted.
 
 use crate::class_model::ClassModel;
 use crate::classifiers::classifier_about::ClassifierAbout;
@@ -34,8 +35,8 @@ impl LinfaSvm {
     /// Trains one SVM per class with the penalty `c`. `tolerance` bounds the violation of the optimality conditions.
     ///
     /// # Errors
-    /// If C or the tolerance is not a positive number, the data are empty, a feature is NaN or infinite, the number of labels differs from the number of
-    /// rows, there is a single class, or linfa-svm returns an error.
+    /// If C or the tolerance is not a positive number, or linfa-svm returns an error. If the data are empty or have a single class, a feature is NaN or
+    /// infinite, or the number of labels differs from the number of rows.
     pub fn train(data: &Dataset, kernel: LinfaKernel, c: f64, tolerance: f64) -> Result<Self> {
         let classes = checked_classes(data)?;
         for (name, value) in [("C", c), ("tolerance", tolerance)] {

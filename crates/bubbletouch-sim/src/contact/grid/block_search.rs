@@ -4,7 +4,8 @@
 //! ([`mesh_blocks`](crate::objects::mesh_blocks)). The taxel comes from below, so d points down. Normals that certainly point down, or up, determine the side
 //! of the surface. If the side is not certain, d is any unit vector.
 //!
-//! The loops over lanes are short and without branches, and use `max` and `min` instead of comparisons. The compiler converts such loops to vector instructions.
+//! The loops over lanes are short and without branches, and use `max` and `min` instead of comparisons. The compiler converts such loops to vector
+//! instructions.
 //!
 //! All bounds are enlarged by `slack`, far more than the rounding of single precision, so they never exclude a contact.
 
@@ -197,7 +198,7 @@ impl BlockSearch {
         }
         for lane in 0..LANES {
             bounds.top[lane] += half[2][lane];
-            // Triangles that reach in front of the substrate are looked at one by one.
+            // Triangles that reach in front of the substrate are examined one by one.
             bounds.back[lane] = bounds.top[lane] + self.reach;
         }
         let mut candidates = self.candidates(&bounds, limit, node.used);

@@ -1,10 +1,11 @@
 //! Heights at which meshes stop the taxels of a flat grid, computed only for triangles that taxels may touch.
 //!
 //! The search descends the tree of each mesh ([`block_search`](super::block_search)) and evaluates the remaining triangles for their candidate taxels.
-//! Faces are evaluated row by row, edges and corners taxel by taxel. Nodes and triangles with few candidates are skipped if these taxels are already stopped below.
+//! Faces are evaluated row by row, edges and corners taxel by taxel. Nodes and triangles with few candidates are skipped if these taxels are already stopped
+//! below.
 //!
-//! In a press from the front, each triangle counts. At a pose, a triangle counts for a taxel unless its far side is behind the taxel's substrate. Triangles whose
-//! near side is in front of the substrate count for each taxel; the rule is evaluated only for other triangles ([`stop_in_front`]).
+//! In a press from the front, each triangle counts. At a pose, a triangle counts for a taxel unless its far side is behind the taxel's substrate. Triangles
+//! whose near side is in front of the substrate count for each taxel; the rule is evaluated only for other triangles ([`stop_in_front`]).
 
 use super::block_search::{BlockSearch, Candidates};
 use super::lines::GridLines;

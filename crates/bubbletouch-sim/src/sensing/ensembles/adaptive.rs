@@ -2,12 +2,12 @@
 //!
 //! A reading is the mean of a block of taxels. The frame is first divided into m / 4 blocks (at least one), and each block is read. While readings are left,
 //! the block with the largest |area · mean| is halved along its longer side. One reading gives the mean of one half; the mean of the other half follows
-//! from this reading and the mean of the block. A frame therefore has m blocks after m readings, as many as the ensemble `block_average`, but small blocks where it is touched.
-//! The values of a frame are the means of the blocks, one value per taxel.
+//! from this reading and the mean of the block. A frame therefore has m blocks after m readings, as many as the ensemble `block_average`, but small blocks
+//! where it is touched. The values of a frame are the means of the blocks, one value per taxel.
 //!
 //! The priority |area · mean| uses readings for large blocks with contact. The priority area · mean² would use most readings for the deepest part of a contact.
-//! With area · mean², the error of the estimate is 0.044 of the full scale instead of 0.036 (7,600 free touches, 64 readings of 4,096 taxels). Slepyan et al. (2024, *Adaptive
-//! compressive tactile subsampling*, arXiv 2410.13847) also search a contact by halving, but with readings of single taxels.
+//! With area · mean², the error of the estimate is 0.044 of the full scale instead of 0.036 (7,600 free touches, 64 readings of 4,096 taxels). Slepyan et al.
+//! (2024, *Adaptive compressive tactile subsampling*, arXiv 2410.13847) also search a contact by halving, but with readings of single taxels.
 //!
 //! The noise belongs to the taxels and is constant within a frame. A skin with noise in each reading would have more noise in the halves that are not read.
 

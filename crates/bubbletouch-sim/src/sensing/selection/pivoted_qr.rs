@@ -4,8 +4,8 @@ use ndarray::{Array2, Axis};
 
 /// Returns the indices of the first k pivot columns of a matrix, shape (k, n), k ≤ n.
 ///
-/// Each step selects the column that is farthest from the span of the selected columns, or the first among equal columns. It then removes the direction of this
-/// column from all columns by Gram–Schmidt. The cost is 4 k² n.
+/// Each step selects the column that is farthest from the span of the selected columns, or the first among equal columns. The direction of this column is then
+/// removed from all columns by Gram–Schmidt. The cost is 4 k² n.
 pub(crate) fn pivoted_columns(mut matrix: Array2<f64>) -> Vec<usize> {
     let (k, n) = matrix.dim();
     let mut is_taken = vec![false; n];

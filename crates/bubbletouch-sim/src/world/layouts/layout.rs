@@ -238,8 +238,8 @@ impl Layout {
     }
 }
 
-/// Returns the unit vector in the direction of `axis`. If `axis` is a unit vector up to rounding, it is returned bitwise unchanged. A layout therefore keeps its
-/// bits when it is written and read again.
+/// Returns the unit vector in the direction of `axis`. If `axis` is a unit vector up to rounding, it is returned bitwise unchanged. A layout therefore keeps
+/// its bits when it is written and read again.
 pub fn unit_axis(axis: DVec3) -> DVec3 {
     match (axis.length() - 1.0).abs() <= UNIT_ROUNDING {
         true => axis,

@@ -23,8 +23,8 @@ impl MeshFolders {
     }
 
     /// Returns the path of a mesh file, given its name in the robot's file. The name is a path relative to the robot's file, `file://…`, `package://NAME/…`,
-    /// `model://NAME/…` or `$(find NAME)/…`. A package is searched in its folder in `packages`. A package that is not listed is searched in each folder above the
-    /// robot's file. It is searched with and without NAME, because a copy of a package may have another name.
+    /// `model://NAME/…` or `$(find NAME)/…`. A package is searched in its folder in `packages`. A package that is not listed is searched in each folder above
+    /// the robot's file. Paths with and without NAME are searched there, because a copy of a package may have another name.
     ///
     /// # Errors
     /// If there is no such file; the message lists what was tried.
