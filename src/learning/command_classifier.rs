@@ -18,7 +18,7 @@ use std::process::{Command, ExitStatus, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Time between two checks whether the program has ended. With a longer time, short programs seem slower; with a shorter time, the checks take processor time.
+/// Time between two checks whether the program has ended. With a longer time, short programs take longer; with a shorter time, the checks take processor time.
 const BETWEEN_CHECKS: Duration = Duration::from_millis(2);
 
 /// Maximum number of letters of the program's message in an error. Longer messages hide the rest of the error.
@@ -35,7 +35,7 @@ pub struct CommandClassifier {
     pub time_limit: Option<Duration>,
 }
 
-/// Training rows that wait for test rows, because one call of the program does both.
+/// Training rows, stored until the test rows are given, because one call of the program trains and predicts.
 struct CommandModel {
     classifier: CommandClassifier,
     features: Array2<f64>,
@@ -91,7 +91,7 @@ impl CommandClassifier {
         if status.success() {
             return Ok(());
         }
-        // The last line of an exception or a message names the cause.
+        // The last line of an exception or a message contains the cause.
         let text = std::fs::read(said).unwrap_or_default();
         let text = String::from_utf8_lossy(&text);
         let mut lines = text.lines().rev().map(str::trim);

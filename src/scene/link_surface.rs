@@ -13,8 +13,8 @@ use std::path::Path;
 /// Maximum distance between a facet and the round shape that it approximates, relative to the taxel pitch. With a larger value, taxels lie deeper; with a
 /// smaller value, more triangles are needed.
 const SAGITTA: f64 = 0.02;
-/// Minimum distance between a facet and the round shape, relative to the radius of the shape. With a smaller value, more facets would need memory without
-/// moving taxels noticeably.
+/// Minimum distance between a facet and the round shape, relative to the radius of the shape. With a smaller value, the facets need more memory, although
+/// taxels hardly move.
 const FINEST: f64 = 1e-5;
 
 /// Shapes of a robot link that are selected as a surface.

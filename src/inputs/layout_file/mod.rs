@@ -164,7 +164,7 @@ impl LayoutFile {
         let is_image = pixels.iter().enumerate().all(in_order);
         let sides = [pixels.len() / n_columns, n_columns];
         let layout = match is_image {
-            // A last row that is not complete is no image.
+            // If the last row is incomplete, the layout has no sides.
             true => self.layout.clone().with_sides(sides).unwrap_or(self.layout),
             false => self.layout,
         };
@@ -191,7 +191,7 @@ impl LayoutFile {
     /// Creates the content of a layout file whose rows are its taxels, in order and counted from 1.
     ///
     /// # Errors
-    /// As for [`new`](Self::new).
+    /// Returns the errors of [`new`](Self::new).
     fn in_order(place: &str, taxels: Vec<(DVec3, DVec3)>) -> Result<Self> {
         let rows: Vec<usize> = (1..=taxels.len()).collect();
         Self::new(place, taxels, &rows)

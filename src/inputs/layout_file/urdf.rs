@@ -26,7 +26,7 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
             }));
         }
     }
-    // The reader of robots omits a sensor that it cannot read; here, its fault is the reason that the sensor is missing.
+    // The reader of robots omits an invalid sensor. Here, the fault of the sensor is the error.
     let missing = |given: String, allowed: String| match Robot::check_tactile_sensors(place, text) {
         Err(fault) => fault,
         Ok(()) => Error::input(place, given, allowed),
@@ -62,7 +62,7 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
 type Taxel = (DVec3, DVec3);
 
 /// Returns the taxels of each link in file order; a taxel is connected to its link by three prismatic joints along x, y and z. The normal of a taxel is the
-/// axis of the third joint. If a link has such taxels, and another chain of prismatic joints on the link is none, the link has an error instead.
+/// axis of the third joint. If one chain of prismatic joints on a link is a taxel and another chain is not, the link has an error.
 fn prismatic_taxels(place: &str, robot: &Robot) -> BTreeMap<String, Result<Vec<Taxel>>> {
     let joints = robot.joints();
     let is_slide = |kind: JointKind| kind == JointKind::Prismatic;

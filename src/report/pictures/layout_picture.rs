@@ -17,9 +17,9 @@ use std::path::Path;
 const VIEW: f64 = 420.0;
 /// Space between the map and the oblique view, and beside them, pixels.
 const GAP: f64 = 40.0;
-/// Maximum number of taxels that are drawn; of more taxels, every second, third, … is drawn. With a larger number, a file takes megabytes.
+/// Maximum number of taxels that are drawn. If there are more taxels, every second, third, … taxel is drawn. With a larger number, a file takes megabytes.
 const MAX_DRAWN: usize = 20_000;
-/// Maximum number of numbers on the map if the taxels are too small for a number each.
+/// Maximum number of taxel numbers on the map if the taxels are too small to have one number each.
 const MAX_NUMBERS: usize = 60;
 /// Smallest font size at which a number can be read, pixels.
 const MIN_FONT: f64 = 7.0;
@@ -204,11 +204,11 @@ fn draw_directions(drawing: &mut Drawing, (x, y): Point, eye: &DMat3) {
     }
 }
 
-/// Returns the matrix from the frame of the layout to directions right, up and towards the viewer. The viewer looks at the side to which most axes point, from
-/// 40° beside it.
+/// Returns the rotation matrix from the frame of the layout to the axes right, up and towards the viewer. The direction towards the viewer is 40° from the mean
+/// axis of the taxels.
 fn oblique(axes: &[DVec3]) -> DMat3 {
     let mean = axes.iter().sum::<DVec3>() / axes.len() as f64;
-    // Axes all around have no common side; z is then up, seen from the front.
+    // If the axes point in all directions, z is up and the view is from −y.
     let front = if mean.length() > 0.2 {
         mean.normalize()
     } else {
@@ -222,7 +222,7 @@ fn oblique(axes: &[DVec3]) -> DMat3 {
     let right = up.cross(front).normalize();
     let upright = front.cross(right);
     let (sin, cos) = 40f64.to_radians().sin_cos();
-    // Horizontal skins are seen from below on the page, vertical ones from above.
+    // Horizontal skins are drawn from a viewpoint below on the page, vertical skins from above.
     let above = if up == DVec3::Y { -0.84 } else { 0.84 };
     let aside = (0.55 * right + above * upright).normalize();
     let eye = cos * front + sin * aside;

@@ -2,7 +2,7 @@
 //!
 //! Every varying setting has a role in a chart, so no chart mixes configurations that differ in a setting it does not show. The x axis shows the numeric
 //! setting with the most values. Lines and panels show the settings with the next most values; in a tie, texts come before numbers. Each combination of the
-//! remaining settings has its own chart. A setting that applies only to some values of another one shares the lines with it.
+//! remaining settings has its own chart. If a setting applies only to some values of another setting, one line stands for a pair of their values.
 
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
@@ -123,7 +123,7 @@ fn charts_along(
     let swept = Swept::new(configurations, rows);
     let x = x.or_else(|| swept.main(rows));
     let mut others = x.map_or_else(|| swept.free.clone(), |x| without(&swept.free, &x));
-    // A word that only some rows have, such as the method of a selection, divides the lines of another setting.
+    // A setting that is a text and applies only to some rows, such as the method of a selection, divides the lines of another setting.
     let is_part = |one: &Setting| !one.is_number() && !one.applies(rows);
     let parts: Vec<Setting> = others.iter().copied().filter(is_part).collect();
     others.retain(|one| !is_part(one));

@@ -89,8 +89,7 @@ pub const TABLES: &[&dyn AnyFile] = &[
     &LIMITS,
 ];
 
-/// Table files that only some studies write: those with several projections per split, those that sweep a condition, and those that
-/// select taxels.
+/// Table files of studies that have several projections per split, sweep a condition, or select taxels.
 pub const TABLES_OF_PARTS: &[&dyn AnyFile] = &[&VARIANCE, &ROBUSTNESS, &SELECTED];
 
 /// Returns all tables of a run in the order of their files, followed by [`CONFIGURATIONS`].

@@ -75,10 +75,10 @@ impl LaneLines {
     }
 }
 
-/// Returns the whole number nearest to a number from 0 to 2²². Unlike `f32::round`, the function takes two vector instructions on any processor.
+/// Rounds a number from 0 to 2²² to the nearest whole number. Unlike `f32::round`, the function takes two vector instructions on any processor.
 #[inline(always)]
 fn nearest_whole(number: f32) -> f32 {
-    /// In single precision, numbers of this size have no fractions.
+    /// Number 2²³, from which numbers in single precision have no fractions.
     const WHOLE: f32 = 8_388_608.0;
     (number + WHOLE) - WHOLE
 }

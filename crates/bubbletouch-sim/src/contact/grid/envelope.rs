@@ -195,7 +195,7 @@ fn sweep_each_block(sweep: &mut Sweep, blocks: &MeshBlocks, bounds: &BlockSearch
         let node = &blocks.nodes[number];
         let candidates = bounds.node(node, limit);
         sweep.note_behind(&candidates);
-        // The children are sorted, the lowest last, so that it is visited first.
+        // The children are sorted with the lowest last, so that the lowest child is visited first.
         let start = n_waiting;
         for lane in lanes(candidates.lanes) {
             let low = candidates.low[lane];

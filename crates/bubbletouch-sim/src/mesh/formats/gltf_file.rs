@@ -13,7 +13,7 @@ const HEADER: usize = 12;
 /// Types of chunks of a binary file.
 const JSON: u32 = 0x4E4F_534A;
 const BINARY: u32 = 0x004E_4942;
-/// Extensions that change positions or triangles, which the reader does not decode.
+/// Extensions that change positions or triangles. The reader does not decode them, so files that require them are refused.
 const ENCODINGS: [&str; 4] = [
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",
@@ -21,7 +21,7 @@ const ENCODINGS: [&str; 4] = [
     "EXT_mesh_gpu_instancing",
 ];
 
-/// JSON description of a glTF file: the parts that meshes need.
+/// Parts of the JSON description of a glTF file from which meshes are read.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 #[derive(Default)]

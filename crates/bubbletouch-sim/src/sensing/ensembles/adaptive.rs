@@ -44,7 +44,7 @@ struct Adaptive {
     coarse: Vec<Block>,
 }
 
-/// Block with the sum of its readings. The order is by the absolute sum; among equal sums, the earlier block is greater.
+/// Block with the sum of its readings. Blocks are ordered by the absolute sum. If the sums are equal, the earlier block is greater.
 #[derive(Clone, Debug)]
 struct ReadBlock {
     block: Block,
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn blocks_tile_the_frame_and_only_the_largest_sum_is_halved() {
-        // The slow way: sort all blocks before each reading.
+        // Slow reference: all blocks are sorted before each reading.
         let frames = contacts();
         let (frame, m) = (frames.row(3).to_vec(), 20);
         let adaptive = Adaptive {

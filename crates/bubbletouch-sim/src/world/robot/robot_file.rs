@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use std::path::Path;
 
 impl Robot {
-    /// Reads a robot from the text of a URDF file. Faults that do not affect the poses of links are omitted with a note.
+    /// Reads a robot from the text of a URDF file. Invalid parts that do not affect the poses of links are omitted with a note.
     ///
     /// # Errors
     /// If a part that determines poses of links is invalid. The message begins with `place`, the file's name, and contains the line.
@@ -33,7 +33,7 @@ impl Robot {
         read_mjcf(place, text)
     }
 
-    /// Reads a robot from a URDF or MJCF file in UTF-8, UTF-16 with a byte order mark, or Latin-1. The root element, `<robot>` or `<mujoco>`, decides on the
+    /// Reads a robot from a URDF or MJCF file in UTF-8, UTF-16 with a byte order mark, or Latin-1. The root element, `<robot>` or `<mujoco>`, determines the
     /// format. Mesh files are not opened.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::text::spelling::nearest_names;
 use crate::world::robot::xml::Element;
 
-/// Default classes of a model. The first class is the root; each other class has a parent, from which it takes what it does not define.
+/// Default classes of a model. The first class is the root; each other class inherits the attributes of its parent that it does not define.
 pub(super) struct Classes<'a> {
     classes: Vec<Class<'a>>,
 }
@@ -90,7 +90,7 @@ impl<'a> Classes<'a> {
         let found = self.classes.iter().position(|class| class.name == name);
         match found {
             Some(class) => Ok(Some(class)),
-            // The root keeps its usual name beside its own.
+            // The root can also be referred to by its default name.
             None if name == MAIN => Ok(Some(0)),
             None => {
                 let names = self.classes.iter().map(|class| class.name);
@@ -152,7 +152,7 @@ impl<'a> Item<'a> {
     /// Returns the N finite numbers in the value of an attribute, or `None` if neither the element nor a default class has it.
     ///
     /// # Errors
-    /// If the value has another number of numbers, or one of them is not finite.
+    /// If the value does not consist of N finite numbers.
     pub fn numbers<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>> {
         match self.layer_with(&[attribute]) {
             Some(layer) => layer.numbers(attribute),

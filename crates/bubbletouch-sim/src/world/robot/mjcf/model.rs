@@ -1,4 +1,4 @@
-//! Tree of the bodies of an MJCF model, and the robot that is made of it.
+//! Tree of the bodies of an MJCF model, and its conversion to a robot.
 
 use super::classes::Classes;
 use super::compiler::Compiler;
@@ -23,7 +23,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 const WORLD: &str = "world";
 /// Largest number of bodies of a model. With a larger value, a small file with copies can fill the memory.
 const MAX_BODIES: usize = 100_000;
-/// Elements that add bodies or shapes, which the reader does not make.
+/// Elements that add bodies or shapes but are not supported by the reader.
 const ADDING: [&str; 3] = ["attach", "composite", "flexcomp"];
 
 /// Reads a robot from the text of an MJCF file; `place` is the path of the file.
@@ -84,7 +84,7 @@ struct Parts<'a> {
     /// Pose of each body in its parent, as the model contains it.
     body_poses: Vec<Pose>,
     joints: Vec<Joint>,
-    /// Element of each joint; of a fixed body, the body's element.
+    /// Element of each joint; for a fixed joint, the element of its body.
     elements: Vec<Element<'a>>,
     sites: Vec<Site<'a>>,
     /// Line of each name of a body, joint or site, by kind and name.
@@ -156,7 +156,7 @@ impl<'a> Parts<'a> {
         Ok(parts)
     }
 
-    /// Counts the children of a section as ignored, but those with one of the tags in `used`.
+    /// Counts the children of a section as ignored, except children with one of the tags in `used`.
     fn ignore_children(&mut self, section: roxmltree::Node<'a, 'a>, used: &[&str]) {
         let tags = section.children().filter(|node| node.is_element());
         for tag in tags.map(|node| node.tag_name().name()) {
@@ -257,7 +257,7 @@ impl<'a> Parts<'a> {
             };
             let place = JointPlace {
                 name: self.name("joint", &joint, default)?,
-                // Each further joint moves the body from where the joint before it has moved the body.
+                // Each further joint moves the body relative to its pose after the preceding joint.
                 parent: if number == 0 { parent } else { index },
                 child: index,
                 origin: if number == 0 { origin } else { Pose::IDENTITY },
@@ -292,7 +292,7 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Returns the name of an element, or the name that `unnamed` makes, which no other element of this kind has.
+    /// Returns the name of an element. If the element has no name, `unnamed` creates a name. A second element of a kind with an equal name is an error.
     fn name(
         &mut self,
         kind: &'static str,
