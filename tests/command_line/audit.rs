@@ -101,7 +101,7 @@ fn axes_texts_and_archives_of_sessions_are_read() {
         "timed",
     ];
     case.succeeds(&audit(&given));
-    // The frame before contact is exactly zero, so that it names no class.
+    // The frame before contact is exactly zero and therefore carries no information about the class.
     assert_eq!(verdicts(&case, "timed", "before_contact"), ["passed"]);
     assert!(
         std::fs::read_to_string(case.path("timed/classes.csv"))
@@ -114,7 +114,7 @@ fn axes_texts_and_archives_of_sessions_are_read() {
         let mut archive = ndarray_npy::NpzWriter::new(std::fs::File::create(path).unwrap());
         let own = frames.slice(s![from..from + 30, .., ..]).to_owned();
         archive.add_array("frames", &own).unwrap();
-        // Session b has a class of its own.
+        // One class occurs only in session b.
         let labels =
             (from..from + 30).map(|touch| if from == 30 { 3 } else { label(touch) as i64 });
         archive

@@ -19,7 +19,7 @@ fn study(classifiers: &str) -> String {
 /// Number of test rows: two of eight touches of each of nine cans.
 const N_TEST: usize = 18;
 
-/// Creates a case with a program `mine.sh` that answers the first object, and logs its arguments.
+/// Creates a case with a program `mine.sh` that predicts the first object for each row, and logs its arguments.
 fn case_of_first_object() -> Case {
     let case = Case::new();
     write_integers(&case.path("first.npy"), [0; N_TEST]).unwrap();
@@ -75,12 +75,12 @@ fn a_command_is_a_classifier_of_a_study() {
             .contains("mine")
     );
 
-    // The second run continues the first, from any folder, and reports without a call.
+    // A second run and a report use the stored results and do not call the program.
     assert_eq!(n_calls(&case), 2);
     case.succeeds(&run);
     case.succeeds(&["report", "out"]);
     assert_eq!(n_calls(&case), 2);
-    // A changed program, and a changed version, are computed again; other classifiers are not.
+    // If the program or its version changes, its results are computed again; results of other classifiers are not.
     case.file("mine.sh", "echo new >> calls\ncp $1 $4\n");
     case.succeeds(&run);
     assert_eq!(n_calls(&case), 4);
@@ -88,7 +88,7 @@ fn a_command_is_a_classifier_of_a_study() {
     case.file("study.toml", study(&format!("[\"linear_svm\", {later}]")));
     case.succeeds(&run);
     assert_eq!(n_calls(&case), 6);
-    // The study in the results runs elsewhere.
+    // The study file in the result folder gives equal results in another folder.
     case.succeeds(&["run", "out/study.toml", "--out", "elsewhere"]);
     assert_eq!(
         fs::read(case.path("out/summary.csv")).unwrap(),

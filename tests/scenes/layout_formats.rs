@@ -112,7 +112,7 @@ fn a_layout_that_is_written_is_read_as_the_same_layout() {
                 (Some(_), false) => assert!(has_note("has no image"), "{name}"),
                 (None, _) => assert_eq!(again.pixels, None, "{name}"),
             }
-            // A second round changes no bit.
+            // Writing and reading again changes no bit.
             let twice = folder.path().join(format!("twice.{ending}"));
             again.write(&twice, Some(format)).unwrap();
             let twice = read(&twice).unwrap();
@@ -464,7 +464,7 @@ fn each_damage_of_each_format_is_refused_with_file_and_row() {
             assert!(starts, "{name}, {damage:?}: {message}");
             assert!(message.contains(expected), "{name}, {damage:?}: {message}");
             assert_eq!(error.exit_code(), 2, "{name}, {damage:?}");
-            // A scene refuses the file with the same words.
+            // A scene with this file gives an equal error message.
             let scene = format!(
                 "title = \"t\"\n[[patches]]\nname = \"p\"\nstroke_mm = 2.0\nlayout = {{ file = \"{name}\" }}\n"
             );

@@ -82,7 +82,7 @@ fn objects_that_touch_within_what_their_spheres_stand_out_are_read_and_so_are_th
         f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     fs::write(folder.path().join("cube.obj"), cube).unwrap();
     let cube = "mesh = \"cube.obj\"\nunit = \"cm\"\nmodel = \"packed\"\nsurface_error_mm = 2.0";
-    // One cube on the other, and balls in a ring around a hollow. Their distances are rounding errors.
+    // One cube on the other, and two balls side by side. The distances between the objects are rounding errors.
     let stack = [
         ("low", cube, [0.0, 0.0, 9.0], FREE),
         ("high", cube, [0.0, 0.0, 29.0], FREE),

@@ -1,4 +1,4 @@
-//! Faults planted into simulated data, three strengths each, are found, and no fault is found in clean data.
+//! Faults are added to simulated data in three strengths each. The audit finds each of them, and finds no fault in clean data.
 
 use bubbletouch::audit::{AuditData, AuditOptions, Finding, Verdict, audit};
 use bubbletouch::contact::{Workspace, press_to_depth};
@@ -73,7 +73,7 @@ fn simulated() -> (Array2<f64>, Vec<usize>) {
     (frames, labels)
 }
 
-/// Data of the test: frames of single-frame touches in random order, with groups and sessions that mean nothing.
+/// Data of the test: frames of single-frame touches in random order, with random groups and sessions.
 struct Planted {
     frames: Array2<f64>,
     n_frames: usize,
@@ -110,7 +110,7 @@ impl Planted {
         self.labels.len()
     }
 
-    /// Keeps the touches of an order, also a shorter one.
+    /// Replaces the touches by the touches with the given indices, in the given order.
     fn select(&mut self, order: &[usize]) {
         self.frames = self.frames.select(Axis(0), order);
         for list in [&mut self.labels, &mut self.groups, &mut self.sessions] {
@@ -118,7 +118,7 @@ impl Planted {
         }
     }
 
-    /// Gives each class `n` groups of its own.
+    /// Divides the touches of each class into `n` groups that contain no other class.
     fn nest_groups(&mut self, n: usize) {
         let mut counts = [0; OBJECTS.len()];
         for (group, &label) in self.groups.iter_mut().zip(&self.labels) {
@@ -177,7 +177,7 @@ fn faults(findings: &[Finding]) -> BTreeSet<&'static str> {
     faults.map(|finding| finding.check).collect()
 }
 
-/// Fault of the test: the check that finds it, other faults that it entails, and how it is planted with strength 0, 1 or 2.
+/// Fault of the test: the check that finds the fault, other checks that it affects, and the function that adds it with strength 0, 1 or 2.
 struct Plant {
     check: &'static str,
     entails: &'static [&'static str],
@@ -189,7 +189,7 @@ const GROUPED: &[&str] = &[
     "random_labels",
     "sample_size",
     "method_order",
-    // The pattern of a group is also on taxels that nothing touches.
+    // The pattern of a group is also added to untouched taxels.
     "untouched_taxels",
     "hot_taxels",
 ];
@@ -223,7 +223,7 @@ const PLANTS: &[Plant] = &[
         check: "method_order",
         entails: GROUPED,
         plant: |data, strength| {
-            // A weak pattern of the class, and a strong pattern of the group that only memory can use.
+            // A weak pattern depends on the class. A strong pattern depends on the group, and helps only a classifier that has seen the group in training.
             data.nest_groups(12);
             data.frames *= 0.1;
             let (labels, groups) = (data.labels.clone(), data.groups.clone());
@@ -388,7 +388,7 @@ const PLANTS: &[Plant] = &[
         check: "dead_taxels",
         entails: &[],
         plant: |data, strength| {
-            // Stuck at another level.
+            // The taxels are stuck at another level.
             for taxel in data.middle([1, 3, 8][strength]) {
                 let level = data.rng.gen_range(0.1..0.9);
                 data.frames.column_mut(taxel).fill(level);
@@ -441,7 +441,7 @@ const PLANTS: &[Plant] = &[
     },
     Plant {
         check: "quantisation",
-        // Frames of few levels are equal by chance.
+        // With few levels of readings, frames can be equal by chance.
         entails: &["near_duplicates"],
         plant: |data, strength| {
             let steps = [15.0, 7.0, 3.0][strength];

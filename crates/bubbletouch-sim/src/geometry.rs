@@ -89,7 +89,7 @@ pub fn rotation_from_rpy(rpy: DVec3) -> DQuat {
 pub fn rpy_from_rotation(rotation: DQuat) -> DVec3 {
     let matrix = DMat3::from_quat(rotation);
     let yaw = matrix.x_axis.y.atan2(matrix.x_axis.x);
-    // The rest is Ry(pitch) Rx(roll), whatever the error of the yaw.
+    // The remaining rotation is Ry(pitch) Rx(roll), for any error of the yaw.
     let rest = DMat3::from_rotation_z(-yaw) * matrix;
     let pitch = (-rest.x_axis.z).atan2(rest.x_axis.x);
     let roll = (-rest.z_axis.y).atan2(rest.y_axis.y);

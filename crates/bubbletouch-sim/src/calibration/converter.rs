@@ -21,8 +21,8 @@ pub fn step_of(bits: f64) -> f64 {
     }
 }
 
-/// Returns the step of the readings: the largest number of which all differences of readings are multiples, as a fraction of the full scale. Returns `None` if
-/// there is no step above the rounding of single precision, or all readings are equal. Readings of at least `saturation` are omitted.
+/// Returns the step of the readings, as a fraction of the full scale: the largest number that divides all differences of readings. Returns `None` if there is
+/// no step above the rounding of single precision, or all readings are equal. Readings of at least `saturation` are omitted.
 pub fn step(skin: &RecordedSkin, saturation: f64) -> Option<f64> {
     let readings = different_readings(skin, saturation);
     let gaps = readings.windows(2).map(|pair| pair[1] - pair[0]);
@@ -50,7 +50,7 @@ pub fn estimate(skin: &RecordedSkin, saturation: f64) -> Estimate {
     }
 }
 
-/// Returns the different readings below `saturation` in ascending order, of at most about [`N_READINGS`] readings.
+/// Returns the different readings below `saturation` in ascending order. At most about [`N_READINGS`] readings are used.
 fn different_readings(skin: &RecordedSkin, saturation: f64) -> Vec<f64> {
     let mut readings: Vec<f64> = Vec::new();
     for frames in [&skin.touched, &skin.untouched] {

@@ -18,7 +18,7 @@ pub struct HeldForce {
     pub force: f64,
 }
 
-/// Skin, and one of several objects, or all of them, that move onto the skin along a line.
+/// Skin and objects. One object, or all objects together, are moved onto the skin along a line.
 #[derive(Clone, Copy, Debug)]
 pub struct MovedObject<'a> {
     /// Patch of the skin.

@@ -127,7 +127,7 @@ fn to_place(
 ) -> Option<Contact> {
     let by_rows = |workspace: &Workspace| match until {
         TravelGoal::Depth(_) | TravelGoal::Travel(_) => true,
-        // Held parts push from behind the substrate.
+        // Held parts can also touch taxels from behind the substrate.
         TravelGoal::Pose => !workspace.holds_any(),
     };
     if let Some(grid) = patch.even_grid()

@@ -116,7 +116,7 @@ mod tests {
         let chart = Chart::with_gaps(&places, (1.0, layout.widest_pitches()), image);
         let found = chart.images(ones.view());
         assert!(found.iter().all(|&pixel| (pixel - 1.0).abs() < 1e-12));
-        // Without the widest distance, pixels between the outer taxels have no taxel.
+        // If `widest` is not considered, pixels between the outer taxels have no taxel.
         let holes = Chart::new(&places, 1.0, image).images(ones.view());
         assert!(holes.iter().any(|&pixel| pixel == 0.0));
     }

@@ -114,7 +114,7 @@ impl Foreign {
         &self.0.name
     }
 
-    /// Version of the features. Another version gives other results.
+    /// Version of the features. Results of different versions are kept apart.
     pub fn version(&self) -> &'static str {
         &self.0.version
     }
@@ -186,14 +186,14 @@ impl PartialOrd for Foreign {
     }
 }
 
-/// The text is part of the names of work items: `Foreign(mine@1)`.
+/// Writes the name and the version, as in the names of work items: `Foreign(mine@1)`.
 impl fmt::Debug for Foreign {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{self}")
     }
 }
 
-/// The text in a study file: `mine@1`.
+/// Writes the name and the version, as in a study file: `mine@1`.
 impl fmt::Display for Foreign {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}@{}", self.name(), self.version())
@@ -204,7 +204,7 @@ impl fmt::Display for Foreign {
 pub struct Provided {
     foreign: Foreign,
     features: Arc<dyn ForeignFeatures>,
-    /// The value is dropped on the thread that created it.
+    /// Marker that prevents the value from leaving the thread that created it.
     of_thread: PhantomData<*const ()>,
 }
 

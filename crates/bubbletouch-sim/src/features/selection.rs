@@ -22,7 +22,7 @@ pub enum Features {
     CentredUnitNorm,
     /// Image features of each frame.
     OfImage(Join),
-    /// Features from outside of this crate, of each frame's measurements.
+    /// Features from outside of this crate, computed from the measurements of each frame.
     Foreign(Foreign),
 }
 
@@ -62,7 +62,7 @@ impl Features {
         }
     }
 
-    /// Returns the number of feature values for a frame of m measurements of an ny × nx image. Foreign features without code count as m.
+    /// Returns the number of feature values for a frame of m measurements of an ny × nx image. If foreign features have no code, the result is m.
     pub fn n_values(self, m: usize, shape: (usize, usize)) -> usize {
         match self {
             Self::OfImage(join) => join.n_values(shape),
@@ -71,7 +71,7 @@ impl Features {
         }
     }
 
-    /// Returns the text by which a study file names the features: the name, and the version of foreign features.
+    /// Returns the text for the features in a study file: the name, followed by the version for foreign features.
     pub fn text(self) -> String {
         match self {
             Self::Foreign(foreign) => foreign.to_string(),

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Minimum number of facets around a circle. If smaller, large tolerances give shapes that are hardly round.
+/// Minimum number of facets around a circle. If smaller, large tolerances give coarse prisms instead of round shapes.
 const MIN_FACETS: usize = 16;
 /// Maximum number of facets around a circle: a sphere then has 2 million triangles. If larger, small tolerances exhaust the memory; if smaller, they are
 /// refused.

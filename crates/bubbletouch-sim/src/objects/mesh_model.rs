@@ -48,7 +48,7 @@ pub struct ContactFace {
 }
 
 /// Distance between the unit normals of two triangles up to which the triangles lie in one plane. If larger, a gap opens between faces whose common edge is
-/// left out; if smaller, edges inside flat faces are evaluated needlessly.
+/// omitted; if smaller, edges inside flat faces are evaluated needlessly.
 pub(crate) const FLAT: f64 = 1e-8;
 /// Distance of a direction of contact from the normal beyond which a triangle's directions count as unknown. Directions around a corner are bounded by the
 /// normals around it if all these normals are within 90° (distance √2) of one normal.
@@ -167,7 +167,7 @@ fn contact_faces(mesh: &TriangleMesh, welded: &Welded) -> Vec<ContactFace> {
             ContactFace {
                 normal,
                 across: [DVec3::ZERO; 3],
-                // Initially all sides; shared ones are removed below. A triangle with a repeated corner has one side, which is not shared.
+                // Initially all sides are listed; shared sides are removed below. A triangle with a repeated corner has one side, which is not shared.
                 has_edge: match welded.corners[number] {
                     [a, b, c] if a == b => [false, b != c, false],
                     [a, b, c] if b == c || c == a => [true, false, false],

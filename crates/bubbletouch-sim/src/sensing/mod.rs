@@ -11,8 +11,8 @@
 //! | [`Sbhe`](Ensemble::Sbhe) | ±1/√B on the B taxels of a scrambled block \[SBHE\] | 1 | n + m indices |
 //! | [`BlockAverage`](Ensemble::BlockAverage) | 1/area on a rectangle of taxels | 1/√area | m rectangles |
 //! | [`Subsample`](Ensemble::Subsample) | one taxel | 1 | m indices |
-//! | [`Selected`](Ensemble::Selected) | one taxel that a [`Selection`] chose on training frames | 1 | m indices |
-//! | [`Adaptive`](Ensemble::Adaptive) | none: m readings of blocks that each frame chooses | at most 1 | nothing |
+//! | [`Selected`](Ensemble::Selected) | one taxel that a [`Selection`] selects on training frames | 1 | m indices |
+//! | [`Adaptive`](Ensemble::Adaptive) | none: m readings of blocks that depend on the frame | at most 1 | nothing |
 //! | [`Fourier`](Ensemble::Fourier) | a cosine or sine of a low frequency, ±√2/√n at most | 1 | m × n numbers |
 //! | [`PrincipalComponents`](Ensemble::PrincipalComponents) | a principal component of training frames | 1 | m × n numbers |
 //! | [`Identity`](Ensemble::Identity) | one taxel, all n in order | 1 | nothing |

@@ -33,7 +33,7 @@ pub struct Projection {
 impl Projection {
     /// Draws the projection of an ny × nx array to m measurements from its own streams of `seed`, or prepares an adaptive readout with m readings per frame.
     ///
-    /// The identity ensemble and adaptive ensembles give one value per taxel, whatever the value of m.
+    /// The identity ensemble and adaptive ensembles give one value per taxel for any m.
     ///
     /// # Errors
     /// If the array has no taxels, if m = 0 or m > n, or if the ensemble is learned.

@@ -157,7 +157,7 @@ impl Foreign {
         &self.0.name
     }
 
-    /// Version of the classifier. Another version gives other results.
+    /// Version of the classifier. Results of different versions are kept apart.
     pub fn version(&self) -> &'static str {
         &self.0.version
     }
@@ -229,14 +229,14 @@ impl PartialOrd for Foreign {
     }
 }
 
-/// The text is part of the names of work items: `Foreign(mine@1)`.
+/// Writes the name and the version, as in the names of work items: `Foreign(mine@1)`.
 impl fmt::Debug for Foreign {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{self}")
     }
 }
 
-/// The text in a study file: `mine@1`.
+/// Writes the name and the version, as in a study file: `mine@1`.
 impl fmt::Display for Foreign {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{}@{}", self.name(), self.version())
@@ -254,7 +254,7 @@ impl Serialize for Foreign {
 pub struct Provided {
     foreign: Foreign,
     classifier: Arc<dyn ForeignClassifier>,
-    /// The value is dropped on the thread that created it.
+    /// Marker that prevents the value from leaving the thread that created it.
     of_thread: PhantomData<*const ()>,
 }
 
@@ -272,7 +272,7 @@ impl Drop for Provided {
     }
 }
 
-/// Trained foreign model with checks of its answers.
+/// Trained foreign model whose predictions are checked.
 struct ForeignClassModel {
     foreign: Foreign,
     classes: Vec<usize>,
@@ -289,7 +289,7 @@ impl fmt::Debug for ForeignClassModel {
 }
 
 impl ForeignClassModel {
-    /// Returns the place of each predicted label among the classes.
+    /// Returns the index of each predicted label in the list of classes.
     fn places(&self, features: ArrayView2<f64>) -> Result<Vec<usize>> {
         check_width(&features, self.n_features)?;
         let labels = self.model.predict(features)?;
@@ -349,14 +349,14 @@ impl ClassModel for ForeignClassModel {
     }
 }
 
-/// [`ForeignClassifier`] that is made of parameters with linfa's `Fit`, whose models implement `PredictInplace`. The parameters contain their own seed.
+/// [`ForeignClassifier`] for parameters that implement linfa's `Fit` and whose models implement `PredictInplace`. The parameters contain their own seed.
 pub struct LinfaClassifier<P, E> {
     params: P,
     error: PhantomData<fn() -> E>,
 }
 
 impl<P, E> LinfaClassifier<P, E> {
-    /// Creates a classifier of linfa's parameters.
+    /// Creates a classifier from parameters that implement linfa's `Fit`.
     pub fn new(params: P) -> Self {
         Self {
             params,

@@ -64,7 +64,7 @@ fn a_foreign_classifier_gives_the_labels_and_scores_of_its_code() {
     let theirs = trained(foreign).unwrap();
     let rows = data.records.view();
     assert_eq!(theirs.labels(rows).unwrap(), ours.labels(rows).unwrap());
-    // Three touches of one object together: the prior counts once.
+    // In a decision on three touches of one object, the prior counts once.
     let [ours, theirs] = [ours, theirs].map(|model| {
         let scores = model.scores(rows).unwrap();
         let sums = Array2::from_shape_fn((20, 3), |(row, class)| {

@@ -22,7 +22,7 @@ pub enum Source {
     Drawn(Draw),
     /// The map is learned from frames of training touches.
     Learned(Learn),
-    /// Earlier readings of a frame decide which readings follow. The map is not linear; it returns an estimate of the frame, one value per taxel.
+    /// Adapted to each frame: earlier readings determine the later readings. The map is not linear; it returns an estimate of the frame, one value per taxel.
     Adaptive(Adapt),
 }
 
@@ -126,14 +126,14 @@ impl Ensemble {
         matches!(self.about().source, Source::Drawn(_))
     }
 
-    /// Returns whether a measured frame is a frame again, with one value per taxel: each taxel is measured, or an adaptive readout estimates it.
+    /// Returns whether a measured frame has one value per taxel: each taxel is measured, or an adaptive readout estimates it.
     pub fn gives_frames(self) -> bool {
         let about = self.about();
         about.is_whole_frame || matches!(about.source, Source::Adaptive(_))
     }
 
-    /// Returns the number of values of a measured frame for n taxels and a requested number m of measurements. The result is n if the values are a frame again,
-    /// otherwise m.
+    /// Returns the number of values of a measured frame for n taxels and a requested number m of measurements. The result is n if the ensemble gives one
+    /// value per taxel, otherwise m.
     pub fn n_measurements(self, m: usize, n: usize) -> usize {
         match self.gives_frames() {
             true => n,

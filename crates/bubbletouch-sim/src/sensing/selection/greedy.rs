@@ -20,7 +20,7 @@ const MAX_FRAMES: usize = 1024;
 
 /// Maximum number of candidates of a step. If more taxels are left, the candidates of each step are drawn at random (stochastic greedy; Mirzasoleiman et al. 2015,
 /// *Lazier than lazy greedy*, AAAI). A step then misses the best 1 % of the taxels with a probability of 0.99²⁵⁶ = 8 %. With more candidates, the selection takes
-/// longer; with fewer, it is closer to a random one.
+/// longer; with fewer, it is closer to a random selection.
 const MAX_CANDIDATES: usize = 256;
 
 /// Number of distances that are compared together, one per lane of vector registers.
@@ -52,7 +52,7 @@ pub(crate) fn greedy_taxels(
         let scores = candidates.into_par_iter();
         let scores = scores.map(|place| (place, validated.score(left[place])));
         let scores: Vec<(usize, Score)> = scores.collect();
-        // The first of equal candidates.
+        // Among equal candidates, the first is selected.
         let best = scores
             .into_iter()
             .reduce(|a, b| if b.1 > a.1 { b } else { a });
@@ -66,14 +66,14 @@ pub(crate) fn greedy_taxels(
     Ok(selected)
 }
 
-/// Number of correct frames, then the sum of their margins.
+/// Score of a set of taxels: number of correct frames, then the sum of margins.
 type Score = (usize, f64);
 
 /// Validated frames with the distances of all pairs in the selected taxels.
 struct Validated {
     /// Standardised readings of each taxel, shape (n_taxels, n_frames); frames are ordered by class.
     readings: Array2<f32>,
-    /// Range of the frames of the own class, for each frame.
+    /// Range of the frames that have the class of a frame, for each frame.
     own: Vec<Range<usize>>,
     /// Squared distances dᵢⱼ, shape (n_frames, n_frames); infinite for frames of one group.
     distances: Array2<f32>,

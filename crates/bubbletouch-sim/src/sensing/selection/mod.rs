@@ -1,4 +1,4 @@
-//! Selection of taxels: which m of the n taxels to read, chosen on frames of training touches.
+//! Selection of the m taxels to read among n taxels, on frames of training touches.
 //!
 //! | method | taxels | uses labels |
 //! |---|---|---|
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Selection {
-    /// Forward selection. Each step adds the taxel with which a nearest-neighbour classifier decides most training touches correctly, each validated against the
+    /// Forward selection. Each step adds the taxel with which a nearest-neighbour classifier recognises most training touches. Each touch is compared with the
     /// touches of other groups.
     #[default]
     Greedy,

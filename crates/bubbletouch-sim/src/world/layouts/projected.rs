@@ -180,7 +180,8 @@ mod tests {
             let place = grid_from_mesh.transform_point(*center);
             let expected = DVec2::new(GRID.x(column), GRID.y(row));
             assert!((place.truncate() - expected).length() < 1e-15);
-            // A facet of 60 around a circle is at most 0.14 % of the radius inside, and 3° steep; twice as much along diagonals.
+            // With 60 facets around a circle, a facet is at most 0.14 % of the radius inside, and inclined by at most 3°; along diagonals, both are twice as
+            // large.
             assert!((center.length() / radius - 1.0).abs() < 3e-3);
             let axis = projected.layout.axes()[taxel];
             assert!(axis.dot(center.normalize()) > 0.997, "{axis}");
@@ -201,7 +202,7 @@ mod tests {
         );
         assert_eq!(dropped.layout.sides(), None);
         assert_eq!(dropped.pixels[4], [1, 0]);
-        // A grid inside the cube meets only inner sides of faces, and one below the cube meets nothing.
+        // A grid inside the cube meets only inner sides of faces. A grid below the cube meets no face.
         for height in [0.0, -0.03] {
             let pose = Pose::from_translation(height * DVec3::Z);
             let error = Layout::projected(&cube(), &pose, &GRID, MissingTaxels::Drop);

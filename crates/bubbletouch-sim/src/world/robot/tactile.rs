@@ -143,7 +143,7 @@ fn read_sensor(tactile: Element, place: &Place) -> Result<TactileSensor> {
     })
 }
 
-/// Returns the radius of the sphere that describes the shape of a taxel, metres; `None` if its shape is another one or unknown.
+/// Returns the radius of the sphere that describes the shape of a taxel, metres; `None` if the shape is no sphere or unknown.
 fn sphere_radius(taxel: Element) -> Result<Option<f64>> {
     let Some(geometry) = taxel.child("geometry")? else {
         return Ok(None);

@@ -90,7 +90,7 @@ fn read_parts(root: Element) -> Result<Parts> {
     Ok((name.to_owned(), links, joints, tree, drives))
 }
 
-/// Returns the elements with a tag, without repeated ones: elements with the name and the `meaning` of an earlier element. Repeated elements become notes.
+/// Returns the elements with a tag, without repeated elements, which have the name and the `meaning` of an earlier element. Repeated elements become notes.
 fn distinct<'a>(
     root: Element<'a>,
     tag: &'a str,
@@ -154,7 +154,7 @@ fn add_missing_parent<'a>(
     });
 }
 
-/// Joins each further link that no joint moves to the first one, by a fixed joint without offset, as MuJoCo does.
+/// Adds a fixed joint without offset from the first link without a joint to each further link without a joint, as MuJoCo does.
 fn join_roots<'a>(
     root: Element<'a>,
     links: &[Link],

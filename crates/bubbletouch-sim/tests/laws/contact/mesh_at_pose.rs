@@ -40,7 +40,7 @@ fn random_mesh(rng: &mut impl Rng, kind: u64) -> TriangleMesh {
         1 => icosphere(size, rng.gen_range(0..4)),
         2 => TriangleMesh::cylinder("c", size, size, tolerance).unwrap(),
         3 => TriangleMesh::ellipsoid("e", size * DVec3::new(1.0, 0.5, 0.2), tolerance).unwrap(),
-        // The corners of half of the triangles are exchanged: no side of the surface is the outer side.
+        // The corners of half of the triangles are exchanged, so the surface has no outer side.
         4 => {
             let ball = icosphere(size, 2);
             let turned = |(k, face): (usize, &[u32; 3])| match k % 2 {

@@ -54,7 +54,7 @@ fn a_capsule_without_length_is_a_sphere() {
         let mut rng = rng("capsule as ball", case);
         let radius = rng.gen_range(1e-3..2e-2);
         let capsule: Model = MeshModel::capsule(radius, 0.0).unwrap().into();
-        // Also through the skin and behind the substrate.
+        // The poses include objects that cross the skin or lie behind the substrate.
         let distance = rng.gen_range(0.0..2.5e-2);
         let pose = random_pose(&mut rng, distance);
         for patch in [grid(), fingertip(TAXEL)] {
@@ -90,7 +90,7 @@ fn a_capsule_is_the_spheres_along_its_segment() {
             at_pose(&patch, &spheres, &pose),
         );
         for (found, below) in found.iter().zip(&below) {
-            // Spheres at a distance d are at most d² / 8 (ρ + R) above the capsule that they sample, along its normal; a steep contact multiplies that.
+            // Spheres at a distance d differ from the capsule by at most d² / 8 (ρ + R) along its normal. At a steep contact, the deflection differs more.
             assert!(found >= &(below - 1e-14), "case {case}: {found} {below}");
             let missing = (length / (N - 1) as f64).powi(2) / (8.0 * (radius + TAXEL.radius));
             let is_steep = found - below > 30.0 * missing;
