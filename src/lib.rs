@@ -2,8 +2,8 @@
 //!
 //! # Glossary
 //!
-//! `bubbletouch_sim` defines the words of the simulation (taxel, patch, touch, press, frame, measurement, feature, scene), and `bubbletouch_svm` those of
-//! learning (row, split, group, fold, kernel). The words of studies are:
+//! `bubbletouch_sim` defines the words of the simulation (taxel, patch, touch, press, frame, measurement, feature, scene). `bubbletouch_svm` defines the words
+//! of learning (row, split, group, fold, kernel). The words of studies are:
 //!
 //! | word | meaning |
 //! |---|---|

@@ -427,8 +427,8 @@ fn without_test(key: &str) -> &str {
     key.strip_prefix(OF_TESTS).unwrap_or(key)
 }
 
-/// Minimum ratio of the largest to the smallest value of a swept key for which charts use a logarithmic axis. With a larger value, the small values of a sweep
-/// by powers of two overlap on a linear axis; with a smaller value, evenly spaced values are drawn unevenly. Zero is drawn separately.
+/// Minimum ratio of the largest to the smallest value of a swept key for which charts use a logarithmic axis. If larger, the small values of a sweep by
+/// powers of two overlap on a linear axis. If smaller, evenly spaced values are drawn unevenly. Zero is drawn separately.
 const LOG_FROM: f64 = 16.0;
 
 /// Returns whether two TOML values are equal; an integer and a float of the same size count as equal.

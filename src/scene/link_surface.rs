@@ -26,8 +26,8 @@ pub struct LinkSurface<'a> {
     pub role: Option<ShapeRole>,
 }
 
-/// Returns the surface of the shapes of a robot link as a mesh in the link's frame. Round shapes are divided into facets that are fine enough for taxels at this
-/// pitch (metres).
+/// Returns the surface of the shapes of a robot link as a mesh in the link's frame. Round shapes are divided into facets that are fine enough for taxels at
+/// this pitch (metres).
 ///
 /// # Errors
 /// If the robot has no such link, the link has no such shapes, or the mesh of a shape cannot be read.
@@ -96,8 +96,8 @@ fn kind(role: Option<ShapeRole>) -> &'static str {
     }
 }
 
-/// Reads a mesh file of a link, moves it by `mesh_from_file`, and multiplies the coordinates by `scale`. If the scale mirrors the mesh, its triangles are turned,
-/// so that they still face outwards.
+/// Reads a mesh file of a link, moves it by `mesh_from_file`, and multiplies the coordinates by `scale`. If the scale mirrors the mesh, its triangles are
+/// turned, so that they still face outwards.
 fn read_link_mesh(path: &Path, mesh_from_file: &Pose, scale: DVec3) -> Result<TriangleMesh> {
     let (mesh, orientation) = read_mesh(path, None, &SizeLimits::ANY, None)?;
     let place = path.display().to_string();

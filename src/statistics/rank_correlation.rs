@@ -32,7 +32,7 @@ pub fn kendall(pairs: &[[f64; 2]]) -> Option<f64> {
 }
 
 /// Minimum number of configurations for a correct coverage of [`kendall_interval`]. With five configurations, the 95 % interval covers a τ of 0 in 98 %, of 0.6
-/// in 87 %, and of 0.8 in 63 % of cases, because resamples of few configurations in nearly equal order hardly differ.
+/// in 87 %, and of 0.8 in 63 % of cases. The coverage is low because resamples of few configurations in nearly equal order hardly differ.
 pub const SUFFICIENT_SETTINGS: usize = 10;
 
 /// Returns the percentile bootstrap interval of Kendall's rank correlation τ_b over configurations; `None` if no resample has a τ_b. Source: Efron and

@@ -1,5 +1,5 @@
-//! Features, frames per touch, decisions on several touches, and the choice of C and γ: compared with a slow pipeline that processes one touch after the other,
-//! and with laws.
+//! Tests of features, frames per touch, decisions on several touches, and the choice of C and γ. The results are compared with laws and with a slow pipeline
+//! that processes one touch after the other.
 
 use crate::study::{Study, trials_of};
 use bubbletouch::contact::{Workspace, press_to_depth};

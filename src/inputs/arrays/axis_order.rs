@@ -1,7 +1,7 @@
 //! Axis order of recorded frames: touches, time, and positions on the skin.
 //!
 //! An order is a string with one letter per axis of the file: `n` touches, `t` frames of a touch, `y` rows, and `x` columns. If the order
-//! contains `y` and `x`, `c` is the axis of a taxel's values; otherwise `c` is the axis of the taxels of a skin without rows and columns. Several axes `c`
+//! contains `y` and `x`, `c` is the axis of a taxel's values. Otherwise `c` is the axis of the taxels of a skin without rows and columns. Several axes `c`
 //! without `y` and `x` are combined to one axis of taxels.
 
 use crate::error::{Error, Result};

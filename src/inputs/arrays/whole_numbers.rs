@@ -119,8 +119,8 @@ pub fn group_keys(values: &[KeyValue]) -> Vec<usize> {
 /// Reads row numbers from a file that contains integers, or a mask with one truth value per row.
 ///
 /// # Errors
-/// If the file does not exist or contains other data, a row does not exist (the error names its position), or the length of the mask differs from the number
-/// of rows.
+/// If the file does not exist or contains other data. If a row does not exist (the error contains its position), or the length of the mask differs from the
+/// number of rows.
 pub fn read_rows(path: &Path, name: &str, n_rows: usize) -> Result<Vec<usize>> {
     const ALLOWED: &str =
         "one dimension of int8 to int64 or uint8 to uint64, or a bool for each row of features";

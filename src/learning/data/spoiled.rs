@@ -42,8 +42,8 @@ pub fn mislabelled(labels: ArrayView1<usize>, fraction: f64, seed: &Seed) -> Res
 }
 
 /// Returns a split with imbalanced training classes, whose sizes form a geometric sequence. Source: Cui et al., *Class-balanced loss based on effective number
-/// of samples*, 2019. The K classes are put in random order. Class r (from 0) keeps its first n · ratio^(−r / (K − 1)) training rows, rounded, where n is the
-/// smallest number of training rows of any class. The first class therefore has `ratio` times as many rows as the last class. The test rows are unchanged.
+/// of samples*, 2019. The K classes are put in random order. Let n be the smallest number of training rows of any class. Class r (from 0) keeps its first
+/// n · ratio^(−r / (K − 1)) training rows, rounded. The first class therefore has `ratio` times as many rows as the last class. The test rows are unchanged.
 ///
 /// # Errors
 /// If the ratio is below 1 or not finite, or leaves a class without a row (above 2 n).

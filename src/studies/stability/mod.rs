@@ -14,8 +14,8 @@
 //! - **deflection error**: Σ |δ − δ\*| / Σ δ\* at this time. For an imposed motion, the error also includes the time after the release, when all deflections
 //!   must be zero.
 //! - **outcome**: [`right`](Outcome::Right) if both errors are at most [`TOLERANCE`], otherwise [`inaccurate`](Outcome::Inaccurate). A simulation fails if a
-//!   number is not finite, if the energy exceeds the energy of the scene, or if contact is missed (deflections below half of the expected ones, or the ball
-//!   below the stops).
+//!   number is not finite, the energy exceeds the energy of the scene, or contact is missed. Contact is missed if deflections are below half of the expected
+//!   values, or the ball is below the stops.
 //!
 //! Dynamic methods run until the slowest motion of a scene has decayed to 5e-5, and for at least [`LEAST_STEPS`] steps and half a second.
 

@@ -171,8 +171,8 @@ impl SurfacePatch {
         [self.cell(cell.low, left), self.cell(right, cell.high)]
     }
 
-    /// Creates the cell between two corners of the parameter rectangle, and computes its bulge. The difference between a map and its bilinear interpolant at
-    /// the corners is at most 1/8 of the squared side times the second derivative, summed over the two sides. The interpolant lies in the convex hull of the
+    /// Creates the cell between two corners of the parameter rectangle, and computes its bulge. A map differs from its bilinear interpolant at the corners
+    /// by at most Σ a² |f''| / 8, summed over the two sides a with the second derivatives f'' along them. The interpolant lies in the convex hull of the
     /// corners.
     fn cell(&self, low: DVec2, high: DVec2) -> PatchCell {
         let squared = (high - low) * (high - low);

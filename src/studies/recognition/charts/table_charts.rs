@@ -271,8 +271,8 @@ fn confusion_chart(configurations: &Table, confusion: &Table) -> Option<ChartSpe
     })
 }
 
-/// Returns charts of the positions of the selected taxels. Colours show the method, panels show the first condition, and each combination of the other settings has
-/// its own chart.
+/// Returns charts of the positions of the selected taxels. Colours show the method, panels show the first condition, and each combination of the other settings
+/// has its own chart.
 fn selected_charts(selected: &Table) -> Vec<ChartSpec> {
     let rows: Vec<usize> = (0..selected.n_rows).collect();
     let has_place = |row: &usize| selected.number("x_mm", *row).is_finite();

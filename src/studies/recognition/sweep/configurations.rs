@@ -77,7 +77,7 @@ pub struct StudyPart {
     pub plan: Plan,
     /// Training touches of the part; parts with equal touches share them.
     pub touched: Arc<dyn TouchSet + Send>,
-    /// Test touches of the part, numbered like the training touches. Unless the study has `[test]`, they are the training touches themselves.
+    /// Test touches of the part, with the numbers of the training touches. Unless the study has `[test]`, they are the training touches themselves.
     pub tested: Arc<dyn TouchSet + Send>,
     /// Splits and configurations for this combination of axis values.
     pub sweep: Sweep,

@@ -160,8 +160,8 @@ mod tests {
     const N: usize = 20_000;
     const ROWS: u64 = 400;
 
-    /// Returns statistics of many drawn rows. The four numbers are the mean and variance of the entries per row, the fraction of positive entries, and the
-    /// number of adjacent pairs; the ten numbers are the entries in each tenth of the taxels.
+    /// Returns statistics of many drawn rows. The first array contains the mean and variance of the entries per row, the fraction of positive entries, and the
+    /// number of adjacent pairs. The second array contains the number of entries in each tenth of the taxels.
     fn counts(draw: fn(usize, f64, &Seed) -> Row) -> ([f64; 4], [f64; 10]) {
         let density = 1.0 / (N as f64).sqrt();
         let (mut sizes, mut n_plus, mut n_pairs, mut tenths) = (Vec::new(), 0, 0, [0.0; 10]);

@@ -18,9 +18,9 @@ use std::ops::Range;
 /// Maximum number of validated frames. With more frames, the accuracy is more precise; time and memory grow with the square of the number.
 const MAX_FRAMES: usize = 1024;
 
-/// Maximum number of candidates of a step. If more taxels are left, the candidates of each step are drawn at random (stochastic greedy; Mirzasoleiman et al. 2015,
-/// *Lazier than lazy greedy*, AAAI). A step then misses the best 1 % of the taxels with a probability of 0.99²⁵⁶ = 8 %. With more candidates, the selection takes
-/// longer; with fewer, it is closer to a random selection.
+/// Maximum number of candidates of a step. If more taxels are left, the candidates of each step are drawn at random (stochastic greedy; Mirzasoleiman et al.
+/// 2015, *Lazier than lazy greedy*, AAAI). A step then misses the best 1 % of the taxels with a probability of 0.99²⁵⁶ = 8 %. With more candidates, the
+/// selection takes longer; with fewer, it is closer to a random selection.
 const MAX_CANDIDATES: usize = 256;
 
 /// Number of distances that are compared together, one per lane of vector registers.
@@ -161,8 +161,8 @@ fn nearest(distances: &[f32], readings: &[f32], reading: f32) -> f32 {
     lanes.into_iter().chain(rest).fold(f32::INFINITY, f32::min)
 }
 
-/// Returns the readings of each taxel in the given order of frames, shape (n_taxels, n_frames), divided by their standard deviation about the mean. The readings
-/// of a taxel that are all equal become 0.
+/// Returns the readings of each taxel in the given order of frames, shape (n_taxels, n_frames), divided by their standard deviation about the mean. The
+/// readings of a taxel that are all equal become 0.
 fn standardised(frames: ArrayView2<f64>, order: &[usize]) -> Array2<f32> {
     let mut readings = Array2::zeros((frames.ncols(), order.len()));
     let taxels = frames.axis_iter(Axis(1));

@@ -11,8 +11,8 @@ use crate::world::robot::{Dimension, Limits};
 const SLACK: f64 = 1e-6;
 
 /// Checks the limits of all joints that have one coordinate; `curves` are the robot's positions over time. Returns a note for each mimicking joint that
-/// leaves its own limits: such a joint follows its `<mimic>`. Joints that stay at their default position are not checked: MuJoCo's `qpos0` can be outside the
-/// range.
+/// leaves its own limits, because a mimicking joint follows its `<mimic>`. Joints that stay at their default position are not checked, because MuJoCo's `qpos0`
+/// can be outside the range.
 ///
 /// # Errors
 /// If a joint that mimics no other joint leaves its limits; the error contains the first such joint and its largest violation.
