@@ -1,8 +1,8 @@
 //! Audit of a data set: tests whether recorded frames with labels support a claim about recognition.
 //!
 //! Each check is a file of [`checks`] with a constant `ABOUT`; its name in the list [`checks::CHECKS`] adds it to the audit. A check returns findings with a
-//! number, a p-value or a count, one sentence, and advice. The p-values of all findings are corrected together (Holm), so that an audit of faultless data
-//! reports a fault with a probability of at most 5 %.
+//! number, a p-value or a count, one sentence, and advice. The p-values of all findings are corrected together (Holm). The probability that an audit of
+//! faultless data reports a fault is therefore at most 5 %.
 //!
 //! Statistics of frames are in `bubbletouch_sim::audit`. Statistics of labelled rows are in `bubbletouch_svm::audit`.
 

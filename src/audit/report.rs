@@ -138,7 +138,8 @@ fn title_of(finding: &Finding) -> String {
     }
 }
 
-/// Returns the text of an audit for the terminal, wrapped at `width` characters: faults and notes with advice, then the names of the other checks.
+/// Returns the text of an audit for the terminal, wrapped at `width` characters. The text contains faults and notes with advice, then the names of the other
+/// checks.
 pub fn audit_text(findings: &[Finding], width: usize) -> String {
     let mut text = paragraph(&answers(findings)[0], width);
     for finding in by_verdict(findings) {

@@ -60,7 +60,7 @@ pub struct Scores {
     pub distances: Vec<Vec<f64>>,
     /// Indices of the nearest touches of each touch by shift-invariant features; `None` without a grid.
     pub invariant_neighbours: Option<Vec<Vec<usize>>>,
-    /// Nearest touch outside the own fold of the random split, by blocks.
+    /// Nearest touch in another fold of the random split, by blocks.
     pub nearest_outside: Vec<Option<usize>>,
 }
 

@@ -304,7 +304,7 @@ fn with_lines(lines: &[(&str, &str)]) -> String {
     study.replace("[axes]\n\n", "")
 }
 
-/// Keys that have an effect only beside other keys: lines that are refused, words of the error, and further lines with which the study is valid.
+/// Keys that have an effect only with other keys. Each entry contains refused lines, words of the error, and further lines that make the study valid.
 #[test]
 fn a_key_that_has_an_effect_only_beside_others_is_refused_without_them() {
     let case = Case::new();

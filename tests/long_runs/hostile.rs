@@ -166,7 +166,7 @@ fn values() -> Vec<Value> {
     values
 }
 
-/// Returns copies of the text, each with another value at one place: every key of the text, and every other key that the reader accepts.
+/// Returns copies of the text, each with another value of one key. The keys are the keys of the text and all other keys that the reader accepts.
 fn mutations(file: &File) -> Vec<(String, String)> {
     let table: Table = file.text.parse().unwrap();
     let mut found = Vec::new();

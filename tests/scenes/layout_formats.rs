@@ -1,4 +1,4 @@
-//! Laws of all formats of layout files: a layout that is written and read again is the same layout, and a damaged file is refused with its row.
+//! Laws of all formats of layout files. A layout that is written and read again is unchanged. The error for a damaged file contains the row.
 
 use bubbletouch::inputs::layout_file::{LayoutFile, LayoutFormat, LayoutOptions};
 use bubbletouch::mesh::TriangleMesh;

@@ -177,7 +177,7 @@ fn faults(findings: &[Finding]) -> BTreeSet<&'static str> {
     faults.map(|finding| finding.check).collect()
 }
 
-/// Fault of the test: the check that finds the fault, other checks that it affects, and the function that adds it with strength 0, 1 or 2.
+/// Fault of the test: the check that finds it, other checks that it affects, and the function that adds it with strength 0, 1 or 2.
 struct Plant {
     check: &'static str,
     entails: &'static [&'static str],

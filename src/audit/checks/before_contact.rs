@@ -63,7 +63,8 @@ fn rows(context: &Context) -> Option<Array2<f64>> {
     (rows.ncols() > 0).then_some(rows)
 }
 
-/// Returns the first or the last frame of the sampled touches, whichever varies less within classes, and its readings less the means of their classes.
+/// Returns the readings of the sampled touches in the first or the last frame, whichever varies less within classes. Also returns these readings less the means
+/// of their classes.
 fn quietest_frame(context: &Context) -> Option<(Array2<f64>, Array2<f64>)> {
     let n_frames = context.data.n_frames;
     let ends = [0, n_frames - 1].into_iter().filter(|_| n_frames > 1);

@@ -1,4 +1,5 @@
-//! Conversion between decimal numbers of millimetres in files and metres, rounded only once, so that a layout keeps its bits when it is written and read again.
+//! Conversion between decimal numbers of millimetres in files and metres. Numbers are rounded only once, so a layout keeps its bits when it is written and read
+//! again.
 
 /// Converts a decimal number of millimetres to metres; returns `None` if the text is no finite number.
 pub(super) fn metres(mm: &str) -> Option<f64> {

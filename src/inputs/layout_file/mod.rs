@@ -136,7 +136,7 @@ impl LayoutFile {
     /// Creates the content of a layout file from positions (metres) and normals of any length.
     ///
     /// # Errors
-    /// If there are no positions, the numbers of positions and normals differ, or a position or normal is invalid; the error contains the row, from 1.
+    /// If there are no positions, or the numbers of positions and normals differ. If a position or normal is invalid; the error contains the row, from 1.
     pub fn from_points(place: &str, positions: Vec<DVec3>, normals: Vec<DVec3>) -> Result<Self> {
         if positions.len() != normals.len() {
             let given = format!("{} positions, {} normals", positions.len(), normals.len());
@@ -175,7 +175,8 @@ impl LayoutFile {
         }
     }
 
-    /// Returns the row and column of each taxel in an image: of the layout file, or of a layout that is numbered row by row. Returns `None` if there is none.
+    /// Returns the row and column of each taxel in the image of the layout file, or of a layout that is numbered row by row. Returns `None` if there is no
+    /// image.
     pub fn image(&self) -> Option<Vec<[usize; 2]>> {
         let by_rows = |[_, n_columns]: [usize; 2]| {
             let taxels = 0..self.layout.n_taxels();

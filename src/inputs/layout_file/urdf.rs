@@ -61,8 +61,8 @@ pub(super) fn read(place: &str, text: &str, sensor: Option<&str>) -> Result<Layo
 /// Position (metres) and normal of a taxel in the frame of its link.
 type Taxel = (DVec3, DVec3);
 
-/// Returns the taxels of each link in file order; a taxel is connected to its link by three prismatic joints along x, y and z. The normal of a taxel is the
-/// axis of the third joint. If one chain of prismatic joints on a link is a taxel and another chain is not, the link has an error.
+/// Returns the taxels of each link in file order. Three prismatic joints along x, y and z connect a taxel to its link. The normal of a taxel is the axis of the
+/// third joint. If one chain of prismatic joints on a link is a taxel and another chain is not, the link has an error.
 fn prismatic_taxels(place: &str, robot: &Robot) -> BTreeMap<String, Result<Vec<Taxel>>> {
     let joints = robot.joints();
     let is_slide = |kind: JointKind| kind == JointKind::Prismatic;
@@ -124,7 +124,7 @@ fn taxel_of_chain(chain: &[&Joint]) -> std::result::Result<Taxel, String> {
     }
 }
 
-/// Returns the layout as the text of a URDF file with one tactile sensor, whose taxels have their z axes along the normals, and spheres of their radii.
+/// Returns the layout as the text of a URDF file with one tactile sensor. Taxels have their z axes along the normals, and are spheres of their radii.
 pub(super) fn written(file: &LayoutFile, name: &str) -> String {
     let name = escape(name);
     let link = file.link.as_deref().map_or(name.clone(), escape);

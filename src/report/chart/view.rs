@@ -361,8 +361,8 @@ impl Groups {
     }
 }
 
-/// Returns the values of a numeric setting in the given rows. For a setting of words, returns the index of each row's word and the words, in the order of
-/// `first`, then in the order of the table.
+/// Returns the values of a numeric setting in the given rows. For a setting of words, returns the index of each row's word, and the list of words. The words
+/// are in the order of `first`, then in the order of the table.
 fn values(one: &Setting, rows: &[usize], first: &[String]) -> (Vec<f64>, Vec<String>) {
     let (levels, codes) = match one.data {
         Data::Numbers(numbers) => {

@@ -12,11 +12,11 @@ const DIMENSION_ERRORS: f64 = 2.0;
 /// Minimum number of rows from which a dimension is estimated.
 const MIN_ROWS: usize = 10;
 
-/// Tests each row for a near-duplicate and returns its p-value: the probability of a nearest row that is at least as near as its nearest row.
+/// Tests each row for a near-duplicate. Returns the p-value of each row: the probability that, by chance, the nearest row is at least as near as observed.
 ///
 /// `distances` contains the ascending distances of each row to its k nearest rows, k ≥ 2. The dimension is estimated for each class of `labels` and reduced
-/// by two standard errors. Rows for which `is_tested` is false, such as rows without contact, and rows of classes with fewer than ten tested rows have the
-/// p-value 1. Returns `None` if no class has ten tested rows.
+/// by two standard errors. A row has the p-value 1 if `is_tested` is false, as for rows without contact, or if its class has fewer than ten tested rows.
+/// Returns `None` if no class has ten tested rows.
 pub fn test_duplicates(
     distances: &[Vec<f64>],
     is_tested: &[bool],

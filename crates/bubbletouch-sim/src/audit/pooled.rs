@@ -1,4 +1,4 @@
-//! Few numbers that represent a touch for a cheap classifier: means of blocks of taxels and of spans of frames.
+//! Reduced representation of a touch for a cheap classifier: means over blocks of taxels and spans of frames.
 
 use crate::random::Seed;
 use ndarray::{Array2, ArrayView2, s};
@@ -7,8 +7,8 @@ use rand::Rng;
 /// Maximum number of spans into which the frames of a touch are divided.
 const MAX_SPANS: usize = 8;
 
-/// Returns the touches' frames, averaged over at most eight spans of time and over blocks of taxels, shape (n_touches, n_values) with at most `max_values`
-/// numbers per touch. Blocks are squares on a grid of taxels. Many taxels without a grid are projected by random signs, which keeps distances.
+/// Averages the frames of each touch over at most eight spans of time and over blocks of taxels. Returns an array of shape (n_touches, n_values) with n_values
+/// ≤ `max_values`. Blocks are squares on a grid of taxels. Many taxels without a grid are projected by random signs, which keeps distances.
 ///
 /// # Panics
 /// If the number of frames is no multiple of `n_frames`, or a frame has other taxels than the grid.

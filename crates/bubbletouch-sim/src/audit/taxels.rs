@@ -82,8 +82,8 @@ pub fn taxel_readings(frames: ArrayView2<f64>) -> Vec<TaxelReadings> {
     all
 }
 
-/// Returns the readings of taxels at rest: each reading, but at most as far above the taxel's median as its 10 % quantile is below. Readings of contact are
-/// cut, while noise and changes of the level remain if contact is in fewer than half of the rows.
+/// Returns readings with contact removed. Each reading is clipped at the taxel's median plus the distance from its 10 % quantile to its median. If fewer than
+/// half of the rows have contact, readings of contact are clipped, while noise and changes of the level remain.
 pub fn rest_readings(rows: ArrayView2<f64>) -> Array2<f64> {
     let mut rest = rows.to_owned();
     for mut readings in rest.columns_mut() {

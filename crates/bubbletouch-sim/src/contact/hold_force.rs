@@ -35,9 +35,10 @@ impl MovedObject<'_> {
     /// Moves the object until the springs of the patch together carry `force` newtons, due to all objects. The accuracy is a relative 1e-13 or the last bit
     /// of the travel.
     ///
-    /// `poses` contains one `patch_from_object` per object; the moved object's pose is its pose at a travel of 0, and afterwards its pose at the last press.
-    /// `travels`, metres, ascending, contains the lower limit, the present travel, and the upper limit. If the force is not reached between the limits, the
-    /// object moves to the nearer limit. If the total force jumps past `force` at some travel, the side of the jump with the larger force is returned.
+    /// `poses` contains one `patch_from_object` per object. The pose of the moved object is initially its pose at a travel of 0, and finally its pose at the
+    /// last press. `travels`, metres, ascending, contains the lower limit, the present travel, and the upper limit. If the force is not reached between the
+    /// limits, the object moves to the nearer limit. If the total force jumps past `force` at some travel, the side of the jump with the larger force is
+    /// returned.
     ///
     /// # Panics
     /// If the number of poses differs from the number of objects, or `moving` is not the index of an object.

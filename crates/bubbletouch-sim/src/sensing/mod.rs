@@ -38,8 +38,8 @@
 //! | [`Lasso`] (FISTA) | argmin ½‖y − Aα‖² + λ‖α‖₁ | steps × 2 min(k², 2mk) |
 //! | [`Lmmse`] | E Aᵀ(A E Aᵀ + (τ + σ²)ΦΦᵀ)⁻¹ y, E and τ from training frames | min(mn, k(m + n)) |
 //!
-//! **Noise.** Noise is added on the taxels, before Φ: y = Φ(x + noise). A measurement therefore has the noise σ times the norm of its row
-//! for any number of measurements, and full sampling gives the noisy frame itself.
+//! **Noise.** Noise is added on the taxels, before Φ: y = Φ(x + noise). For any number of measurements, the noise of a measurement is therefore σ times the
+//! norm of its row. Full sampling gives the noisy frame itself.
 //!
 //! The possible accuracy for a pair of Φ and Ψ is bounded by its [`Coherence`] and restricted isometry
 //! ([`SensedDictionary::isometry`]).

@@ -149,7 +149,7 @@ impl Projection {
         self.operator.each_entry(&mut visit);
     }
 
-    /// Returns the root mean square norm of the rows of the matrix Φ, which is the gain from the noise of taxels to the noise of measurements.
+    /// Returns the root mean square norm of the rows of the matrix Φ. This norm equals the noise of measurements divided by the noise of taxels.
     pub fn row_norm(&self) -> f64 {
         self.operator.row_norm()
     }

@@ -93,7 +93,7 @@ impl TaxelArray {
         self.layout
     }
 
-    /// Returns the position of the taxel of a frame value along x and y of the array, mm; `None` if the positions of the taxels are unknown.
+    /// Returns the position of the taxel that belongs to a frame value, along x and y of the array, mm; `None` if the positions are unknown.
     pub fn place_mm(&self, value: usize) -> Option<[f64; 2]> {
         let center = self.patch.layout().centers()[value % self.n_taxels()];
         self.is_placed

@@ -131,8 +131,8 @@ fn cover(range: &mut Range<usize>, part: Range<usize>) {
     };
 }
 
-/// Maximum number of candidate taxels of a node or triangle up to which the search tests whether all of them are already stopped below it. If larger, tests
-/// are wasted on large triangles; if smaller, small triangles are evaluated needlessly.
+/// Maximum number of candidate taxels of a node or triangle for which the search tests whether all are already stopped below it. If larger, tests are wasted on
+/// large triangles; if smaller, small triangles are evaluated needlessly.
 const FEW: usize = 4;
 
 /// Distance by which a face extends beyond its sides, relative to the radius of a taxel. Sides between triangles in one plane are not evaluated. The extension
@@ -396,7 +396,8 @@ impl Sweep<'_> {
         }
     }
 
-    /// Lowers the heights of the taxels of a rectangle to the heights at which a triangle stops them, unless its far side is behind their substrates.
+    /// Lowers the heights of the taxels of a rectangle to the heights at which a triangle stops them. Taxels are skipped if the far side of the triangle is
+    /// behind their substrates.
     #[cold]
     #[inline(never)]
     fn lower_by_rule(&mut self, triangle: &Triangle, [columns, rows]: [Range<usize>; 2]) {

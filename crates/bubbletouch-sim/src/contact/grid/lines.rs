@@ -3,7 +3,8 @@
 use crate::world::Grid;
 use std::ops::Range;
 
-/// Bound of rounding errors in positions on the grid, as a fraction of the pitch: far above 1e-16 of the largest grid, far below any measurable distance.
+/// Bound of rounding errors in positions on the grid, as a fraction of the pitch. The bound is far above 1e-16 of the largest grid and far below any measurable
+/// distance.
 const ROUNDING: f64 = 1e-9;
 
 /// Positions of the columns and rows of a grid.

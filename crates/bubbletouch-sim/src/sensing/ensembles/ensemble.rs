@@ -6,7 +6,7 @@ use crate::sensing::{Ensemble, Selection};
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use std::fmt::Debug;
 
-/// Function that draws the linear map from an ny × nx array to m measurements, 1 ≤ m ≤ ny · nx, with its own random stream.
+/// Function that draws the linear map from an ny × nx array to m measurements with its own random stream, 1 ≤ m ≤ ny · nx.
 pub type Draw = fn((usize, usize), usize, &Seed) -> Box<dyn Operator>;
 
 /// Function that learns the linear map to m measurements from frames of training touches, with its own random stream.

@@ -180,8 +180,7 @@ mod tests {
             let place = grid_from_mesh.transform_point(*center);
             let expected = DVec2::new(GRID.x(column), GRID.y(row));
             assert!((place.truncate() - expected).length() < 1e-15);
-            // With 60 facets around a circle, a facet is at most 0.14 % of the radius inside, and inclined by at most 3°; along diagonals, both are twice as
-            // large.
+            // With 60 facets around a circle, a facet is at most 0.14 % of the radius inside, and inclined by at most 3°. Along diagonals, both values double.
             assert!((center.length() / radius - 1.0).abs() < 3e-3);
             let axis = projected.layout.axes()[taxel];
             assert!(axis.dot(center.normalize()) > 0.997, "{axis}");

@@ -1,4 +1,4 @@
-//! Robots: links and joints, read from URDF \[URDF\] or MJCF \[MJCF\], or as one floating link, from which the poses of all links are computed.
+//! Robots: links and joints, from which the poses of all links are computed. A robot is read from URDF \[URDF\] or MJCF \[MJCF\], or is one floating link.
 //!
 //! A robot is a tree of rigid links. Joint j connects its parent link to its child link:
 //!

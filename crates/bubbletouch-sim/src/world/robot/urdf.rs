@@ -119,8 +119,8 @@ fn distinct<'a>(
     Ok(all)
 }
 
-/// Adds the link that a joint names as its parent but that the file does not contain, if it is `world` or the only base of the robot. Some tools define `world`
-/// implicitly, and files of grippers name the link of the arm to which they are attached.
+/// Adds the missing parent link of a joint, if the link is `world` or the only base of the robot. Some tools define `world` implicitly, and files of grippers
+/// name the link of the arm to which they are attached.
 fn add_missing_parent<'a>(
     root: Element<'a>,
     links: &mut Vec<Link>,

@@ -124,8 +124,8 @@ pub(super) fn children_of<'a>(
     Ok(all)
 }
 
-/// Returns the frames of the copies of `<replicate count euler offset sep>`. The i-th copy is rotated by i times the angles, and shifted from the copy before
-/// it by the offset in the frame of that copy.
+/// Returns the frames of the copies of `<replicate count euler offset sep>`. The i-th copy is rotated by i times the angles. Each copy is shifted from the
+/// preceding copy by the offset, in the frame of the preceding copy.
 fn copies<'a>(
     replicate: &Placed<'a>,
     compiler: &Compiler,
