@@ -7,7 +7,7 @@
 //! measurements. Nothing is removed if u = 0 (scrambled Hadamard measurements without a block's mean). A
 //! single measurement with u ≠ 0 becomes zero.
 //!
-//! Centring the frame before the measurement would give another result, y − mean(x) u. The measurements do not contain the mean of the frame. Both results have
+//! Centring the frame before the measurement would give another result, y − mean(x) u. The measurements do not contain the mean of the frame. The two results have
 //! equal invariance.
 //!
 //! **Unit norm.** All F·m values of a touch are divided by their Euclidean norm, so features do not depend on the stiffness of the

@@ -2,7 +2,7 @@
 //!
 //! Every varying setting has a role in a chart, so no chart mixes configurations that differ in a setting it does not show. The x axis shows the numeric
 //! setting with the most values. Lines and panels show the settings with the next most values; in a tie, texts come before numbers. Each combination of the
-//! remaining settings has its own chart. If a setting applies only to some values of another setting, one line stands for a pair of their values.
+//! remaining settings has its own chart. If a setting applies only to some values of another setting, one line represents a pair of their values.
 
 use crate::report::study_folder::MAX_CHARTS;
 use crate::report::swept::{Setting, Swept, without};
