@@ -1,4 +1,4 @@
-//! `bubbletouch recording`: the contents of a file as a table, a picture and an animation; NumPy opens the file.
+//! `bubbletouch recording`: the contents of a file as a table, a picture and an animation. NumPy can open the file.
 
 use crate::command::Case;
 use crate::stored::{frame, normal, vectors};

@@ -1,5 +1,5 @@
-//! Layouts of taxels as an axis: the grid gives the results of a study without the axis; other layouts are pressed, read and measured at their taxels'
-//! positions.
+//! Layouts of taxels as an axis. The grid gives the results of a study without the axis. Other layouts are pressed, read and measured at the positions of their
+//! taxels.
 
 use crate::command::Case;
 use crate::study::laid_out;

@@ -165,7 +165,7 @@ pub fn group_hold_out(
     split(labels, &draw_rows(labels, seed), &sides)
 }
 
-/// Group k-fold: k splits whose disjoint sets of test rows together contain all rows; a group is never divided.
+/// Group k-fold: k splits whose disjoint sets of test rows together contain all rows. A group is never divided.
 ///
 /// Groups are assigned in random order, larger groups first, to the fold with the fewest rows so far.
 ///

@@ -55,12 +55,12 @@ impl ConfusionMatrix {
         self.n_correct() as f64 / self.n_rows() as f64
     }
 
-    /// Returns the precision of each class: correct predictions of the class divided by all its predictions; 0 if there are none.
+    /// Returns the precision of each class: correct predictions of the class divided by all predictions of the class, or 0 without predictions.
     pub fn precision(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(0)))
     }
 
-    /// Returns the recall of each class: correct predictions of the class divided by all its rows; 0 if there are none.
+    /// Returns the recall of each class: correct predictions of the class divided by all rows of the class, or 0 without rows.
     pub fn recall(&self) -> Array1<f64> {
         shares(self.counts.diag(), &self.counts.sum_axis(Axis(1)))
     }

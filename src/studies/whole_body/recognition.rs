@@ -46,7 +46,7 @@ pub(super) fn learn(
         .collect()
 }
 
-/// Returns a measurement matrix for the whole skin: SBHE with Hadamard blocks of `block` taxels; if `block` is `None`, the sparse ensemble.
+/// Returns a measurement matrix for the whole skin. The ensemble is SBHE with Hadamard blocks of `block` taxels, or the sparse ensemble if `block` is `None`.
 fn columns(plan: &WholeBodyPlan, posture: &Posture, block: Option<usize>) -> Result<Columns> {
     let size = (posture.body.n_taxels(), 1);
     let m = plan.spec.whole_body.sensing.measurements;

@@ -1,4 +1,4 @@
-//! Law: every point of a chart is a row of its table at the correct position; every other row is counted on the chart.
+//! Law: every point of a chart is a row of its table at the correct position. Every other row is counted on the chart.
 
 use super::generator::{Generator, is_sample, n_studies};
 use bubbletouch::report::chart::{Place, draw, omitted, places};

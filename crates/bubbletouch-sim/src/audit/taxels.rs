@@ -243,7 +243,7 @@ mod tests {
             Array2::from_shape_simple_fn((n, 6), || rng.sample::<f64, _>(StandardNormal));
         let touch: Vec<f64> = (0..n).map(|_| rng.r#gen()).collect();
         for (row, mut readings) in rows.rows_mut().into_iter().enumerate() {
-            // Taxels: noise; an offset of the class; clipped noise; three contacts; contact in each row; strong contact.
+            // The taxels contain noise, an offset of the class, clipped noise, three contacts, contact in each row, and strong contact, in this order.
             readings[1] += labels[row] as f64;
             readings[2] = readings[2].max(0.0);
             readings[3] += if row % 130 == 5 { 12.0 } else { 0.0 };

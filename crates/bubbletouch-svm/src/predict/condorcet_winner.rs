@@ -1,4 +1,4 @@
-//! Condorcet winner: the class that wins all its pairs; the search does not evaluate every pair of classes.
+//! Condorcet winner: the class that wins all its pairs. The search does not evaluate every pair of classes.
 //!
 //! One-vs-one predicts the class with the most votes. If one of n classes wins all its n − 1 pairs, it has the most votes, because every other class has lost a
 //! pair. A knock-out finds the only possible winner of n − 1 pairs. The winner of the knock-out must then win its remaining pairs. At most 2 (n − 1) of n (n −

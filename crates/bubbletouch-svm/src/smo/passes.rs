@@ -136,7 +136,7 @@ pub(crate) fn select_down<T: Scalar>(
     }
 }
 
-/// Returns the violation of the optimality conditions: `highest` minus the smallest gradient f among variables that can decrease; at least 0.
+/// Returns the violation of the optimality conditions, at least 0. The violation is `highest` minus the smallest gradient f among variables that can decrease.
 #[inline(always)]
 fn violation<T: Scalar>(f: &[T], low: &[T], highest: T) -> T {
     let mut lanes = [T::zero(); LANES];

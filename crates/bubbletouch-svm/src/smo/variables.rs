@@ -19,7 +19,7 @@ fn mark<T: Scalar>(can_move: bool) -> T {
     }
 }
 
-/// Sets the marks of every variable: `up` is 0 if its coefficient β can increase, `low` is 0 if it can decrease; otherwise −∞.
+/// Sets the marks of every variable. The mark `up` is 0 if the coefficient β can increase, and `low` is 0 if it can decrease; otherwise they are −∞.
 #[multiversion::multiversion(targets("x86_64+avx512f", "x86_64+avx2+fma"))]
 fn mark_all<T: Scalar>(beta: &[f64], y: &[f64], c: f64, up: &mut [T], low: &mut [T]) {
     let n = beta.len();

@@ -28,8 +28,8 @@ fn contradictory() -> Dataset {
     dataset(features, Array1::from_shape_fn(12, |row| row % 2)).unwrap()
 }
 
-/// Dual objectives of the three pairs by scikit-learn 1.9.1 (LIBSVM), tolerance 1e-3. With a linear kernel, LIBSVM's iterations grow with C: 16 million at 1e6;
-/// at 1e9, it is stopped at 20 million.
+/// Dual objectives of the three pairs by scikit-learn 1.9.1 (LIBSVM), tolerance 1e-3. With a linear kernel, LIBSVM's iterations grow with C. LIBSVM needs 16
+/// million iterations at 1e6, and is stopped at 20 million at 1e9.
 const LIBSVM: [(Kernel, f64, [f64; 3]); 11] = [
     (Kernel::Linear, 1e-12, [8.0e-12, 1.0e-11, 8.0e-12]),
     (

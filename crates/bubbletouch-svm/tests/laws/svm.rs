@@ -69,8 +69,9 @@ fn digits(labels: &Array1<usize>) -> String {
     labels.iter().map(usize::to_string).collect()
 }
 
-/// Results of scikit-learn 1.9.1 on `fixed()`, SVC(C, kernel, gamma="scale", degree=3, coef0=1): labels with the default tolerance; with tol=1e-9, the decision
-/// values of the first test row and the sum of the pairs' dual objectives. Laplacian: kernel="precomputed" with laplacian_kernel(gamma=1 / (4 · std)).
+/// Results of scikit-learn 1.9.1 on `fixed()` with SVC(C, kernel, gamma="scale", degree=3, coef0=1). The labels are computed with the default tolerance. The
+/// decision values of the first test row and the sum of the pairs' dual objectives are computed with tol=1e-9. Laplacian: kernel="precomputed" with
+/// laplacian_kernel(gamma=1 / (4 · std)).
 const SCIKIT_LEARN: [(Kernel, f64, &str, [f64; 6], f64); 8] = [
     (
         LAPLACIAN,
@@ -214,7 +215,7 @@ fn labels_decisions_and_objectives_are_those_of_scikit_learn() {
 
 #[test]
 fn one_against_the_rest_is_that_of_scikit_learn() {
-    // scikit-learn 1.9.1: SVC(C=1, tol=1e-9) for each class against the rest; the largest decision value is predicted.
+    // Results of scikit-learn 1.9.1 with SVC(C=1, tol=1e-9) for each class against the rest. The class with the largest decision value is predicted.
     let rbf = Kernel::Rbf {
         gamma: Gamma::Value(0.5),
     };

@@ -27,7 +27,7 @@ pub(super) const ROBUSTNESS: File<Robustness> = File::new(
 .summary();
 
 row! {
-/// Robustness of a design to one condition: a row of `robustness.csv`; the design consists of all settings except the condition.
+/// Robustness of a design to one condition, a row of `robustness.csv`. The design consists of all settings except the condition.
 pub struct Robustness {
     /// Number of the most accurate configuration of the design over all values of the condition, as in `summary.csv`.
     configuration: usize => Subject: Linear;

@@ -107,7 +107,7 @@ impl Check<'_> {
         Err(self.error("signal.test_sensor", given, allowed))
     }
 
-    /// Checks the steps of the signal chain. Each step occurs at most once; a step whose axis is set is listed; a listed sensor error has at least one
+    /// Checks the steps of the signal chain. Each step occurs at most once. A step whose axis is set is listed. A listed sensor error has at least one
     /// strength. Without the check, a key could be ignored silently.
     pub fn steps(&self, signal: &SignalSpec) -> Result<()> {
         const KEY: &str = "signal.steps";

@@ -175,7 +175,7 @@ impl FrictionState {
         &self.forces
     }
 
-    /// Writes the lateral readings in single precision: x of all taxels, followed by y; `out` has two values per taxel.
+    /// Writes the lateral readings in single precision. The slice `out` has two values per taxel: x of all taxels, followed by y of all taxels.
     pub fn write_lateral(&self, out: &mut [f32]) {
         let (x, y) = out.split_at_mut(self.forces.len());
         for ((force, x), y) in self.forces.iter().zip(x).zip(y) {
