@@ -99,7 +99,8 @@ impl Mesh {
 
     /// Reads a mesh from a PLY, OBJ, STL, Collada (.dae) or glTF (.glb, .gltf) file.
     ///
-    /// unit: unit of the coordinates in the file. None: metres, or the unit that a Collada file contains; the object must then be 0.1 mm to 10 m in size.
+    /// unit: unit of the coordinates in the file. If None, the unit is metres, or the unit in a Collada file. The object must then
+    /// be 0.1 mm to 10 m in size.
     /// close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. None: no hole is closed.
     ///
     /// Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it contains
@@ -178,7 +179,7 @@ impl Mesh {
     /// Returns a capsule about the origin along z: a cylinder with a hemisphere at each end. `length` is the distance between the centres of the
     /// hemispheres, metres, zero or more.
     ///
-    /// Taxels touch the exact capsule. Its vertices and triangles, with what is computed from them, are facets inside the capsule.
+    /// Taxels touch the exact capsule. Its vertices and triangles, and all properties computed from them, describe facets inside the capsule.
     /// tolerance: largest distance of the facets from the surface, metres.
     #[staticmethod]
     #[pyo3(signature = (radius, length, tolerance=1e-5))]

@@ -434,7 +434,7 @@ impl Patch {
 
     /// Returns a patch of taxels at given points, metres, (n, 3), with normals that point away from the substrate.
     ///
-    /// normals: vectors of any length, (n, 3), or a Mesh whose surface, at most 5 mm from each point, gives the normals.
+    /// normals: vectors of any length, (n, 3), or a Mesh whose surface gives the normals. Each point must be at most 5 mm from the mesh.
     /// taxel_radius: metres; None: half the median distance between neighbours.
     /// shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
     /// pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
@@ -477,13 +477,13 @@ impl Patch {
 
     /// Returns a flat grid of ny × nx taxels that is wrapped around the surface of a mesh.
     ///
-    /// The grid lies in the plane z = 0 of the pose, (7,) or (4, 4) in the frame of the mesh, `pitch` metres between taxels. Each taxel moves along −z of
-    /// the pose to the first point of the mesh, and its axis is the outward normal of the triangle there. The centres and axes are in the frame of the
-    /// mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
+    /// The grid lies in the plane z = 0 of the pose, with `pitch` metres between taxels. The pose is (7,) or (4, 4), in the frame of the mesh. Each taxel
+    /// moves along −z of the pose to the first point of the mesh. Its axis is the outward normal of the triangle at this point. The centres and axes are
+    /// in the frame of the mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
     ///
-    /// missing: "error": a taxel that meets no outer face of the mesh raises ValueError; "drop": such taxels are omitted, and n_left_out counts them.
+    /// missing: "error" raises ValueError if a taxel meets no outer face of the mesh. "drop" omits such taxels, and n_left_out counts them.
     ///
-    /// Frames have the shape (ny, nx) if no taxel is omitted; pixels has the row and column of each taxel in the grid.
+    /// Frames have the shape (ny, nx) if no taxel is omitted. `pixels` contains the row and column of each taxel in the grid.
     #[staticmethod]
     #[pyo3(signature = (mesh, pose, ny, nx, pitch, stroke, *, missing="error", taxel_radius=None, stiffness=100.0, damping=0.0))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -532,12 +532,13 @@ impl Patch {
         })
     }
 
-    /// Writes the layout to a file that Patch.read can read. The file contains positions, normals, and what else its format can carry.
+    /// Writes the layout to a file that Patch.read can read. The file contains positions and normals. It also contains radii and pixels
+    /// if the format has them.
     ///
-    /// format: csv, npz, dex-01 (poses and taxel2pixel in a .npz file), icub (.txt or .ini), paxini (.json) or urdf; None: the format of the extension.
+    /// format: csv, npz, dex-01 (poses and taxel2pixel in a .npz file), icub (.txt or .ini), paxini (.json) or urdf. None selects the format by the extension.
     ///
-    /// Radii and pixels that the format cannot carry are omitted, with a UserWarning. A layout from a csv, npz or icub file is bitwise equal when it is
-    /// read again; other formats round the last digits. Raises OSError if the file cannot be written.
+    /// Radii and pixels that the format cannot represent are omitted, with a UserWarning. If a csv, npz or icub file is read again, the layout is bitwise
+    /// equal. Other formats round the last digits. Raises OSError if the file cannot be written.
     #[pyo3(signature = (path, *, format=None))]
     fn write(&self, py: Python, path: PathBuf, format: Option<&str>) -> PyResult<()> {
         guarded(|| {
@@ -558,7 +559,7 @@ impl Patch {
 
     /// Draws the taxels to a file that ends in .svg or .png: a map with their numbers, from 0, and an oblique view with their axes.
     ///
-    /// title: heading of the picture; None: "patch".
+    /// title: heading of the picture, "patch" if None.
     #[pyo3(signature = (path, *, title=None))]
     fn draw(&self, py: Python, path: PathBuf, title: Option<&str>) -> PyResult<()> {
         guarded(|| {
@@ -699,11 +700,11 @@ impl Patch {
         Ok((call, given))
     }
 
-    /// Presses the patch on an object, or on several objects, at n poses; returns the deflections of the taxels, metres, from 0 to the stroke.
+    /// Presses the patch on one or several objects at n poses. Returns the deflections of the taxels, metres, from 0 to the stroke.
     ///
-    /// object: a Mesh or a SphereUnion, or a sequence of k of them. A taxel that several objects deflect has the largest of the deflections.
-    /// poses: the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose. For a sequence of k
-    /// objects, (n, k, 7) or (n, k, 4, 4); (k, 7) or (k, 4, 4) for a single pose of each.
+    /// object: a Mesh or a SphereUnion, or a sequence of k of them. If several objects deflect a taxel, the largest deflection counts.
+    /// poses: poses of the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4). A single pose is (7,) or (4, 4). For a sequence of k
+    /// objects, the shape is (n, k, 7) or (n, k, 4, 4). A single pose of each object is (k, 7) or (k, 4, 4).
     ///
     /// The patch approaches along its z axis. At most one of the following goals is given, as one number for all poses or (n,):
     ///
@@ -713,16 +714,16 @@ impl Patch {
     ///
     /// Without a goal, the deflections are computed at the given pose. If the patch does not touch the object, the deflections are zero.
     ///
-    /// output: "deflection", or "force": newtons along the axis of each taxel, its stiffness times its deflection.
+    /// output: "deflection" or "force". The force of a taxel along its axis is its stiffness times its deflection, newtons.
     /// out: C-contiguous array of float32 or float64 that receives the frames and is returned.
     /// dtype: type of a new array, float64 (default) or float32.
     /// threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends the call.
     ///
     /// Returns an array (n, ny, nx) for a grid, and (n, n_taxels) for another patch; for a single pose, without the axis n. The result is bitwise equal
     /// for any number of threads. With contacts=True, the Contacts are also returned; the frames are unchanged. With jacobian=True, the derivatives
-    /// (…, 6) of the output with respect to the object's pose are also returned; (…, k, 6) for a sequence of k objects. They are per metre along x, y,
-    /// z, and per radian about x, y, z through the object's origin, in the axes of the patch. The derivatives are zero for free and saturated taxels.
-    /// With a depth or a force, the derivatives include the change of the travel; a depth then needs a flat patch.
+    /// (…, 6) of the output with respect to the object's pose are also returned; (…, k, 6) for a sequence of k objects. The derivatives are
+    /// per metre along x, y, z, and per radian about x, y, z through the object's origin, in the axes of the patch. Free and saturated taxels have zeros.
+    /// With a depth or a force, the derivatives include the change of the travel. With a depth, the patch must be flat.
     ///
     /// Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
     #[pyo3(signature = (object, poses, *, depth=None, travel=None, force=None, output="deflection", out=None, dtype=None, threads=None, contacts=false, jacobian=false))]
@@ -772,13 +773,13 @@ impl Patch {
     /// friction: coefficient between taxels and objects, zero or more; one number, or (n_taxels,).
     /// shear_stiffness: stiffness of the taxels across their axes, N/m; one number, or (n_taxels,). None: the stiffness along the axes.
     ///
-    /// Returns a dict of arrays at the end of the slide; for a single pose, without the axis n:
+    /// Returns a dict of arrays at the end of the slide. For a single pose, the arrays have no axis n. The keys are:
     ///
     /// - deflection: metres, (n, ny, nx) for a grid, and (n, n_taxels) for another patch;
     /// - force3: force of the objects on each taxel, newtons, (n, n_taxels, 3), in the patch frame;
     /// - is_slipping: whether the contact of the taxel slipped in the last step, in the shape of the deflections;
     /// - wrench: force and torque on the patch about its origin, newtons and newton metres, (n, 6), in the patch frame;
-    /// - travel: travel of the patch along z, metres, (n,); NaN if the path misses all objects, and all other results are then zero.
+    /// - travel: travel of the patch along z, metres, (n,). If the path misses all objects, the travel is NaN and all other results are zero.
     ///
     /// Raises ValueError if an argument is invalid.
     #[pyo3(signature = (object, poses, *, depth, slide, friction, shear_stiffness=None, threads=None))]

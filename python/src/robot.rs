@@ -52,9 +52,9 @@ impl Joint {
 
 #[pymethods]
 impl Robot {
-    /// Reads a robot from a URDF or MJCF file; the root element decides on the format.
+    /// Reads a robot from a URDF or MJCF file. The root element determines the format.
     ///
-    /// packages: folders by the names of packages, for meshes at package://NAME/…. None: packages are searched in the folders above the file.
+    /// packages: folders by the names of packages, for meshes at package://NAME/…. If None, packages are searched in the folders above the file.
     ///
     /// Parts of the file that are not used are listed in `notes`. Mesh files are opened only by mesh(). Raises OSError if the file cannot be read, and
     /// ValueError if a part that places links is invalid.
@@ -169,7 +169,7 @@ impl Robot {
 
     /// Returns the surface of a link as a mesh in the link's frame, for example for Patch.draped.
     ///
-    /// shapes: collision or visual. None: the collision shapes, or the visual ones if the link has no collision shapes.
+    /// shapes: collision or visual. If None, the collision shapes are used, or the visual shapes if the link has no collision shapes.
     /// pitch: distance of the taxels for which the facets of round shapes are fine enough, metres.
     ///
     /// Raises ValueError if the link has no such shapes, or a mesh file is not found or invalid.

@@ -63,7 +63,7 @@ class ContactForces:
         self._patches_of = {geometry: of_body[body] for geometry, body in bodies.items() if body in of_body}
 
     def wanted(self, contacts: Iterable[Contact], poses: tuple[Array, Array], overlaps: Array) -> WantedForces:
-        """Returns the forces that the pairs are to have.
+        """Returns the requested normal forces of the pairs.
 
         poses: positions (n_patches, 3) and rotation matrices (n_patches, 9) of the patches. overlaps: normal forces of the pairs at the engine's poses,
         (n_patches, n_objects), by which the force of a contact is divided if several patches of one body face it.

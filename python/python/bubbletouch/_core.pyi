@@ -59,7 +59,8 @@ class Mesh:
     def read(path: _Path, *, unit: _Unit | None = None, close_holes: float | None = None) -> Mesh:
         """Reads a mesh from a PLY, OBJ, STL, Collada (.dae) or glTF (.glb, .gltf) file.
 
-        unit: unit of the coordinates in the file. None: metres, or the unit that a Collada file contains; the object must then be 0.1 mm to 10 m in size.
+        unit: unit of the coordinates in the file. If None, the unit is metres, or the unit in a Collada file. The object must then
+        be 0.1 mm to 10 m in size.
         close_holes: maximum width of the holes to close, metres. Each hole is closed by a cone of triangles. None: no hole is closed.
 
         Closed parts that face inwards are turned outwards, with a UserWarning. Raises OSError if the file cannot be read, and ValueError if it contains
@@ -90,7 +91,7 @@ class Mesh:
         """Returns a capsule about the origin along z: a cylinder with a hemisphere at each end. `length` is the distance between the centres of the
         hemispheres, metres, zero or more.
 
-        Taxels touch the exact capsule. Its vertices and triangles, with what is computed from them, are facets inside the capsule.
+        Taxels touch the exact capsule. Its vertices and triangles, and all properties computed from them, describe facets inside the capsule.
         tolerance: largest distance of the facets from the surface, metres.
         """
 
@@ -149,7 +150,7 @@ class Mesh:
 
 @final
 class ShearState:
-    """Shear springs with friction of all taxels of a skin, which Skin.read advances by one step; Skin.shear_state() creates it.
+    """Shear springs with friction of all taxels of a skin. Skin.shear_state() creates the state, and each Skin.read advances it by one step.
 
     Between two reads, a body in contact drags the taxels sideways until they slip: the shear force is at most the friction coefficient times the normal
     force.
@@ -166,19 +167,19 @@ class ShearState:
         """Whether each taxel slipped during the last step, (n_taxels,) or (n, n_taxels)."""
 
     def reset(self, sets: Sequence[int] | None = None) -> None:
-        """Sets all shear forces to zero, as before the first read; `sets`: indices of the sets of poses, None for all."""
+        """Sets the shear forces to zero, as before the first read. `sets` contains the indices of the sets of poses; None selects all sets."""
 
 @final
 class Skin:
     """Patches of skin and bodies that may touch them, read at given poses in one call.
 
-    `Skin(patches, bodies)`: patches, a sequence of Patch; bodies, a sequence of Mesh or SphereUnion. A taxel that several bodies deflect has the largest
-    of the deflections. Several threads may read one skin at the same time.
+    `Skin(patches, bodies)` has a sequence of Patch and a sequence of Mesh or SphereUnion as arguments. If several bodies deflect a taxel, the largest
+    deflection counts. Several threads may read one skin at the same time.
 
-    objects: index of the rigid object that each body is a part of, (n_bodies,), from 0; None: each body is an object. Wanted forces are forces between
-    patches and objects: the bodies of an object press a patch together.
+    objects: index of the rigid object to which each body belongs, (n_bodies,), from 0. If None, each body is an object. Requested forces act between
+    patches and objects, so the bodies of an object press a patch together.
 
-    Raises ValueError for an empty sequence of patches, and for indices of objects that skip one.
+    Raises ValueError if the sequence of patches is empty, or if the indices of objects skip a number.
     """
 
     def __new__(cls, patches: Sequence[Patch], bodies: Sequence[_Model], *, objects: Sequence[int] | None = None) -> Skin: ...
@@ -207,34 +208,35 @@ class Skin:
         residuals: NDArray[np.float64] | None = None,
         travels: NDArray[np.float64] | None = None,
     ) -> NDArray[np.float64]:
-        """Reads all patches under all bodies; returns a frame of the skin, (n_taxels,) or (n, n_taxels) float64, patch after patch.
+        """Reads all patches under all bodies. Returns a frame of the skin, (n_taxels,) or (n, n_taxels) float64, patch after patch.
 
-        patch_poses, body_poses: poses in the world of the patches and of the bodies, in their order: (k, 7) or (n, k, 7) of x, y, z, qw, qx, qy, qz;
-        (…, k, 4, 4); or a pair (positions, rotations) with positions (…, k, 3) and rotations (…, k, 4) as quaternions w, x, y, z, or (…, k, 9) or
-        (…, k, 3, 3) as matrices by rows, as MuJoCo has them. A single patch or body needs no axis k: (7,), (4, 4).
+        patch_poses, body_poses: poses of the k patches and of the k bodies in the world, in their order. The shape is (k, 7) or (n, k, 7) of x, y, z, qw, qx,
+        qy, qz, or (…, k, 4, 4). A pair (positions, rotations) is also allowed. Its positions are (…, k, 3). Its rotations are quaternions w, x, y, z,
+        (…, k, 4), or matrices by rows, (…, k, 9) or (…, k, 3, 3), as in MuJoCo. A single patch or body needs no axis k.
         output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
 
-        forces: wanted normal forces of the pairs of patch and object, newtons, (n_patches, n_objects) or (n, n_patches, n_objects), zero or more. The normal
-        force of a pair is the sum of the forces of the patch's taxels along their axes under this object alone. The patch travels from its pose until it
-        has the wanted force. A pair with force 0 does not touch, also if patch and object overlap. A pair with NaN is read at its pose.
+        forces: requested normal forces of the pairs of patch and object, newtons, (n_patches, n_objects) or (n, n_patches, n_objects), zero or more. The
+        normal force of a pair is the sum of the forces of the patch's taxels along their axes under this object alone. The patch travels from its pose
+        until it has the requested force. A pair with force 0 has no contact, even if patch and object overlap. A pair with NaN is read at its pose.
         directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_objects, 3); default z.
-        reach: largest travel towards the object, metres; default: the patch's largest stroke plus its largest taxel diameter. If the force is not reached,
-        the press ends there, or before the object is behind the substrate.
-        shear: ShearState of this skin, which is advanced by one step; wrenches then contain friction and the lateral forces of inclined contacts.
+        reach: largest travel towards the object, metres. The default is the patch's largest stroke plus its largest taxel diameter. If the force is not
+        reached, the press ends at this travel, or before the object is behind the substrate.
+        shear: ShearState of this skin, which is advanced by one step. The wrenches then contain friction and the lateral forces of inclined contacts.
 
-        The following arrays are filled; float64 except contacts, C order, with a first axis n for n sets of poses.
+        The call fills the following arrays. They are float64 (contacts: int64), in C order, with a first axis n for n sets of poses.
         out: the frame; this array is returned.
         wrenches: (n_patches, 6), force and torque of the normal forces on each patch, in the patch's frame about its origin, newtons and newton metres.
-        contacts: (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke.
+        contacts: (n_patches, 2), numbers of touched taxels and of taxels at their stroke.
         pair_forces: (n_patches, n_objects), normal force of each pair, newtons.
-        residuals: (n_patches, n_objects), wanted force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
+        residuals: (n_patches, n_objects), requested force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
         travels: (n_patches, n_objects), travel of the patch of each pair, metres; NaN for pairs with force 0.
         """
 
     def shear_state(self, stiffness: ArrayLike, friction: ArrayLike, *, n: int | None = None) -> ShearState:
         """Returns the state of untouched taxels with shear springs, for the argument `shear` of read().
 
-        stiffness: of the shear springs, N/m, positive, and friction: coefficient of friction, zero or more; one number, or (n_taxels,).
+        stiffness: stiffness of the shear springs, N/m, positive; one number, or (n_taxels,).
+        friction: coefficient of friction, zero or more; one number, or (n_taxels,).
         n: number of sets of poses in each read; None for poses without an axis of sets.
         """
 
@@ -538,7 +540,7 @@ class Patch:
     ) -> Patch:
         """Returns a patch of taxels at given points, metres, (n, 3), with normals that point away from the substrate.
 
-        normals: vectors of any length, (n, 3), or a Mesh whose surface, at most 5 mm from each point, gives the normals.
+        normals: vectors of any length, (n, 3), or a Mesh whose surface gives the normals. Each point must be at most 5 mm from the mesh.
         taxel_radius: metres; None: half the median distance between neighbours.
         shape: shape of a frame, (ny, nx) if the taxels are numbered row by row; None: (n,).
         pixels: row and column of each taxel in the sensor's image, (n, 2) integers from 0.
@@ -560,13 +562,13 @@ class Patch:
     ) -> Patch:
         """Returns a flat grid of ny × nx taxels that is wrapped around the surface of a mesh.
 
-        The grid lies in the plane z = 0 of the pose, (7,) or (4, 4) in the frame of the mesh, `pitch` metres between taxels. Each taxel moves along −z of
-        the pose to the first point of the mesh, and its axis is the outward normal of the triangle there. The centres and axes are in the frame of the
-        mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
+        The grid lies in the plane z = 0 of the pose, with `pitch` metres between taxels. The pose is (7,) or (4, 4), in the frame of the mesh. Each taxel
+        moves along −z of the pose to the first point of the mesh. Its axis is the outward normal of the triangle at this point. The centres and axes are
+        in the frame of the mesh. Closed parts of the mesh that face inwards are turned outwards, with a UserWarning.
 
-        missing: "error": a taxel that meets no outer face of the mesh raises ValueError; "drop": such taxels are omitted, and n_left_out counts them.
+        missing: "error" raises ValueError if a taxel meets no outer face of the mesh. "drop" omits such taxels, and n_left_out counts them.
 
-        Frames have the shape (ny, nx) if no taxel is omitted; pixels has the row and column of each taxel in the grid.
+        Frames have the shape (ny, nx) if no taxel is omitted. `pixels` contains the row and column of each taxel in the grid.
         """
 
     @staticmethod
@@ -603,18 +605,19 @@ class Patch:
         *,
         format: Literal["csv", "npz", "dex-01", "icub", "paxini", "urdf"] | None = None,
     ) -> None:
-        """Writes the layout to a file that Patch.read can read. The file contains positions, normals, and what else its format can carry.
+        """Writes the layout to a file that Patch.read can read. The file contains positions and normals. It also contains radii and pixels
+        if the format has them.
 
-        format: csv, npz, dex-01 (poses and taxel2pixel in a .npz file), icub (.txt or .ini), paxini (.json) or urdf; None: the format of the extension.
+        format: csv, npz, dex-01 (poses and taxel2pixel in a .npz file), icub (.txt or .ini), paxini (.json) or urdf. None selects the format by the extension.
 
-        Radii and pixels that the format cannot carry are omitted, with a UserWarning. A layout from a csv, npz or icub file is bitwise equal when it is
-        read again; other formats round the last digits. Raises OSError if the file cannot be written.
+        Radii and pixels that the format cannot represent are omitted, with a UserWarning. If a csv, npz or icub file is read again, the layout is bitwise
+        equal. Other formats round the last digits. Raises OSError if the file cannot be written.
         """
 
     def draw(self, path: _Path, *, title: str | None = None) -> None:
         """Draws the taxels to a file that ends in .svg or .png: a map with their numbers, from 0, and an oblique view with their axes.
 
-        title: heading of the picture; None: "patch".
+        title: heading of the picture, "patch" if None.
         """
 
     @property
@@ -779,11 +782,11 @@ class Patch:
         contacts: bool = False,
         jacobian: bool = False,
     ) -> Any:
-        """Presses the patch on an object, or on several objects, at n poses; returns the deflections of the taxels, metres, from 0 to the stroke.
+        """Presses the patch on one or several objects at n poses. Returns the deflections of the taxels, metres, from 0 to the stroke.
 
-        object: a Mesh or a SphereUnion, or a sequence of k of them. A taxel that several objects deflect has the largest of the deflections.
-        poses: the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4); (7,) or (4, 4) for a single pose. For a sequence of k
-        objects, (n, k, 7) or (n, k, 4, 4); (k, 7) or (k, 4, 4) for a single pose of each.
+        object: a Mesh or a SphereUnion, or a sequence of k of them. If several objects deflect a taxel, the largest deflection counts.
+        poses: poses of the object in the patch frame, (n, 7) of x, y, z, qw, qx, qy, qz or (n, 4, 4). A single pose is (7,) or (4, 4). For a sequence of k
+        objects, the shape is (n, k, 7) or (n, k, 4, 4). A single pose of each object is (k, 7) or (k, 4, 4).
 
         The patch approaches along its z axis. At most one of the following goals is given, as one number for all poses or (n,):
 
@@ -793,16 +796,16 @@ class Patch:
 
         Without a goal, the deflections are computed at the given pose. If the patch does not touch the object, the deflections are zero.
 
-        output: "deflection", or "force": newtons along the axis of each taxel, its stiffness times its deflection.
+        output: "deflection" or "force". The force of a taxel along its axis is its stiffness times its deflection, newtons.
         out: C-contiguous array of float32 or float64 that receives the frames and is returned.
         dtype: type of a new array, float64 (default) or float32.
         threads: maximum number of threads; all cores if None. The call releases the interpreter's lock, and Ctrl-C ends the call.
 
         Returns an array (n, ny, nx) for a grid, and (n, n_taxels) for another patch; for a single pose, without the axis n. The result is bitwise equal
         for any number of threads. With contacts=True, the Contacts are also returned; the frames are unchanged. With jacobian=True, the derivatives
-        (…, 6) of the output with respect to the object's pose are also returned; (…, k, 6) for a sequence of k objects. They are per metre along x, y,
-        z, and per radian about x, y, z through the object's origin, in the axes of the patch. The derivatives are zero for free and saturated taxels.
-        With a depth or a force, the derivatives include the change of the travel; a depth then needs a flat patch.
+        (…, 6) of the output with respect to the object's pose are also returned; (…, k, 6) for a sequence of k objects. The derivatives are
+        per metre along x, y, z, and per radian about x, y, z through the object's origin, in the axes of the patch. Free and saturated taxels have zeros.
+        With a depth or a force, the derivatives include the change of the travel. With a depth, the patch must be flat.
 
         Raises ValueError for arrays of a wrong shape or type, numbers that are not finite, and a force that cannot be reached.
         """
@@ -827,13 +830,13 @@ class Patch:
         friction: coefficient between taxels and objects, zero or more; one number, or (n_taxels,).
         shear_stiffness: stiffness of the taxels across their axes, N/m; one number, or (n_taxels,). None: the stiffness along the axes.
 
-        Returns a dict of arrays at the end of the slide; for a single pose, without the axis n:
+        Returns a dict of arrays at the end of the slide. For a single pose, the arrays have no axis n. The keys are:
 
         - deflection: metres, (n, ny, nx) for a grid, and (n, n_taxels) for another patch;
         - force3: force of the objects on each taxel, newtons, (n, n_taxels, 3), in the patch frame;
         - is_slipping: whether the contact of the taxel slipped in the last step, in the shape of the deflections;
         - wrench: force and torque on the patch about its origin, newtons and newton metres, (n, 6), in the patch frame;
-        - travel: travel of the patch along z, metres, (n,); NaN if the path misses all objects, and all other results are then zero.
+        - travel: travel of the patch along z, metres, (n,). If the path misses all objects, the travel is NaN and all other results are zero.
 
         Raises ValueError if an argument is invalid.
         """
@@ -1014,9 +1017,9 @@ class Robot:
 
     @staticmethod
     def read(file: _Path, packages: Mapping[str, _Path] | None = None) -> Robot:
-        """Reads a robot from a URDF or MJCF file; the root element decides on the format.
+        """Reads a robot from a URDF or MJCF file. The root element determines the format.
 
-        packages: folders by the names of packages, for meshes at package://NAME/…. None: packages are searched in the folders above the file.
+        packages: folders by the names of packages, for meshes at package://NAME/…. If None, packages are searched in the folders above the file.
 
         Parts of the file that are not used are listed in `notes`. Mesh files are opened only by mesh(). Raises OSError if the file cannot be read, and
         ValueError if a part that places links is invalid.
@@ -1053,7 +1056,7 @@ class Robot:
     def mesh(self, link: str, *, shapes: Literal["collision", "visual"] | None = None, pitch: float = 1e-3) -> Mesh:
         """Returns the surface of a link as a mesh in the link's frame, for example for Patch.draped.
 
-        shapes: collision or visual. None: the collision shapes, or the visual ones if the link has no collision shapes.
+        shapes: collision or visual. If None, the collision shapes are used, or the visual shapes if the link has no collision shapes.
         pitch: distance of the taxels for which the facets of round shapes are fine enough, metres.
 
         Raises ValueError if the link has no such shapes, or a mesh file is not found or invalid.

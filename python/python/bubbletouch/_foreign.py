@@ -32,7 +32,7 @@ _LOCK = threading.RLock()
 
 
 def _described(thing: Any) -> str:
-    """Returns a text that changes with the code and the parameters of an estimator or a function, and not between processes."""
+    """Returns a text that depends only on the code and the parameters of an estimator or a function; equal in all processes."""
     if isinstance(thing, np.ndarray):
         return f"array {thing.dtype} {thing.shape} {hashlib.sha256(thing.tobytes()).hexdigest()}"
     if isinstance(thing, dict):
@@ -156,7 +156,7 @@ def _pickled(call: bytes) -> bytes:
 
 
 def _pickler() -> Any:
-    """Returns cloudpickle, which also knows classes of notebooks and lambdas, or else pickle."""
+    """Returns cloudpickle, which supports lambdas and classes of notebooks, or pickle if cloudpickle is not installed."""
     try:
         return import_module("cloudpickle")
     except ImportError:
@@ -173,7 +173,7 @@ class Host:
         self._pool = ProcessPoolExecutor(processes, mp_context=get_context("spawn")) if processes else None
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Returns the result of a call, with the same bits here and in a process."""
+        """Returns the result of a call; bitwise equal in this process and in a process of the pool."""
         if self._pool is None:
             return function(*arguments)
         call = _pickler().dumps((function, arguments))

@@ -27,8 +27,8 @@ class Finding:
     interval: list of the lower and upper end of the 95 % interval of the value; NaN if there is none.
     baseline: value without the fault, such as the accuracy by chance; NaN if there is none.
     p_value, p_holm: p-value of the test, and the p-value after Holm's correction over all tests; None for counts.
-    sentence: what was found.
-    advice: what to do; empty if nothing has to be done.
+    sentence: description of the result.
+    advice: recommended action; empty if no action is needed.
     """
 
     check: str
@@ -88,16 +88,16 @@ def audit(
     seed: int = 2018,
     permutations: int = 999,
 ) -> Audit:
-    """Audits a data set, as `bubbletouch audit` does.
+    """Audits a data set; equals the command `bubbletouch audit`.
 
     frames: readings, shape (n, rows, columns), (n, n_frames, rows, columns) or (n, n_taxels); NaN for a missing reading.
-    labels: class of each touch, numbers or texts, shape (n,). None: only checks without classes are made.
+    labels: class of each touch, numbers or texts, shape (n,). If None, only checks without classes are made.
     groups, sessions: group (grasp, pose, subject) and session (file, day, mounting) of each touch, shape (n,).
-    times: time of each touch, shape (n,). None: the order of the touches is taken as their order in time.
+    times: time of each touch, shape (n,). If None, the order of the touches is their order in time.
     order: one letter for each axis of `frames`: n touches, t frames, y rows, x columns, c taxels. None: "nc", "nyx" or "ntyx".
-    full_scale: reading at full scale. None: a plateau of the largest readings counts as saturation.
-    before_contact: range (start, stop) of the frames of each touch before the contact. None: frames without contact are found.
-    out: folder of the page, tables and charts. None: a temporary folder that is deleted with the Audit.
+    full_scale: reading at full scale. If None, a plateau of the largest readings counts as saturation.
+    before_contact: range (start, stop) of the frames of each touch before the contact. If None, the audit detects the frames without contact.
+    out: folder of the page, tables and charts. If None, a temporary folder is used and deleted with the Audit.
     seed, permutations: seed of splits and permutations, and number of permutations of each test.
 
     Raises ValueError if an argument is invalid, and OSError if a file cannot be written.

@@ -1,4 +1,4 @@
-"""Studies on many machines: each shard of a study is a task of Dask or of any executor, and the tables have the bytes of one process."""
+"""Studies on many machines: each shard of a study is a task of Dask or of any executor."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ def run(
     features: Mapping[str, Any] | None = None,
     threads: int = 1,
 ) -> Study:
-    """Runs the shards of a study as tasks, merges them here, and returns the results. The tables are bitwise equal to the tables of `bubbletouch.run`.
+    """Runs the shards of a study as tasks, merges them in the calling process, and returns the results. The tables are bitwise
+    equal to the tables of `bubbletouch.run`.
 
     study: path of a TOML file, or a dict with its tables. Files that the study names exist under the same absolute paths on all machines.
     client: dask.distributed.Client, or a concurrent.futures.Executor. Dask runs the shard of a lost worker again.

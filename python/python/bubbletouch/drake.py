@@ -3,7 +3,7 @@
     skin = Skin(plant, scene_graph, {"palm": bt.Patch.grid(8, 8, pitch=4e-3, stroke=3e-3)})
     forces = skin.read(simulator.get_context(), output="force", match="normal_force")     # (n_taxels,), newtons
 
-The patches take no part in the dynamics. The interface is that of bubbletouch.mujoco.Skin, over the same core.
+The patches do not affect the dynamics. The interface equals bubbletouch.mujoco.Skin and has the same core.
 """
 
 from __future__ import annotations

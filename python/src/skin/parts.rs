@@ -93,7 +93,7 @@ impl SkinPatch {
     ) {
         let model = std::slice::from_ref(&body.model);
         press_at_pose(&self.patch, model, &[patch_from_body], workspace);
-        raise(frame, workspace.deflections());
+        take_maximum(frame, workspace.deflections());
     }
 
     /// Returns the sum of the forces of the taxels along their axes, newtons, for their deflections, metres.
@@ -144,8 +144,8 @@ impl SkinPatch {
     }
 }
 
-/// Replaces each deflection of a frame by the given deflection if the given one is larger.
-pub fn raise(frame: &mut [f64], deflections: &[f64]) {
+/// Replaces each deflection of a frame by the given one, if that is larger.
+pub fn take_maximum(frame: &mut [f64], deflections: &[f64]) {
     for (taxel, deflection) in frame.iter_mut().zip(deflections) {
         *taxel = taxel.max(*deflection);
     }

@@ -13,7 +13,7 @@ use glam::DVec3;
 use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Shear springs with friction of all taxels of a skin, which Skin.read advances by one step; Skin.shear_state() creates it.
+/// Shear springs with friction of all taxels of a skin. Skin.shear_state() creates the state, and each Skin.read advances it by one step.
 ///
 /// Between two reads, a body in contact drags the taxels sideways until they slip: the shear force is at most the friction coefficient times the normal
 /// force.
@@ -145,7 +145,7 @@ impl ShearState {
         }
     }
 
-    /// Sets all shear forces to zero, as before the first read; `sets`: indices of the sets of poses, None for all.
+    /// Sets the shear forces to zero, as before the first read. `sets` contains the indices of the sets of poses; None selects all sets.
     #[pyo3(signature = (sets=None))]
     fn reset(&mut self, sets: Option<Vec<i128>>) -> PyResult<()> {
         guarded(|| {

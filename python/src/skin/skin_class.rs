@@ -2,7 +2,7 @@
 
 use super::filled::{fill, read_optional};
 use super::force_match::{WantedForce, press_pair};
-use super::parts::{Body, RigidObject, SkinPatch, raise};
+use super::parts::{Body, RigidObject, SkinPatch, take_maximum};
 use super::poses::read_poses;
 use super::shear_state::ShearState;
 use crate::arrays::each;
@@ -23,13 +23,13 @@ const OUT_OF_REACH: f64 = 1e6;
 
 /// Patches of skin and bodies that may touch them, read at given poses in one call.
 ///
-/// `Skin(patches, bodies)`: patches, a sequence of Patch; bodies, a sequence of Mesh or SphereUnion. A taxel that several bodies deflect has the largest
-/// of the deflections. Several threads may read one skin at the same time.
+/// `Skin(patches, bodies)` has a sequence of Patch and a sequence of Mesh or SphereUnion as arguments. If several bodies deflect a taxel, the largest
+/// deflection counts. Several threads may read one skin at the same time.
 ///
-/// objects: index of the rigid object that each body is a part of, (n_bodies,), from 0; None: each body is an object. Wanted forces are forces between
-/// patches and objects: the bodies of an object press a patch together.
+/// objects: index of the rigid object to which each body belongs, (n_bodies,), from 0. If None, each body is an object. Requested forces act between
+/// patches and objects, so the bodies of an object press a patch together.
 ///
-/// Raises ValueError for an empty sequence of patches, and for indices of objects that skip one.
+/// Raises ValueError if the sequence of patches is empty, or if the indices of objects skip a number.
 #[pyclass(frozen, module = "bubbletouch")]
 pub struct Skin {
     parts: Vec<SkinPatch>,
@@ -140,27 +140,27 @@ impl Skin {
         self.parts.iter().map(of).collect()
     }
 
-    /// Reads all patches under all bodies; returns a frame of the skin, (n_taxels,) or (n, n_taxels) float64, patch after patch.
+    /// Reads all patches under all bodies. Returns a frame of the skin, (n_taxels,) or (n, n_taxels) float64, patch after patch.
     ///
-    /// patch_poses, body_poses: poses in the world of the patches and of the bodies, in their order: (k, 7) or (n, k, 7) of x, y, z, qw, qx, qy, qz;
-    /// (…, k, 4, 4); or a pair (positions, rotations) with positions (…, k, 3) and rotations (…, k, 4) as quaternions w, x, y, z, or (…, k, 9) or
-    /// (…, k, 3, 3) as matrices by rows, as MuJoCo has them. A single patch or body needs no axis k: (7,), (4, 4).
+    /// patch_poses, body_poses: poses of the k patches and of the k bodies in the world, in their order. The shape is (k, 7) or (n, k, 7) of x, y, z, qw, qx,
+    /// qy, qz, or (…, k, 4, 4). A pair (positions, rotations) is also allowed. Its positions are (…, k, 3). Its rotations are quaternions w, x, y, z,
+    /// (…, k, 4), or matrices by rows, (…, k, 9) or (…, k, 3, 3), as in MuJoCo. A single patch or body needs no axis k.
     /// output: "deflection", metres, or "force", newtons along the axis of each taxel (stiffness times deflection).
     ///
-    /// forces: wanted normal forces of the pairs of patch and object, newtons, (n_patches, n_objects) or (n, n_patches, n_objects), zero or more. The normal
-    /// force of a pair is the sum of the forces of the patch's taxels along their axes under this object alone. The patch travels from its pose until it
-    /// has the wanted force. A pair with force 0 does not touch, also if patch and object overlap. A pair with NaN is read at its pose.
+    /// forces: requested normal forces of the pairs of patch and object, newtons, (n_patches, n_objects) or (n, n_patches, n_objects), zero or more. The
+    /// normal force of a pair is the sum of the forces of the patch's taxels along their axes under this object alone. The patch travels from its pose
+    /// until it has the requested force. A pair with force 0 has no contact, even if patch and object overlap. A pair with NaN is read at its pose.
     /// directions: directions of the travel in the patch frames, unit vectors, (…, n_patches, n_objects, 3); default z.
-    /// reach: largest travel towards the object, metres; default: the patch's largest stroke plus its largest taxel diameter. If the force is not reached,
-    /// the press ends there, or before the object is behind the substrate.
-    /// shear: ShearState of this skin, which is advanced by one step; wrenches then contain friction and the lateral forces of inclined contacts.
+    /// reach: largest travel towards the object, metres. The default is the patch's largest stroke plus its largest taxel diameter. If the force is not
+    /// reached, the press ends at this travel, or before the object is behind the substrate.
+    /// shear: ShearState of this skin, which is advanced by one step. The wrenches then contain friction and the lateral forces of inclined contacts.
     ///
-    /// The following arrays are filled; float64 except contacts, C order, with a first axis n for n sets of poses.
+    /// The call fills the following arrays. They are float64 (contacts: int64), in C order, with a first axis n for n sets of poses.
     /// out: the frame; this array is returned.
     /// wrenches: (n_patches, 6), force and torque of the normal forces on each patch, in the patch's frame about its origin, newtons and newton metres.
-    /// contacts: (n_patches, 2) int64, numbers of touched taxels and of taxels at their stroke.
+    /// contacts: (n_patches, 2), numbers of touched taxels and of taxels at their stroke.
     /// pair_forces: (n_patches, n_objects), normal force of each pair, newtons.
-    /// residuals: (n_patches, n_objects), wanted force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
+    /// residuals: (n_patches, n_objects), requested force minus normal force of each pair, newtons; 0 for pairs that are read at their poses.
     /// travels: (n_patches, n_objects), travel of the patch of each pair, metres; NaN for pairs with force 0.
     #[pyo3(signature = (patch_poses, body_poses, *, output="deflection", forces=None, directions=None, reach=None, shear=None, out=None, wrenches=None, contacts=None, pair_forces=None, residuals=None, travels=None))]
     #[expect(clippy::too_many_arguments, reason = "named in Python")]
@@ -257,7 +257,8 @@ impl Skin {
 
     /// Returns the state of untouched taxels with shear springs, for the argument `shear` of read().
     ///
-    /// stiffness: of the shear springs, N/m, positive, and friction: coefficient of friction, zero or more; one number, or (n_taxels,).
+    /// stiffness: stiffness of the shear springs, N/m, positive; one number, or (n_taxels,).
+    /// friction: coefficient of friction, zero or more; one number, or (n_taxels,).
     /// n: number of sets of poses in each read; None for poses without an axis of sets.
     #[pyo3(signature = (stiffness, friction, *, n=None))]
     fn shear_state(
@@ -429,7 +430,7 @@ impl Skin {
                     }
                 }
                 scratch.pairs.forces[at] = part.total_force(of_object);
-                raise(frame, of_object);
+                take_maximum(frame, of_object);
                 continue;
             }
             let direction = match scratch.directions.get(3 * at..3 * at + 3) {
@@ -443,7 +444,7 @@ impl Skin {
             };
             let poses = (&scratch.placed[..], &mut scratch.object_poses);
             let held = press_pair(part, object, poses, wanted, workspace);
-            raise(frame, workspace.deflections());
+            take_maximum(frame, workspace.deflections());
             for member in members {
                 scratch.placed[member].translation -= held.travel * direction;
             }

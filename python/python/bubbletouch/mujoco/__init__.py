@@ -7,9 +7,9 @@
     forces = skin.read(data, output="force")          # (n_taxels,), newtons
     skin.frame("palm", forces)                         # (8, 8)
 
-The patches take no part in the dynamics: MuJoCo moves the bodies, and the skin computes what its taxels read at their poses. By default a geom touches
-a taxel as far as the bodies of the engine overlap, so soft contacts (`solref`, `solimp`) decide the depth. `match="normal_force"` presses each patch
-until its normal force is the engine's contact force.
+The patches do not affect the dynamics: MuJoCo moves the bodies, and the skin computes the readings of its taxels at their poses. By default, a geom
+deflects a taxel as far as the geometry overlaps, so the depth depends on soft contacts (`solref`, `solimp`). `match="normal_force"` presses each
+patch until its normal force equals the engine's contact force.
 
 `SkinObservation` adds the skin to the observations of a Gymnasium environment; it needs the package gymnasium.
 """

@@ -17,7 +17,7 @@ from bubbletouch.mujoco.skin import Output, Skin
 class SkinObservation(gymnasium.ObservationWrapper[Any, Any, Any]):
     """Adds the readings of a skin to the observations of an environment that simulates with MuJoCo.
 
-    env: environment whose `unwrapped` has `model` and `data`, as those of `gymnasium.make("…-v5")`.
+    env: environment whose `unwrapped` has `model` and `data`, such as `gymnasium.make("HalfCheetah-v5")`.
     layout, geoms, tolerance: as for bubbletouch.mujoco.Skin.
     output: "force", newtons, or "deflection", metres.
     match: None or "normal_force", as for Skin.read.

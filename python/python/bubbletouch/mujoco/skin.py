@@ -21,8 +21,9 @@ class Skin:
     """Patches on sites, bodies or geoms of a MuJoCo model, under its geoms.
 
     model: mujoco.MjModel.
-    layout: patches by the name of the site or body that carries each; if a site and a body have the name, the site. "geom:NAME" is the frame of a geom,
-        as for a patch draped on its geom_surface; "site:NAME" and "body:NAME" are possible, too. Taxels of a flat patch point along z of the frame.
+    layout: patches by the name of the site or body that carries each. If a site and a body have one name, the site carries the patch. "geom:NAME"
+        is the frame of a geom, as for a patch draped on its geom_surface; "site:NAME" and "body:NAME" are possible, too. Taxels of a flat patch
+        point along z of the frame.
     geoms: "all", or names of the geoms that can touch the skin. With "all", geoms of the patches' own bodies are left out, as are visual geoms
         (contype and conaffinity 0), height fields and SDFs.
     tolerance: largest distance of the facets of cylinders and ellipsoids from the surface, metres. Planes, spheres, boxes, capsules and meshes are
@@ -102,12 +103,13 @@ class Skin:
         Call mj_step, mj_forward or mj_kinematics before; `match` needs the contact forces of mj_step or mj_forward.
 
         match: None reads the patches at the engine's poses. "normal_force" lets each patch travel until its normal force under each body is the engine's.
-            The engine's normal force of a pair of patch and body is the sum over their contacts of the force along the contact normal (first number of
-            mj_contactForce). All geoms of the body press the patch together. A contact of the patch's body counts if the force on the patch is within 60° of the reversed axis of the taxel nearest to the
-            contact. If several patches of one body face a contact, its force is divided among them by their normal forces at the engine's poses, and
-            otherwise the nearest one has it. Flat patches travel along z, other patches against the mean contact force.
-            A body without contact force reads zero, also where it overlaps taxels. A contact without overlap moves the patch to the body. A contact
-            that faces no patch presses nothing; its force is in the residual of the nearest patch.
+            The engine's normal force of a pair of patch and body is the sum of the forces along the contact normal over all contacts of the pair (first
+            number of mj_contactForce). All geoms of the body press the patch together. A contact of the patch's body counts if the force on the patch
+            is within 60° of the reversed axis of the taxel nearest to the contact. If several patches of one body face a contact, its force is divided
+            among them by their normal forces at the engine's poses. Otherwise, the nearest patch has the force. Flat patches travel along z, other
+            patches against the mean contact force.
+            A body without contact force reads zero, even if it overlaps taxels. A contact without overlap moves the patch to the body. A contact that
+            faces no patch presses nothing; its force is in the residual of the nearest patch.
         reach: largest travel towards a body with `match`, metres; default: the patch's largest stroke plus its largest taxel diameter.
         shear: state of shear_state(), which is advanced by one step.
 
@@ -147,7 +149,8 @@ class Skin:
     def shear_state(self, stiffness: float | Array, friction: float | Array) -> _core.ShearState:
         """Returns the state of untouched taxels with shear springs, for the argument `shear` of read().
 
-        stiffness: of the shear springs, N/m, positive, and friction: coefficient of friction, zero or more; one number, or (n_taxels,).
+        stiffness: stiffness of the shear springs, N/m, positive; one number, or (n_taxels,).
+        friction: coefficient of friction, zero or more; one number, or (n_taxels,).
         """
         return self._skin.shear_state(stiffness, friction)
 

@@ -59,7 +59,7 @@ impl Layout {
         let (mut taxels, mut pixels) = (Vec::new(), Vec::new());
         for (number, center) in flat.centers().iter().enumerate() {
             let pixel = [number / grid.nx, number % grid.nx];
-            match surface.below(mesh_from_grid.transform_point(*center)) {
+            match surface.first_hit(mesh_from_grid.transform_point(*center)) {
                 Some(taxel) => {
                     taxels.push(taxel);
                     pixels.push(pixel);
@@ -115,7 +115,7 @@ impl<'a> RayTarget<'a> {
 
     /// Returns the first point of the mesh on the ray from `start`, and the unit normal of the surface there. Returns `None` if the ray meets no face, or meets
     /// the inner side of a face first.
-    fn below(&self, start: DVec3) -> Option<(DVec3, DVec3)> {
+    fn first_hit(&self, start: DVec3) -> Option<(DVec3, DVec3)> {
         self.starts.iter().find_map(|offset| {
             let origin = start + *offset;
             let range = 0.0..f64::INFINITY;
