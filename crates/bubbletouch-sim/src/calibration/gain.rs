@@ -68,7 +68,8 @@ impl Gains {
     }
 }
 
-/// Returns the median logarithm of the ratio between the readings of a taxel and of its neighbours: first for the even frames, then for the odd frames.
+/// Returns the median logarithm of the ratio between the readings of a taxel and of its neighbours. The first value is for the even frames, the second for the
+/// odd frames.
 fn halves(
     skin: &RecordedSkin,
     touched: &Array2<f64>,

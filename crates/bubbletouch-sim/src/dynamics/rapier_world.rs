@@ -161,7 +161,8 @@ impl RapierWorld {
     }
 }
 
-/// Creates the base to which the taxels are attached: the world itself, or a light body that a joint without range of motion holds in the world.
+/// Creates the base to which the taxels are attached. The base is the world itself, or a light body that is held in the world by a joint without range of
+/// motion.
 fn insert_base(world: &mut PhysicsWorld, joints: RapierJoints) -> RigidBodyHandle {
     let ground = world.insert_body(RigidBodyBuilder::fixed());
     let RapierJoints::SkinSim { base_mass } = joints else {

@@ -8,8 +8,8 @@
 //! |F| between integer frequencies is interpolated bilinearly. The feature is exactly invariant to cyclic shifts and to quarter turns of a square image;
 //! for other rotations the sampling by taxels limits the invariance.
 //!
-//! The feature differs from the Fourier–Mellin transform, which uses log ρ and is also invariant to scale, because small and large objects of one shape must be
-//! distinguished.
+//! The feature differs from the Fourier–Mellin transform, which uses log ρ and is also invariant to scale. Invariance to scale would make small and large
+//! objects of one shape indistinguishable.
 //!
 //! Source: Sheng and Arsenault (1986), *Experiments on pattern recognition using invariant Fourier–Mellin descriptors*, JOSA A 3, 771.
 

@@ -194,8 +194,8 @@ impl Bvh {
     }
 }
 
-/// Plane of a triangle, from which a lower bound of the distance is computed. If all parts of a mesh are about equally far from a point, such as the middle of
-/// a ball, boxes exclude few triangles and planes nearly all.
+/// Plane of a triangle, from which a lower bound of the distance is computed. If all parts of a mesh are about equally far from a point (such as the middle of
+/// a ball), boxes exclude few triangles. Planes then exclude nearly all triangles.
 #[derive(Clone, Debug)]
 struct Plane {
     /// Unit normal of the plane; zero if the triangle is too thin.

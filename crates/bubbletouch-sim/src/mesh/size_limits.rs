@@ -13,13 +13,13 @@ pub struct SizeLimits {
     pub largest: f64,
 }
 
-/// Maximum length of an object, in multiples of the side of the sensor array; a touch on a longer object covers less than a hundredth of a face.
+/// Maximum length of an object, in multiples of the side of the sensor array. A touch on a longer object covers less than a hundredth of a face.
 const MAX_SIDES: f64 = 10.0;
 /// Length of an object that is always allowed, because small arrays also touch furniture or a person's arm; metres.
 const ALWAYS_ALLOWED: f64 = 1.0;
 
 impl SizeLimits {
-    /// Size limits for an unknown array. The lower limit, 0.1 mm, is below the pitch of every tactile sensor; the upper limit, 10 m, is ten sides of an array
+    /// Size limits for an unknown array. The lower limit, 0.1 mm, is below the pitch of every tactile sensor. The upper limit, 10 m, is ten sides of an array
     /// of one square metre.
     pub const ANY: Self = Self {
         smallest: 1e-4,

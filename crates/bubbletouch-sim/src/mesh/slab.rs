@@ -1,7 +1,7 @@
 //! Slabs: pairs of parallel planes that enclose all triangles below a node of a tree.
 //!
-//! If a surface is nearly flat, a slab is much thinner than a box, especially for surfaces oblique to the axes. If all parts of a mesh are
-//! about equally far from a point, such as the middle of a ball, boxes exclude few triangles and slabs nearly all.
+//! If a surface is nearly flat, a slab is much thinner than a box, especially for surfaces oblique to the axes. If all parts of a mesh are about equally far
+//! from a point (such as the middle of a ball), boxes exclude few triangles. Slabs then exclude nearly all triangles.
 
 use super::{BoxTree, Triangle};
 use glam::DVec3;

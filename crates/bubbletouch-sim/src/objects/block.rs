@@ -28,8 +28,8 @@ impl Block {
         core.dot(direction.abs()) + self.rounding * direction.length()
     }
 
-    /// Packs the box with spheres: first the corners, then rows along each edge, then rows on each face whose spacing increases towards the middle of the
-    /// face.
+    /// Packs the box with spheres: first the corners, then rows along each edge, then rows on each face. The spacing of the rows on a face increases towards
+    /// its middle.
     ///
     /// A ball of radius r that touches a flat face covers, after its enlargement, a disc of radius sqrt(h(2r + h)). Here h is the sum of both tolerances.
     /// This disc contains a square cell of half side sqrt(h(r + h/2)).
@@ -151,7 +151,7 @@ struct EdgeRow {
     half_spacing: f64,
 }
 
-/// Fraction of its squared disc radius that a ball in a round edge uses to cover the faces; the ball covers the edge with the remaining fraction. If smaller,
+/// Fraction of its squared disc radius that a ball in a round edge uses to cover the faces. The ball covers the edge with the remaining fraction. If smaller,
 /// the faces need more spheres; if larger, the edge needs more spheres and protrudes.
 const ACROSS: f64 = 0.1;
 

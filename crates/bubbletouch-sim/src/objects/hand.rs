@@ -102,7 +102,7 @@ impl Hand {
         }
     }
 
-    /// Returns a hand that is bent around a round object; `share` is the fraction of the bending, 0 for a flat hand and 1 for a fist.
+    /// Returns a hand that is bent around a round object. The number `share` is the fraction of the bending, 0 for a flat hand and 1 for a fist.
     pub fn curled(share: f64) -> Self {
         let finger = FingerPose {
             spread: 0.0,

@@ -1,7 +1,7 @@
 //! Triangle mesh as an object, with precomputed data for contacts.
 //!
 //! A mesh can be rounded by a radius R: the object is then the set of all points within R of a triangle. A taxel of radius ρ touches this object where a taxel
-//! of radius ρ + R would touch the triangles, so the contact of rounded shapes is exact. A capsule is a rounded line segment.
+//! of radius ρ + R would touch the triangles. Therefore the contact of rounded shapes is exact. A capsule is a rounded line segment.
 
 use super::mesh_blocks::MeshBlocks;
 use crate::error::{Error, Result};

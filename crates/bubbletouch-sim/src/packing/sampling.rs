@@ -52,7 +52,7 @@ impl Effort {
     /// Returns the numbers for a packing of the expected size. The numbers per sphere are largest up to 2,000 spheres and then decrease, so that the time
     /// grows more slowly than the number of spheres. From 30,000 spheres on, there are also fewer candidate balls. Candidates are reduced further, to no
     /// fewer than about 1,000, where a ball covers much more than on a plane. An example is the mesh of a sphere, whose centre is equally far from its whole
-    /// surface; on such a mesh a ball takes longest to compute.
+    /// surface. On such a mesh, a ball takes longest to compute.
     fn for_about(demand: &Demand) -> Self {
         let share = (2000.0 / demand.flat).clamp(0.03, 1.0);
         let feet_a_ball = 5.0 + 35.0 * share.sqrt();

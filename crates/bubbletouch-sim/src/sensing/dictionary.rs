@@ -72,7 +72,7 @@ impl Dictionary {
     /// Returns the dictionary of all atoms of a fixed basis for an ny × nx array. The origin is zero.
     ///
     /// # Errors
-    /// If the basis is PCA (which needs training frames), if a wavelet basis has sides that are not powers of two, or if there are no taxels.
+    /// If the basis is PCA (which needs training frames), a wavelet basis has sides that are not powers of two, or there are no taxels.
     pub fn complete(basis: Basis, grid: (usize, usize)) -> Result<Self> {
         let n = grid.0 * grid.1;
         if n == 0 {

@@ -1,4 +1,4 @@
-//! Bounds of the numbers in a TOML file, for any key: all numbers are finite, and none is far beyond the range of its unit in robotics.
+//! Bounds of the numbers in a TOML file, for any key. All numbers are finite, and none is far beyond the range of its unit in robotics.
 //!
 //! The end of a key names its unit (`stroke_mm`). A number without a unit is bounded by `MAX_PLAIN`. The check runs when a file is read,
 //! before its keys are known; checks of single keys are narrower.

@@ -65,7 +65,7 @@ impl Pushed for DomePatch {
     }
 }
 
-/// Returns the largest angle φ, radians, for which `around · cos φ` is at least `least`, plus a rounding margin; `None` if there is no such angle.
+/// Returns the largest angle φ, radians, for which `around · cos φ` is at least `least`, plus a rounding margin. Returns `None` if there is no such angle.
 fn half_width(least: f64, around: f64) -> Option<f64> {
     if least > around * (1.0 + ROUNDING) {
         return None;

@@ -1,9 +1,9 @@
 //! Neighbours among the taxels of a skin, and their distances along its surface.
 //!
-//! Two taxels are neighbours if no third one lies in the ball whose diameter they span (a Gabriel graph). At any pitch, an inner taxel has four
-//! neighbours in a grid and six in a hexagonal layout; on curved layouts the neighbours are the surrounding taxels. Taxels with opposed
-//! axes belong to opposite sides of a thin wall and are not neighbours. Taxels at one position are neighbours, and share their other neighbours. Positions
-//! farther apart than three times the local spacing are not neighbours: the skin has a gap.
+//! Two taxels are neighbours if no third one lies in the ball whose diameter they span (a Gabriel graph). At any pitch, an inner taxel has four neighbours in a
+//! grid and six in a hexagonal layout. On curved layouts, the neighbours are the surrounding taxels. Taxels with opposed axes belong to opposite sides of a
+//! thin wall and are not neighbours. Taxels at one position are neighbours, and share their other neighbours. Positions farther apart than three times the
+//! local spacing are not neighbours: the skin has a gap.
 //!
 //! The distance along the surface is the length of an arc that turns by the angle θ between the axes: chord · (θ/2) / sin(θ/2). The formula is exact on planes,
 //! on spheres, and across and along cylinders.

@@ -329,7 +329,8 @@ impl FrictionState {
         counts
     }
 
-    /// Returns the sum of the forces that taxels exert on objects after a time step, over the given contacts (all contacts, or the contacts of one object).
+    /// Returns the sum of the forces that taxels exert on objects after a time step. The sum is over the given contacts: all contacts, or the contacts of one
+    /// object.
     pub fn load<'a>(
         &self,
         patch: &Patch,

@@ -127,8 +127,7 @@ impl SweptFace {
 
 /// Lower side of a tube around an edge of a triangle, without the part that adjacent faces hide.
 ///
-/// Distances along and beside the edge are stored as multiples of its projected length on the xy plane, because most tests are decided before this length is
-/// needed.
+/// Distances along and beside the edge are stored as multiples of its projected length on the xy plane. Most tests are decided before this length is needed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweptEdge {
     from: DVec3,

@@ -1,9 +1,9 @@
 //! The ℓ1 solver: min ½‖y − Aα‖² + λ‖α‖₁ by accelerated proximal gradient steps, many frames at a time.
 //!
-//! The method is FISTA (Beck and Teboulle 2009). A step is a gradient step of length 1/L from a point extrapolated along the last change, then soft
-//! thresholding by λ/L, where L is the largest eigenvalue of AᵀA. The momentum restarts if it points uphill (O'Donoghue and Candès 2015). The dual value at θ =
-//! s·(y − Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is a lower bound of the objective. A frame is solved if the gap between objective and dual value is small (Kim et
-//! al. 2007).
+//! The method is FISTA (Beck and Teboulle 2009). Let L be the largest eigenvalue of AᵀA. A step is a gradient step of length 1/L from a point extrapolated
+//! along the last change, then soft thresholding by λ/L. The momentum restarts if it points uphill (O'Donoghue and Candès 2015). The dual value at θ = s·(y −
+//! Aα), s = min(1, λ/‖Aᵀ(y − Aα)‖∞), is a lower bound of the objective. A frame is solved if the gap between objective and dual value is small (Kim et al.
+//! 2007).
 
 use crate::error::{Error, Result};
 use crate::sensing::{SensedDictionary, Solved};

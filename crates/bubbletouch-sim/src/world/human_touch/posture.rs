@@ -24,7 +24,7 @@ pub(super) struct Posture {
     pub open: Hand,
     /// Hand with closed fingers; equal to the open hand unless the touch is a grab.
     pub closed: Hand,
-    /// Rotation from the hand's frame to a frame at the touched point of the arm: x back along the arm, y around it, z away from it.
+    /// Rotation from the hand's frame to a frame at the touched point of the arm. In this frame, x points back along the arm, y around it and z away from it.
     pub place_from_hand: DQuat,
     /// Point of the hand that lies above the touched point of the arm, metres, in the hand's frame.
     pub anchor: DVec3,

@@ -3,8 +3,8 @@
 use crate::objects::SphereUnion;
 use glam::DVec3;
 
-/// Number of cubic cells along the longest side of the bounding box. A larger value is more accurate, with cubic run time; 48 cells give an error of about
-/// 0.2 % of the longest side in about 2 ms.
+/// Number of cubic cells along the longest side of the bounding box. A larger value is more accurate, with cubic run time. With 48 cells, the error is about
+/// 0.2 % of the longest side, in about 2 ms.
 const CELLS: f64 = 48.0;
 
 const EMPTY: u8 = 0;
@@ -13,8 +13,8 @@ const OUTSIDE: u8 = 2;
 
 /// Returns the centre of mass of a union of spheres, in the union's frame, metres.
 ///
-/// The union is divided into cubes. Cavities enclosed by spheres are treated as solid: a shell of spheres around a mesh has the mass of the mesh's interior,
-/// but a mug stays hollow.
+/// The union is divided into cubes. Cavities enclosed by spheres are treated as solid. A shell of spheres around a mesh therefore has the mass of the mesh's
+/// interior, but a mug stays hollow.
 pub fn center_of_mass(spheres: &SphereUnion) -> DVec3 {
     let mut cells = Cells::around(spheres);
     cells.mark_spheres(spheres);

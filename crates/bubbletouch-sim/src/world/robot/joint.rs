@@ -143,8 +143,8 @@ impl Joint {
 }
 
 /// Returns the x and y directions of the plane perpendicular to a unit axis, right-handed about it. URDF does not define these directions. For an axis along +z
-/// they are the directions of the joint's frame, as in other tools. For other axes with z ≥ 0 they are rotated from +z by the smallest rotation; for z < 0 they
-/// are rotated from −z, with y reversed.
+/// they are the directions of the joint's frame, as in other tools. For other axes with z ≥ 0, they are rotated from +z by the smallest rotation. For z < 0,
+/// they are rotated from −z, with y reversed.
 fn plane_across(axis: DVec3) -> (DVec3, DVec3) {
     // The construction is accurate for all axes \[Duff et al., Building an orthonormal basis, revisited, 2017\].
     let sign = if axis.z >= 0.0 { 1.0 } else { -1.0 };
