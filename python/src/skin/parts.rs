@@ -1,6 +1,6 @@
 //! Patches and bodies of a skin, and the press of a patch under a body at its pose.
 
-use bubbletouch::contact::{Workspace, press_at_pose};
+use bubbletouch::contact::{Workspace, Wrench, press_at_pose};
 use bubbletouch::geometry::{Aabb, Pose};
 use bubbletouch::objects::Model;
 use bubbletouch::world::{self, Taxels};
@@ -114,10 +114,8 @@ impl SkinPatch {
         let touched = deflections.iter().zip(places).enumerate();
         for (index, (deflection, (center, axis))) in touched.filter(|(_, (d, _))| **d > 0.0) {
             let force = -(taxels.at(index).stiffness * deflection) * *axis;
-            let six = force
-                .to_array()
-                .into_iter()
-                .chain(center.cross(force).to_array());
+            let Wrench { force, torque } = Wrench::at(*center, force);
+            let six = force.to_array().into_iter().chain(torque.to_array());
             for (sum, term) in wrench.iter_mut().zip(six) {
                 *sum += term;
             }
@@ -134,13 +132,6 @@ impl SkinPatch {
             }
         }
         counts
-    }
-
-    /// Replaces the deflection of each taxel, metres, by its force, newtons.
-    pub fn convert_to_forces(&self, frame: &mut [f64]) {
-        for (index, value) in frame.iter_mut().enumerate() {
-            *value *= self.patch.taxels().at(index).stiffness;
-        }
     }
 }
 

@@ -10,6 +10,7 @@ use crate::batch::Spare;
 use crate::errors::{bad_input, exception, guarded};
 use crate::model::model_of;
 use crate::patch::Patch;
+use crate::press::output::Output;
 use bubbletouch::contact::Workspace;
 use bubbletouch::geometry::Pose;
 use bubbletouch::objects::Model;
@@ -72,13 +73,6 @@ struct PairResults {
     residuals: Vec<f64>,
     /// Travel of the patch from its pose, metres.
     travels: Vec<f64>,
-}
-
-/// Quantity that a frame contains: deflections or forces.
-#[derive(Clone, Copy, PartialEq)]
-enum Output {
-    Deflection,
-    Force,
 }
 
 /// Options of one read.
@@ -183,7 +177,7 @@ impl Skin {
     ) -> PyResult<Bound<'py, PyAny>> {
         guarded(|| {
             let options = ReadOptions {
-                output: output_of(output)?,
+                output: Output::from_argument(output)?,
                 reach: reach_of(reach)?,
                 wants_pairs: pair_forces.is_some() || residuals.is_some() || travels.is_some(),
             };
@@ -362,8 +356,8 @@ impl Skin {
                 true => part.count(frame),
                 false => [0, 0],
             });
-            if is_near && options.output == Output::Force {
-                part.convert_to_forces(frame);
+            if is_near {
+                options.output.convert(&part.patch, frame);
             }
         }
     }
@@ -483,17 +477,6 @@ fn rigid_objects(bodies: &[Body], objects: Option<Vec<usize>>) -> PyResult<Vec<R
 fn clear(values: &mut Vec<f64>, n: usize) {
     values.clear();
     values.resize(n, 0.0);
-}
-
-fn output_of(output: &str) -> PyResult<Output> {
-    match output {
-        "deflection" => Ok(Output::Deflection),
-        "force" => Ok(Output::Force),
-        other => {
-            let allowed = "\"deflection\" or \"force\"";
-            Err(bad_input("output", format!("{other:?}"), allowed))
-        }
-    }
 }
 
 fn reach_of(reach: Option<f64>) -> PyResult<Option<f64>> {

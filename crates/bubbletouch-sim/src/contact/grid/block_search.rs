@@ -182,6 +182,7 @@ impl BlockSearch {
             bottom[lane] = center[2][lane] - half[2][lane];
         }
         let (shift, spread) = self.directions(&axis[2], &node.spread, &bottom);
+        let mut middle = center;
         let mut bounds = Bounds {
             low: center,
             high: center,
@@ -190,10 +191,10 @@ impl BlockSearch {
         };
         for k in 0..3 {
             for lane in 0..LANES {
-                let middle = center[k][lane] + shift[lane] * axis[k][lane];
+                middle[k][lane] += shift[lane] * axis[k][lane];
                 let wide = half[k][lane] + spread[lane] + self.slack;
-                bounds.low[k][lane] = middle - wide;
-                bounds.high[k][lane] = middle + wide;
+                bounds.low[k][lane] = middle[k][lane] - wide;
+                bounds.high[k][lane] = middle[k][lane] + wide;
             }
         }
         for lane in 0..LANES {
@@ -202,13 +203,8 @@ impl BlockSearch {
             bounds.back[lane] = bounds.top[lane] + self.reach;
         }
         let mut candidates = self.candidates(&bounds, limit, node.used);
-        let mut middle = [[0.0; LANES]; 2];
-        for k in 0..2 {
-            for lane in 0..LANES {
-                middle[k][lane] = center[k][lane] + shift[lane] * axis[k][lane];
-            }
-        }
-        self.rule_out_boxes(&mut candidates, (&middle, &node.half), &spread);
+        let [x, y, _] = middle;
+        self.rule_out_boxes(&mut candidates, (&[x, y], &node.half), &spread);
         candidates
     }
 

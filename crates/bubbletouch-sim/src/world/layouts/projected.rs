@@ -170,7 +170,8 @@ mod tests {
     #[test]
     fn taxels_on_a_sphere_lie_below_the_grid_with_radial_axes() {
         let radius = 0.03;
-        let ball = ball(radius, 60);
+        // 60 facets around each circle.
+        let ball = TriangleMesh::ellipsoid("ball", DVec3::splat(radius), 8.3e-5).unwrap();
         let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -0.7, 0.2);
         let pose = Pose::new(turn, turn * (0.05 * DVec3::Z));
         let projected = Layout::projected(&ball, &pose, &GRID, MissingTaxels::Refuse).unwrap();
@@ -208,25 +209,5 @@ mod tests {
             let error = error.unwrap_err().to_string();
             assert!(error.contains("no taxel meets an outer face"), "{error}");
         }
-    }
-
-    /// Returns a ball with `n` facets around its equator.
-    fn ball(radius: f64, n: usize) -> TriangleMesh {
-        let n_rings = n / 2;
-        let vertex = |ring: usize, facet: usize| {
-            let polar = std::f64::consts::PI * ring as f64 / n_rings as f64;
-            let (sin, cos) = (std::f64::consts::TAU * facet as f64 / n as f64).sin_cos();
-            radius * DVec3::new(polar.sin() * cos, polar.sin() * sin, polar.cos())
-        };
-        let vertices = (0..=n_rings).flat_map(|ring| (0..n).map(move |facet| (ring, facet)));
-        let vertices = vertices.map(|(ring, facet)| vertex(ring, facet)).collect();
-        let at = |ring: usize, facet: usize| (ring * n + facet % n) as u32;
-        let facets = (0..n_rings).flat_map(|ring| (0..n).map(move |facet| (ring, facet)));
-        let triangles = facets.flat_map(|(ring, facet)| {
-            let [a, b] = [at(ring, facet), at(ring + 1, facet)];
-            let [c, d] = [at(ring + 1, facet + 1), at(ring, facet + 1)];
-            [[a, b, c], [a, c, d]]
-        });
-        TriangleMesh::new("ball", vertices, triangles.collect()).unwrap()
     }
 }
