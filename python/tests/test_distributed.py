@@ -1,7 +1,8 @@
-"""Tests of studies whose shards are tasks of Dask or of an executor."""
+"""Tests of studies whose shards are tasks of Dask, Ray or an executor."""
 
 from __future__ import annotations
 
+import os
 import sys
 from concurrent.futures import Executor, ProcessPoolExecutor
 from multiprocessing import get_context
@@ -71,6 +72,35 @@ def test_any_executor_runs_the_shards() -> None:
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as executor:
         assert isinstance(executor, Executor)
         assert is_same(bt.distributed.run(STUDY, executor, 3), bt.run(STUDY))
+
+
+@pytest.fixture(scope="module")
+def ray_executor() -> Iterator[Any]:
+    ray = pytest.importorskip("ray")
+    # Workers import the classes of these tests.
+    paths = {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), *sys.path])}
+    ray.init(num_cpus=3, include_dashboard=False, log_to_driver=False, runtime_env={"env_vars": paths})
+    yield bt.distributed.RayExecutor()
+    ray.shutdown()
+
+
+def test_three_workers_of_ray_give_the_bytes_of_one_process(ray_executor: Any, tmp_path: Path) -> None:
+    assert ray_executor.n_threads == 3
+    assert is_same(bt.distributed.run(STUDY, ray_executor, out=tmp_path / "out"), bt.run(STUDY))
+    assert len(list((tmp_path / "out").glob("journal.*-of-3.jsonl"))) == 3
+
+
+def test_ray_runs_the_shard_of_a_lost_worker_again(ray_executor: Any, tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    mine = {"mine": (Nearest(log, 4), "1")}
+    found = bt.distributed.run(STUDY, ray_executor, 3, classifiers=mine, features={"noisy": noisy})
+    assert len(log.read_text().splitlines()) > 3 * 2 * 2 * 2, "some fits ran twice"
+    assert is_same(found, bt.run(STUDY, classifiers={"mine": (Nearest(), "1")}, features={"noisy": noisy}))
+
+
+def test_an_error_of_a_task_of_ray_is_the_error_of_the_run(ray_executor: Any) -> None:
+    with pytest.raises(ValueError, match="study, configuration .*, trial .*classifier mine: ArithmeticError: no convergence"):
+        bt.distributed.run(STUDY, ray_executor, 2, classifiers={"mine": Failing()})
 
 
 def test_an_interrupted_run_goes_on_with_the_journals_of_its_shards(tmp_path: Path) -> None:

@@ -1,11 +1,11 @@
-"""Studies on many machines: each shard of a study is a task of Dask or of any executor."""
+"""Studies on many machines: each shard of a study is a task of Dask, Ray or any executor."""
 
 from __future__ import annotations
 
 import os
 import tempfile
 from collections.abc import Mapping
-from concurrent.futures import Future, as_completed
+from concurrent.futures import Executor, Future, as_completed
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,44 @@ from bubbletouch import _core
 from bubbletouch._foreign import Given, Host, hosted, identified
 from bubbletouch.study import Study, _text
 
-__all__ = ["run"]
+__all__ = ["RayExecutor", "run"]
+
+
+class RayExecutor(Executor):
+    """An executor whose tasks run on the Ray cluster of this process. Call ray.init before, or let Ray start one on this machine.
+
+    options: options of ray.remote for each task, such as num_cpus=4. Ray runs the task of a lost worker again, max_retries times (3 by default).
+    """
+
+    def __init__(self, **options: Any) -> None:
+        import ray
+
+        self._ray: Any = ray
+        self._options = options
+        if not ray.is_initialized():
+            ray.init()
+
+    @property
+    def n_threads(self) -> int:
+        """Number of processors of the cluster."""
+        return max(1, int(self._ray.cluster_resources().get("CPU", 1)))
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        task = self._ray.remote(fn).options(**self._options).remote(*args, **kwargs)
+        ended: Future[Any] = Future()
+        task.future().add_done_callback(lambda done: self._end(ended, done))
+        ended.add_done_callback(lambda future: self._ray.cancel(task) if future.cancelled() else None)
+        return ended
+
+    def _end(self, ended: Future[Any], done: Future[Any]) -> None:
+        if not ended.set_running_or_notify_cancel():
+            return
+        error = done.exception()
+        if error is None:
+            ended.set_result(done.result())
+        else:
+            # Ray wraps an exception of the task in one of its own.
+            ended.set_exception(getattr(error, "cause", None) or error)
 
 
 def run(
@@ -32,9 +69,9 @@ def run(
     equal to the tables of `bubbletouch.run`.
 
     study: path of a TOML file, or a dict with its tables. Files that the study names exist under the same absolute paths on all machines.
-    client: dask.distributed.Client, or a concurrent.futures.Executor. Dask runs the shard of a lost worker again.
-    n_shards: number of tasks. None: the number of threads of all workers, or of processors of this machine for an executor. Each shard simulates the
-    touches that it needs, so many shards repeat simulations.
+    client: dask.distributed.Client, a RayExecutor, or another concurrent.futures.Executor. Dask and Ray run the shard of a lost worker again.
+    n_shards: number of tasks. None: the number of threads of all workers, or of processors of this machine for another executor. Each shard simulates
+    the touches that it needs, so many shards repeat simulations.
     out: result folder. Journals of finished shards are kept there; the same call continues an interrupted run with the same n_shards. None: a temporary
     folder that is deleted with the Study.
     seed, classifiers, features: as for bubbletouch.run.
@@ -49,7 +86,7 @@ def run(
             raise ValueError(f"{key}: {number}; at least 1")
     is_dask = hasattr(client, "get_executor")
     if n_shards is None:
-        n_shards = max(1, sum(client.nthreads().values()) if is_dask else os.cpu_count() or 1)
+        n_shards = max(1, sum(client.nthreads().values()) if is_dask else getattr(client, "n_threads", os.cpu_count() or 1))
     kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
     results = Path(kept.name) / name if kept is not None else Path(out or "")
     given = identified(classifiers, features)
