@@ -91,6 +91,14 @@ impl AuditFiles {
         for file in spec.files_mut() {
             *file = self.data.join(&*file);
         }
+        // Checks compare the readings of taxels, so each sensor has an audit of its own.
+        let sensors = spec.used_sensors();
+        let [(_, spec)] = &sensors[..] else {
+            let place = format!("{}, key recorded.sensors", path.display());
+            let given = format!("{} sensors", sensors.len());
+            let allowed = "one sensor: its name in recorded.sensor, or the file of its frames";
+            return Err(Error::input(place, given, allowed));
+        };
         let given = |name: &str| spec.file_of(name).map(Path::to_owned);
         let files = Self {
             data: spec.frames.clone(),

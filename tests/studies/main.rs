@@ -35,6 +35,7 @@ mod recognition;
 mod recorded;
 mod recorded_arrays;
 mod recorded_law;
+mod recorded_sensors;
 mod repeatability;
 mod sensor_error_names;
 mod shear;

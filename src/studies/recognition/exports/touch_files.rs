@@ -387,7 +387,7 @@ fn write_recorded(
         recorded: RecordedSpec,
         skin: SkinSpec,
     }
-    let is_grid = array.layout() == ArrayLayout::Grid;
+    let is_grid = array.layout() == Some(ArrayLayout::Grid);
     let units = match recorded.shear {
         Some(_) => {
             "# frames.npy has deflections in metres, shear.npy the forces along x and y of each taxel in newtons."
@@ -412,7 +412,7 @@ fn write_recorded(
 
 /// Writes the positions and axes of the taxels, if the layout is not a grid.
 fn write_taxels(folder: &Path, array: &TaxelArray) -> Result<()> {
-    if array.layout() == ArrayLayout::Grid {
+    if array.layout() == Some(ArrayLayout::Grid) {
         return Ok(());
     }
     let layout = array.patch().layout();

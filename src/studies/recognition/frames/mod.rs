@@ -11,6 +11,7 @@ pub mod reading;
 pub mod recorded_frames;
 pub mod recorded_skin;
 pub mod samples;
+pub(crate) mod sensor_frames;
 pub(crate) mod shear_ripple;
 pub mod simulation;
 pub mod touch_set;

@@ -1,18 +1,15 @@
 //! Recorded frames of a study, which replace simulated touches; the files are read once.
 //!
 //! A reading v corresponds to the deflection `stroke · (v − zero) / (full_scale − zero)`. Noise and sensor errors of a study are fractions of the full scale,
-//! so they have the same effect as on a simulated skin. Readings of tangential forces are in newtons.
+//! so they have the same effect as on a simulated skin. Readings of tangential forces are in newtons. The readings of several sensors are joined to one frame.
 
-use crate::calibration::plateau;
 use crate::contact::saturation_limit;
 use crate::engine::progress::Progress;
 use crate::error::{Error, Result};
-use crate::inputs::arrays::axis_order::FrameShape;
-use crate::inputs::arrays::file_array::{ElementKind, FileArray};
+use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::whole_numbers::{
     ClassLabels, KeyValue, group_keys, read_class_values, read_group_values,
 };
-use crate::inputs::memory::check_memory;
 use crate::inputs::object_files::file_content;
 use crate::learning::data::split::Side;
 use crate::random::Seed;
@@ -21,19 +18,17 @@ use crate::signal::Quantity;
 use crate::studies::recognition::frames::frame_store::Frames;
 use crate::studies::recognition::frames::reading::{TouchToRead, touches_to_read};
 use crate::studies::recognition::frames::samples::spread_samples;
+use crate::studies::recognition::frames::sensor_frames::{
+    SensorFrames, SensorScale, check_alike, joined_readings, one_each,
+};
 use crate::studies::recognition::frames::touch_set::{Samples, TouchSet};
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec, ZeroSpec};
-use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2, Axis, concatenate};
+use crate::studies::recognition::spec::recorded::{PreviousTouch, RecordedSpec};
+use ndarray::{Array1, Array2, ArrayView1, ArrayViewMut2};
 use rand::Rng;
 use std::collections::{BTreeMap, HashSet};
-use std::path::Path;
-
-/// Fraction of missing (NaN) readings, 0 to 1, above which a taxel is masked. With a larger value, recordings with an intermittently failing taxel are
-/// rejected; with a smaller value, a few missing readings mask a taxel.
-const MASKED: f64 = 0.1;
 
 /// Touches that a real skin recorded.
 #[derive(Clone, Debug)]
@@ -54,10 +49,14 @@ pub struct RecordedFrames {
     is_masked: Vec<bool>,
     /// Reading of each untouched taxel; 0 for a masked taxel.
     zeros: Vec<f64>,
-    /// Reading of a taxel whose deflection equals its stroke.
-    full_scale: f64,
-    /// Reading above which a taxel of the recording counts as saturated.
-    saturation: f64,
+    /// Reading of each taxel at which its deflection equals its stroke.
+    full_scales: Vec<f64>,
+    /// Reading above which each taxel counts as saturated.
+    saturations: Vec<f64>,
+    /// Time between the frames of each touch relative to the time between recorded frames, in the order of the field `order`; 1 without resampling.
+    steps: Vec<f64>,
+    /// Names of the sensors, with their numbers of taxels.
+    sensors: Vec<(String, usize)>,
     /// Number F of frames per touch.
     n_frames: usize,
     /// Number of taxels of the skin; a frame may contain several values per taxel.
@@ -70,16 +69,6 @@ pub struct RecordedFrames {
     depths: Option<Vec<f64>>,
 }
 
-/// Frames that one file contains, and the shape of each frame.
-struct FramesOfFile {
-    shape: FrameShape,
-    readings: Array2<f64>,
-    kind: ElementKind,
-    place: String,
-    /// Path of the file that contains the tangential forces; `None` if the frames contain them.
-    shear_place: Option<String>,
-}
-
 impl RecordedFrames {
     /// Reads the files of a recording. If `ceiling` is given, the frames must fit into this number of bytes.
     ///
@@ -87,28 +76,11 @@ impl RecordedFrames {
     /// If a file cannot be read or does not fit the others, or a reading is infinite, or NaN although its taxel is not masked.
     pub fn read(spec: &RecordedSpec, ceiling: Option<u64>) -> Result<Self> {
         spec.check_files()?;
-        let train = spec.read_frames("frames", ceiling)?;
-        let test = match spec.has_test_set() {
-            true => Some(spec.read_frames("frames_test", ceiling)?),
-            false => None,
-        };
-        let files: Vec<&FramesOfFile> = [Some(&train), test.as_ref()]
-            .into_iter()
-            .flatten()
-            .collect();
-        if let Some(test) = &test {
-            let axes = |shape: &FrameShape| [shape.n_frames, shape.rows, shape.columns];
-            if axes(&test.shape) != axes(&train.shape) {
-                let [given, allowed] = [&test.shape, &train.shape].map(|shape| {
-                    let [n_frames, rows, columns] = axes(shape);
-                    format!("touches of {n_frames} frames of {rows} × {columns} taxels")
-                });
-                let allowed = format!("{allowed}, as {} has", train.place);
-                return Err(Error::input(&test.place, given, allowed));
-            }
-        }
-        let n_train = train.shape.n_touches;
-        let n_test = test.as_ref().map_or(0, |test| test.shape.n_touches);
+        let sensors = spec.used_sensors().into_iter();
+        let sensors = sensors.map(|(name, spec)| SensorFrames::read(name, spec, ceiling));
+        let sensors = sensors.collect::<Result<Vec<_>>>()?;
+        check_alike(&sensors)?;
+        let [n_train, n_test] = sensors[0].n_touches();
         let labels = spec.class_labels([n_train, n_test])?;
         let (names, streams, counts) = spec.classes(&labels)?;
         let mut order: Vec<usize> = (0..n_train + n_test).collect();
@@ -119,36 +91,45 @@ impl RecordedFrames {
             true => Side::Train,
             false => Side::Test,
         };
-        let sides = test
-            .as_ref()
-            .map(|_| order.iter().map(side).collect::<Vec<_>>());
+        let sides = spec.has_test_set();
+        let sides = sides.then(|| order.iter().map(side).collect::<Vec<_>>());
         if let Some(sides) = &sides {
             spec.check_test_set(&names, &order, sides, &labels)?;
         }
         let depths = spec.read_depths(n_train + n_test)?;
         let depths = depths.map(|depths| order.iter().map(|&touch| depths[touch]).collect());
-        let n_taxels = train.shape.rows * train.shape.columns;
-        let is_masked = masked(&files, n_taxels)?;
-        let zeros = spec.checked_zeros(&train.shape, &is_masked)?;
-        let (full_scale, saturation) = spec.full_scale_of(&files, &zeros, depths.is_some())?;
-        let n_frames = train.shape.n_frames;
-        let none = Array2::zeros((0, train.readings.ncols()));
+        let n_frames = sensors[0].n_frames();
+        let steps = sensors[0].steps();
+        let steps = order.iter().map(|&touch| steps[touch]).collect();
+        let scales = sensors.iter().map(|sensor| sensor.scale(depths.is_some()));
+        let scales = scales.collect::<Result<Vec<SensorScale>>>()?;
+        let names_of = sensors.iter().zip(&scales);
+        let names_of = names_of.map(|(sensor, scale)| (sensor.name.clone(), scale.zeros.len()));
+        let sensors_of: Vec<(String, usize)> = names_of.collect();
+        let each = |of: fn(&SensorScale) -> f64| -> Vec<f64> {
+            let values = scales
+                .iter()
+                .map(|s| std::iter::repeat_n(of(s), s.zeros.len()));
+            values.flatten().collect()
+        };
         Ok(Self {
             spec: spec.clone(),
             names,
             streams,
             counts,
             order,
-            is_masked,
-            zeros,
-            full_scale,
-            saturation,
+            full_scales: each(|scale| scale.full_scale),
+            saturations: each(|scale| scale.saturation),
+            is_masked: scales.iter().flat_map(|s| s.is_masked.clone()).collect(),
+            zeros: scales.iter().flat_map(|s| s.zeros.clone()).collect(),
+            steps,
             n_frames,
-            n_taxels,
+            n_taxels: sensors_of.iter().map(|(_, n)| n).sum(),
+            sensors: sensors_of,
             groups,
             sides,
             depths,
-            readings: [train.readings, test.map_or(none, |test| test.readings)],
+            readings: joined_readings(sensors),
         })
     }
 
@@ -162,6 +143,18 @@ impl RecordedFrames {
         }
     }
 
+    /// Returns the number of a taxel, with the name of its sensor if there are several sensors.
+    fn taxel_name(&self, taxel: usize) -> String {
+        let mut first = 0;
+        for (name, n_taxels) in &self.sensors {
+            if self.sensors.len() > 1 && taxel < first + n_taxels {
+                return format!("{name} {}", taxel - first);
+            }
+            first += n_taxels;
+        }
+        taxel.to_string()
+    }
+
     /// Returns the values of one frame of a touch: deflections in metres, and tangential forces in newtons.
     fn values(&self, (touch, frame): (usize, usize), stroke: f64) -> Array1<f64> {
         let readings = self.frame(touch, frame);
@@ -170,8 +163,8 @@ impl RecordedFrames {
             |(place, (&reading, &is_masked))| match place < self.n_taxels {
                 _ if is_masked => 0.0,
                 true => {
-                    let zero = self.zeros[place];
-                    (reading - zero) / (self.full_scale - zero) * stroke
+                    let (zero, full_scale) = (self.zeros[place], self.full_scales[place]);
+                    (reading - zero) / (full_scale - zero) * stroke
                 }
                 false => reading,
             },
@@ -179,13 +172,13 @@ impl RecordedFrames {
         values.collect()
     }
 
-    /// Returns two readings along the axis for each unmasked taxel: during the touch and without touch.
-    fn pushes(&self, touch: usize) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let frames = (0..self.n_frames).flat_map(move |frame| {
-            let readings = self.frame(touch, frame).into_iter().zip(&self.is_masked);
-            readings.zip(&self.zeros)
-        });
-        frames.filter_map(|((&reading, &is_masked), &zero)| (!is_masked).then_some((reading, zero)))
+    /// Returns whether a condition holds for a reading along the axis of an unmasked taxel during the touch, given the taxel and the reading.
+    fn any_reading(&self, touch: usize, holds: impl Fn(usize, f64) -> bool) -> bool {
+        let mut frames = (0..self.n_frames).map(|frame| self.frame(touch, frame));
+        frames.any(|frame| {
+            let mut taxels = frame.iter().take(self.n_taxels).enumerate();
+            taxels.any(|(taxel, &reading)| !self.is_masked[taxel] && holds(taxel, reading))
+        })
     }
 }
 
@@ -200,36 +193,6 @@ impl RecordedSpec {
         content.collect()
     }
 
-    fn read_frames(&self, name: &str, ceiling: Option<u64>) -> Result<FramesOfFile> {
-        let path = self.file_of(name).unwrap_or(&self.frames);
-        let shape = self.shape_of(name)?;
-        let shear = self.shear_shape(name, &shape)?;
-        let n = shape.n_touches;
-        let of_shear = shear.as_ref().map_or(0, FrameShape::n_frame_values);
-        let n_values = shape.n_frame_values() + of_shear;
-        // The data are in memory twice as f64 if axes are permuted or files are joined.
-        let bytes = 16.0 * (n * shape.n_frames) as f64 * n_values as f64;
-        check_memory(bytes, ceiling, "frames")
-            .map_err(|allowed| Error::input(path.display(), format!("{n} touches"), allowed))?;
-        let array = FileArray::read(path, name)?;
-        let (place, kind) = (array.place.clone(), array.kind);
-        let mut readings = shape.arrange(array.into_numbers()?);
-        let mut shear_place = None;
-        if let (Some((path, name)), Some(shape)) = (self.shear_of(name), shear) {
-            let array = FileArray::read(path, name)?;
-            shear_place = Some(array.place.clone());
-            let across = shape.arrange(array.into_numbers()?);
-            readings = concatenate![Axis(1), readings, across];
-        }
-        Ok(FramesOfFile {
-            readings,
-            shape,
-            kind,
-            place,
-            shear_place,
-        })
-    }
-
     /// Returns the class labels of all touches; the separate test set comes last.
     fn class_labels(&self, n: [usize; 2]) -> Result<ClassLabels> {
         let mut values = Vec::new();
@@ -238,7 +201,7 @@ impl RecordedSpec {
                 continue;
             };
             let own = read_class_values(path, name, n)?;
-            one_each(path, (own.len(), n), &self.frames)?;
+            one_each(path, (own.len(), n), self.first_frames())?;
             let is_text = |value: &KeyValue| matches!(value, KeyValue::Text(_));
             if let (Some(first), Some(other)) = (own.first(), values.first())
                 && is_text(first) != is_text(other)
@@ -310,7 +273,7 @@ impl RecordedSpec {
                 None => Ok(None),
                 Some(path) => {
                     let groups = read_group_values(path, name, n)?;
-                    one_each(path, (groups.len(), n), &self.frames)?;
+                    one_each(path, (groups.len(), n), self.first_frames())?;
                     Ok(Some(groups))
                 }
             }
@@ -374,7 +337,7 @@ impl RecordedSpec {
             return Ok(None);
         };
         let depths = FileArray::read(path, "depths")?.into_numbers()?;
-        one_each(path, (depths.len(), n), &self.frames)?;
+        one_each(path, (depths.len(), n), self.first_frames())?;
         match depths
             .iter()
             .position(|depth| !(depth.is_finite() && *depth > 0.0))
@@ -387,137 +350,12 @@ impl RecordedSpec {
             }
         }
     }
-
-    /// Checks and returns the reading of each untouched taxel; the reading of a masked taxel is 0.
-    fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
-        let mut zeros = self.zeros(shape)?;
-        for (taxel, zero) in zeros.iter_mut().enumerate() {
-            if is_masked[taxel] {
-                *zero = 0.0;
-            } else if !zero.is_finite()
-                && let ZeroSpec::Each(path) = &self.zero
-            {
-                let place = format!("{}, taxel {taxel}", path.display());
-                let allowed = "a finite number (only a taxel that is masked may be without one)";
-                return Err(Error::input(place, *zero, allowed));
-            }
-        }
-        Ok(zeros)
-    }
-
-    /// Returns two readings: the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. A taxel counts as saturated above
-    /// the given full scale, or above a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because
-    /// equal depths may cause it.
-    fn full_scale_of(
-        &self,
-        files: &[&FramesOfFile],
-        zeros: &[f64],
-        are_depths_known: bool,
-    ) -> Result<(f64, f64)> {
-        let frames = || files.iter().flat_map(|file| file.readings.outer_iter());
-        let pushes = || frames().map(|frame| frame.into_iter().take(zeros.len()).copied());
-        let largest = pushes().flatten().filter(|reading| !reading.is_nan());
-        let largest = largest.fold(f64::NEG_INFINITY, f64::max);
-        let full_scale = self.full_scale.unwrap_or(largest);
-        let highest = zeros.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if highest >= full_scale {
-            return Err(match &self.zero {
-                ZeroSpec::One(zero) => {
-                    let given = format!("no reading above recorded.zero, {zero}");
-                    Error::input(self.frames.display(), given, "touches")
-                }
-                ZeroSpec::Each(path) => {
-                    let taxel = zeros.iter().position(|&zero| zero == highest);
-                    let place = format!("{}, taxel {}", path.display(), taxel.unwrap_or(0));
-                    let allowed = match self.full_scale {
-                        Some(full_scale) => format!("below recorded.full_scale, {full_scale}"),
-                        None => format!(
-                            "below the largest reading, {largest}, which stands for the full scale"
-                        ),
-                    };
-                    Error::input(place, highest, allowed)
-                }
-            });
-        }
-        let spacing = match files[0].kind {
-            ElementKind::Float(spacing) => spacing,
-            _ => 0.0,
-        };
-        let given = self.full_scale.map(|full| full - spacing * full.abs());
-        let shared = match are_depths_known {
-            true => None,
-            false => plateau(pushes).filter(|&level| level > highest),
-        };
-        let saturation = given
-            .unwrap_or(f64::INFINITY)
-            .min(shared.unwrap_or(f64::INFINITY));
-        Ok((full_scale, saturation))
-    }
-}
-
-/// Returns an error if a file does not contain exactly one value per touch.
-fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
-    let given = format!("{n_given} numbers");
-    let allowed = format!("{n}, one a touch of {}", frames.display());
-    match n_given == n {
-        true => Ok(()),
-        false => Err(Error::input(path.display(), given, allowed)),
-    }
 }
 
 fn name_of(value: &KeyValue) -> String {
     match value {
         KeyValue::Integer(number) => number.to_string(),
         KeyValue::Text(text) => text.clone(),
-    }
-}
-
-/// Returns whether each value of a frame belongs to a masked taxel, which has too many NaN readings.
-fn masked(files: &[&FramesOfFile], n_taxels: usize) -> Result<Vec<bool>> {
-    let n_values = files[0].readings.ncols();
-    let n_frames: usize = files.iter().map(|file| file.readings.nrows()).sum();
-    let mut n_missing = vec![0_usize; n_values];
-    for file in files {
-        for frame in file.readings.outer_iter() {
-            for (n, reading) in n_missing.iter_mut().zip(frame) {
-                *n += usize::from(reading.is_nan());
-            }
-        }
-    }
-    let of_taxel = |place: usize| n_missing.iter().skip(place % n_taxels).step_by(n_taxels);
-    let most = |place: usize| of_taxel(place).copied().max().unwrap_or(0);
-    let is_masked = (0..n_values).map(|place| most(place) as f64 >= MASKED * n_frames as f64);
-    let is_masked: Vec<bool> = (0..n_values)
-        .zip(is_masked)
-        .map(|(place, is_masked)| is_masked && most(place) > 0)
-        .collect();
-    for file in files {
-        for ((row, place), &reading) in file.readings.indexed_iter() {
-            if reading.is_finite() || is_masked[place] {
-                continue;
-            }
-            let taxel = place % n_taxels;
-            let own = file.shear_place.as_ref().filter(|_| place >= n_taxels);
-            let own = own.unwrap_or(&file.place);
-            let at = format!("{own}, frame {row}, taxel {taxel}");
-            let allowed = match reading.is_nan() {
-                true => format!(
-                    "a finite number (a taxel that is NaN in at least {:.0} % of the frames is masked; this one is in {} of {n_frames})",
-                    100.0 * MASKED,
-                    most(place)
-                ),
-                false => "a finite number".to_owned(),
-            };
-            return Err(Error::input(at, reading, allowed));
-        }
-    }
-    match is_masked.iter().all(|&is_masked| is_masked) {
-        true => Err(Error::input(
-            &files[0].place,
-            "no taxel with readings",
-            "numbers",
-        )),
-        false => Ok(is_masked),
     }
 }
 
@@ -551,12 +389,9 @@ impl TouchSet for RecordedFrames {
                     *to = from as f32;
                 }
             }
-            let mut pushes = self.pushes(touch);
-            let is_missed = !self.pushes(touch).any(|(reading, zero)| reading > zero);
-            (
-                is_missed,
-                pushes.any(|(reading, _)| reading >= self.saturation),
-            )
+            let is_touched = self.any_reading(touch, |taxel, reading| reading > self.zeros[taxel]);
+            let is_full = |taxel: usize, reading| reading >= self.saturations[taxel];
+            (!is_touched, self.any_reading(touch, is_full))
         };
         frames.make(&touches, || (), copy, progress);
         frames
@@ -572,7 +407,9 @@ impl TouchSet for RecordedFrames {
             let depth = self.depths.as_ref().map(|depths| depths[number]);
             let depth = depth.filter(|_| speed > 0.0);
             let at_speed = depth.map(|depth| depth / (n_frames as f64 * speed));
-            touch.interval = self.spec.frame_interval_s.or(at_speed);
+            let interval = self.spec.frame_interval_s;
+            let interval = interval.map(|interval| interval * self.steps[number]);
+            touch.interval = interval.or(at_speed);
             if self.spec.previous_touch == PreviousTouch::Random {
                 let mut rng = touch.seed.named("before").rng();
                 touch.before = Some(rng.gen_range(0..n_touches));
@@ -622,12 +459,21 @@ impl TouchSet for RecordedFrames {
                 format!("{}: {}", names.len(), names.join(", ")),
             ),
             row("Frames a touch", self.n_frames.to_string()),
-            row("Recorded in", self.spec.frames.display().to_string()),
+            row(
+                "Recorded in",
+                self.spec.first_frames().display().to_string(),
+            ),
         ];
+        if let [_, _, ..] = &self.sensors[..] {
+            let sensors = self.sensors.iter();
+            let sensors = sensors.map(|(name, n_taxels)| format!("{name} ({n_taxels} taxels)"));
+            let sensors: Vec<String> = sensors.collect();
+            rows.push(row("Sensors", sensors.join(", ")));
+        }
         let masked = self.is_masked[..self.n_taxels].iter().enumerate();
         let masked = masked
             .filter(|&(_, &is)| is)
-            .map(|(taxel, _)| taxel.to_string());
+            .map(|(taxel, _)| self.taxel_name(taxel));
         let masked: Vec<String> = masked.collect();
         if !masked.is_empty() {
             let taxels = format!(

@@ -4,10 +4,11 @@ use crate::error::Result;
 use crate::random::Seed;
 use crate::sensing::{ImageEstimate, ImagePrior, Projection, Readings};
 use crate::studies::recognition::measurements::tilted_copies::TiltedCopies;
+use crate::studies::recognition::plan::listed_taxels::SensorImage;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::recognition::rows::image_features::{FeaturesOfImages, join_values};
 use crate::studies::recognition::sweep::learned_frames::{LEARNED_FRAMES, WITH_COPIES};
-use bubbletouch_sim::features::{Chart, Cut, ImageFeatures, Workspace, tilt_frame};
+use bubbletouch_sim::features::{Cut, ImageFeatures, Workspace, tilt_frame};
 use ndarray::{Array2, ArrayView2, ArrayViewMut2, Axis, s};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -18,10 +19,8 @@ const BLOCK: usize = 64;
 /// Estimators that compute images of frames from measurements: one for each number of measurements that a group of configurations uses.
 #[derive(Clone, Debug)]
 pub struct Images {
-    /// Numbers of rows and columns of the images of frames.
-    shape: (usize, usize),
-    /// Mapping from taxels to pixels; `None` if each taxel is a pixel.
-    chart: Option<Chart>,
+    /// Images of a frame: one for each sensor.
+    sensors: Vec<SensorImage>,
     full_scale: f64,
     /// Image estimators, each with its number m of measurements.
     estimates: Vec<(usize, ImageEstimate)>,
@@ -39,12 +38,12 @@ impl Images {
         seed: &Seed,
     ) -> Result<Self> {
         let is_whole = |projection: &Projection| projection.ensemble().gives_frames();
-        let (chart, n_training) = (array.chart(), readings.training.nrows());
+        let (sensors, n_training) = (array.images(), readings.training.nrows());
         // Shifting an image by rows and columns gives additional training images.
-        let n_frames = match (&chart, n_training < LEARNED_FRAMES) {
-            (Some(_), _) => n_training,
-            (None, true) => WITH_COPIES,
-            (None, false) => LEARNED_FRAMES,
+        let n_frames = match (array.is_image(), n_training < LEARNED_FRAMES) {
+            (false, _) => n_training,
+            (true, true) => WITH_COPIES,
+            (true, false) => LEARNED_FRAMES,
         };
         let prior = match projections.iter().all(is_whole) {
             true => None,
@@ -61,8 +60,7 @@ impl Images {
             Ok((projection.n_measurements(), estimate))
         });
         Ok(Self {
-            shape: array.image().0,
-            chart,
+            sensors,
             full_scale,
             estimates: estimates.collect::<Result<_>>()?,
         })
@@ -86,8 +84,9 @@ impl Images {
     ) -> Vec<Array2<f64>> {
         let n_touches = values.nrows() / n_frames.max(1);
         let n_rows = n_touches + copies.map_or(0, |copies| copies.slopes.len());
-        let empty =
-            |w: &FeaturesOfImages| Array2::zeros((n_rows, n_frames * w.join.n_values(self.shape)));
+        let shapes: Vec<_> = self.sensors.iter().map(|sensor| sensor.shape).collect();
+        let n_values = |w: &FeaturesOfImages| join_values(w.join, &shapes);
+        let empty = |w: &FeaturesOfImages| Array2::zeros((n_rows, n_frames * n_values(w)));
         let mut all: Vec<Array2<f64>> = wanted.iter().map(empty).collect();
         for (m, estimate) in &self.estimates {
             let of_m = wanted.iter().zip(&mut all);
@@ -101,27 +100,30 @@ impl Images {
             blocks.for_each_init(Workspace::default, |workspace, (touches, mut rows)| {
                 let frames = touches.start * n_frames..touches.end * n_frames;
                 let images = self.images(estimate, values.slice(s![frames, ..*m]));
-                for (row, images) in images.axis_chunks_iter(Axis(0), n_frames).enumerate() {
-                    write(&features, images, workspace, (&mut rows, row));
+                for row in 0..touches.len() {
+                    let images = of_touch(&images, row, n_frames);
+                    write(&features, &images, workspace, (&mut rows, row));
                 }
             });
             let Some(copies) = copies else {
                 continue;
             };
-            let level = self.level(estimate);
             let (touches, n_copies) = (&copies.touches, copies.n_copies);
             let blocks = self::blocks(of_copies, touches.len(), n_copies).into_par_iter();
             blocks.for_each_init(Workspace::default, |workspace, (places, mut rows)| {
-                let first = places.start * n_copies;
+                let (first, places_len) = (places.start * n_copies, places.len());
                 let frames = touches[places].iter();
                 let frames = frames.flat_map(|touch| touch * n_frames..(touch + 1) * n_frames);
                 let measured = values.select(Axis(0), &frames.collect::<Vec<usize>>());
                 let images = self.images(estimate, measured.slice(s![.., ..*m]));
-                for (place, images) in images.axis_chunks_iter(Axis(0), n_frames).enumerate() {
+                for place in 0..places_len {
+                    let images = of_touch(&images, place, n_frames);
                     for copy in 0..n_copies {
                         let row = place * n_copies + copy;
-                        let tilted = self.tilted(images, copies.slopes[first + row], level);
-                        write(&features, tilted.view(), workspace, (&mut rows, row));
+                        let slope = copies.slopes[first + row];
+                        let tilted = self.tilted(&images, slope, estimate);
+                        let tilted: Vec<_> = tilted.iter().map(Array2::view).collect();
+                        write(&features, &tilted, workspace, (&mut rows, row));
                     }
                 }
             });
@@ -129,38 +131,71 @@ impl Images {
         all
     }
 
-    /// Estimates the images of frames from their measurements; each image (ny × nx pixels) is one row of the result.
-    fn images(&self, estimate: &ImageEstimate, measured: ArrayView2<f64>) -> Array2<f64> {
+    /// Estimates the images of frames from their measurements: one array for each sensor. Each image (ny × nx pixels) is one row of an array.
+    fn images(&self, estimate: &ImageEstimate, measured: ArrayView2<f64>) -> Vec<Array2<f64>> {
         let frames = estimate.images(measured);
-        match &self.chart {
-            Some(chart) => chart.images(frames.view()),
-            None => frames,
+        if let [SensorImage { chart: None, .. }] = &self.sensors[..] {
+            return vec![frames];
         }
+        let image = |sensor: &SensorImage| {
+            let own = frames.slice(s![.., sensor.taxels.clone()]);
+            match &sensor.chart {
+                Some(chart) => chart.images(own),
+                None => own.to_owned(),
+            }
+        };
+        self.sensors.iter().map(image).collect()
     }
 
-    /// Returns the images of a touch, tilted by a slope along x and y, shape (F, ny · nx).
-    fn tilted(&self, images: ArrayView2<f64>, slope: (f64, f64), level: f64) -> Array2<f64> {
-        let mut tilted = Array2::zeros(images.raw_dim());
-        for (image, mut out) in images.outer_iter().zip(tilted.outer_iter_mut()) {
-            let image = image.as_standard_layout();
-            let image = image.as_slice().expect("rows are whole");
-            let out = out.as_slice_mut().expect("rows are whole");
-            tilt_frame(image, self.shape.1, slope, level, out);
-        }
-        tilted
+    /// Returns the images of a touch, tilted by a slope along x and y: for each sensor an array of shape (F, ny · nx).
+    fn tilted(
+        &self,
+        images: &[ArrayView2<f64>],
+        slope: (f64, f64),
+        estimate: &ImageEstimate,
+    ) -> Vec<Array2<f64>> {
+        let tilt = |(sensor, images): (&SensorImage, &ArrayView2<f64>)| {
+            let level = level(sensor, estimate);
+            let mut tilted = Array2::zeros(images.raw_dim());
+            for (image, mut out) in images.outer_iter().zip(tilted.outer_iter_mut()) {
+                let image = image.as_standard_layout();
+                let image = image.as_slice().expect("rows are whole");
+                let out = out.as_slice_mut().expect("rows are whole");
+                tilt_frame(image, sensor.shape.1, slope, level, out);
+            }
+            tilted
+        };
+        self.sensors.iter().zip(images).map(tilt).collect()
     }
 
-    fn prepared(&self, wanted: &FeaturesOfImages, estimate: &ImageEstimate) -> ImageFeatures {
+    /// Returns the image features of each sensor with their numbers of values, prepared for the shape and the noise of its images.
+    fn prepared(&self, wanted: &FeaturesOfImages, estimate: &ImageEstimate) -> Vec<Prepared> {
         let foremost = wanted.foremost.map(|share| share * self.full_scale);
-        let level = self.level(estimate);
-        let cut = Cut { level, foremost };
-        ImageFeatures::new(wanted.join, self.shape, self.full_scale, cut)
+        let prepare = |sensor: &SensorImage| {
+            let level = level(sensor, estimate);
+            let cut = Cut { level, foremost };
+            let n_values = wanted.join.n_values(sensor.shape);
+            let features = ImageFeatures::new(wanted.join, sensor.shape, self.full_scale, cut);
+            (features, n_values)
+        };
+        self.sensors.iter().map(prepare).collect()
     }
+}
 
-    /// Returns the reading above which a pixel of an estimated image counts as in contact.
-    fn level(&self, estimate: &ImageEstimate) -> f64 {
-        noise_level(estimate.noise_std(), self.shape.0 * self.shape.1)
-    }
+/// Image features of one sensor, with their number of values.
+type Prepared = (ImageFeatures, usize);
+
+/// Returns the images of one touch with F frames: for each sensor a view of shape (F, ny · nx).
+fn of_touch(images: &[Array2<f64>], touch: usize, n_frames: usize) -> Vec<ArrayView2<'_, f64>> {
+    let frames = touch * n_frames..(touch + 1) * n_frames;
+    let own = images.iter();
+    own.map(|images| images.slice(s![frames.clone(), ..]))
+        .collect()
+}
+
+/// Returns the reading above which a pixel of an estimated image counts as in contact.
+fn level(sensor: &SensorImage, estimate: &ImageEstimate) -> f64 {
+    noise_level(estimate.noise_std(), sensor.shape.0 * sensor.shape.1)
 }
 
 /// Divides the rows of all requested features into blocks of touches; returns the index and the rows of each block.
@@ -180,20 +215,27 @@ fn blocks(
     blocks
 }
 
-/// Writes all image features of a touch with F frames into one row of each feature array.
+/// Writes all image features of a touch with F frames into one row of each feature array. The features of a frame are those of its sensors, one after the
+/// other.
 fn write(
-    features: &[ImageFeatures],
-    images: ArrayView2<f64>,
+    features: &[Vec<Prepared>],
+    images: &[ArrayView2<f64>],
     workspace: &mut Workspace,
     (rows, row): (&mut [ArrayViewMut2<f64>], usize),
 ) {
+    let n_frames = images[0].nrows();
     for (features, rows) in features.iter().zip(rows) {
-        let k = rows.ncols() / images.nrows();
+        let k = rows.ncols() / n_frames;
         let mut row = rows.row_mut(row);
         let row = row.as_slice_mut().expect("rows are whole");
-        for (out, image) in row.chunks_exact_mut(k).zip(images.outer_iter()) {
-            let image = image.as_standard_layout();
-            features.write(image.as_slice().expect("rows are whole"), workspace, out);
+        for (frame, mut out) in row.chunks_exact_mut(k).enumerate() {
+            for ((features, n_values), images) in features.iter().zip(images) {
+                let (own, rest) = out.split_at_mut(*n_values);
+                out = rest;
+                let image = images.row(frame);
+                let image = image.as_standard_layout();
+                features.write(image.as_slice().expect("rows are whole"), workspace, own);
+            }
         }
     }
 }

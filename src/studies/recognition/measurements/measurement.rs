@@ -233,7 +233,7 @@ fn tilted_copies(
     let copies = inputs.copies?;
     let array = inputs.array;
     let steepest = copies.tilt.tan();
-    let a_pixel = steepest * array.image().1 / array.taxel().stroke * full_scale;
+    let a_pixel = steepest * array.pixel() / array.taxel().stroke * full_scale;
     let seed = Seed::new(inputs.seed).named("tilted copies");
     let seed = seed.numbered(trial as u64);
     Some(TiltedCopies::new(copies, train, a_pixel, &seed))

@@ -58,11 +58,7 @@ impl Check<'_> {
         let of_rows = ensembles.find(|ensemble| ensemble.about().needs_rows);
         let no_rows = arrays.iter().find(|array| array.sides().is_none());
         if let (Some(ensemble), Some(array)) = (of_rows, no_rows) {
-            let layout = match array.is_placed() {
-                true => format!("a {}", array.layout().words()),
-                false => "taxels without a layout".to_owned(),
-            };
-            let given = format!("{} of {layout}", ensemble.about().words);
+            let given = format!("{} of {}", ensemble.about().words, array.layout_words());
             let allowed = "ensembles that need no rows and columns";
             return Err(self.error("sensing.ensemble", given, allowed));
         }
@@ -203,8 +199,17 @@ impl Check<'_> {
         if arrays.iter().any(|array| !array.is_placed()) {
             let given = format!("{} of taxels without a layout", String::from(features));
             let allowed = "features of measurements (raw, centred, unit_norm, centred_unit_norm): \
-                           those of images need rows and columns (recorded.grid or recorded.order names them)";
+                           those of images need positions (recorded.layout, or rows and columns by recorded.grid or recorded.order)";
             return Err(self.error("recognition.features", given, allowed));
+        }
+        let has_several = |array: &TaxelArray| array.image_shapes().len() > 1;
+        if let (Some(array), Some(_)) = (
+            arrays.iter().find(|array| has_several(array)),
+            &recognition.tilt_augmentation,
+        ) {
+            let given = format!("tilted copies of {}", array.layout_words());
+            let allowed = "no such key: each sensor has a tilt of its own";
+            return Err(self.error("recognition.tilt_augmentation", given, allowed));
         }
         match arrays.iter().find(|array| array.sensed().n_channels() > 1) {
             None => Ok(()),

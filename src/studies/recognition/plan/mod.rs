@@ -4,6 +4,7 @@ pub mod foreign;
 pub mod group;
 pub(crate) mod human;
 pub(crate) mod learning;
+pub mod listed_taxels;
 pub mod pose_groups;
 pub(crate) mod recorded;
 pub(crate) mod scene;

@@ -3,14 +3,17 @@
 use crate::engine::axis::Axis;
 use crate::error::{Error, Result};
 use crate::inputs::check::Check;
+use crate::inputs::layout_file::{LayoutFile, LayoutOptions};
 use crate::inputs::objects_spec::ObjectsSpec;
 use crate::inputs::units::MM;
+use crate::studies::recognition::plan::listed_taxels::PlacedSensor;
 use crate::studies::recognition::plan::taxel_array::TaxelArray;
-use crate::studies::recognition::spec::recorded::{RecordedSpec, ZeroSpec};
+use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::scene::{SensedSpec, SkinSpec, TouchesSpec};
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::spec::study::StudySpec;
-use crate::world::{ArrayLayout, Grid};
+use crate::studies::recognition::spec::zero::ZeroSpec;
+use crate::world::{ArrayLayout, Grid, Layout};
 use glam::DVec2;
 
 impl RecordedSpec {
@@ -29,8 +32,14 @@ impl RecordedSpec {
     pub(crate) fn as_touches(&self) -> Result<TouchesSpec> {
         let moves =
             self.frame_interval_s.is_some() || self.speed_mm_per_s > 0.0 && self.depths.is_some();
+        let sensors = self.used_sensors();
+        let (_, first) = sensors.first().expect("the sensors are checked");
+        let n_frames = match self.resampled_frames {
+            Some(n_frames) => n_frames,
+            None => first.shape_of("frames")?.n_frames,
+        };
         Ok(TouchesSpec {
-            frames: Axis::One(self.shape_of("frames")?.n_frames),
+            frames: Axis::One(n_frames),
             speed_mm_per_s: if moves { 1.0 } else { 0.0 },
             ..TouchesSpec::default()
         })
@@ -96,7 +105,7 @@ impl Check<'_> {
             };
             if let Some(step) = spec.signal.steps.iter().find(needs_places) {
                 let given = format!("\"{}\" of taxels without a layout", step.word());
-                let allowed = "steps of each taxel by itself (recorded.grid or recorded.order names rows and columns)";
+                let allowed = "steps of each taxel by itself (recorded.layout gives positions; recorded.grid or recorded.order names rows and columns)";
                 return Err(self.error("signal.steps", given, allowed));
             }
         }
@@ -130,23 +139,9 @@ impl Check<'_> {
 
     fn array_of(&self, recorded: &RecordedSpec, skin: &SkinSpec) -> Result<TaxelArray> {
         self.table("skin", skin)?;
-        let shape = recorded.shape_of("frames")?;
+        let sensors = recorded.used_sensors();
         if skin.layout.unwrap_or_default() != ArrayLayout::Grid {
-            let mut arrays = self.touching_arrays(skin, &TouchesSpec::default())?;
-            let n_taxels = shape.rows * shape.columns;
-            let (Some(array), 0) = (arrays.pop(), arrays.len()) else {
-                return Err(self.error(
-                    "skin",
-                    "several arrays",
-                    "one, of the skin that read the frames",
-                ));
-            };
-            if array.n_taxels() != n_taxels {
-                let given = format!("{} taxels", array.n_taxels());
-                let allowed = format!("{n_taxels}, as {} has", recorded.frames.display());
-                return Err(self.error("skin.layout", given, allowed));
-            }
-            return Ok(array);
+            return self.array_of_layout(&sensors, skin);
         }
         let given = [
             ("skin.taxels", skin.taxels.is_some()),
@@ -161,19 +156,107 @@ impl Check<'_> {
             let given = format!("{} pitches", pitches.len());
             return Err(self.error("skin.pitch_mm", given, "one, of the skin that read them"));
         };
-        let grid = Grid {
-            nx: shape.columns,
-            ny: shape.rows,
-            pitch: pitch_mm * MM,
+        let (mut placed, mut n_taxels) = (Vec::new(), 0);
+        for (name, sensor) in &sensors {
+            let shape = sensor.shape_of("frames")?;
+            n_taxels += shape.rows * shape.columns;
+            let pitch_mm = sensor.place.pitch_mm.unwrap_or(pitch_mm);
+            placed.push(sensor.placed(name, pitch_mm * MM)?);
+        }
+        // The array of a single sensor has the pitch of the sensor.
+        let pitch_mm = match &sensors[..] {
+            [(_, sensor)] => sensor.place.pitch_mm.unwrap_or(pitch_mm),
+            _ => pitch_mm,
         };
         let taxel = skin.taxel(pitch_mm);
-        grid.check()?;
         taxel.check()?;
-        let array = TaxelArray::new(ArrayLayout::Grid, (grid, taxel), 0.0)?;
-        let array = array.reading(skin.sensed(), DVec2::ZERO)?;
-        Ok(match shape.has_grid {
-            true => array,
-            false => array.without_places(),
-        })
+        // If the positions of some taxels are unknown, all taxels form one list.
+        let placed: Option<Vec<PlacedSensor>> = placed.into_iter().collect();
+        let grid = match placed.as_deref() {
+            Some([one]) => one.layout.as_grid().copied(),
+            Some(_) => None,
+            None => Some(Grid {
+                nx: n_taxels,
+                ny: 1,
+                pitch: pitch_mm * MM,
+            }),
+        };
+        let array = match (grid, placed) {
+            (Some(grid), placed) => {
+                grid.check()?;
+                let array = TaxelArray::new(ArrayLayout::Grid, (grid, taxel), 0.0)?;
+                match placed {
+                    Some(_) => array,
+                    None => array.without_places(),
+                }
+            }
+            (None, placed) => {
+                let sensors = placed.unwrap_or_default();
+                TaxelArray::listed(&sensors, taxel, pitch_mm * MM)?
+            }
+        };
+        array.reading(skin.sensed(), DVec2::ZERO)
+    }
+
+    /// Returns the array with the layout of `skin.layout`, which must have the taxels of the recording.
+    fn array_of_layout(
+        &self,
+        sensors: &[(String, RecordedSpec)],
+        skin: &SkinSpec,
+    ) -> Result<TaxelArray> {
+        let [(_, sensor)] = sensors else {
+            let allowed = "no such key beside recorded.sensors: recorded.sensors[1].layout is the layout file of a sensor";
+            return Err(self.error("skin.layout", "given", allowed));
+        };
+        if let Some(path) = &sensor.layout {
+            let allowed = "no such key beside skin.layout";
+            return Err(self.error(&sensor.place.key("layout"), path.display(), allowed));
+        }
+        let mut arrays = self.touching_arrays(skin, &TouchesSpec::default())?;
+        let shape = sensor.shape_of("frames")?;
+        let n_taxels = shape.rows * shape.columns;
+        let (Some(array), 0) = (arrays.pop(), arrays.len()) else {
+            let allowed = "one, of the skin that read the frames";
+            return Err(self.error("skin", "several arrays", allowed));
+        };
+        if array.n_taxels() != n_taxels {
+            let given = format!("{} taxels", array.n_taxels());
+            let allowed = format!("{n_taxels}, as {} has", sensor.frames.display());
+            return Err(self.error("skin.layout", given, allowed));
+        }
+        Ok(array)
+    }
+}
+
+impl RecordedSpec {
+    /// Returns the sensor with the positions of its taxels: those of the layout file, or a grid. Returns `None` if the positions are unknown. `pitch` is the side
+    /// of the square area per taxel, metres.
+    fn placed(&self, name: &str, pitch: f64) -> Result<Option<PlacedSensor>> {
+        let shape = self.shape_of("frames")?;
+        let sides = shape.has_grid.then_some([shape.rows, shape.columns]);
+        let Some(path) = &self.layout else {
+            let sensor = |[rows, columns]: [usize; 2]| -> Result<PlacedSensor> {
+                let grid = Grid {
+                    nx: columns,
+                    ny: rows,
+                    pitch,
+                };
+                Ok(PlacedSensor {
+                    name: name.to_owned(),
+                    layout: Layout::grid(&grid)?,
+                    pitch,
+                })
+            };
+            return sides.map(sensor).transpose();
+        };
+        let layout = LayoutFile::read(path, LayoutOptions::default())?.layout;
+        let place = path.display().to_string();
+        let n_taxels = shape.rows * shape.columns;
+        if layout.n_taxels() != n_taxels {
+            let given = format!("{} taxels", layout.n_taxels());
+            let allowed = format!("{n_taxels}, as {} has", self.frames.display());
+            return Err(Error::input(place, given, allowed));
+        }
+        PlacedSensor::new(name, (&place, layout), pitch, sides).map(Some)
     }
 }

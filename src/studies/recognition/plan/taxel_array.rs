@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::inputs::units::millimetres;
 use crate::random::Seed;
 use crate::signal::{Chain, SignalStep};
+use crate::studies::recognition::plan::listed_taxels::{ListedTaxels, PlacedSensor, SensorImage};
 use crate::studies::recognition::plan::sensed::{Sensed, of_channel};
 use crate::world::{ArrayLayout, Grid, Patch, Taxel, Taxels};
 use bubbletouch_sim::features::Chart;
@@ -27,6 +28,8 @@ pub struct TaxelArray {
     slide: DVec2,
     /// Whether the positions of the taxels are known. If the positions are unknown, the taxels are treated as a single row.
     is_placed: bool,
+    /// Taxels at listed positions; `None` if `layout` defines the positions.
+    listed: Option<Arc<ListedTaxels>>,
     patch: Arc<Patch>,
 }
 
@@ -51,7 +54,33 @@ impl TaxelArray {
             sensed: Sensed::Deflection,
             slide: DVec2::ZERO,
             is_placed: true,
+            listed: None,
             patch: Arc::new(patch),
+        })
+    }
+
+    /// Creates the array of sensors whose taxels have listed positions. `pitch` is the side of the square area per taxel, metres.
+    ///
+    /// # Errors
+    /// If a sensor or the taxel is invalid.
+    pub fn listed(sensors: &[PlacedSensor], taxel: Taxel, pitch: f64) -> Result<Self> {
+        let (listed, layout) = ListedTaxels::new(sensors)?;
+        let side = (layout.n_taxels() as f64).sqrt().round() as usize;
+        let grid = Grid {
+            nx: side,
+            ny: side,
+            pitch,
+        };
+        Ok(Self {
+            grid,
+            taxel,
+            layout: ArrayLayout::Grid,
+            radius: 0.0,
+            sensed: Sensed::Deflection,
+            slide: DVec2::ZERO,
+            is_placed: true,
+            patch: Arc::new(Patch::new("recorded", layout, Taxels::Equal(taxel))?),
+            listed: Some(Arc::new(listed)),
         })
     }
 
@@ -88,16 +117,28 @@ impl TaxelArray {
         &self.grid
     }
 
-    /// Returns the layout of the array's taxels.
-    pub fn layout(&self) -> ArrayLayout {
-        self.layout
+    /// Returns the layout of the array's taxels; `None` if the positions are listed or unknown.
+    pub fn layout(&self) -> Option<ArrayLayout> {
+        (self.is_placed && self.listed.is_none()).then_some(self.layout)
+    }
+
+    /// Returns words for the layout of the array's taxels, such as `a square grid`.
+    pub fn layout_words(&self) -> String {
+        match &self.listed {
+            _ if !self.is_placed => "taxels without a layout".to_owned(),
+            Some(listed) => listed.words(),
+            None => format!("a {}", self.layout.words()),
+        }
     }
 
     /// Returns the position of the taxel that belongs to a frame value, along x and y of the array, mm; `None` if the positions are unknown.
     pub fn place_mm(&self, value: usize) -> Option<[f64; 2]> {
-        let center = self.patch.layout().centers()[value % self.n_taxels()];
-        self.is_placed
-            .then(|| [center.x, center.y].map(millimetres))
+        let taxel = value % self.n_taxels();
+        let place = match &self.listed {
+            Some(listed) => listed.places()[taxel],
+            None => self.patch.layout().centers()[taxel].truncate(),
+        };
+        self.is_placed.then(|| [place.x, place.y].map(millimetres))
     }
 
     /// Returns the quantity that the taxels read.
@@ -107,18 +148,46 @@ impl TaxelArray {
 
     /// Returns whether the array is a square grid that reads one normal quantity and does not slide.
     pub fn is_plain(&self) -> bool {
-        self.layout == ArrayLayout::Grid
+        self.layout() == Some(ArrayLayout::Grid)
             && self.sensed.n_channels() == 1
             && self.slide == DVec2::ZERO
     }
 
     /// Returns whether the taxels form straight rows and columns with a distance of one pitch along the surface.
     pub fn is_image(&self) -> bool {
-        self.layout.is_image()
+        self.listed.is_none() && self.layout.is_image()
+    }
+
+    /// Returns the images of the array: one for each sensor.
+    pub fn images(&self) -> Vec<SensorImage> {
+        match &self.listed {
+            Some(listed) => listed.images(),
+            None => vec![SensorImage {
+                taxels: 0..self.n_taxels(),
+                shape: self.image().0,
+                chart: self.chart(),
+            }],
+        }
+    }
+
+    /// Returns the numbers of rows and columns of the array's images, one for each sensor.
+    pub fn image_shapes(&self) -> Vec<(usize, usize)> {
+        match &self.listed {
+            Some(listed) => listed.image_shapes(),
+            None => vec![self.image().0],
+        }
+    }
+
+    /// Returns the side length of a pixel of the array's images, metres.
+    pub fn pixel(&self) -> f64 {
+        match &self.listed {
+            Some(listed) => listed.finest_pitch(),
+            None => self.image().1,
+        }
     }
 
     /// Returns the numbers of rows and columns of the array's images, and the side length of a pixel, metres. An image is a square around all taxels.
-    pub fn image(&self) -> ((usize, usize), f64) {
+    fn image(&self) -> ((usize, usize), f64) {
         let (n, pitch) = (self.grid.nx, self.pitch());
         if self.is_image() {
             return ((self.grid.ny, n), pitch);
@@ -130,7 +199,7 @@ impl TaxelArray {
     }
 
     /// Returns the mapping from taxels to image pixels; `None` if each taxel is one pixel.
-    pub fn chart(&self) -> Option<Chart> {
+    fn chart(&self) -> Option<Chart> {
         let spacing = (self.pitch(), self.layout.widest_pitches());
         let chart = || Chart::with_gaps(&self.chart_places(), spacing, self.image());
         (!self.is_image()).then(chart)
@@ -165,7 +234,10 @@ impl TaxelArray {
 
     /// Returns the numbers of rows and columns of taxels; `None` if the layout has no rows and columns.
     pub fn sides(&self) -> Option<(usize, usize)> {
-        self.layout.sides(&self.grid).filter(|_| self.is_placed)
+        match &self.listed {
+            Some(listed) => listed.sides(),
+            None => self.layout.sides(&self.grid).filter(|_| self.is_placed),
+        }
     }
 
     /// Returns the numbers of rows and columns of the array. A layout without rows and columns counts as one row.
@@ -203,6 +275,7 @@ impl TaxelArray {
         let words = self.layout.words();
         match (self.layout, self.layout.neighbour_distance(self.pitch())) {
             _ if !self.is_placed => format!("{}{taxels} without a layout", self.n_taxels()),
+            _ if let Some(listed) = &self.listed => format!("{count}, {}", listed.words()),
             (ArrayLayout::Grid, _) => count,
             (_, None) => format!("{count}, {words}"),
             (_, Some(distance)) => {
@@ -212,34 +285,71 @@ impl TaxelArray {
     }
 
     /// Returns the taxel that each cell of a picture shows, shape (rows, columns). A grid has one cell per taxel. Other layouts are projected along the axis of
-    /// the middle, with three cells per pitch. Each cell shows the nearest taxel, or none if all taxels are far away.
+    /// the middle, with three cells per pitch. Each cell shows the nearest taxel, or none if all taxels are far away. Several sensors are side by side.
     pub fn picture_cells(&self) -> Array2<Option<usize>> {
         let (ny, nx) = self.shape();
         if self.is_image() {
             return Array2::from_shape_fn((ny, nx), |(row, column)| Some(row * nx + column));
         }
         let centers = self.patch.layout().centers();
-        let widest = centers.iter().map(|c| c.x.abs().max(c.y.abs()));
-        let half = widest.fold(0.0, f64::max) + 0.5 * self.pitch();
-        let configuration = self.pitch() / PICTURE_CELLS;
-        let n = (2.0 * half / configuration).ceil() as usize;
-        Array2::from_shape_fn((n, n), |(row, column)| {
-            let [x, y] = [column, row]
-                .map(|k| (k as f64 + 0.5) * configuration - 0.5 * n as f64 * configuration);
-            let away = |taxel: usize| {
-                let center = centers[taxel].truncate();
-                (center - DVec2::new(x, y)).length_squared()
+        let places: Vec<DVec2> = match &self.listed {
+            Some(listed) => listed.places().to_vec(),
+            None => centers.iter().map(|center| center.truncate()).collect(),
+        };
+        let pitch_at = |taxel| match &self.listed {
+            Some(listed) => listed.pitch_at(taxel),
+            None => self.pitch(),
+        };
+        let cell = self.picture_cell();
+        let half = places
+            .iter()
+            .enumerate()
+            .fold(DVec2::ZERO, |half, (taxel, place)| {
+                half.max(place.abs() + 0.5 * pitch_at(taxel))
+            });
+        let half = match &self.listed {
+            // A whole number of cells may be rounded up by a rounding error.
+            Some(_) => half - 1e-6 * cell,
+            None => DVec2::splat(half.max_element()),
+        };
+        let [ny, nx] = [half.y, half.x].map(|half| (2.0 * half / cell).ceil() as usize);
+        let center_of = |k: usize, n: usize| (k as f64 + 0.5) * cell - 0.5 * n as f64 * cell;
+        let mut nearest = Array2::from_elem((ny, nx), (f64::INFINITY, None));
+        for (taxel, place) in places.iter().enumerate() {
+            let reach = 0.75 * pitch_at(taxel);
+            // Cells whose centres may be within reach.
+            let range = |at: f64, n: usize| {
+                let at = at / cell + 0.5 * n as f64;
+                let low = (at - reach / cell - 1.0).max(0.0) as usize;
+                low..((at + reach / cell + 1.0).ceil().max(0.0) as usize).min(n)
             };
-            let nearest = (0..centers.len()).min_by(|&a, &b| away(a).total_cmp(&away(b)));
-            nearest.filter(|&taxel| away(taxel) < (0.75 * self.pitch()).powi(2))
-        })
+            for row in range(place.y, ny) {
+                for column in range(place.x, nx) {
+                    let at = DVec2::new(center_of(column, nx), center_of(row, ny));
+                    let away = (*place - at).length_squared();
+                    if away < reach.powi(2) && away < nearest[[row, column]].0 {
+                        nearest[[row, column]] = (away, Some(taxel));
+                    }
+                }
+            }
+        }
+        nearest.mapv(|(_, taxel)| taxel)
+    }
+
+    /// Returns the distance between the centres of neighbouring picture cells of an array that is no grid, metres.
+    fn picture_cell(&self) -> f64 {
+        let pitch = match &self.listed {
+            Some(listed) => listed.finest_pitch(),
+            None => self.pitch(),
+        };
+        pitch / PICTURE_CELLS
     }
 
     /// Returns the distance between the centres of neighbouring picture cells, mm.
     pub fn picture_pitch_mm(&self) -> f64 {
         match self.is_image() {
             true => millimetres(self.pitch()),
-            false => 1e3 * self.pitch() / PICTURE_CELLS,
+            false => 1e3 * self.picture_cell(),
         }
     }
 }
@@ -255,9 +365,14 @@ impl fmt::Debug for TaxelArray {
             sensed,
             slide,
             is_placed,
+            listed,
             patch: _,
         } = self;
-        let places = if *is_placed { "" } else { " without places" };
+        let places = match listed {
+            Some(listed) => format!(" {}", listed.identity()),
+            None if *is_placed => String::new(),
+            None => " without places".to_owned(),
+        };
         write!(
             f,
             "{grid:?} {taxel:?} {layout:?} {radius} {sensed:?} {slide}{places}"

@@ -69,8 +69,8 @@ pub struct Configuration {
     ny: usize => always (Note, "taxels along y", "", Linear);
     /// Number n of values of a frame.
     frame_values: usize => hidden;
-    /// Numbers of rows and columns of the images that represent frames of the array.
-    image_shape: (usize, usize) => hidden;
+    /// Numbers of rows and columns of the images that represent frames of the array, one for each sensor.
+    image_shapes: Vec<(usize, usize)> => hidden;
     /// Side length of the array along x, mm: number of columns nx times the pitch.
     size_mm: f64 => always of "skin.size_mm";
     /// Noise standard deviation of a taxel's reading, in `noise_unit`.
@@ -129,7 +129,7 @@ impl Configuration {
     pub fn rows(&self) -> RowInputs {
         let is_of_images = self.features.of_image().is_some();
         RowInputs {
-            image_shape: self.image_shape,
+            image_shapes: self.image_shapes.clone(),
             measurements: self
                 .ensemble
                 .n_measurements(self.measurements, self.frame_values),
@@ -255,7 +255,7 @@ pub(crate) mod tests {
             nx: 32,
             ny: 32,
             frame_values: 1024,
-            image_shape: (32, 32),
+            image_shapes: vec![(32, 32)],
             size_mm: 64.0,
             noise_std: 0.1,
             noise_unit: NoiseUnit::FullScale,

@@ -13,3 +13,8 @@ pub struct FeaturesOfImages {
     /// Number of measurements from which the images of frames are estimated.
     pub measurements: usize,
 }
+
+/// Returns the number of values of a combination of image features for a frame with one image for each sensor, given as numbers of rows and columns.
+pub fn join_values(join: Join, shapes: &[(usize, usize)]) -> usize {
+    shapes.iter().map(|&shape| join.n_values(shape)).sum()
+}

@@ -1,14 +1,14 @@
 //! Inputs that determine the feature rows of a configuration: one row of features per touch.
 
 use crate::learning::data::temporal_features::TemporalFeatures;
-use crate::studies::recognition::rows::image_features::FeaturesOfImages;
+use crate::studies::recognition::rows::image_features::{FeaturesOfImages, join_values};
 use bubbletouch_sim::features::Features;
 
 /// Inputs that determine how features are computed from the measurements of a touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowInputs {
-    /// Numbers of rows and columns of the images that represent frames.
-    pub image_shape: (usize, usize),
+    /// Numbers of rows and columns of the images that represent frames, one for each sensor.
+    pub image_shapes: Vec<(usize, usize)>,
     /// Number of values of a measured frame: m measurements, or one value per taxel if the ensemble gives frames.
     pub measurements: usize,
     /// Number F of frames per touch.
@@ -36,7 +36,10 @@ impl RowInputs {
 
     /// Returns the number of features per frame.
     pub fn n_frame_features(&self) -> usize {
-        self.features.n_values(self.measurements, self.image_shape)
+        match self.features.of_image() {
+            Some(join) => join_values(join, &self.image_shapes),
+            None => self.features.n_values(self.measurements, (1, 1)),
+        }
     }
 
     /// Returns the number of features per touch.

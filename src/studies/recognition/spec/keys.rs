@@ -103,6 +103,12 @@ const KEYS: &[KeyAbout] = keys! {
     "recorded.groups": Axes, Condition, Unchecked;
     "recorded.order": Axes, Condition, Unchecked;
     "recorded.grid": Axes, Condition, Unchecked;
+    "recorded.layout": Axes, Condition, Unchecked;
+    "recorded.lengths": Axes, Condition, Unchecked;
+    "recorded.lengths_test": Axes, Condition, Unchecked;
+    "recorded.resampled_frames": Axes, Choice, Count(1, MAX_FRAMES);
+    "recorded.sensors": Axes, Condition, Unchecked;
+    "recorded.sensor": Axes, Choice, Any;
     "recorded.frames_test": Axes, Condition, Unchecked;
     "recorded.shear_test": Axes, Condition, Unchecked;
     "recorded.labels_test": Axes, Condition, Unchecked;

@@ -5,20 +5,24 @@ use crate::files::{file_path, optional_file_path};
 use crate::inputs::arrays::axis_order::{FrameAxes, FrameShape, frame_shape};
 use crate::inputs::arrays::file_array::FileArray;
 use crate::inputs::arrays::is_member;
+use crate::studies::recognition::spec::recorded_sensor::{RecordedSensorSpec, SensorPlace};
+use crate::studies::recognition::spec::zero::ZeroSpec;
 use schemars::JsonSchema;
-use serde::de::{IntoDeserializer, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use std::fmt;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Keys of `[recorded]`: frames that a real skin recorded, in NumPy files (`.npy`, `.npz`) or tables (`.csv`). The table `[skin]` gives the pitch and the
-/// stroke of the taxels.
+/// stroke of the taxels. `frames` contains the frames of one sensor; `[[recorded.sensors]]` lists several sensors that recorded the same touches.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedSpec {
     /// File with the frames, shape (n, rows, columns); (n, F, rows, columns) for F frames per touch; (n, taxels) without rows and columns. Any numeric type of
     /// up to 64 bits. If this file is an archive that contains the other arrays, their keys may be omitted.
-    #[serde(deserialize_with = "file_path")]
+    #[serde(
+        default,
+        skip_serializing_if = "is_empty",
+        deserialize_with = "file_path"
+    )]
     pub frames: PathBuf,
     /// File with the tangential forces of a skin that reads shear, newtons: two forces across the axis of each taxel. The array has the axes of `frames` plus
     /// an axis `c` of length 2 before the rows and columns. Without this key, `frames` contains all three values of each taxel.
@@ -45,6 +49,39 @@ pub struct RecordedSpec {
     /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<[usize; 2]>,
+    /// Layout file with the position and the axis of each taxel, in the order of the taxels in the frames: `.csv`, `.npz`, `.txt` or `.ini` (iCub), `.json`
+    /// (PaXini) or `.urdf`. Taxels that form a grid row by row are read as a grid.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
+    pub layout: Option<PathBuf>,
+    /// File with the number of frames of each touch, shape (n,), from 1 to the number of frames in the array. Without this key, frames at the end of a touch
+    /// in which all readings are NaN are missing. Touches of unequal length need `resampled_frames`.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
+    pub lengths: Option<PathBuf>,
+    /// File with the number of frames of each touch of the separate test set, in the format of `lengths`.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "optional_file_path"
+    )]
+    pub lengths_test: Option<PathBuf>,
+    /// Number F of frames to which each touch is resampled, at least 1: linear interpolation at F instants, evenly spaced from its first to its last frame. If F
+    /// is 1, the last frame is used. Default: all frames.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resampled_frames: Option<usize>,
+    /// Sensors that recorded the same touches, instead of `frames`. Their readings are joined to one frame, each with its own zero and full scale.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<RecordedSensorSpec>,
+    /// Sensor whose readings the study uses: a name of `sensors`, or `all` (default).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<String>,
     /// File with the frames of a separate test set, with the array axes of `frames`; all touches of `frames` are then training touches.
     #[serde(
         default,
@@ -99,65 +136,9 @@ pub struct RecordedSpec {
     /// Number of values per taxel in the frames. The plan sets it, not the study file; 0 counts as 1.
     #[serde(skip)]
     pub n_values: usize,
-}
-
-/// Readings of untouched taxels, written as `zero = 100.0` or `zero = "zero.npy"`.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum ZeroSpec {
-    /// Common reading of all untouched taxels.
-    One(f64),
-    /// File with one reading for each taxel: an array with the taxel axes of `frames`, or a list in row-major order.
-    Each(PathBuf),
-}
-
-impl Default for ZeroSpec {
-    fn default() -> Self {
-        Self::One(0.0)
-    }
-}
-
-impl<'de> Deserialize<'de> for ZeroSpec {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        /// Visitor that deserialises a `zero` key: either a number or a path.
-        struct NumberOrPath;
-        impl Visitor<'_> for NumberOrPath {
-            type Value = ZeroSpec;
-
-            fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-                formatter.write_str("a number, or the path of a file with a number for each taxel")
-            }
-
-            fn visit_f64<E: serde::de::Error>(
-                self,
-                number: f64,
-            ) -> std::result::Result<ZeroSpec, E> {
-                Ok(ZeroSpec::One(number))
-            }
-
-            fn visit_i64<E: serde::de::Error>(
-                self,
-                number: i64,
-            ) -> std::result::Result<ZeroSpec, E> {
-                Ok(ZeroSpec::One(number as f64))
-            }
-
-            fn visit_u64<E: serde::de::Error>(
-                self,
-                number: u64,
-            ) -> std::result::Result<ZeroSpec, E> {
-                Ok(ZeroSpec::One(number as f64))
-            }
-
-            fn visit_str<E: serde::de::Error>(
-                self,
-                path: &str,
-            ) -> std::result::Result<ZeroSpec, E> {
-                file_path(path.into_deserializer()).map(ZeroSpec::Each)
-            }
-        }
-        deserializer.deserialize_any(NumberOrPath)
-    }
+    /// Properties of the sensor if the specification describes one of several sensors. The plan sets them, not the study file.
+    #[serde(skip)]
+    pub place: SensorPlace,
 }
 
 /// Rule that determines the touch before each touch, for sensor errors with memory, such as hysteresis.
@@ -205,13 +186,13 @@ impl RecordedSpec {
 
     /// Returns mutable references to all paths in the table, so that a caller can change them to another folder.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
-        let labels = Some(&mut self.labels).filter(|path| !is_empty(path));
-        let zero = match &mut self.zero {
-            ZeroSpec::One(_) => None,
-            ZeroSpec::Each(path) => Some(path),
-        };
-        let files = [Some(&mut self.frames), labels, zero].into_iter().flatten();
+        let arrays = [&mut self.frames, &mut self.labels];
+        let files = arrays.into_iter().filter(|path| !is_empty(path));
+        let files = files.chain(self.zero.path_mut());
         let others = [
+            &mut self.layout,
+            &mut self.lengths,
+            &mut self.lengths_test,
             &mut self.shear,
             &mut self.shear_test,
             &mut self.groups,
@@ -220,13 +201,20 @@ impl RecordedSpec {
             &mut self.groups_test,
             &mut self.depths,
         ];
-        files.chain(others.into_iter().flatten())
+        let files = files.chain(others.into_iter().flatten());
+        let sensors = self.sensors.iter_mut();
+        files.chain(sensors.flat_map(RecordedSensorSpec::paths_mut))
     }
 
     /// Returns the paths of all files of the recording.
     pub fn files(&self) -> Vec<&Path> {
-        let labels = Some(self.labels.as_path()).filter(|path| !path.as_os_str().is_empty());
+        let arrays = [&self.frames, &self.labels];
+        let files = arrays.into_iter().filter(|path| !is_empty(path));
+        let files = files.chain(self.zero.path());
         let others = [
+            &self.layout,
+            &self.lengths,
+            &self.lengths_test,
             &self.shear,
             &self.shear_test,
             &self.groups,
@@ -235,13 +223,9 @@ impl RecordedSpec {
             &self.groups_test,
             &self.depths,
         ];
-        let others = others.into_iter().flatten().map(PathBuf::as_path);
-        let zero = match &self.zero {
-            ZeroSpec::One(_) => None,
-            ZeroSpec::Each(path) => Some(path.as_path()),
-        };
-        let files = [Some(self.frames.as_path()), labels, zero];
-        files.into_iter().flatten().chain(others).collect()
+        let files = files.chain(others.into_iter().flatten());
+        let sensors = self.sensors.iter().flat_map(RecordedSensorSpec::paths);
+        files.chain(sensors).map(PathBuf::as_path).collect()
     }
 
     /// Returns the file that contains the array `name`: the file given by its key, or the archive with the frames.
@@ -253,14 +237,41 @@ impl RecordedSpec {
             "frames_test" => self.frames_test.as_deref(),
             "labels_test" => self.labels_test.as_deref(),
             "groups_test" => self.groups_test.as_deref(),
+            "lengths" => self.lengths.as_deref(),
+            "lengths_test" => self.lengths_test.as_deref(),
             _ => self.depths.as_deref(),
         };
-        given.or_else(|| Some(self.frames.as_path()).filter(|path| is_member(path, name)))
+        let archive = self.frames.as_path();
+        given.or_else(|| {
+            let mut names = self.place.array_names(name).into_iter();
+            let has_array = names.any(|name| is_member(archive, &name));
+            has_array.then_some(archive)
+        })
+    }
+
+    /// Returns the name of the array `name` in its file. In an archive with the arrays of several sensors, the name contains the name of the sensor.
+    pub fn array_name(&self, name: &str) -> String {
+        let path = self.file_of(name).unwrap_or(&self.frames);
+        let names = self.place.array_names(name).into_iter();
+        // A file of the test set alone may have the names of the training frames.
+        let same_name = self.place.name.clone().filter(|_| path != self.frames);
+        let found = names.chain(same_name).find(|name| is_member(path, name));
+        found.unwrap_or_else(|| name.to_owned())
     }
 
     /// Returns whether the recording has a separate test set.
     pub fn has_test_set(&self) -> bool {
-        self.file_of("frames_test").is_some()
+        let sensors = self.used_sensors();
+        let mut sensors = sensors.iter();
+        sensors.any(|(_, sensor)| sensor.file_of("frames_test").is_some())
+    }
+
+    /// Returns the path of the frames, or of the frames of the first sensor.
+    pub fn first_frames(&self) -> &Path {
+        match self.sensors.first() {
+            Some(sensor) => &sensor.frames,
+            None => &self.frames,
+        }
     }
 
     /// Returns the axes and their lengths of the array `frames` or `frames_test`.
@@ -269,12 +280,13 @@ impl RecordedSpec {
     /// If the file does not exist or its axes are not axes of frames.
     pub fn shape_of(&self, name: &str) -> Result<FrameShape> {
         let path = self.file_of(name).unwrap_or(&self.frames);
-        let shape = FileArray::shape_of(path, name)?;
+        let shape = FileArray::shape_of(path, &self.array_name(name))?;
         let n_values = match self.shear {
             Some(_) => 1,
             None => self.n_values.max(1),
         };
-        let axes = self.axes(self.order.as_deref(), n_values);
+        let key = self.place.key("order");
+        let axes = self.axes(self.order.as_deref(), n_values, &key);
         frame_shape(&path.display().to_string(), &shape, axes)
     }
 
@@ -289,7 +301,7 @@ impl RecordedSpec {
         };
         let array = FileArray::read(path, "zero")?;
         let (place, given) = (array.place.clone(), array.shape.clone());
-        let frames = FileArray::shape_of(&self.frames, "frames")?;
+        let frames = FileArray::shape_of(&self.frames, &self.array_name("frames"))?;
         shape
             .arrange_taxels(array.into_numbers()?, &frames)
             .map_err(|expected| {
@@ -301,12 +313,12 @@ impl RecordedSpec {
             })
     }
 
-    fn axes<'a>(&self, order: Option<&'a str>, n_values: usize) -> FrameAxes<'a> {
+    fn axes<'a>(&self, order: Option<&'a str>, n_values: usize, key: &'a str) -> FrameAxes<'a> {
         FrameAxes {
             order,
             grid: self.grid,
             n_values,
-            key: "recorded.order",
+            key,
         }
     }
 
@@ -342,7 +354,8 @@ impl RecordedSpec {
             );
             return Err(Error::input(place, given, allowed));
         }
-        frame_shape(&place, &shape, self.axes(Some(&order), 2)).map(Some)
+        let axes = self.axes(Some(&order), 2, "recorded.order");
+        frame_shape(&place, &shape, axes).map(Some)
     }
 
     /// Checks that the files form a complete data set.
@@ -351,12 +364,20 @@ impl RecordedSpec {
     /// If there are no labels, or a test set lacks labels or frames. If tangential forces are given although the skin does not read shear, or for only one of
     /// two sets.
     pub fn check_files(&self) -> Result<()> {
+        self.check_sensors()?;
         if self.file_of("labels").is_none() {
             let allowed = "labels = \"FILE\", the class of every touch (or an array `labels` in the archive of the frames)";
             return Err(Error::input("key recorded.labels", "no such key", allowed));
         }
         let has = |name| self.file_of(name).is_some();
-        let (frames, labels) = (has("frames_test"), has("labels_test"));
+        let sensors = self.used_sensors();
+        let is_without = |(_, sensor): &&(String, Self)| sensor.file_of("frames_test").is_none();
+        let (frames, labels) = (self.has_test_set(), has("labels_test"));
+        if let (true, Some((_, sensor))) = (frames, sensors.iter().find(is_without)) {
+            let key = format!("key {}", sensor.place.key("frames_test"));
+            let allowed = "frames of the test set, as other sensors have";
+            return Err(Error::input(key, "no such key", allowed));
+        }
         let both = [("shear", &self.shear), ("shear_test", &self.shear_test)];
         for (key, path) in both {
             let key = format!("key recorded.{key}");

@@ -6,6 +6,7 @@ use crate::studies::recognition::measurements::measurement::UNTOUCHED;
 use crate::studies::recognition::plan::group::MeasurementGroup;
 use crate::studies::recognition::plan::study_plan::Plan;
 use crate::studies::recognition::rows::configuration::Configuration;
+use crate::studies::recognition::rows::image_features::join_values;
 use crate::studies::recognition::study::recognition_study::RecognitionStudy;
 use crate::studies::recognition::sweep::configurations::StudyPart;
 use crate::studies::recognition::sweep::learned_frames::WITH_COPIES;
@@ -36,8 +37,8 @@ pub fn recognition_scale(study: &RecognitionStudy) -> Scale {
     let measured = |on: Placed| {
         let matrix = on.1.ensemble.about().bytes;
         let of_images = on.1.features_of_images().into_iter();
-        let shape = on.0.plan.arrays[on.1.array].frame_shape();
-        let numbers: usize = of_images.map(|one| one.join.n_values(shape)).sum();
+        let shapes = on.0.plan.arrays[on.1.array].image_shapes();
+        let numbers: usize = of_images.map(|one| join_values(one.join, &shapes)).sum();
         let learned = learned_bytes(on.1, n_values(on) as f64) + 8.0 * n_read(on) * numbers as f64;
         8.0 * n_read(on) * m(on) + matrix(m(on), n_values(on) as f64) + learned
     };

@@ -235,7 +235,7 @@ impl Sweep {
                 nx: n_columns,
                 ny: n_rows,
                 frame_values: array.n_values(),
-                image_shape: array.image().0,
+                image_shapes: array.image_shapes(),
                 size_mm: millimetres(array.pitch() * array.grid().nx as f64),
                 noise_std: group.condition.noise,
                 noise_unit: plan.noise_unit,

@@ -1,0 +1,424 @@
+//! Frames of one sensor of a recording: its files, masked taxels, zeros and full scale.
+
+use crate::calibration::plateau;
+use crate::error::{Error, Result};
+use crate::inputs::arrays::axis_order::FrameShape;
+use crate::inputs::arrays::file_array::{ElementKind, FileArray};
+use crate::inputs::memory::check_memory;
+use crate::studies::recognition::spec::recorded::RecordedSpec;
+use crate::studies::recognition::spec::zero::ZeroSpec;
+use ndarray::{Array2, Axis, concatenate};
+use std::path::Path;
+
+/// Fraction of missing (NaN) readings, 0 to 1, above which a taxel is masked. With a larger value, recordings with an intermittently failing taxel are
+/// rejected; with a smaller value, a few missing readings mask a taxel.
+const MASKED: f64 = 0.1;
+
+/// Frames that one file contains, and the shape of each frame.
+struct FramesOfFile {
+    shape: FrameShape,
+    readings: Array2<f64>,
+    kind: ElementKind,
+    place: String,
+    /// Path of the file that contains the tangential forces; `None` if the frames contain them.
+    shear_place: Option<String>,
+    /// Time between the frames of each touch relative to the time between recorded frames; 1 without resampling.
+    steps: Vec<f64>,
+}
+
+/// Frames that one sensor recorded: training touches (or all touches), and the separate test set.
+pub struct SensorFrames {
+    /// Name of the sensor.
+    pub name: String,
+    spec: RecordedSpec,
+    train: FramesOfFile,
+    test: Option<FramesOfFile>,
+}
+
+/// Zeros and full scale of one sensor.
+pub struct SensorScale {
+    /// Whether each value of a frame belongs to a masked taxel.
+    pub is_masked: Vec<bool>,
+    /// Reading of each untouched taxel; 0 for a masked taxel.
+    pub zeros: Vec<f64>,
+    /// Reading of a taxel whose deflection equals its stroke.
+    pub full_scale: f64,
+    /// Reading above which a taxel counts as saturated.
+    pub saturation: f64,
+}
+
+impl SensorFrames {
+    /// Reads the frames of a sensor. If `ceiling` is given, the frames must fit into this number of bytes.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or the test set has other axes than the training touches.
+    pub fn read(name: String, spec: RecordedSpec, ceiling: Option<u64>) -> Result<Self> {
+        let train = spec.read_frames("frames", ceiling)?;
+        let test = match spec.file_of("frames_test") {
+            Some(_) => Some(spec.read_frames("frames_test", ceiling)?),
+            None => None,
+        };
+        if let Some(test) = &test {
+            let axes = |shape: &FrameShape| [shape.n_frames, shape.rows, shape.columns];
+            if axes(&test.shape) != axes(&train.shape) {
+                let [given, allowed] = [&test.shape, &train.shape].map(|shape| {
+                    let [n_frames, rows, columns] = axes(shape);
+                    format!("touches of {n_frames} frames of {rows} × {columns} taxels")
+                });
+                let allowed = format!("{allowed}, as {} has", train.place);
+                return Err(Error::input(&test.place, given, allowed));
+            }
+        }
+        Ok(Self {
+            name,
+            spec,
+            train,
+            test,
+        })
+    }
+
+    /// Returns the numbers of touches: training touches (or all touches), and touches of the test set.
+    pub fn n_touches(&self) -> [usize; 2] {
+        let n_test = self.test.as_ref().map_or(0, |test| test.shape.n_touches);
+        [self.train.shape.n_touches, n_test]
+    }
+
+    /// Returns the number of frames of each touch.
+    pub fn n_frames(&self) -> usize {
+        self.train.shape.n_frames
+    }
+
+    /// Returns the time between the frames of each touch relative to the time between recorded frames; the test set comes last.
+    pub fn steps(&self) -> Vec<f64> {
+        let files = self.files().into_iter();
+        files.flat_map(|file| file.steps.iter().copied()).collect()
+    }
+
+    /// Determines masked taxels, zeros and the full scale of the sensor.
+    ///
+    /// # Errors
+    /// If a reading is not finite although its taxel is not masked, or the zeros do not fit the readings.
+    pub fn scale(&self, are_depths_known: bool) -> Result<SensorScale> {
+        let (files, shape) = (self.files(), &self.train.shape);
+        let is_masked = masked(&files, shape.rows * shape.columns)?;
+        let zeros = self.spec.checked_zeros(shape, &is_masked)?;
+        let scale = self.spec.full_scale_of(&files, &zeros, are_depths_known)?;
+        let (full_scale, saturation) = scale;
+        Ok(SensorScale {
+            is_masked,
+            zeros,
+            full_scale,
+            saturation,
+        })
+    }
+
+    fn files(&self) -> Vec<&FramesOfFile> {
+        let files = [Some(&self.train), self.test.as_ref()];
+        files.into_iter().flatten().collect()
+    }
+}
+
+/// Checks that all sensors recorded the same number of touches, each with the same number of frames.
+///
+/// # Errors
+/// If a sensor differs from the first one.
+pub fn check_alike(sensors: &[SensorFrames]) -> Result<()> {
+    for sensor in sensors {
+        for (own, first) in sensor.files().into_iter().zip(sensors[0].files()) {
+            if own.shape.n_touches != first.shape.n_touches {
+                let given = format!("{} touches", own.shape.n_touches);
+                let allowed = format!("{}, as {} has", first.shape.n_touches, first.place);
+                return Err(Error::input(&own.place, given, allowed));
+            }
+            if own.shape.n_frames != first.shape.n_frames {
+                let given = format!("touches of {} frames", own.shape.n_frames);
+                let allowed = format!(
+                    "{}, as {} has, or recorded.resampled_frames",
+                    first.shape.n_frames, first.place
+                );
+                return Err(Error::input(&own.place, given, allowed));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Joins the readings of all sensors to frames, sensor after sensor: training touches (or all touches), and the separate test set.
+pub fn joined_readings(sensors: Vec<SensorFrames>) -> [Array2<f64>; 2] {
+    let files = sensors.into_iter().map(|sensor| {
+        let test = sensor.test.map(|test| test.readings);
+        let none = Array2::zeros((0, sensor.train.readings.ncols()));
+        (sensor.train.readings, test.unwrap_or(none))
+    });
+    let (train, test): (Vec<_>, Vec<_>) = files.unzip();
+    [train, test].map(|mut parts| match parts.len() {
+        1 => parts.swap_remove(0),
+        _ => {
+            let parts: Vec<_> = parts.iter().map(Array2::view).collect();
+            concatenate(Axis(1), &parts).expect("the sensors have the same touches")
+        }
+    })
+}
+
+impl RecordedSpec {
+    fn read_frames(&self, name: &'static str, ceiling: Option<u64>) -> Result<FramesOfFile> {
+        let path = self.file_of(name).unwrap_or(&self.frames);
+        let mut shape = self.shape_of(name)?;
+        let shear = self.shear_shape(name, &shape)?;
+        let n = shape.n_touches;
+        let of_shear = shear.as_ref().map_or(0, FrameShape::n_frame_values);
+        let n_values = shape.n_frame_values() + of_shear;
+        // The data are in memory twice as f64 if axes are permuted or files are joined.
+        let bytes = 16.0 * (n * shape.n_frames) as f64 * n_values as f64;
+        check_memory(bytes, ceiling, "frames")
+            .map_err(|allowed| Error::input(path.display(), format!("{n} touches"), allowed))?;
+        let array = FileArray::read(path, &self.array_name(name))?;
+        let (place, kind) = (array.place.clone(), array.kind);
+        let mut readings = shape.arrange(array.into_numbers()?);
+        let mut shear_place = None;
+        if let (Some((path, name)), Some(shape)) = (self.shear_of(name), shear) {
+            let array = FileArray::read(path, name)?;
+            shear_place = Some(array.place.clone());
+            let across = shape.arrange(array.into_numbers()?);
+            readings = concatenate![Axis(1), readings, across];
+        }
+        let lengths = self.touch_lengths(name, &shape, &readings)?;
+        let (readings, steps) = self.resampled(readings, (&place, &shape), &lengths)?;
+        shape.n_frames = self.resampled_frames.unwrap_or(shape.n_frames);
+        Ok(FramesOfFile {
+            readings,
+            shape,
+            kind,
+            place,
+            shear_place,
+            steps,
+        })
+    }
+
+    /// Returns the number of frames of each touch: the numbers of the file, or the frames up to the last one with a reading.
+    ///
+    /// # Errors
+    /// If the file cannot be read or has an invalid number, or a touch has no reading.
+    fn touch_lengths(
+        &self,
+        name: &str,
+        shape: &FrameShape,
+        readings: &Array2<f64>,
+    ) -> Result<Vec<usize>> {
+        let key = match name {
+            "frames" => "lengths",
+            _ => "lengths_test",
+        };
+        if let Some(path) = self.file_of(key) {
+            let array = FileArray::read(path, key)?;
+            let place = array.place.clone();
+            let lengths = array.into_numbers()?;
+            let frames = self.file_of(name).unwrap_or(&self.frames);
+            one_each(path, (lengths.len(), shape.n_touches), frames)?;
+            let whole = |(touch, &length): (usize, &f64)| {
+                let is_length = length.fract() == 0.0;
+                let is_length = is_length && (1.0..=shape.n_frames as f64).contains(&length);
+                let refuse = || {
+                    let allowed = format!("an integer from 1 to {}", shape.n_frames);
+                    Error::input(format!("{place}, position {touch}"), length, allowed)
+                };
+                is_length.then_some(length as usize).ok_or_else(refuse)
+            };
+            return lengths.iter().enumerate().map(whole).collect();
+        }
+        if shape.n_frames == 1 {
+            return Ok(vec![1; shape.n_touches]);
+        }
+        let length = |touch: usize| {
+            let is_there = |frame: &usize| {
+                let row = readings.row(touch * shape.n_frames + frame);
+                !row.iter().all(|reading| reading.is_nan())
+            };
+            let last = (0..shape.n_frames).rev().find(is_there);
+            last.map(|last| last + 1).ok_or_else(|| {
+                let path = self.file_of(name).unwrap_or(&self.frames);
+                let place = format!("{}, touch {touch}", path.display());
+                Error::input(
+                    place,
+                    "no reading (NaN in all frames)",
+                    "at least one frame",
+                )
+            })
+        };
+        (0..shape.n_touches).map(length).collect()
+    }
+
+    /// Resamples each touch to the number of frames of the study, by linear interpolation. Returns the readings, and the time between the frames of each touch
+    /// relative to the time between recorded frames.
+    ///
+    /// # Errors
+    /// If the touches have unequal lengths and the study does not resample them.
+    fn resampled(
+        &self,
+        readings: Array2<f64>,
+        (place, shape): (&str, &FrameShape),
+        lengths: &[usize],
+    ) -> Result<(Array2<f64>, Vec<f64>)> {
+        let Some(n_frames) = self.resampled_frames else {
+            let shortest = lengths.iter().copied().min().unwrap_or(0);
+            if shortest < shape.n_frames {
+                let longest = lengths.iter().copied().max().unwrap_or(0);
+                let given = format!(
+                    "touches of {shortest} to {longest} of {} frames",
+                    shape.n_frames
+                );
+                let allowed = "touches with all frames, or recorded.resampled_frames, the number of frames to which each touch is resampled";
+                return Err(Error::input(place, given, allowed));
+            }
+            return Ok((readings, vec![1.0; lengths.len()]));
+        };
+        let mut resampled = Array2::zeros((lengths.len() * n_frames, readings.ncols()));
+        let step = |length: usize| match n_frames {
+            1 => 1.0,
+            _ => (length - 1) as f64 / (n_frames - 1) as f64,
+        };
+        for (row, mut out) in resampled.outer_iter_mut().enumerate() {
+            let (touch, frame) = (row / n_frames, row % n_frames);
+            let (length, first) = (lengths[touch], touch * shape.n_frames);
+            let at = match n_frames {
+                1 => (length - 1) as f64,
+                _ => frame as f64 * (length - 1) as f64 / (n_frames - 1) as f64,
+            };
+            let (before, part) = (at.floor() as usize, at.fract());
+            out.assign(&readings.row(first + before));
+            if part > 0.0 {
+                let after = readings.row(first + before + 1);
+                out.zip_mut_with(&after, |out, after| *out += part * (after - *out));
+            }
+        }
+        Ok((
+            resampled,
+            lengths.iter().map(|&length| step(length)).collect(),
+        ))
+    }
+
+    /// Checks and returns the reading of each untouched taxel; the reading of a masked taxel is 0.
+    fn checked_zeros(&self, shape: &FrameShape, is_masked: &[bool]) -> Result<Vec<f64>> {
+        let mut zeros = self.zeros(shape)?;
+        for (taxel, zero) in zeros.iter_mut().enumerate() {
+            if is_masked[taxel] {
+                *zero = 0.0;
+            } else if !zero.is_finite()
+                && let ZeroSpec::Each(path) = &self.zero
+            {
+                let place = format!("{}, taxel {taxel}", path.display());
+                let allowed = "a finite number (only a taxel that is masked may be without one)";
+                return Err(Error::input(place, *zero, allowed));
+            }
+        }
+        Ok(zeros)
+    }
+
+    /// Returns two readings: the reading of a taxel at full scale, and the reading above which a taxel counts as saturated. A taxel counts as saturated above
+    /// the given full scale, or above a smaller largest reading that many frames share. If the depths are known, a shared largest reading is ignored, because
+    /// equal depths may cause it.
+    fn full_scale_of(
+        &self,
+        files: &[&FramesOfFile],
+        zeros: &[f64],
+        are_depths_known: bool,
+    ) -> Result<(f64, f64)> {
+        let frames = || files.iter().flat_map(|file| file.readings.outer_iter());
+        let pushes = || frames().map(|frame| frame.into_iter().take(zeros.len()).copied());
+        let largest = pushes().flatten().filter(|reading| !reading.is_nan());
+        let largest = largest.fold(f64::NEG_INFINITY, f64::max);
+        let full_scale = self.full_scale.unwrap_or(largest);
+        let highest = zeros.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if highest >= full_scale {
+            return Err(match &self.zero {
+                ZeroSpec::One(zero) => {
+                    let given = format!("no reading above recorded.zero, {zero}");
+                    Error::input(self.frames.display(), given, "touches")
+                }
+                ZeroSpec::Each(path) => {
+                    let taxel = zeros.iter().position(|&zero| zero == highest);
+                    let place = format!("{}, taxel {}", path.display(), taxel.unwrap_or(0));
+                    let allowed = match self.full_scale {
+                        Some(full_scale) => format!("below recorded.full_scale, {full_scale}"),
+                        None => format!(
+                            "below the largest reading, {largest}, which stands for the full scale"
+                        ),
+                    };
+                    Error::input(place, highest, allowed)
+                }
+            });
+        }
+        let spacing = match files[0].kind {
+            ElementKind::Float(spacing) => spacing,
+            _ => 0.0,
+        };
+        let given = self.full_scale.map(|full| full - spacing * full.abs());
+        let shared = match are_depths_known {
+            true => None,
+            false => plateau(pushes).filter(|&level| level > highest),
+        };
+        let saturation = given
+            .unwrap_or(f64::INFINITY)
+            .min(shared.unwrap_or(f64::INFINITY));
+        Ok((full_scale, saturation))
+    }
+}
+
+/// Returns whether each value of a frame belongs to a masked taxel, which has too many NaN readings.
+fn masked(files: &[&FramesOfFile], n_taxels: usize) -> Result<Vec<bool>> {
+    let n_values = files[0].readings.ncols();
+    let n_frames: usize = files.iter().map(|file| file.readings.nrows()).sum();
+    let mut n_missing = vec![0_usize; n_values];
+    for file in files {
+        for frame in file.readings.outer_iter() {
+            for (n, reading) in n_missing.iter_mut().zip(frame) {
+                *n += usize::from(reading.is_nan());
+            }
+        }
+    }
+    let of_taxel = |place: usize| n_missing.iter().skip(place % n_taxels).step_by(n_taxels);
+    let most = |place: usize| of_taxel(place).copied().max().unwrap_or(0);
+    let is_masked = (0..n_values).map(|place| most(place) as f64 >= MASKED * n_frames as f64);
+    let is_masked: Vec<bool> = (0..n_values)
+        .zip(is_masked)
+        .map(|(place, is_masked)| is_masked && most(place) > 0)
+        .collect();
+    for file in files {
+        for ((row, place), &reading) in file.readings.indexed_iter() {
+            if reading.is_finite() || is_masked[place] {
+                continue;
+            }
+            let taxel = place % n_taxels;
+            let own = file.shear_place.as_ref().filter(|_| place >= n_taxels);
+            let own = own.unwrap_or(&file.place);
+            let at = format!("{own}, frame {row}, taxel {taxel}");
+            let allowed = match reading.is_nan() {
+                true => format!(
+                    "a finite number (a taxel that is NaN in at least {:.0} % of the frames is masked; this one is in {} of {n_frames})",
+                    100.0 * MASKED,
+                    most(place)
+                ),
+                false => "a finite number".to_owned(),
+            };
+            return Err(Error::input(at, reading, allowed));
+        }
+    }
+    match is_masked.iter().all(|&is_masked| is_masked) {
+        true => Err(Error::input(
+            &files[0].place,
+            "no taxel with readings",
+            "numbers",
+        )),
+        false => Ok(is_masked),
+    }
+}
+
+/// Returns an error if a file does not contain exactly one value per touch.
+pub(super) fn one_each(path: &Path, (n_given, n): (usize, usize), frames: &Path) -> Result<()> {
+    let given = format!("{n_given} numbers");
+    let allowed = format!("{n}, one a touch of {}", frames.display());
+    match n_given == n {
+        true => Ok(()),
+        false => Err(Error::input(path.display(), given, allowed)),
+    }
+}

@@ -1,0 +1,551 @@
+//! Recordings whose taxels have positions in a layout file, several sensors that are read together, and touches of unequal length.
+
+use crate::command::Case;
+use crate::study::laid_out;
+use bubbletouch::kinds::recognition::RecognitionStudy;
+use bubbletouch::study::progress::Silent;
+use bubbletouch::study::table::{Configuration, TrialScore};
+use bubbletouch::study::{write_integers, write_npy};
+use ndarray::{Array2, Array3, Axis, s};
+use ndarray_npy::read_npy;
+use std::fmt::Write as _;
+use std::path::Path;
+
+const N: usize = 60;
+
+/// Returns frames of three classes, 8 × 8, of which an SVM misclassifies some.
+fn frames() -> Array3<f64> {
+    Array3::from_shape_fn((N, 8, 8), |(touch, row, column)| {
+        let (class, k) = (touch / 20, touch * 64 + row * 8 + column);
+        let noise = ((k * k * 31 + k * 17) % 997) as f64 / 997.0;
+        let away = (row as f64 - 3.5).powi(2) + (column as f64 - 2.0 - 0.5 * class as f64).powi(2);
+        (64.0 * ((-away / 4.0).exp() + 0.9 * noise)).round() / 128.0
+    })
+}
+
+fn written() -> Case {
+    let case = Case::new();
+    let frames = frames();
+    let list = frames.clone().into_shape_with_order((N, 64)).unwrap();
+    write_npy(&case.path("frames.npy"), &frames).unwrap();
+    write_npy(&case.path("list.npy"), &list).unwrap();
+    write_npy(&case.path("left.npy"), &list.slice(s![.., ..24]).to_owned()).unwrap();
+    write_npy(
+        &case.path("right.npy"),
+        &list.slice(s![.., 24..]).to_owned(),
+    )
+    .unwrap();
+    write_integers(&case.path("labels.npy"), (0..N).map(|touch| touch / 20)).unwrap();
+    case.file(
+        "grid.csv",
+        layout((0..64).map(|k| (4.0 * (k % 8) as f64, 4.0 * (k / 8) as f64))),
+    );
+    case
+}
+
+/// Returns the text of a layout file of taxels in a plane, at positions in millimetres.
+fn layout(places: impl Iterator<Item = (f64, f64)>) -> String {
+    let mut text = String::from("x_mm,y_mm,z_mm,nx,ny,nz\n");
+    for (x, y) in places {
+        writeln!(text, "{x},{y},0,0,0,1").unwrap();
+    }
+    text
+}
+
+const SKIN: &str = "[skin]\npitch_mm = 4.0\nstroke_mm = 5.0\n";
+const NOISE: &str =
+    "[signal]\nsteps = [\"gain\", \"noise\"]\ngain_std = 0.1\nnoise_std_full_scale = 0.05\n";
+const COUPLED: &str = "[signal]\nsteps = [\"crosstalk\", \"noise\", \"smoothing\"]\ncrosstalk = 0.2\nnoise_std_full_scale = 0.05\nsmoothing_mm = 3.0\n";
+const RAW: &str = "[sensing]\nmeasurements = 8\n[recognition]\nclassifier = \"linear_svm\"\n";
+const IMAGES: &str = "[sensing]\nensemble = \"identity\"\n[recognition]\nclassifier = \"linear_svm\"\nfeatures = [\"fourier_magnitude\", \"descriptors\"]\n";
+
+fn planned(case: &Case, recorded: &str, rest: &str) -> bubbletouch::Result<RecognitionStudy> {
+    let folder = case.folder().display().to_string();
+    let recorded = recorded.replace("FOLDER/", &format!("{folder}/"));
+    laid_out(&format!(
+        "question = \"?\"\ntrials = 2\n[recorded]\n{recorded}\n{rest}"
+    ))
+}
+
+fn rows(case: &Case, recorded: &str, rest: &str) -> Vec<(Configuration, TrialScore)> {
+    let study = planned(case, recorded, rest).unwrap_or_else(|error| panic!("{recorded}\n{error}"));
+    study.run(&Silent).unwrap().accuracy
+}
+
+fn scores(case: &Case, recorded: &str, rest: &str) -> Vec<TrialScore> {
+    let rows = rows(case, recorded, rest).into_iter();
+    rows.map(|(_, score)| score).collect()
+}
+
+fn error(case: &Case, recorded: &str, rest: &str) -> String {
+    let planned = planned(case, recorded, rest);
+    planned.err().expect(recorded).to_string()
+}
+
+const LABELS: &str = "labels = \"FOLDER/labels.npy\"\n";
+
+/// Returns `[recorded]` with the sensors left and right, each with further keys.
+fn sensors(left: &str, right: &str) -> String {
+    format!(
+        "{LABELS}[[recorded.sensors]]\nname = \"left\"\nframes = \"FOLDER/left.npy\"\n{left}\n[[recorded.sensors]]\nname = \"right\"\nframes = \"FOLDER/right.npy\"\n{right}\n"
+    )
+}
+
+#[test]
+fn a_layout_file_of_a_grid_gives_the_rows_of_the_grid() {
+    let case = written();
+    let grid = format!("{LABELS}frames = \"FOLDER/frames.npy\"\n");
+    let listed = format!("{LABELS}frames = \"FOLDER/list.npy\"\nlayout = \"FOLDER/grid.csv\"\n");
+    let both = format!("{grid}layout = \"FOLDER/grid.csv\"\n");
+    let blocks = format!(
+        "{}{}",
+        RAW.replace(
+            "measurements = 8",
+            "ratio = 4\nensemble = \"block_average\""
+        ),
+        ""
+    );
+    for rest in [
+        format!("{SKIN}{COUPLED}{IMAGES}"),
+        format!("{SKIN}{COUPLED}{blocks}"),
+    ] {
+        let expected = rows(&case, &grid, &rest);
+        assert!(
+            expected
+                .iter()
+                .any(|(_, score)| score.n_correct < score.n_test)
+        );
+        assert_eq!(rows(&case, &listed, &rest), expected);
+        assert_eq!(rows(&case, &both, &rest), expected);
+    }
+}
+
+#[test]
+fn a_layout_file_of_hexagonal_taxels_gives_the_rows_of_the_layout() {
+    let case = written();
+    let skin = format!("{SKIN}taxels = 8\nlayout = \"hexagonal\"\n");
+    let rest = format!("{COUPLED}{RAW}");
+    let pressed = "question = \"?\"\ntrials = 2\n[objects]\nsets = [\"balls\"]\nnames = [\"golf\", \"tennis\", \"baseball\"]\n[touches]\nper_object = 12\noffset_x_mm = { uniform = [-6.0, 6.0] }\noffset_y_mm = { uniform = [-6.0, 6.0] }\ndepth_mm = { uniform = [1.0, 7.0] }\n";
+    case.file("study.toml", format!("{pressed}{skin}{rest}"));
+    case.succeeds(&["touches", "study.toml", "--out", "touches"]);
+    let taxels: Array2<f64> = read_npy(case.path("touches/taxels.npy")).unwrap();
+    let mut text = String::from("x_mm,y_mm,z_mm,nx,ny,nz,row,column\n");
+    let columns = read_npy::<_, Array3<f32>>(case.path("touches/frames.npy"))
+        .unwrap()
+        .dim()
+        .2;
+    for (taxel, values) in taxels.outer_iter().enumerate() {
+        let mm = |k: usize| 1e3 * values[k];
+        let (row, column) = (taxel / columns, taxel % columns);
+        writeln!(text, "{},{},{},0,0,1,{row},{column}", mm(0), mm(1), mm(2)).unwrap();
+    }
+    case.file("touches/hexagonal.csv", text);
+    let recorded = "frames = \"FOLDER/touches/frames.npy\"\nlabels = \"FOLDER/touches/labels.npy\"\nfull_scale = 5e-3\nnames = [\"golf\", \"tennis\", \"baseball\"]\n";
+    let expected = scores(&case, recorded, &format!("{skin}{rest}"));
+    assert!(expected.iter().any(|score| score.n_correct < score.n_test));
+    let listed = format!("{recorded}layout = \"FOLDER/touches/hexagonal.csv\"\n");
+    assert_eq!(scores(&case, &listed, &format!("{SKIN}{rest}")), expected);
+}
+
+#[test]
+fn taxels_that_are_no_grid_have_images_and_neighbours_by_their_layout() {
+    let case = written();
+    // Positions of a grid in another order are no grid, but have nearly the same image.
+    let swapped: Vec<usize> = (0..64).map(|k| (37 * k) % 64).collect();
+    let list: Array2<f64> = read_npy(case.path("list.npy")).unwrap();
+    write_npy(&case.path("swapped.npy"), &list.select(Axis(1), &swapped)).unwrap();
+    let places = swapped
+        .iter()
+        .map(|k| (4.0 * (k % 8) as f64, 4.0 * (k / 8) as f64));
+    case.file("swapped.csv", layout(places));
+    let recorded =
+        format!("{LABELS}frames = \"FOLDER/swapped.npy\"\nlayout = \"FOLDER/swapped.csv\"\n");
+    let rest = format!("{SKIN}{IMAGES}");
+    let grid = format!("{LABELS}frames = \"FOLDER/frames.npy\"\n");
+    let correct = |rows: Vec<TrialScore>| rows.iter().map(|s| s.n_correct).collect::<Vec<_>>();
+    assert_eq!(
+        correct(scores(&case, &recorded, &rest)),
+        correct(scores(&case, &grid, &rest))
+    );
+    let rest = format!("{SKIN}{COUPLED}{RAW}");
+    assert_ne!(
+        scores(&case, &recorded, &rest),
+        scores(
+            &case,
+            &recorded.replace("layout", "#"),
+            &rest
+                .replace("\"crosstalk\", ", "")
+                .replace(", \"smoothing\"", "")
+                .replace("crosstalk = 0.2\n", "")
+                .replace("smoothing_mm = 3.0\n", "")
+        )
+    );
+    // Blocks need rows and columns.
+    let blocks = format!(
+        "{SKIN}[sensing]\nratio = 4\nensemble = \"block_average\"\n[recognition]\nclassifier = \"linear_svm\"\n"
+    );
+    assert!(error(&case, &recorded, &blocks).contains("layout of a file"));
+    // The sample picture has three cells per pitch, and shows each taxel.
+    let study = planned(&case, &recorded, &rest).unwrap();
+    let cells = study.first().plan.arrays[0].picture_cells();
+    assert_eq!(cells.dim(), (24, 24));
+    let shown: std::collections::HashSet<_> = cells.iter().flatten().collect();
+    assert_eq!(shown.len(), 64);
+}
+
+#[test]
+fn two_sensors_with_the_taxels_of_one_give_its_rows() {
+    let case = written();
+    let rest = format!("{SKIN}{NOISE}{RAW}");
+    let whole = format!("{LABELS}frames = \"FOLDER/list.npy\"\nfull_scale = 2.0\n");
+    let expected = rows(&case, &whole, &rest);
+    assert!(
+        expected
+            .iter()
+            .any(|(_, score)| score.n_correct < score.n_test)
+    );
+    let scale = "full_scale = 2.0";
+    assert_eq!(rows(&case, &sensors(scale, scale), &rest), expected);
+    // Readings of another zero and scale are the same fractions of the full scale.
+    let right: Array2<f64> = read_npy(case.path("right.npy")).unwrap();
+    write_npy(&case.path("right.npy"), &(8.0 * right + 64.0)).unwrap();
+    let scaled = sensors(scale, "zero = 64.0\nfull_scale = 80.0");
+    assert_eq!(rows(&case, &scaled, &rest), expected);
+    // An archive contains an array for each sensor.
+    let mut archive =
+        ndarray_npy::NpzWriter::new(std::fs::File::create(case.path("all.npz")).unwrap());
+    for name in ["left", "right"] {
+        let array: Array2<f64> = read_npy(case.path(&format!("{name}.npy"))).unwrap();
+        archive.add_array(name, &array).unwrap();
+    }
+    archive.finish().unwrap();
+    let archived = scaled
+        .replace("left.npy", "all.npz")
+        .replace("right.npy", "all.npz");
+    assert_eq!(rows(&case, &archived, &rest), expected);
+}
+
+#[test]
+fn each_sensor_alone_is_a_value_of_an_axis() {
+    let case = written();
+    let (left, right) = ("grid = [3, 8]", "grid = [5, 8]\npitch_mm = 4.0");
+    let recorded = sensors(left, right);
+    for rest in [
+        format!("{SKIN}{NOISE}{RAW}"),
+        format!("{SKIN}[signal]\nsteps = [\"crosstalk\"]\ncrosstalk = 0.2\n{IMAGES}"),
+    ] {
+        let axis = "[axes]\n\"recorded.sensor\" = [\"all\", \"left\", \"right\"]\n";
+        let found = rows(&case, &recorded, &format!("{rest}{axis}"));
+        let part = |number: usize| -> Vec<TrialScore> {
+            let rows = found.iter().filter(|(of, _)| of.variant.number == number);
+            rows.map(|(_, score)| score.clone()).collect()
+        };
+        assert_eq!(part(0), scores(&case, &recorded, &rest));
+        for (number, name, keys) in [(1, "left", "grid = [3, 8]"), (2, "right", "grid = [5, 8]")] {
+            let alone = format!("{LABELS}frames = \"FOLDER/{name}.npy\"\n{keys}\n");
+            assert_eq!(part(number), scores(&case, &alone, &rest), "{name}");
+        }
+    }
+    // Each sensor has an image of its own, and a frame has the features of all images.
+    let study = planned(&case, &recorded, &format!("{SKIN}{IMAGES}")).unwrap();
+    let array = &study.first().plan.arrays[0];
+    assert_eq!(array.image_shapes(), [(3, 8), (5, 8)]);
+    assert_eq!(array.n_taxels(), 64);
+    // In the picture, the sensors are side by side, two pitches apart.
+    assert_eq!(array.picture_cells().dim(), (15, 3 * (8 + 2 + 8)));
+    let settings = format!("{:?}", study.first().touched.settings());
+    assert!(
+        settings.contains("left (24 taxels), right (40 taxels)"),
+        "{settings}"
+    );
+}
+
+#[test]
+fn neighbours_are_taxels_of_the_same_sensor() {
+    let case = written();
+    let rows = |n: u32| {
+        layout((0..n).map(|k| {
+            (
+                4.0 * f64::from(k % 8) + f64::from(k / 8),
+                3.8 * f64::from(k / 8),
+            )
+        }))
+    };
+    case.file("left.csv", rows(24));
+    case.file("right.csv", rows(40));
+    let layouts = ["left", "right"].map(|name| format!("layout = \"FOLDER/{name}.csv\""));
+    let recorded = sensors(&layouts[0], &layouts[1]);
+    let rest = format!(
+        "{SKIN}[signal]\nsteps = [\"crosstalk\", \"smoothing\"]\ncrosstalk = 0.2\nsmoothing_mm = 20.0\n[sensing]\nensemble = \"identity\"\n[recognition]\nclassifier = \"linear_svm\"\n"
+    );
+    let alone = format!("sensor = \"left\"\n{recorded}");
+    let alone = scores(&case, &alone, &rest);
+    assert_ne!(scores(&case, &recorded, &rest), alone);
+    // The right sensor reads the same in all touches, so the left sensor decides as if it were alone.
+    let even = Array2::<f64>::from_elem((N, 40), 1.0);
+    write_npy(&case.path("right.npy"), &even).unwrap();
+    let correct = |rows: &[TrialScore]| rows.iter().map(|s| s.n_correct).collect::<Vec<_>>();
+    let together = scores(&case, &recorded, &rest);
+    assert_eq!(correct(&together), correct(&alone));
+}
+
+/// Writes recordings of touches with 4 to 7 frames, padded with NaN and padded with numbers.
+fn unequal(case: &Case) -> Vec<usize> {
+    let lengths: Vec<usize> = (0..N).map(|touch| 4 + touch % 4).collect();
+    let list: Array2<f64> = read_npy(case.path("list.npy")).unwrap();
+    let padded = |padding: f64| {
+        Array3::from_shape_fn((N, 7, 64), |(touch, frame, taxel)| {
+            let part = frame as f64 / (lengths[touch] - 1) as f64;
+            if part <= 1.0 {
+                list[[touch, taxel]] * part
+            } else {
+                padding
+            }
+        })
+    };
+    write_npy(&case.path("nan.npy"), &padded(f64::NAN)).unwrap();
+    write_npy(&case.path("number.npy"), &padded(0.3)).unwrap();
+    write_integers(&case.path("lengths.npy"), lengths.iter().copied()).unwrap();
+    let even = Array3::from_shape_fn((N, 4, 64), |(touch, frame, taxel)| {
+        list[[touch, taxel]] * frame as f64 / 3.0
+    });
+    write_npy(&case.path("even.npy"), &even).unwrap();
+    lengths
+}
+
+#[test]
+fn touches_of_unequal_length_are_resampled() {
+    let case = written();
+    unequal(&case);
+    let keys = |file: &str, more: &str| {
+        format!(
+            "{LABELS}frames = \"FOLDER/{file}.npy\"\norder = \"n t c\"\nfull_scale = 2.0\n{more}\n"
+        )
+    };
+    let rest = format!("{SKIN}{RAW}temporal_features = [\"summarised\", \"deepest\"]\n");
+    let padded = scores(&case, &keys("nan", "resampled_frames = 4"), &rest);
+    let counted = keys(
+        "number",
+        "lengths = \"FOLDER/lengths.npy\"\nresampled_frames = 4",
+    );
+    assert_eq!(scores(&case, &counted, &rest), padded);
+    // Readings that are linear in time stay the same, up to rounding.
+    let correct = |rows: &[TrialScore]| rows.iter().map(|s| s.n_correct).collect::<Vec<_>>();
+    let even = scores(&case, &keys("even", ""), &rest);
+    assert_eq!(correct(&even), correct(&padded));
+    assert_eq!(
+        scores(&case, &keys("even", "resampled_frames = 4"), &rest),
+        even
+    );
+    // One frame is the last frame of each touch.
+    let one = scores(
+        &case,
+        &keys("nan", "resampled_frames = 1"),
+        &format!("{SKIN}{RAW}"),
+    );
+    let last = format!("{LABELS}frames = \"FOLDER/list.npy\"\nfull_scale = 2.0\n");
+    assert_eq!(
+        correct(&one),
+        correct(&scores(&case, &last, &format!("{SKIN}{RAW}")))
+    );
+    let refused = error(&case, &keys("nan", ""), &rest);
+    assert!(
+        refused.contains("nan.npy: touches of 4 to 7 of 7 frames; ")
+            && refused.contains("recorded.resampled_frames"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn sensors_of_other_rates_are_resampled_to_the_same_frames() {
+    let case = written();
+    unequal(&case);
+    let list: Array2<f64> = read_npy(case.path("list.npy")).unwrap();
+    for (name, columns, n_frames) in [("left", 0..24, 4), ("right", 24..64, 7)] {
+        let own = Array3::from_shape_fn((N, n_frames, columns.len()), |(touch, frame, taxel)| {
+            list[[touch, columns.start + taxel]] * frame as f64 / (n_frames - 1) as f64
+        });
+        write_npy(&case.path(&format!("{name}.npy")), &own).unwrap();
+    }
+    let order = "order = \"n t c\"\nfull_scale = 2.0";
+    let rest = format!("{SKIN}{RAW}");
+    let refused = error(&case, &sensors(order, order), &rest);
+    assert!(
+        refused.contains("right.npy: touches of 7 frames; 4, as ")
+            && refused.contains("resampled_frames"),
+        "{refused}"
+    );
+    let recorded = format!("resampled_frames = 4\n{}", sensors(order, order));
+    let whole =
+        format!("{LABELS}frames = \"FOLDER/even.npy\"\norder = \"n t c\"\nfull_scale = 2.0\n");
+    let correct = |rows: Vec<TrialScore>| rows.iter().map(|s| s.n_correct).collect::<Vec<_>>();
+    assert_eq!(
+        correct(scores(&case, &recorded, &rest)),
+        correct(scores(&case, &whole, &rest))
+    );
+}
+
+/// Each invalid recording gives one sentence with the file or the key.
+#[test]
+fn recordings_that_contradict_themselves_are_refused() {
+    let case = written();
+    unequal(&case);
+    let write = |name: &str, numbers: Vec<f64>| {
+        write_npy(&case.path(name), &ndarray::Array1::from(numbers)).unwrap();
+    };
+    write("short.npy", vec![4.0; N - 1]);
+    write("zero.npy", vec![0.0; N]);
+    write("half.npy", vec![3.5; N]);
+    write("long.npy", vec![8.0; N]);
+    let mut empty: Array3<f64> = read_npy(case.path("nan.npy")).unwrap();
+    empty.slice_mut(s![5, .., ..]).fill(f64::NAN);
+    write_npy(&case.path("empty.npy"), &empty).unwrap();
+    write_npy(&case.path("fewer.npy"), &Array2::<f64>::ones((N - 1, 40))).unwrap();
+    case.file("few.csv", layout((0..63).map(|k| (f64::from(k), 0.0))));
+    case.file(
+        "metres.csv",
+        layout((0..64).map(|k| (f64::from(k % 8) * 4e-3, f64::from(k / 8) * 4.1e-3))),
+    );
+    case.file(
+        "wide.csv",
+        layout((0..64).map(|k| (f64::from(k % 8) * 5.0, f64::from(k / 8) * 5.0))),
+    );
+    case.file("truncated.csv", "x_mm,y_mm,z_mm,nx,ny,nz\n1,2,3\n");
+    case.file(
+        "truncated.npy",
+        &std::fs::read(case.path("left.npy")).unwrap()[..200],
+    );
+    let one = |more: &str| format!("{LABELS}frames = \"FOLDER/list.npy\"\n{more}\n");
+    let time = |more: &str| {
+        let keys = "order = \"n t c\"\nresampled_frames = 4";
+        format!("{LABELS}frames = \"FOLDER/nan.npy\"\n{keys}\n{more}\n")
+    };
+    let two = |more: &str, left: &str| format!("{more}\n{}", sensors(left, ""));
+    let rest = format!("{SKIN}{RAW}");
+    for (recorded, words) in [
+        (
+            one("layout = \"FOLDER/few.csv\""),
+            "few.csv: 63 taxels; 64, as ",
+        ),
+        (
+            one("layout = \"FOLDER/metres.csv\""),
+            "metres.csv: taxels 0.004 mm apart; 1.6 to 10 mm at a pitch of 4 mm",
+        ),
+        (
+            one("layout = \"FOLDER/wide.csv\""),
+            "wide.csv: taxels 5 mm apart; the pitch of the skin, 4 mm",
+        ),
+        (
+            one("layout = \"FOLDER/truncated.csv\""),
+            "truncated.csv, line 2",
+        ),
+        (one("layout = \"FOLDER/none.csv\""), "none.csv"),
+        (
+            one("layout = \"FOLDER/list.npy\""),
+            "list.npy: another file; a layout in ",
+        ),
+        (
+            one("sensor = \"left\""),
+            "key recorded.sensor: \"left\"; no such key without [[recorded.sensors]]",
+        ),
+        (
+            LABELS.to_owned(),
+            "key recorded.frames: no such key; frames = ",
+        ),
+        (
+            time("lengths = \"FOLDER/short.npy\""),
+            "short.npy: 59 numbers; 60, one a touch of ",
+        ),
+        (
+            time("lengths = \"FOLDER/zero.npy\""),
+            "zero.npy, position 0: 0; an integer from 1 to 7",
+        ),
+        (
+            time("lengths = \"FOLDER/half.npy\""),
+            "half.npy, position 0: 3.5; an integer from 1 to 7",
+        ),
+        (
+            time("lengths = \"FOLDER/long.npy\""),
+            "long.npy, position 0: 8; an integer from 1 to 7",
+        ),
+        (
+            time("").replace("nan.npy", "empty.npy"),
+            "empty.npy, touch 5: no reading (NaN in all frames); at least one frame",
+        ),
+        (
+            time("").replace("= 4", "= 0"),
+            "recorded.resampled_frames: 0",
+        ),
+        (
+            two("frames = \"FOLDER/list.npy\"", ""),
+            "key recorded.frames: given beside recorded.sensors",
+        ),
+        (
+            two("zero = 1.0", ""),
+            "key recorded.zero: given beside recorded.sensors",
+        ),
+        (
+            two("sensor = \"thumb\"", ""),
+            "key recorded.sensor: \"thumb\"; all, left, right",
+        ),
+        (
+            two("", "pitch_mm = 0.0"),
+            "key recorded.sensors[1].pitch_mm: 0; a positive number",
+        ),
+        (
+            two("", "zero = 2.0\nfull_scale = 2.0"),
+            "key recorded.sensors[1].full_scale: 2; a number above the zero, 2",
+        ),
+        (
+            two("", "order = \"n q\""),
+            "recorded.sensors[1].order: \"n q\"",
+        ),
+        (
+            two("", "grid = [5, 5]"),
+            "recorded.sensors[1].grid: 5 × 5 taxels",
+        ),
+        (
+            two("", "frames_test = \"FOLDER/left.npy\""),
+            "key recorded.sensors[2].frames_test: no such key",
+        ),
+        (
+            two("", "").replace("\"left\"", "\"right\""),
+            "key recorded.sensors[2].name: \"right\"; a name that no other sensor has",
+        ),
+        (
+            two("", "").replace("\"left\"", "\"all\""),
+            "key recorded.sensors[1].name: \"all\"",
+        ),
+        (
+            two("", "").replace("right.npy", "fewer.npy"),
+            "fewer.npy: 59 touches; 60, as ",
+        ),
+        (
+            two("", "").replace("left.npy", "truncated.npy"),
+            "truncated.npy",
+        ),
+        (two("", "").replace("left.npy", "none.npy"), "none.npy"),
+    ] {
+        let said = error(&case, &recorded, &rest);
+        assert!(said.contains(words), "{said}\ndoes not say {words}");
+    }
+    let shear = rest.replace("[skin]\n", "[skin]\nsensed = \"shear\"\n");
+    assert!(
+        error(&case, &two("", ""), &shear)
+            .contains("key recorded.sensors: sensors that read shear")
+    );
+    // Positions are needed for steps between neighbours, and all sensors need them.
+    let coupled = format!("{SKIN}{COUPLED}{RAW}");
+    assert!(error(&case, &two("", "grid = [3, 8]"), &coupled).contains("taxels without a layout"));
+    let tilted = format!("{SKIN}{IMAGES}tilt_augmentation = 2\n");
+    let grids = sensors("grid = [3, 8]", "grid = [5, 8]");
+    assert!(
+        error(&case, &grids, &tilted).contains("tilted copies of 2 sensors (left 24, right 40)")
+    );
+    let named = format!("{SKIN}layout = \"hexagonal\"\ntaxels = 8\n{RAW}");
+    assert!(
+        error(&case, &grids, &named)
+            .contains("key skin.layout: given; no such key beside recorded.sensors")
+    );
+    assert!(!Path::new("recorded").exists());
+}
