@@ -68,7 +68,7 @@ mod _core {
     #[pymodule_export]
     use sphere_union::SphereUnion;
     #[pymodule_export]
-    use study::{advise, run_study, toml_of};
+    use study::{advise, run_study, toml_of, with_recorded};
     #[pymodule_export]
     use svm::{KernelSvm, LinearModel, choose_svm};
 

@@ -290,6 +290,26 @@ pub fn toml_of(json: &str) -> PyResult<String> {
     })
 }
 
+/// Returns the TOML text of a study whose table `[recorded]` contains the keys of a JSON object. Keys of the study that the object lacks are kept. Raises
+/// ValueError, which names `place`, if the text is no TOML.
+#[pyfunction]
+pub fn with_recorded(text: &str, place: &str, json: &str) -> PyResult<String> {
+    guarded(|| {
+        let allowed = "TOML as in experiments/";
+        let failed = |error: &dyn std::fmt::Display| bad_input(place, error, allowed);
+        let mut study: toml::Table = toml::from_str(text).map_err(|error| failed(&error))?;
+        let keys: toml::Table = serde_json::from_str(json).map_err(|error| failed(&error))?;
+        let recorded = study
+            .entry("recorded")
+            .or_insert_with(|| toml::Table::new().into());
+        let Some(recorded) = recorded.as_table_mut() else {
+            return Err(bad_input(place, "recorded is no table", allowed));
+        };
+        recorded.extend(keys);
+        toml::to_string(&study).map_err(|error| failed(&error))
+    })
+}
+
 /// Returns advice from the results in a folder, as JSON: the cheapest configuration with a minimum quality, or the best one within a cost. Raises
 /// ValueError if there is no such configuration, or an argument is invalid.
 #[pyfunction]

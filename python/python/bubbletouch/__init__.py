@@ -30,6 +30,7 @@ from bubbletouch._core import (
     write_frame,
 )
 from bubbletouch.data_audit import Audit, Finding, audit
+from bubbletouch.recorded import Recorded, read_recorded
 from bubbletouch.study import Study, Table, advise, run, simulate
 
 __all__ = [
@@ -44,6 +45,7 @@ __all__ = [
     "Patch",
     "Projection",
     "Reconstructor",
+    "Recorded",
     "Robot",
     "ShearState",
     "Simulation",
@@ -55,6 +57,7 @@ __all__ = [
     "Table",
     "advise",
     "audit",
+    "read_recorded",
     "run",
     "simulate",
     "touch_poses",

@@ -34,6 +34,7 @@ __all__ = [
     "run_study",
     "toml_of",
     "touch_poses",
+    "with_recorded",
     "write_frame",
 ]
 
@@ -1322,6 +1323,11 @@ def advise(
 
 def toml_of(json: str) -> str:
     """Converts a study from JSON to TOML."""
+
+def with_recorded(text: str, place: str, json: str) -> str:
+    """Returns the TOML text of a study whose table `[recorded]` contains the keys of a JSON object. Keys of the study that the object lacks are kept. Raises
+    ValueError, which names `place`, if the text is no TOML.
+    """
 
 def write_frame(path: _Path, frame: ArrayLike, pitch: float) -> None:
     """Writes the deflections (ny, nx; metres) of a grid with this pitch (metres) to a file. The extension selects a picture (.png), a table (.csv) or

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bubbletouch import _core
+from bubbletouch.recorded import Recorded
 from bubbletouch.study import Table
 
 
@@ -75,7 +76,7 @@ class Audit:
 
 
 def audit(
-    frames: ArrayLike,
+    frames: ArrayLike | Recorded,
     labels: ArrayLike | None = None,
     groups: ArrayLike | None = None,
     *,
@@ -90,7 +91,8 @@ def audit(
 ) -> Audit:
     """Audits a data set; equals the command `bubbletouch audit`.
 
-    frames: readings, shape (n, rows, columns), (n, n_frames, rows, columns) or (n, n_taxels); NaN for a missing reading.
+    frames: readings, shape (n, rows, columns), (n, n_frames, rows, columns) or (n, n_taxels); NaN for a missing reading. A Recorded of one sensor
+    contains labels, groups, order and full scale, too.
     labels: class of each touch, numbers or texts, shape (n,). If None, only checks without classes are made.
     groups, sessions: group (grasp, pose, subject) and session (file, day, mounting) of each touch, shape (n,).
     times: time of each touch, shape (n,). If None, the order of the touches is their order in time.
@@ -102,6 +104,15 @@ def audit(
 
     Raises ValueError if an argument is invalid, and OSError if a file cannot be written.
     """
+    if isinstance(frames, Recorded):
+        recorded = frames
+        if isinstance(recorded.frames, Mapping):
+            raise ValueError(f"frames: sensors {', '.join(recorded.frames)}; one sensor, because checks compare readings: Recorded.frames[NAME]")
+        labels = recorded.labels if labels is None else labels
+        groups = recorded.groups if groups is None else groups
+        order = order or (recorded.order if isinstance(recorded.order, str) else None)
+        full_scale = recorded.keys.get("full_scale") if full_scale is None else full_scale
+        frames = recorded.frames
     array, n_frames, grid = _arranged(np.asarray(frames), order)
     if not 399 <= permutations <= 100_000:
         raise ValueError(f"permutations: {permutations}; 399 to 100000")

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from bubbletouch import _core
 from bubbletouch._core import Mesh, Simulation, SphereUnion
 from bubbletouch._foreign import Host, hosted, identified
+from bubbletouch.recorded import Recorded, with_files
 
 Callback = Callable[[str, int, int], object]
 
@@ -128,6 +129,7 @@ def run(
     *,
     seed: int | None = None,
     callback: Callback | None = None,
+    recorded: Recorded | Mapping[str, Any] | None = None,
     classifiers: Mapping[str, Any] | None = None,
     features: Mapping[str, Any] | None = None,
     processes: int = 0,
@@ -139,6 +141,8 @@ def run(
     seed: replaces the seed of the study.
     callback: function that is called as callback(stage, n_done, n_total), from any thread, at most 20 times per second. If the callback raises an
     exception, the run ends and the exception is passed on.
+    recorded: recorded touches: a Recorded, or a dict with keys of `[recorded]` whose files may be arrays, such as {"frames": frames, "labels": labels}.
+    These keys replace the keys of the study. The arrays are stored in the result folder. A list of frames contains touches of unequal length.
     classifiers: estimators with fit(X, y) and predict(X) as in scikit-learn, by name; a tuple (estimator, version) sets the version. The study trains each of
     them beside its own classifiers, on its splits and scaled features. A `random_state` that is None becomes the seed of the trial. If there is a
     predict_proba, decisions on several touches add log-probabilities; otherwise they count votes.
@@ -151,9 +155,17 @@ def run(
     Raises ValueError, which names the key, if the study is invalid; OSError if a file cannot be read or written; KeyboardInterrupt after Ctrl-C.
     The first work item that fails ends the run. Finished work items are kept in `out`.
     """
-    text, place, name, folder = _text(study)
     kept = tempfile.TemporaryDirectory(prefix="bubbletouch-") if out is None else None
+    name = "study" if isinstance(study, Mapping) else Path(study).stem
     results = Path(kept.name) / name if kept is not None else Path(out or "")
+    given_table = recorded.table() if isinstance(recorded, Recorded) else dict(recorded or {})
+    if isinstance(study, Mapping):
+        own = study.get("recorded") or {}
+        table = with_files({**own, **given_table}, results / "recorded") if isinstance(own, Mapping) else {}
+        study = {**study, "recorded": table} if table else study
+    text, place, name, folder = _text(study)
+    if given_table and not isinstance(study, Mapping):
+        text = _core.with_recorded(text, place, _json(with_files(given_table, results / "recorded")))
     host = Host(processes)
     given = hosted(host, identified(classifiers, features))
     try:

@@ -1,0 +1,339 @@
+"""Recorded touches: arrays in memory, and files of Zarr, HDF5, Parquet, NumPy and LeRobot, each written by the test."""
+
+import json
+import sys
+
+import bubbletouch as bt
+import numpy as np
+import pytest
+
+N = 60
+STUDY = {
+    "question": "?",
+    "trials": 2,
+    "skin": {"pitch_mm": 4.0, "stroke_mm": 5.0},
+    "signal": {"steps": ["noise"], "noise_std_full_scale": 0.05},
+    "sensing": {"measurements": 8},
+    "recognition": {"classifier": "linear_svm"},
+}
+
+
+@pytest.fixture(scope="module")
+def arrays():
+    """Frames of three classes with 8 × 8 taxels, their labels as texts, and groups."""
+    rng = np.random.default_rng(0)
+    labels = np.repeat(["cup", "ball", "pen"], N // 3)
+    row, column = np.mgrid[:8, :8]
+    middle = 2 + 0.5 * np.arange(N)[:, None, None] // 20
+    frames = np.exp(-((row - 3.5) ** 2 + (column - middle) ** 2) / 4) + 0.9 * rng.random((N, 8, 8))
+    return frames.astype(np.float32), labels, np.arange(N) // 4
+
+
+def accuracy(recorded, study=STUDY, **options):
+    table = bt.run(study, recorded=recorded, **options)["accuracy"]
+    return {name: [str(value) for value in column] for name, column in table.columns.items()}
+
+
+@pytest.fixture(scope="module")
+def usual(arrays, tmp_path_factory):
+    """Rows of the study of the arrays in files."""
+    folder = tmp_path_factory.mktemp("files")
+    frames, labels, groups = arrays
+    for name, array in {"frames": frames, "labels": labels, "groups": groups}.items():
+        np.save(folder / f"{name}.npy", array)
+    return accuracy({name: str(folder / f"{name}.npy") for name in ("frames", "labels", "groups")})
+
+
+def same(found, arrays):
+    frames, labels, groups = arrays
+    assert np.array_equal(found.frames.reshape(N, -1), frames.reshape(N, -1))
+    assert found.labels.tolist() == labels.tolist()
+    assert groups is None or found.groups.tolist() == groups.tolist()
+    assert len(found) == N
+
+
+def test_arrays_in_memory_give_the_rows_of_files(arrays, usual, tmp_path):
+    frames, labels, groups = arrays
+    table = {"frames": frames, "labels": labels.tolist(), "groups": groups}
+    assert accuracy(table) == usual
+    assert accuracy(bt.Recorded(frames, labels, groups)) == usual
+    assert accuracy(None, {**STUDY, "recorded": table}) == usual
+    # A study file keeps its other keys.
+    file = tmp_path / "study.toml"
+    file.write_text(bt._core.toml_of(bt.study._json({**STUDY, "recorded": {"previous_touch": "none"}})))
+    assert accuracy(table, file) == usual
+    # A run in a folder is continued, and other arrays do not replace those of the folder.
+    out = tmp_path / "out"
+    assert accuracy(table, out=out) == usual
+    assert accuracy(table, out=out) == usual
+    assert len(list((out / "recorded").glob("*.npy"))) == 3
+
+
+def test_sensors_in_memory_are_joined(arrays):
+    frames, labels, groups = arrays
+    whole = bt.Recorded(frames.reshape(N, 64), labels, groups, keys={"full_scale": 2.0})
+    parts = {"left": frames.reshape(N, 64)[:, :24], "right": frames.reshape(N, 64)[:, 24:]}
+    scale = {"full_scale": 2.0}
+    assert accuracy(bt.Recorded(parts, labels, groups, keys={"left": scale, "right": scale})) == accuracy(whole)
+    with pytest.raises(ValueError, match="sensors left, right; one sensor"):
+        bt.audit(bt.Recorded(parts, labels, groups))
+
+
+def test_touches_of_unequal_length_are_padded(arrays):
+    frames, labels, _ = arrays
+    lengths = 4 + np.arange(N) % 4
+    touches = [np.linspace(0, 1, n)[:, None] * frame.ravel() for n, frame in zip(lengths, frames, strict=True)]
+    padded = np.full((N, 7, 64), np.nan)
+    for touch, own in zip(padded, touches, strict=True):
+        touch[: len(own)] = own
+    keys = {"labels": labels, "order": "n t c", "resampled_frames": 4}
+    assert accuracy({"frames": touches, **keys}) == accuracy({"frames": padded, **keys})
+    with pytest.raises(ValueError, match="touches of 4 to 7 of 7 frames"):
+        accuracy({"frames": touches, "labels": labels, "order": "n t c"})
+
+
+def test_audit_reads_a_recording(arrays):
+    frames, labels, groups = arrays
+    recorded = bt.Recorded(frames, labels, groups)
+    said = [f.sentence for f in bt.audit(recorded, permutations=399).findings]
+    assert said == [f.sentence for f in bt.audit(frames, labels, groups, permutations=399).findings]
+
+
+def test_arrays_of_a_wrong_type_are_refused(arrays):
+    frames, labels, _ = arrays
+    with pytest.raises(ValueError, match=r"recorded\.frames: elements of type complex128; numbers"):
+        accuracy({"frames": frames.astype(complex), "labels": labels})
+    with pytest.raises(ValueError, match=r"recorded\.labels: None; integers or texts"):
+        accuracy({"frames": frames, "labels": [None, *labels[1:]]})
+    with pytest.raises(ValueError, match="59"):
+        accuracy({"frames": frames, "labels": labels[1:]})
+
+
+def test_npz(arrays, tmp_path):
+    frames, labels, groups = arrays
+    np.savez(tmp_path / "a.npz", frames=frames, labels=labels, groups=groups)
+    same(bt.read_recorded(tmp_path / "a.npz"), arrays)
+    # A folder of files: groups are the files, unless the files contain groups.
+    for part in range(3):
+        own = slice(20 * part, 20 * part + 20)
+        np.savez(tmp_path / f"part{part + 9}.npz", frames=frames[own], labels=labels[own])
+    (tmp_path / "a.npz").unlink()
+    found = bt.read_recorded(tmp_path)
+    same(found, (frames, labels, None))
+    assert found.groups.tolist() == [f"part{9 + touch // 20}" for touch in range(N)]
+
+
+def test_hdf5(arrays, usual, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    frames, labels, groups = arrays
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["skin/frames"], file["labels"], file["groups"] = frames, labels.astype("S"), groups
+    found = bt.read_recorded(tmp_path / "a.h5", "skin/frames")
+    same(found, arrays)
+    assert accuracy(found) == usual
+    # A dataset for each touch, with labels in attributes.
+    with h5py.File(tmp_path / "b.hdf5", "w") as file:
+        for touch in range(N):
+            group = file.create_group(f"data/demo_{touch}")
+            group["obs/tactile"] = np.repeat(frames[touch][None], 1 + touch % 2, axis=0)
+            group.attrs["object"], group["session"] = str(labels[touch]), groups[touch]
+    found = bt.read_recorded(tmp_path / "b.hdf5", "data/*/obs/tactile", labels="data/*@object", groups="data/*/session")
+    assert found.frames.shape == (N, 2, 8, 8) and found.lengths.tolist() == [1 + touch % 2 for touch in range(N)]
+    same(bt.Recorded(found.frames[:, 0], found.labels, found.groups), arrays)
+    # A file for each touch.
+    for touch in range(N):
+        with h5py.File(tmp_path / f"grasp_{touch}.h5", "w") as file:
+            file["tactile"], file.attrs["object"] = frames[touch][None], str(labels[touch])
+    for name in ("a.h5", "b.hdf5"):
+        (tmp_path / name).unlink()
+    found = bt.read_recorded(tmp_path, "tactile", labels="@object")
+    assert found.frames.shape == (N, 1, 8, 8) and found.groups is None
+    same(found, (frames, labels, None))
+
+
+def test_zarr(arrays, tmp_path):
+    zarr = pytest.importorskip("zarr")
+    frames, labels, groups = arrays
+    numbers = np.unique(labels, return_inverse=True)[1]
+    group = zarr.open_group(str(tmp_path / "a.zarr"), mode="w")
+    for name, array in {"tactile": frames, "labels": numbers, "groups": groups}.items():
+        made = group.create_array(name, shape=array.shape, dtype=array.dtype) if hasattr(group, "create_array") else group.zeros(name, shape=array.shape, dtype=array.dtype)
+        made[...] = array
+    found = bt.read_recorded(tmp_path / "a.zarr", "tactile")
+    same(found, (frames, numbers, groups))
+    with pytest.raises(ValueError, match="a.zarr: no array `frames`; one of groups, labels, tactile"):
+        bt.read_recorded(tmp_path / "a.zarr")
+
+
+def test_parquet(arrays, tmp_path):
+    pa = pytest.importorskip("pyarrow")
+    pq = pytest.importorskip("pyarrow.parquet")
+    frames, labels, groups = arrays
+    rows = frames.reshape(N, 64)
+    lists = pa.array(list(rows.astype(np.float64)))
+    columns = {f"taxel_{k}": rows[:, k] for k in range(64)}
+    pq.write_table(pa.table({"frames": lists, "labels": labels, "groups": groups, **columns}), tmp_path / "a.parquet")
+    same(bt.read_recorded(tmp_path / "a.parquet"), (rows.astype(np.float64), labels, groups))
+    same(bt.read_recorded(tmp_path / "a.parquet", "taxel_*"), arrays)
+    same(bt.read_recorded(tmp_path / "a.parquet", list(columns)), arrays)
+    sensors = bt.read_recorded(tmp_path / "a.parquet", {"first": ["taxel_0", "taxel_1"], "all": "taxel_*"})
+    assert sensors.frames["first"].shape == (N, 2) and sensors.frames["all"].shape == (N, 64)
+    # Rows that are the frames of touches.
+    found = bt.read_recorded(tmp_path / "a.parquet", touches="groups", labels="labels")
+    assert found.frames.shape == (15, 4, 64) and found.labels.tolist() == ["cup"] * 5 + ["ball"] * 5 + ["pen"] * 5
+    with pytest.raises(ValueError, match=r"a.parquet, `groups`: 0, 1, 2 in touch cup; one value for all rows of a touch"):
+        bt.read_recorded(tmp_path / "a.parquet", touches="labels")
+
+
+def lerobot(folder, arrays, version):
+    """Writes a LeRobot folder of 15 episodes of 3 or 4 frames."""
+    pa = pytest.importorskip("pyarrow")
+    pq = pytest.importorskip("pyarrow.parquet")
+    frames, labels, groups = arrays
+    tasks = ["cup", "ball", "pen"]
+    kept = [touch for touch in range(N) if touch % 8 != 7]
+    columns = {
+        "observation.tactile.palm": pa.array([row.tolist() for row in frames.astype(np.float64)[kept]]),
+        "observation.state": pa.array(np.zeros((len(kept), 2)).tolist()),
+        "episode_index": groups[kept],
+        "frame_index": np.array(kept) % 4,
+        "index": np.arange(len(kept)),
+        "task_index": np.array([tasks.index(label) for label in labels[kept]]),
+    }
+    table = pa.table(columns)
+    (folder / "meta").mkdir(parents=True)
+    features = {
+        "observation.tactile.palm": {"dtype": "float32", "shape": [8, 8], "names": None},
+        "observation.state": {"dtype": "float32", "shape": [2], "names": None},
+        "observation.images.top": {"dtype": "video", "shape": [3, 8, 8], "names": None},
+    }
+    features |= {name: {"dtype": "int64", "shape": [1], "names": None} for name in ("episode_index", "frame_index", "index", "task_index")}
+    info = {"codebase_version": version, "total_episodes": 15, "total_frames": len(kept), "fps": 10, "features": features}
+    (folder / "meta" / "info.json").write_text(json.dumps(info))
+    if version == "v3.0":
+        (folder / "data" / "chunk-000").mkdir(parents=True)
+        half = len(kept) // 2
+        pq.write_table(table.slice(half), folder / "data" / "chunk-000" / "file-001.parquet")
+        pq.write_table(table.slice(0, half), folder / "data" / "chunk-000" / "file-000.parquet")
+        pq.write_table(pa.table({"task_index": [2, 0, 1], "task": ["pen", "cup", "ball"]}), folder / "meta" / "tasks.parquet")
+    else:
+        for episode in range(15):
+            file = folder / "data" / f"chunk-{episode // 10:03d}" / f"episode_{episode:06d}.parquet"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            pq.write_table(table.filter(pa.compute.equal(table["episode_index"], episode)), file)
+        lines = [json.dumps({"task_index": k, "task": task}) for k, task in enumerate(tasks)]
+        (folder / "meta" / "tasks.jsonl").write_text("\n".join(lines) + "\n")
+    return kept
+
+
+@pytest.mark.parametrize("version", ["v2.1", "v3.0"])
+def test_lerobot(arrays, tmp_path, version):
+    pytest.importorskip("pyarrow.compute")
+    frames, labels, groups = arrays
+    kept = lerobot(tmp_path / "set", arrays, version)
+    found = bt.read_recorded(tmp_path / "set")
+    assert found.frames.shape == (15, 4, 8, 8) and found.labels.tolist() == labels[::4].tolist()
+    assert found.lengths.tolist() == [4 if episode % 2 == 0 else 3 for episode in range(15)]
+    assert np.array_equal(found.frames[2], frames[8:12]) and np.isnan(found.frames[1, 3]).all()
+    accuracy(bt.Recorded(found.frames, found.labels, keys={"resampled_frames": 3}), {**STUDY, "trials": 1})
+    each = bt.read_recorded(tmp_path / "set", {"palm": "observation.tactile.palm", "arm": "observation.state"}, touches="index")
+    assert each.frames["palm"].shape == (len(kept), 1, 8, 8) and each.frames["arm"].shape == (len(kept), 1, 2)
+    assert each.groups.tolist() == groups[kept].tolist() and each.labels.tolist() == labels[kept].tolist()
+    for wrong, words in {
+        "observation.images.top": "no feature `observation.images.top` of numbers; one of observation.tactile.palm",
+        "observation.touch": "info.json: no feature `observation.touch`",
+    }.items():
+        with pytest.raises(ValueError, match=words):
+            bt.read_recorded(tmp_path / "set", wrong)
+    info = tmp_path / "set" / "meta" / "info.json"
+    right = info.read_text()
+    for text, words in {
+        right[:50]: "info.json: cannot be read",
+        right.replace('"total_frames": 53', '"total_frames": 60'): "data: 53 rows; 60, as ",
+        right.replace("[8, 8]", "[8, 9]", 1): r"observation.tactile.palm`: rows of shape \(8, 8\); \(8, 9\)",
+        right.replace("observation.tactile", "observation.skin"): "info.json: no feature of touch; frames = a name",
+    }.items():
+        assert text != right
+        info.write_text(text)
+        with pytest.raises(ValueError, match=words):
+            bt.read_recorded(tmp_path / "set")
+    info.write_text(right)
+    tasks = next(file for file in (tmp_path / "set" / "meta").iterdir() if file.name.startswith("tasks"))
+    tasks.write_bytes(tasks.read_bytes()[:20])
+    with pytest.raises(ValueError, match="tasks.*cannot be read"):
+        bt.read_recorded(tmp_path / "set")
+    data = next((tmp_path / "set" / "data").rglob("*.parquet"))
+    data.write_bytes(data.read_bytes()[:100])
+    with pytest.raises(ValueError, match=r"(episode_|file-)0+\w*\.parquet: .*; a complete Parquet file"):
+        bt.read_recorded(tmp_path / "set")
+
+
+def write(kind, path, arrays):
+    """Writes arrays by name to a file of a format; skips if the package of the format is not installed."""
+    if kind == "npz":
+        np.savez(path, **arrays)
+    elif kind == "h5":
+        h5py = pytest.importorskip("h5py")
+        with h5py.File(path, "w") as file:
+            for name, array in arrays.items():
+                file[name] = array.astype("S") if array.dtype.kind == "U" else array
+    else:
+        pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+        pq.write_table(pa.table({name: pa.array(list(array)) for name, array in arrays.items()}), path)
+
+
+@pytest.mark.parametrize("kind", ["npz", "h5", "parquet"])
+def test_wrong_files_are_refused(kind, arrays, tmp_path):
+    frames, labels, _ = arrays
+    rows = frames.reshape(N, 64).astype(np.float64)
+    file = tmp_path / f"a.{kind}"
+
+    def refused(given, words, **options):
+        write(kind, file, given)
+        with pytest.raises(ValueError, match=words):
+            bt.read_recorded(file, **options)
+
+    refused({"tactile": rows, "labels": labels}, rf"a\.{kind}: no array `frames`; one of (tactile, labels|labels, tactile)")
+    refused({"frames": rows, "labels": labels}, f"a.{kind}: no array `object`; one of ", labels="object")
+    if kind != "parquet":
+        refused({"frames": rows, "labels": labels[1:]}, rf"a\.{kind}, `labels`: shape \(59,\); \(60,\), a value for each touch")
+    refused({"frames": rows, "labels": np.where(np.arange(N) == 7, np.nan, 1.0)}, f"a.{kind}, `labels`: numbers that are no integers")
+    refused({"frames": labels, "labels": labels}, f"a.{kind}, array `frames`: elements of type .*; numbers")
+    one_hot = (labels[:, None] == np.array(["ball", "cup", "pen"])).astype(np.float64)
+    write(kind, file, {"frames": rows, "labels": one_hot})
+    assert bt.read_recorded(file).labels.tolist() == one_hot.argmax(axis=1).tolist()
+    refused({"frames": rows, "labels": rows}, rf"a\.{kind}, `labels`: shape \(60, 64\); \(60,\), a value for each touch")
+    write(kind, file, {"frames": rows, "labels": labels})
+    file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
+    with pytest.raises(ValueError, match=f"a.{kind}.*: cannot be read .*; a complete "):
+        bt.read_recorded(file)
+    file.write_bytes(b"nothing")
+    with pytest.raises(ValueError, match=f"a.{kind}: cannot be read .*; a complete "):
+        bt.read_recorded(file)
+    # A NaN is a missing reading, which the study judges.
+    write(kind, file, {"frames": np.where(np.arange(64) == 3, np.nan, rows), "labels": labels})
+    assert np.isnan(bt.read_recorded(file).frames[:, 3]).all()
+
+
+def test_places_without_recordings_are_refused(arrays, tmp_path):
+    with pytest.raises(FileNotFoundError, match="none: no such file or folder; a .zarr folder"):
+        bt.read_recorded(tmp_path / "none")
+    with pytest.raises(ValueError, match="a folder without recordings"):
+        bt.read_recorded(tmp_path)
+    (tmp_path / "a.pkl").write_bytes(b"")
+    with pytest.raises(ValueError, match="a.pkl: another file"):
+        bt.read_recorded(tmp_path / "a.pkl")
+    frames, labels, _ = arrays
+    np.savez(tmp_path / "a.npz", frames=frames, labels=labels)
+    np.savez(tmp_path / "b.npz", frames=frames[:, :4], labels=labels)
+    with pytest.raises(ValueError, match=r"b.npz, frames .*: frames of shape \(4, 8\); \(8, 8\), as other touches have"):
+        bt.read_recorded(tmp_path)
+
+
+@pytest.mark.parametrize(("file", "package"), [("a.h5", "h5py"), ("a.parquet", "pyarrow")])
+def test_a_missing_package_is_named(file, package, tmp_path, monkeypatch):
+    (tmp_path / file).write_bytes(b"")
+    for name in [name for name in sys.modules if name.split(".")[0] == package] + [package]:
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(ImportError, match=rf"{file}: needs the package {package}; pip install {package}"):
+        bt.read_recorded(tmp_path / file)
