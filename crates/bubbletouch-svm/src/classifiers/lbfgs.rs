@@ -1,4 +1,4 @@
-//! Limited-memory BFGS for smooth convex functions [Nocedal & Wright 2006, algorithm 7.5].
+//! Limited-memory BFGS for smooth convex functions [Nocedal & Wright 2006, algorithm 7.5], optionally preconditioned.
 
 use std::collections::VecDeque;
 
@@ -17,6 +17,31 @@ const ROUNDING: f64 = 1e-14;
 /// Maximum number of step halvings in a line search; after more halvings, the decrease is below the rounding error.
 const MAX_HALVINGS: usize = 40;
 
+/// Iterations before which the approximate inverse Hessian is computed. The second one has the curvature near the minimum; further ones save no iterations.
+const PREPARED_AT: [usize; 2] = [0, 30];
+
+/// Smooth convex function to minimise.
+pub(crate) trait Objective {
+    /// Returns the value and the gradient at a point.
+    fn evaluate(&mut self, at: &Array1<f64>) -> (f64, Array1<f64>);
+
+    /// Computes an approximate inverse Hessian H₀ at a point.
+    fn prepare(&mut self, _at: &Array1<f64>) {}
+
+    /// Returns `H₀ v` for a vector v; a multiple of H₀ has the same effect. The default H₀ is the identity.
+    fn precondition(&self, vector: &Array1<f64>) -> Array1<f64> {
+        vector.clone()
+    }
+}
+
+/// Step of an iteration, with the change of the gradient.
+struct Pair {
+    step: Array1<f64>,
+    change: Array1<f64>,
+    /// Inner product of step and change, above 0.
+    curvature: f64,
+}
+
 /// Result of an L-BFGS minimisation.
 #[derive(Clone, Debug)]
 pub(crate) struct Minimum {
@@ -27,16 +52,14 @@ pub(crate) struct Minimum {
 }
 
 /// Minimises a convex function by L-BFGS from the start `at`, until no component of the gradient exceeds `tolerance`.
-///
-/// `function` returns the value and the gradient.
-pub fn minimise(
-    mut function: impl FnMut(&Array1<f64>) -> (f64, Array1<f64>),
+pub(crate) fn minimise(
+    function: &mut impl Objective,
     mut at: Array1<f64>,
     tolerance: f64,
     max_iterations: usize,
 ) -> Minimum {
-    let (mut value, mut gradient) = function(&at);
-    let mut pairs = VecDeque::with_capacity(MEMORY);
+    let (mut value, mut gradient) = function.evaluate(&at);
+    let mut pairs: VecDeque<Pair> = VecDeque::with_capacity(MEMORY);
     for n_iterations in 0..=max_iterations {
         let is_capped = gradient.iter().any(|g| g.abs() > tolerance);
         if !is_capped || n_iterations == max_iterations {
@@ -46,9 +69,12 @@ pub fn minimise(
                 is_capped,
             };
         }
-        let direction = direction(&pairs, &gradient);
+        if PREPARED_AT.contains(&n_iterations) {
+            function.prepare(&at);
+        }
+        let direction = direction(&pairs, &gradient, function);
         let slope = direction.dot(&gradient);
-        // Without curvature information, the length of the first step is at most 1.
+        // Without curvature information, the length of the first step is at most 1: H₀ may have any scale.
         let mut step = if pairs.is_empty() {
             1.0 / slope.abs().sqrt().max(1.0)
         } else {
@@ -57,7 +83,7 @@ pub fn minimise(
         let mut accepted = None;
         for _ in 0..MAX_HALVINGS {
             let next = &at + &(&direction * step);
-            let (next_value, next_gradient) = function(&next);
+            let (next_value, next_gradient) = function.evaluate(&next);
             let decreases = next_value <= value + SUFFICIENT_DECREASE * step * slope;
             // Near the minimum, rounding hides the decrease of the value, but not the decrease of the slope [Hager, Zhang 2005].
             let flattens = next_value <= value + ROUNDING * value.abs()
@@ -75,35 +101,48 @@ pub fn minimise(
                 is_capped,
             };
         };
-        let pair = (&next - &at, &next_gradient - &gradient);
+        let (step, change) = (&next - &at, &next_gradient - &gradient);
+        let curvature = step.dot(&change);
         // Convexity implies s·y ≥ 0; a pair below rounding contains no curvature information.
-        if pair.0.dot(&pair.1) > f64::EPSILON * pair.1.dot(&pair.1) {
+        if curvature > f64::EPSILON * change.dot(&change) {
             if pairs.len() == MEMORY {
                 pairs.pop_front();
             }
-            pairs.push_back(pair);
+            pairs.push_back(Pair {
+                step,
+                change,
+                curvature,
+            });
         }
         (at, value, gradient) = (next, next_value, next_gradient);
     }
     unreachable!("the last iteration returns")
 }
 
-/// Returns the L-BFGS search direction `−H g`, where g is the gradient and H the inverse Hessian. The two-loop recursion estimates H from pairs (step, change
-/// of the gradient).
-fn direction(pairs: &VecDeque<(Array1<f64>, Array1<f64>)>, gradient: &Array1<f64>) -> Array1<f64> {
+/// Returns the L-BFGS search direction `−H g`, where g is the gradient and H the inverse Hessian. The two-loop recursion estimates H from pairs (step s, change y
+/// of the gradient) and from H₀, multiplied by `s·y / (y·H₀y)` of the last pair.
+fn direction(
+    pairs: &VecDeque<Pair>,
+    gradient: &Array1<f64>,
+    function: &impl Objective,
+) -> Array1<f64> {
     let mut direction = -gradient;
     let mut factors = Vec::with_capacity(pairs.len());
-    for (s, y) in pairs.iter().rev() {
-        let factor = s.dot(&direction) / s.dot(y);
-        direction.scaled_add(-factor, y);
+    for pair in pairs.iter().rev() {
+        let factor = pair.step.dot(&direction) / pair.curvature;
+        direction.scaled_add(-factor, &pair.change);
         factors.push(factor);
     }
-    if let Some((s, y)) = pairs.back() {
-        direction *= s.dot(y) / y.dot(y);
+    let mut direction = function.precondition(&direction);
+    if let Some(Pair {
+        change, curvature, ..
+    }) = pairs.back()
+    {
+        direction *= curvature / change.dot(&function.precondition(change));
     }
-    for ((s, y), factor) in pairs.iter().zip(factors.iter().rev()) {
-        let correction = factor - y.dot(&direction) / s.dot(y);
-        direction.scaled_add(correction, s);
+    for (pair, factor) in pairs.iter().zip(factors.iter().rev()) {
+        let correction = factor - pair.change.dot(&direction) / pair.curvature;
+        direction.scaled_add(correction, &pair.step);
     }
     direction
 }
@@ -113,24 +152,68 @@ mod tests {
     use super::*;
     use ndarray::array;
 
+    /// Function without an approximate inverse Hessian.
+    struct Plain<F>(F);
+
+    impl<F: Fn(&Array1<f64>) -> (f64, Array1<f64>)> Objective for Plain<F> {
+        fn evaluate(&mut self, at: &Array1<f64>) -> (f64, Array1<f64>) {
+            self.0(at)
+        }
+    }
+
+    /// Quadratic function whose H₀ is the inverse Hessian times the given factor.
+    struct Bowl {
+        scale: Array1<f64>,
+        bottom: Array1<f64>,
+        factor: f64,
+    }
+
+    impl Objective for Bowl {
+        fn evaluate(&mut self, at: &Array1<f64>) -> (f64, Array1<f64>) {
+            let from = at - &self.bottom;
+            (
+                0.5 * (&from * &from * &self.scale).sum(),
+                &from * &self.scale,
+            )
+        }
+
+        fn precondition(&self, vector: &Array1<f64>) -> Array1<f64> {
+            self.factor * vector / &self.scale
+        }
+    }
+
     #[test]
     fn an_ill_conditioned_bowl_is_solved_to_its_bottom() {
         let scale = array![1.0, 1e4, 1e-2, 30.0];
         let bottom = array![1.0, -2.0, 3.0, 0.5];
-        let bowl = |x: &Array1<f64>| {
+        let mut bowl = Plain(|x: &Array1<f64>| {
             let from = x - &bottom;
             (0.5 * (&from * &from * &scale).sum(), &from * &scale)
-        };
-        let found = minimise(bowl, Array1::zeros(4), 1e-9, 200);
+        });
+        let found = minimise(&mut bowl, Array1::zeros(4), 1e-9, 200);
         assert!(!found.is_capped, "{found:?}");
         assert!((&found.at - &bottom).iter().all(|d| d.abs() < 1e-6));
-        assert!(minimise(bowl, Array1::zeros(4), 1e-9, 2).is_capped);
+        assert!(minimise(&mut bowl, Array1::zeros(4), 1e-9, 2).is_capped);
+    }
+
+    #[test]
+    fn a_bowl_whose_curvature_is_known_takes_two_iterations() {
+        for factor in [1.0, 0.3] {
+            let mut bowl = Bowl {
+                scale: array![1.0, 1e4, 1e-2, 30.0],
+                bottom: array![1.0, -2.0, 3.0, 0.5],
+                factor,
+            };
+            let found = minimise(&mut bowl, Array1::zeros(4), 1e-9, 200);
+            assert!(found.n_iterations <= 2, "{found:?}");
+            assert!((&found.at - &bowl.bottom).iter().all(|d| d.abs() < 1e-6));
+        }
     }
 
     #[test]
     fn a_function_without_minimum_ends_at_the_cap_and_says_so() {
-        let slope = |x: &Array1<f64>| ((-x[0]).exp(), array![-(-x[0]).exp()]);
-        let found = minimise(slope, array![0.0], 1e-300, 50);
+        let mut slope = Plain(|x: &Array1<f64>| ((-x[0]).exp(), array![-(-x[0]).exp()]));
+        let found = minimise(&mut slope, array![0.0], 1e-300, 50);
         assert!(found.is_capped && found.n_iterations <= 50);
     }
 }

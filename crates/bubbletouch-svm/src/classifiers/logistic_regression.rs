@@ -8,13 +8,15 @@
 //! = 1,000, for example, linfa's objective is 46.6, while C = 1 reaches 9.8.
 
 use crate::classifiers::classifier_about::ClassifierAbout;
-use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, s};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2};
 use std::sync::Arc;
 
 use crate::class_model::{ClassModel, log_priors};
 use crate::classifiers::lbfgs::minimise;
+use crate::classifiers::logistic_loss::{LogisticLoss, parts};
 use crate::dataset::{Dataset, checked_classes, positions};
 use crate::linear_model::LinearModel;
+use crate::predict::voting::first_maximum;
 use crate::{Error, Result};
 
 /// Default maximum number of L-BFGS iterations, which is ten times the default of scikit-learn.
@@ -32,11 +34,12 @@ pub struct LogisticParams {
 }
 
 impl Default for LogisticParams {
-    /// Returns the defaults: C = 1, tolerance 1e-4, [`MAX_ITERATIONS`].
+    /// Returns the defaults: C = 1, tolerance 5e-5, [`MAX_ITERATIONS`]. Scikit-learn has the tolerance 1e-4. Preconditioning reduces the largest components of the gradient
+    /// first, so that the objective is larger than scikit-learn's at an equal gradient, and smaller at half of it.
     fn default() -> Self {
         Self {
             c: 1.0,
-            tolerance: 1e-4,
+            tolerance: 5e-5,
             max_iterations: MAX_ITERATIONS,
         }
     }
@@ -72,7 +75,7 @@ impl LogisticParams {
         let penalty = two / (self.c * label.len() as f64);
         let n_weights = classes.len() * (features.ncols() + 1);
         let found = minimise(
-            |w| mean_loss(features, &label, penalty, w.view()),
+            &mut LogisticLoss::new(features, &label, classes.len(), penalty),
             Array1::zeros(n_weights),
             self.tolerance,
             self.max_iterations,
@@ -126,52 +129,17 @@ impl ClassModel for Logistic {
         Some(self.log_prior.view())
     }
 
+    /// Returns the class with the largest linear score for each row; the normalisation and the prior of `scores` cancel.
+    fn labels(&self, features: ArrayView2<f64>) -> Result<Array1<usize>> {
+        let scores = self.model.scores(features)?;
+        let best = |row: ArrayView1<f64>| first_maximum(row.as_slice().unwrap_or_default());
+        let places = scores.outer_iter().map(best);
+        Ok(places.map(|place| self.classes[place]).collect())
+    }
+
     fn n_capped(&self) -> usize {
         usize::from(self.is_capped)
     }
-}
-
-/// Splits the solver's parameter vector into the weights (n_classes × m) and the biases (n_classes,) of the model.
-fn parts(vector: ArrayView1<f64>, n_classes: usize) -> (ArrayView2<f64>, ArrayView1<f64>) {
-    let (weights, bias) = vector.split_at(Axis(0), vector.len() - n_classes);
-    let m = weights.len() / n_classes;
-    let weights = weights.into_shape_with_order((n_classes, m));
-    (weights.expect("a slice of n_classes × m"), bias)
-}
-
-/// Returns the mean regularised loss of the training rows, and its gradient. With C, labels y and weights w: `(1/n) Σ_i −ln p(y_i | x_i) + ½ penalty Σ_k
-/// |w_k|²`.
-fn mean_loss(
-    features: ArrayView2<f64>,
-    label: &[usize],
-    penalty: f64,
-    vector: ArrayView1<f64>,
-) -> (f64, Array1<f64>) {
-    let n_bias = vector.len() / (features.ncols() + 1);
-    let (weights, bias) = parts(vector, n_bias);
-    let per_row = 1.0 / label.len() as f64;
-    let mut values = features.dot(&weights.t()) + bias;
-    normalise(&mut values);
-    let mut loss = 0.5 * penalty * weights.iter().map(|w| w * w).sum::<f64>();
-    for (mut row, &label) in values.rows_mut().into_iter().zip(label) {
-        loss -= per_row * row[label];
-        row.mapv_inplace(f64::exp);
-        row[label] -= 1.0;
-        row *= per_row;
-    }
-    let mut gradient = Array1::zeros(vector.len());
-    let mut by_class = values.t().dot(&features);
-    by_class.scaled_add(penalty, &weights);
-    let n_weights = weights.len();
-    gradient
-        .slice_mut(s![..n_weights])
-        .iter_mut()
-        .zip(&by_class)
-        .for_each(|(to, from)| *to = *from);
-    gradient
-        .slice_mut(s![n_weights..])
-        .assign(&values.sum_axis(Axis(0)));
-    (loss, gradient)
 }
 
 /// Normalises each row of log-scores to log-probabilities, so that the exponentials of a row sum to 1.
@@ -188,7 +156,7 @@ pub(crate) const ABOUT: ClassifierAbout = ClassifierAbout {
     ..ClassifierAbout::new("logistic regression", |classifier, scaled, c, _| {
         let params = LogisticParams {
             c,
-            tolerance: 0.1 * classifier.tolerance,
+            tolerance: 0.05 * classifier.tolerance,
             ..LogisticParams::default()
         };
         Ok(Arc::new(params.train(scaled)?))

@@ -149,7 +149,8 @@ fn logistic_regression_reaches_scikit_learns_optimum() {
         (&two, 1.0, 100.0, 27.381791327347),
     ];
     for (data, penalty, c, expected) in cases {
-        for (tolerance, within) in [(1e-4, 1e-4), (1e-9, 1e-9)] {
+        let default = LogisticParams::default().tolerance;
+        for (tolerance, within) in [(default, 1e-4), (1e-9, 1e-9)] {
             let params = LogisticParams {
                 c,
                 tolerance,
