@@ -114,7 +114,7 @@ fn n_pending<R: ItemRows>(items: &[WorkItem], journal: &Journal) -> usize {
         journal,
         ..RunOptions::whole(&Silent)
     };
-    StudyRun::<R>::new(items, &options).n_pending()
+    StudyRun::<R>::new(items, &options).pending().n()
 }
 
 fn time_items(folder: &Path) -> Result<()> {

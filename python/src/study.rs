@@ -141,12 +141,18 @@ fn run_here(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Res
     } = &asked.source;
     check_folder(&asked.source.text, results)?;
     let study = load(&asked.source)?;
-    std::fs::create_dir_all(results).map_err(|e| Error::io(results, "create folder", e))?;
     let file = match asked.shard {
         Some(shard) => shard.file_name(JOURNAL_FILE),
         None => JOURNAL_FILE.to_owned(),
     };
-    let mut journal = Journal::open(&results.join(file), study.identity())?;
+    let path = results.join(file);
+    let part = asked.shard.map_or(Part::All, Part::Shard);
+    // The results of shards are known only after their journals are merged.
+    if !asked.merges {
+        study.check(part, &Journal::read_records(&path)?)?;
+    }
+    std::fs::create_dir_all(results).map_err(|e| Error::io(results, "create folder", e))?;
+    let mut journal = Journal::open(&path, study.identity())?;
     if asked.merges {
         journal.take_from_shards(study.identity(), [results.as_path()])?;
     }
@@ -155,7 +161,7 @@ fn run_here(asked: StudySource, told: &CallbackProgress, raised: &Raised) -> Res
         journal: &journal,
         fail_fast: true,
         retries: true,
-        part: asked.shard.map_or(Part::All, Part::Shard),
+        part,
         progress: told,
     });
     journal.sync()?;

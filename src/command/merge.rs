@@ -24,19 +24,30 @@ pub fn merge(args: &Args) -> Result<()> {
     let run = StudyRun::begin(&args.run, false)?;
     let (study, folder) = (run.study.as_ref(), &run.folder);
     let identity = study.identity();
-    output_folder(folder)?;
-    let mut journal = Journal::open(&folder.join(JOURNAL_FILE), identity)?;
-    let folders = std::iter::once(folder).chain(&args.from);
-    let n_journals = journal.take_from_shards(identity, folders.map(PathBuf::as_path))?;
-    journal.sync()?;
-    let (n_all, n_pending) = (study.n_all(), study.n_pending(Part::All, &journal));
-    if n_pending > 0 {
-        return Err(Error::input(
+    let path = folder.join(JOURNAL_FILE);
+    let mut found = Journal::read_records(&path)?;
+    let own = std::iter::once(folder).filter(|folder| folder.exists());
+    let folders = own.chain(&args.from).map(PathBuf::as_path);
+    let n_journals = found.take_from_shards(identity, folders)?;
+    let (n_all, n_pending) = (study.n_all(), study.n_pending(Part::All, &found));
+    let is_complete = || match n_pending {
+        0 => study.check(Part::All, &found),
+        _ => Err(Error::input(
             folder.display(),
             format!("{n_pending} of {n_all} work items are in none of the {n_journals} journals"),
             "the journals of all shards, each run to its end (or bubbletouch run, which computes the missing work items)",
-        ));
+        )),
+    };
+    let complete = is_complete();
+    // Without a single result, nothing is written.
+    if n_pending == n_all {
+        return complete;
     }
+    output_folder(folder)?;
+    let mut journal = Journal::open(&path, identity)?;
+    journal.take_from(found)?;
+    journal.sync()?;
+    complete?;
     let outcome = study.run(&RunOptions {
         journal: &journal,
         fail_fast: false,

@@ -44,6 +44,13 @@ pub struct Args {
     demonstration: bool,
 }
 
+impl Args {
+    /// Returns the work items that this run computes.
+    fn part(&self) -> Part<'static> {
+        self.shard.map_or(Part::All, Part::Shard)
+    }
+}
+
 pub fn run(args: &Args) -> Result<()> {
     let run = StudyRun::begin(&args.run, args.fresh)?;
     let (study, progress) = (run.study.as_ref(), run.progress.as_ref());
@@ -61,7 +68,7 @@ pub fn run(args: &Args) -> Result<()> {
         journal: &journal,
         fail_fast: args.fail_fast,
         retries: true,
-        part: args.shard.map_or(Part::All, Part::Shard),
+        part: args.part(),
         progress,
     })?;
     journal.sync()?;
@@ -80,6 +87,15 @@ pub fn run(args: &Args) -> Result<()> {
 /// Opens the journal of the run's folder with exclusive access, and installs the signal handlers.
 fn open_journal(args: &Args, run: &StudyRun) -> Result<Arc<Journal>> {
     let (study, folder) = (run.study.as_ref(), &run.folder);
+    let path = folder.join(match args.shard {
+        Some(shard) => shard.file_name(JOURNAL_FILE),
+        None => JOURNAL_FILE.to_owned(),
+    });
+    let finished = match args.fresh {
+        true => Journal::default(),
+        false => Journal::read_records(&path)?,
+    };
+    study.check(args.part(), &finished)?;
     if args.fresh
         && let Some(old) = rename_old_results(folder)?
     {
@@ -87,10 +103,6 @@ fn open_journal(args: &Args, run: &StudyRun) -> Result<Arc<Journal>> {
         run.progress.finish(&remark);
     }
     output_folder(folder)?;
-    let path = folder.join(match args.shard {
-        Some(shard) => shard.file_name(JOURNAL_FILE),
-        None => JOURNAL_FILE.to_owned(),
-    });
     if args.demonstration && path.exists() && !is_interrupted(study, &path) {
         std::fs::remove_file(&path).map_err(|e| Error::io(&path, "remove", e))?;
     }

@@ -54,6 +54,11 @@ pub fn slurm(args: &Args) -> Result<()> {
     let source = args.results.study.source(&folder)?;
     kinds::check_folder(&source.text, &folder)?;
     let study = kinds::load(&source)?;
+    let mut finished = Journal::read_records(&folder.join(JOURNAL_FILE))?;
+    if folder.exists() {
+        finished.take_from_shards(study.identity(), [folder.as_path()])?;
+    }
+    study.check(Part::All, &finished)?;
     output_folder(&folder)?;
     let queued = queued_shards(&args.name("shards")?)?;
     let mut missing = Vec::new();

@@ -12,6 +12,7 @@ use bubbletouch_svm::dataset::Dataset;
 use bubbletouch_svm::{Error, Result};
 use ndarray::{Array1, Array2, ArrayView2};
 use ndarray_npy::NpzWriter;
+use std::env::consts::EXE_SUFFIX;
 use std::fs::File;
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
@@ -44,6 +45,18 @@ struct CommandModel {
 }
 
 impl ForeignClassifier for CommandClassifier {
+    fn check(&self) -> Result<()> {
+        let program = &self.command[0];
+        if is_program(program) {
+            return Ok(());
+        }
+        Err(Error::input(
+            format!("classifier {}", self.name),
+            format!("{program} cannot be run: no such program"),
+            "a program in one of the folders of PATH, or the path of a program",
+        ))
+    }
+
     fn fit(&self, rows: &Dataset, seed: u32) -> Result<Box<dyn ForeignModel>> {
         Ok(Box::new(CommandModel {
             classifier: self.clone(),
@@ -99,6 +112,16 @@ impl CommandClassifier {
         let last: String = last.chars().take(MAX_LETTERS).collect();
         Err(self.error(format!("{program} ended with {status}: {last}")))
     }
+}
+
+/// Returns whether a program exists: at its path, or in a folder of PATH if its name contains no folder.
+fn is_program(program: &str) -> bool {
+    if Path::new(program).components().count() != 1 || program.starts_with('.') {
+        return Path::new(program).is_file();
+    }
+    let names = [program.to_owned(), format!("{program}{EXE_SUFFIX}")];
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|folder| names.iter().any(|name| folder.join(name).is_file()))
 }
 
 impl ForeignModel for CommandModel {

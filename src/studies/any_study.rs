@@ -31,6 +31,13 @@ pub trait AnyStudy: Send {
     /// Returns the number of work items in `part` without a successful result in the journal.
     fn n_without_success(&self, part: Part, journal: &Journal) -> usize;
 
+    /// Checks what the work items in `part` that have no successful result in the journal need of the running program. Commands call this function before they
+    /// write a file.
+    ///
+    /// # Errors
+    /// If the running program cannot compute one of these work items, for example because it does not provide a classifier.
+    fn check(&self, part: Part, journal: &Journal) -> Result<()>;
+
     /// Runs the work items that have no result in the journal.
     ///
     /// # Errors

@@ -68,15 +68,20 @@ impl<K: Study> Loaded<K> {
         })
     }
 
-    /// Returns the number of work items that a run computes; failed items are included if `retries` is set.
-    fn n_to_run(&self, part: Part, journal: &Journal, retries: bool) -> usize {
+    /// Returns the run of the work items in `part` that have no result in the journal; failed items are included if `retries` is set.
+    fn run_of<'a>(
+        &'a self,
+        part: Part<'a>,
+        journal: &'a Journal,
+        retries: bool,
+    ) -> StudyRun<'a, K::Rows> {
         let options = RunOptions {
             journal,
             part,
             retries,
             ..RunOptions::whole(&Silent)
         };
-        StudyRun::<K::Rows>::new(&self.items, &options).n_pending()
+        StudyRun::new(&self.items, &options)
     }
 
     /// Adds the study's notes to its tables.
@@ -125,11 +130,15 @@ impl<K: Study> AnyStudy for Loaded<K> {
     }
 
     fn n_pending(&self, part: Part, journal: &Journal) -> usize {
-        self.n_to_run(part, journal, false)
+        self.run_of(part, journal, false).pending().n()
     }
 
     fn n_without_success(&self, part: Part, journal: &Journal) -> usize {
-        self.n_to_run(part, journal, true)
+        self.run_of(part, journal, true).pending().n()
+    }
+
+    fn check(&self, part: Part, journal: &Journal) -> Result<()> {
+        self.kind.check(self.run_of(part, journal, true).pending())
     }
 
     fn run(&self, options: &RunOptions) -> Result<Outcome> {

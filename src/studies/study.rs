@@ -209,6 +209,14 @@ pub trait Study: Send + Sized + Sync + 'static {
     /// Lists all work items of the study, in the order of their rows.
     fn work_items(&self) -> Vec<WorkItem>;
 
+    /// Checks what the pending work items need of the running program, such as the code of a classifier. Nothing has been written when this function is called.
+    ///
+    /// # Errors
+    /// If the running program cannot compute a pending work item.
+    fn check(&self, _pending: &PendingItems<Self::Rows>) -> Result<()> {
+        Ok(())
+    }
+
     /// Computes the pending work items, in any order and on any threads. Data that several items share are computed only if one of these items is pending.
     ///
     /// # Errors
@@ -252,7 +260,10 @@ pub(crate) fn run_items<S: Study>(
     options: &RunOptions,
 ) -> Result<(S::Rows, Vec<ItemFailure>)> {
     StudyRun::new(items, options).run(
-        |pending| study.measure(pending),
+        |pending| {
+            study.check(pending)?;
+            study.measure(pending)
+        },
         |number, rows| study.place(number, rows),
         |number| study.item_words(number, &items[number]),
     )

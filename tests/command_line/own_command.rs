@@ -202,10 +202,68 @@ fn wrong_keys_of_a_command_are_refused() {
         );
         assert_eq!(case.names().len(), before, "nothing is written");
     }
-    case.file("study.toml", study("\"mine@1\""));
-    refused(
-        &case.run(&["run", "study.toml"]),
-        2,
-        &["classifier mine: no code for version 1", "bubbletouch.run"],
+}
+
+#[test]
+fn a_classifier_that_cannot_be_trained_is_refused_before_a_file_is_written() {
+    let case = case_of_first_object();
+    for (classifier, words) in [
+        (
+            "[\"nearest_centroid\", \"mine@1\"]",
+            ["classifier mine: no code for version 1", "bubbletouch.run"],
+        ),
+        (
+            "{ command = [\"no_such_program\"] }",
+            [
+                "classifier no_such_program: no_such_program cannot be run",
+                "PATH",
+            ],
+        ),
+        (
+            "[\"nearest_centroid\", { command = [\"./no_such.sh\"], name = \"mine\" }]",
+            ["classifier mine: ./no_such.sh cannot be run", "PATH"],
+        ),
+    ] {
+        case.file("study.toml", study(classifier));
+        let before = case.names();
+        for command in [
+            &["run"][..],
+            &["run", "--fresh"],
+            &["run", "--shard", "1/2"],
+            &["slurm", "--array", "2"],
+        ] {
+            let arguments = [command, &["study.toml", "--out", "new"]].concat();
+            refused(&case.run(&arguments), 2, &words);
+            assert_eq!(case.names(), before, "{command:?}");
+        }
+    }
+    // Old results stay where they are, and finished results need no code.
+    case.file("study.toml", study("\"nearest_centroid\""));
+    assert!(
+        case.run(&["run", "study.toml", "--out", "old"])
+            .status
+            .success()
     );
+    let journal = fs::read(case.path("old/journal.jsonl")).unwrap();
+    case.file("study.toml", study("[\"nearest_centroid\", \"mine@1\"]"));
+    let before = case.names();
+    for fresh in [&[][..], &["--fresh"]] {
+        let arguments = [&["run", "study.toml", "--out", "old"], fresh].concat();
+        refused(&case.run(&arguments), 2, &["classifier mine: no code"]);
+    }
+    assert_eq!(case.names(), before);
+    assert_eq!(fs::read(case.path("old/journal.jsonl")).unwrap(), journal);
+}
+
+#[test]
+fn a_merge_without_any_results_writes_nothing() {
+    let case = case_of_first_object();
+    case.file("study.toml", study("\"nearest_centroid\""));
+    let before = case.names();
+    refused(
+        &case.run(&["merge", "study.toml", "--out", "new"]),
+        2,
+        &["are in none of the 0 journals"],
+    );
+    assert_eq!(case.names(), before);
 }

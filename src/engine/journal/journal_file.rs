@@ -88,6 +88,15 @@ impl Journal {
         Ok(identity.map(|identity| (identity, journal)))
     }
 
+    /// Reads the records of a journal, also while another process writes to the journal. Returns a journal without records if there is no file. The result
+    /// stores nothing.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is damaged.
+    pub fn read_records(path: &Path) -> Result<Self> {
+        Ok(Self::read(path)?.map_or_else(Self::default, |(_, journal)| journal))
+    }
+
     /// Decodes a journal: its study identity and its records. The identity is `None` if the journal contains no complete line.
     fn of_bytes(path: &Path, bytes: &[u8]) -> Result<(Option<Identity>, Self)> {
         let damaged = |(line, given): (usize, &str)| {

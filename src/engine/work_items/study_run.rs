@@ -41,9 +41,9 @@ impl<'a, R: ItemRows> StudyRun<'a, R> {
         }
     }
 
-    /// Returns the number of work items that the run computes.
-    pub fn n_pending(&self) -> usize {
-        self.pending.n()
+    /// Returns the work items that the run computes.
+    pub fn pending(&self) -> &PendingItems<'a, R> {
+        &self.pending
     }
 
     /// Computes the pending work items by `measure` and returns all rows of the study. The rows belong to all items that did not fail in this or an earlier

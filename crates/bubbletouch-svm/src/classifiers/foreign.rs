@@ -30,6 +30,14 @@ pub trait ForeignClassifier: Send + Sync {
     /// # Errors
     /// If the classifier cannot be trained.
     fn fit(&self, rows: &Dataset, seed: u32) -> Result<Box<dyn ForeignModel>>;
+
+    /// Checks whether the classifier can be trained, before any row is known.
+    ///
+    /// # Errors
+    /// If something that every training needs is missing, such as a program.
+    fn check(&self) -> Result<()> {
+        Ok(())
+    }
 }
 
 /// Trained model of a [`ForeignClassifier`].
@@ -166,12 +174,12 @@ impl Foreign {
         &self.0.about
     }
 
-    /// Returns an error if no program provides the code of this classifier.
+    /// Returns an error if no program provides the code of this classifier, or the code cannot train.
     ///
     /// # Errors
-    /// If no program provides the code.
+    /// If no program provides the code, or [`ForeignClassifier::check`] fails.
     pub fn check_provided(self) -> Result<()> {
-        self.code().map(drop)
+        self.code()?.check()
     }
 
     fn code(self) -> Result<Arc<dyn ForeignClassifier>> {

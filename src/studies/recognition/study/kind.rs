@@ -149,6 +149,10 @@ impl Study for RecognitionStudy {
         items
     }
 
+    fn check(&self, pending: &PendingItems<RecognitionRows>) -> Result<()> {
+        self.check_all_provided(pending)
+    }
+
     fn measure(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
         self.measure_all(left)
     }

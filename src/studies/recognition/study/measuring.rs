@@ -26,15 +26,19 @@ pub(crate) struct Job<'a> {
 }
 
 impl RecognitionStudy {
-    pub(crate) fn measure_all(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
+    /// Returns an error if a pending work item needs a classifier or features that the running program does not provide.
+    pub(crate) fn check_all_provided(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
         for (number, family) in self.families.iter().enumerate() {
             let is_left = |trial| left.has(self.family_item(trial, number));
             if (0..self.n_trials()).any(is_left) {
-                check_provided(
-                    &self.group(family.group).1.configurations[family.configurations.start],
-                )?;
+                let configurations = &self.group(family.group).1.configurations;
+                check_provided(&configurations[family.configurations.start])?;
             }
         }
+        Ok(())
+    }
+
+    pub(crate) fn measure_all(&self, left: &PendingItems<RecognitionRows>) -> Result<()> {
         for part in self.parts() {
             part.touched.prepare();
             part.tested.prepare();
