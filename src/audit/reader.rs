@@ -35,6 +35,8 @@ pub struct AuditFiles {
     pub grid: Option<[usize; 2]>,
     /// Reading at full scale; `None` if unknown.
     pub full_scale: Option<f64>,
+    /// Name of the sensor whose array is read from an archive of several sensors; `None` for the array `frames`.
+    pub sensor: Option<String>,
 }
 
 /// Table `[recorded]` of a study; other tables are ignored.
@@ -107,6 +109,7 @@ impl AuditFiles {
             order: self.order.clone().or_else(|| spec.order.clone()),
             grid: self.grid.or(spec.grid),
             full_scale: self.full_scale.or(spec.full_scale),
+            sensor: spec.place.name.clone(),
             ..self.clone()
         };
         assembled(
@@ -176,7 +179,8 @@ impl AuditFiles {
 
     /// Reads the frames of a file, and the arrays that belong to them. If `folder` is given, files beside the frames are found by their names.
     fn part(&self, frames: &Path, folder: Option<&Path>) -> Result<Part> {
-        let spec = RecordedSpec::of_frames(frames, self.order.as_deref(), self.grid);
+        let mut spec = RecordedSpec::of_frames(frames, self.order.as_deref(), self.grid);
+        spec.place.name.clone_from(&self.sensor);
         let key = |error: Error| match error {
             Error::Input {
                 place,
@@ -189,7 +193,7 @@ impl AuditFiles {
             other => other,
         };
         let shape = spec.shape_of("frames").map_err(key)?;
-        let array = FileArray::read(frames, "frames")?;
+        let array = FileArray::read(frames, &spec.array_name("frames"))?;
         let readings = shape.arrange(array.into_numbers()?);
         let n = shape.n_touches;
         let file = |given: &Option<PathBuf>, name: &str| {

@@ -549,3 +549,45 @@ fn recordings_that_contradict_themselves_are_refused() {
     );
     assert!(!Path::new("recorded").exists());
 }
+
+/// An audit checks one sensor, because its checks compare the readings of taxels.
+#[test]
+fn an_audit_is_of_one_sensor() {
+    let case = written();
+    let list: Array2<f64> = read_npy(case.path("list.npy")).unwrap();
+    let file = std::fs::File::create(case.path("all.npz")).unwrap();
+    let mut archive = ndarray_npy::NpzWriter::new(file);
+    archive
+        .add_array("left", &list.slice(s![.., ..24]))
+        .unwrap();
+    archive
+        .add_array("right", &list.slice(s![.., 24..]))
+        .unwrap();
+    archive.finish().unwrap();
+    let recorded = |sensor: &str| {
+        let sensors = sensors("", "")
+            .replace("left.npy", "all.npz")
+            .replace("right.npy", "all.npz");
+        format!("[recorded]\n{sensor}\n{sensors}").replace("FOLDER/", "")
+    };
+    let audit = ["audit", ".", "--out", "checked", "--permutations", "399"];
+    case.file("recorded.toml", recorded(""));
+    let refused = case.run(&audit);
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(said.contains("recorded.toml, key recorded.sensors: 2 sensors; one sensor: its name in recorded.sensor"), "{said}");
+    case.file("recorded.toml", recorded("sensor = \"right\""));
+    let (said, _) = case.succeeds(&audit);
+    let alone = [
+        "audit",
+        "right.npy",
+        "--labels",
+        "labels.npy",
+        "--out",
+        "alone",
+        "--permutations",
+        "399",
+    ];
+    let (expected, _) = case.succeeds(&alone);
+    assert_eq!(said, expected.replace("alone", "checked"));
+}

@@ -42,6 +42,7 @@ mod chain;
 mod force;
 mod noise;
 mod quantity;
+mod resampling;
 #[macro_use]
 mod sensor_error;
 mod smoothing;
@@ -69,6 +70,7 @@ pub use force::force;
 pub use noise::{Noise, NoiseUnit};
 pub use quantisation::Quantisation;
 pub use quantity::Quantity;
+pub use resampling::{resample, resampled_instant};
 pub use sensor_error::{Effect, ErrorAbout, MAX_STRENGTHS, Prepare, Skin, Strength, TouchRead};
 pub use smoothing::Smoothing;
 pub use step::SignalStep;

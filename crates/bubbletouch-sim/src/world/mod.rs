@@ -33,7 +33,7 @@ pub use human_touch::{HandState, HumanTouch, TOUCH_KINDS, TouchKind, TouchRanges
 pub(crate) use layouts::Rule;
 pub use layouts::{
     ArrayLayout, Dome, DomeRing, DrapeRegion, Extrusion, Layout, MAX_TAXELS, MissingTaxels,
-    Projected, unit_axis,
+    Projected, nearest_distances, unit_axis,
 };
 pub use motion::{Interpolation, JointTrajectory, Motion, Oscillation, PoseTrajectory};
 pub use neighbours::Neighbours;

@@ -76,9 +76,12 @@ impl RecordedFrames {
     /// If a file cannot be read or does not fit the others, or a reading is infinite, or NaN although its taxel is not masked.
     pub fn read(spec: &RecordedSpec, ceiling: Option<u64>) -> Result<Self> {
         spec.check_files()?;
-        let sensors = spec.used_sensors().into_iter();
-        let sensors = sensors.map(|(name, spec)| SensorFrames::read(name, spec, ceiling));
-        let sensors = sensors.collect::<Result<Vec<_>>>()?;
+        let (mut sensors, mut ceiling) = (Vec::new(), ceiling);
+        for (name, spec) in spec.used_sensors() {
+            let sensor = SensorFrames::read(name, spec, ceiling)?;
+            ceiling = ceiling.map(|bytes| bytes.saturating_sub(sensor.n_bytes()));
+            sensors.push(sensor);
+        }
         check_alike(&sensors)?;
         let [n_train, n_test] = sensors[0].n_touches();
         let labels = spec.class_labels([n_train, n_test])?;

@@ -5,9 +5,10 @@ use crate::error::{Error, Result};
 use crate::inputs::arrays::axis_order::FrameShape;
 use crate::inputs::arrays::file_array::{ElementKind, FileArray};
 use crate::inputs::memory::check_memory;
+use crate::signal::{resample, resampled_instant};
 use crate::studies::recognition::spec::recorded::RecordedSpec;
 use crate::studies::recognition::spec::zero::ZeroSpec;
-use ndarray::{Array2, Axis, concatenate};
+use ndarray::{Array2, Axis, concatenate, s};
 use std::path::Path;
 
 /// Fraction of missing (NaN) readings, 0 to 1, above which a taxel is masked. With a larger value, recordings with an intermittently failing taxel are
@@ -81,6 +82,12 @@ impl SensorFrames {
     pub fn n_touches(&self) -> [usize; 2] {
         let n_test = self.test.as_ref().map_or(0, |test| test.shape.n_touches);
         [self.train.shape.n_touches, n_test]
+    }
+
+    /// Returns the memory of the readings, bytes.
+    pub fn n_bytes(&self) -> u64 {
+        let sizes = self.files().into_iter().map(|file| file.readings.len());
+        8 * sizes.sum::<usize>() as u64
     }
 
     /// Returns the number of frames of each touch.
@@ -273,28 +280,18 @@ impl RecordedSpec {
             return Ok((readings, vec![1.0; lengths.len()]));
         };
         let mut resampled = Array2::zeros((lengths.len() * n_frames, readings.ncols()));
-        let step = |length: usize| match n_frames {
-            1 => 1.0,
-            _ => (length - 1) as f64 / (n_frames - 1) as f64,
-        };
-        for (row, mut out) in resampled.outer_iter_mut().enumerate() {
-            let (touch, frame) = (row / n_frames, row % n_frames);
-            let (length, first) = (lengths[touch], touch * shape.n_frames);
-            let at = match n_frames {
-                1 => (length - 1) as f64,
-                _ => frame as f64 * (length - 1) as f64 / (n_frames - 1) as f64,
-            };
-            let (before, part) = (at.floor() as usize, at.fract());
-            out.assign(&readings.row(first + before));
-            if part > 0.0 {
-                let after = readings.row(first + before + 1);
-                out.zip_mut_with(&after, |out, after| *out += part * (after - *out));
-            }
+        for (touch, &length) in lengths.iter().enumerate() {
+            let first = touch * shape.n_frames;
+            let recorded = readings.slice(s![first..first + length, ..]);
+            let own = touch * n_frames..(touch + 1) * n_frames;
+            resample(recorded, resampled.slice_mut(s![own, ..]));
         }
-        Ok((
-            resampled,
-            lengths.iter().map(|&length| step(length)).collect(),
-        ))
+        // The time from the first to the second frame; a single frame has no step.
+        let step = |&length: &usize| match n_frames {
+            1 => 1.0,
+            _ => resampled_instant(1, n_frames, length),
+        };
+        Ok((resampled, lengths.iter().map(step).collect()))
     }
 
     /// Checks and returns the reading of each untouched taxel; the reading of a masked taxel is 0.

@@ -7,26 +7,21 @@ use crate::error::{Error, Result};
 use crate::geometry::Pose;
 use crate::inputs::content_hash::Hashed;
 use crate::inputs::units::{MAX_SIDE, millimetres};
-use crate::world::{Grid, Layout};
+use crate::world::{Grid, Layout, nearest_distances};
 use bubbletouch_sim::features::Chart;
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 use std::ops::Range;
 
-/// Largest deviation of a taxel from its place in a grid, in pitches, at which a layout counts as a grid. With a larger value, positions that differ on purpose
-/// are ignored; with a smaller value, rounded positions of a grid form no grid.
-const GRID_TOLERANCE: f64 = 1e-3;
+/// Largest relative difference between the pitch of a sensor and the distance of taxels in a grid. With a larger value, the results of the grid would differ
+/// from those of its layout file; with a smaller value, rounded positions are refused.
+const PITCH_TOLERANCE: f64 = 1e-3;
 /// Largest factor between the pitch of a sensor and the median distance of its taxels from their nearest neighbours. With a larger value, files in a wrong
 /// unit are accepted; with a smaller value, irregular layouts are refused.
 const MAX_PITCH_FACTOR: f64 = 2.5;
-/// Maximum number of taxels whose nearest neighbours are searched, because the search compares all pairs.
-const MAX_SEARCHED: usize = 2000;
 /// Distance between sensors in the patch, metres. With a smaller value, smoothing might reach the next sensor.
 const APART: f64 = 10.0;
 /// Distance between sensors in pictures, in pitches of the first sensor.
 const PICTURE_GAP: f64 = 2.0;
-/// Length of the mean axis below which the axes point in all directions and define no direction of view.
-const MIN_MEAN_AXIS: f64 = 0.1;
-
 /// Sensor whose taxels have known positions.
 #[derive(Clone, Debug)]
 pub struct PlacedSensor {
@@ -36,9 +31,24 @@ pub struct PlacedSensor {
     pub layout: Layout,
     /// Side of the square area per taxel, metres.
     pub pitch: f64,
+    /// Largest distance of a taxel from its nearest neighbour, metres.
+    widest: f64,
 }
 
 impl PlacedSensor {
+    /// Creates a sensor whose taxels form a grid.
+    ///
+    /// # Errors
+    /// If the grid is invalid.
+    pub fn grid(name: &str, grid: &Grid) -> Result<Self> {
+        Ok(Self {
+            name: name.to_owned(),
+            layout: Layout::grid(grid)?,
+            pitch: grid.pitch,
+            widest: grid.pitch,
+        })
+    }
+
     /// Creates a sensor from a layout and its pitch, metres. The numbers of rows and columns are given if the frames have rows and columns. Text `place` names
     /// the layout file in errors.
     ///
@@ -59,13 +69,16 @@ impl PlacedSensor {
             (Some(sides), None) => layout.with_sides(sides)?,
             _ => layout,
         };
-        let grid = as_grid(&layout);
-        let distance = match &grid {
-            Some(grid) => grid.pitch,
-            None => median_distance(&on_plane(&layout)).unwrap_or(pitch),
+        let grid = layout.to_grid();
+        let distances = match &grid {
+            Some(grid) => vec![grid.pitch],
+            None => nearest_distances(&layout.on_plane()),
         };
+        // A single taxel has no neighbours.
+        let middle = distances.get(distances.len() / 2);
+        let distance = middle.copied().unwrap_or(pitch);
         let is_near = match grid {
-            Some(_) => (pitch / distance - 1.0).abs() <= GRID_TOLERANCE,
+            Some(_) => (pitch / distance - 1.0).abs() <= PITCH_TOLERANCE,
             None => (1.0 / MAX_PITCH_FACTOR..=MAX_PITCH_FACTOR).contains(&(distance / pitch)),
         };
         if !is_near {
@@ -81,14 +94,15 @@ impl PlacedSensor {
             };
             return Err(Error::input(place, given, allowed));
         }
-        Ok(Self {
-            name: name.to_owned(),
-            layout: match grid {
-                Some(grid) => Layout::grid(&Grid { pitch, ..grid })?,
-                None => layout,
-            },
-            pitch,
-        })
+        match grid {
+            Some(grid) => Self::grid(name, &Grid { pitch, ..grid }),
+            None => Ok(Self {
+                name: name.to_owned(),
+                layout,
+                pitch,
+                widest: distances.last().copied().unwrap_or(pitch),
+            }),
+        }
     }
 }
 
@@ -112,6 +126,7 @@ struct ListedSensor {
     places: Vec<DVec2>,
     shape: (usize, usize),
     pitch: f64,
+    widest: f64,
     is_grid: bool,
 }
 
@@ -137,7 +152,7 @@ impl ListedTaxels {
         let (mut centers, mut axes) = (Vec::new(), Vec::new());
         let mut right = 0.0;
         for (number, sensor) in sensors.iter().enumerate() {
-            let own = on_plane(&sensor.layout);
+            let own = sensor.layout.on_plane();
             let (own, extent) = centred(own);
             let side = |length: f64| (length / sensor.pitch).round() as usize + 1;
             let shape = (side(extent.y), side(extent.x));
@@ -164,6 +179,7 @@ impl ListedTaxels {
                 places: own,
                 shape,
                 pitch: sensor.pitch,
+                widest: sensor.widest,
                 is_grid: sensor.layout.as_grid().is_some(),
             });
             let away = Pose::from_translation(APART * number as f64 * DVec3::X);
@@ -231,7 +247,7 @@ impl ListedTaxels {
                 pitch,
                 ..
             } = sensor;
-            let widest = widest_distance(places).map_or(1.0, |d| (d / pitch).max(1.0));
+            let widest = (sensor.widest / pitch).max(1.0);
             let chart = || Chart::with_gaps(places, (*pitch, widest), (*shape, *pitch));
             SensorImage {
                 taxels: sensor.taxels.clone(),
@@ -271,117 +287,6 @@ fn centred(places: Vec<DVec2>) -> (Vec<DVec2>, DVec2) {
     (places, high - low)
 }
 
-/// Returns the positions of the taxels on a plane, metres. The plane is perpendicular to the mean axis. A taxel whose axis is inclined by the angle θ is moved
-/// along the direction of the inclination by the factor θ / sin θ. Distances from the middle along a sphere and around a cylinder are therefore preserved.
-fn on_plane(layout: &Layout) -> Vec<DVec2> {
-    let (centers, axes) = (layout.centers(), layout.axes());
-    let mean = axes.iter().sum::<DVec3>() / axes.len() as f64;
-    let view = match mean.length() < MIN_MEAN_AXIS {
-        true => DVec3::Z,
-        false => mean.normalize(),
-    };
-    // The x and y axes of the layout, rotated as little as possible; seen from below, y points down.
-    let (rotation, up) = match view.z < 0.0 {
-        true => (DQuat::from_rotation_arc(DVec3::NEG_Z, view), DVec3::NEG_Y),
-        false => (DQuat::from_rotation_arc(DVec3::Z, view), DVec3::Y),
-    };
-    let (x, y) = (rotation * DVec3::X, rotation * up);
-    let plane = |vector: DVec3| DVec2::new(vector.dot(x), vector.dot(y));
-    let most = axes.iter().enumerate();
-    let middle = most.max_by(|a, b| a.1.dot(view).total_cmp(&b.1.dot(view)));
-    let middle = middle.map_or(DVec3::ZERO, |(taxel, _)| centers[taxel]);
-    let taxels = centers.iter().zip(axes);
-    let place = |(center, axis): (&DVec3, &DVec3)| {
-        let place = plane(*center - middle);
-        let inclined = plane(*axis);
-        let sine = inclined.length();
-        // Axes in files are rounded; a small angle does not move a taxel.
-        if sine < 1e-3 {
-            return place;
-        }
-        let (direction, angle) = (inclined / sine, sine.atan2(axis.dot(view)));
-        let along = place.dot(direction);
-        place + along * (angle / sine - 1.0) * direction
-    };
-    taxels.map(place).collect()
-}
-
-/// Returns the distances of taxels from their nearest neighbours, metres, in ascending order.
-fn nearest_distances(places: &[DVec2]) -> Vec<f64> {
-    let step = places.len().div_ceil(MAX_SEARCHED).max(1);
-    let nearest = |taxel: usize| {
-        let others = places
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != taxel);
-        let squares = others.map(|(_, place)| place.distance_squared(places[taxel]));
-        squares.min_by(f64::total_cmp).map(f64::sqrt)
-    };
-    let taxels = (0..places.len()).step_by(step);
-    let mut distances: Vec<f64> = taxels.filter_map(nearest).collect();
-    distances.sort_by(f64::total_cmp);
-    distances
-}
-
-fn median_distance(places: &[DVec2]) -> Option<f64> {
-    let distances = nearest_distances(places);
-    distances.get(distances.len() / 2).copied()
-}
-
-fn widest_distance(places: &[DVec2]) -> Option<f64> {
-    nearest_distances(places).last().copied()
-}
-
-/// Returns the grid that the taxels form row by row, in any position and orientation; `None` if they form no grid.
-fn as_grid(layout: &Layout) -> Option<Grid> {
-    if let Some(grid) = layout.as_grid() {
-        return Some(*grid);
-    }
-    let (centers, axis) = (layout.centers(), layout.axes()[0]);
-    let n = centers.len();
-    let away = |taxel: usize| centers[taxel] - centers[0];
-    let pitch = away(1.min(n - 1)).length();
-    let is_flat = layout
-        .axes()
-        .iter()
-        .all(|a| a.distance(axis) <= GRID_TOLERANCE);
-    if pitch == 0.0 || !is_flat {
-        return None;
-    }
-    let first = away(1) / pitch;
-    let is_at = |taxel: usize, place: DVec3| away(taxel).distance(place) <= GRID_TOLERANCE * pitch;
-    let columns = match layout.sides() {
-        Some([_, columns]) => columns,
-        None => {
-            let in_line = |taxel: &usize| is_at(*taxel, *taxel as f64 * pitch * first);
-            (0..n).take_while(in_line).count()
-        }
-    };
-    // If there is a single column, the first two taxels lie along it.
-    let (x, y) = match (columns, n / columns) {
-        (1, _) => (DVec3::ZERO, first),
-        (_, 1) => (first, DVec3::ZERO),
-        _ => (first, away(columns) / pitch),
-    };
-    let is_long =
-        |side: DVec3| side == DVec3::ZERO || (side.length() - 1.0).abs() <= GRID_TOLERANCE;
-    let is_square = [x.dot(y), x.dot(axis), y.dot(axis)];
-    let is_square = is_square
-        .iter()
-        .all(|cosine| cosine.abs() <= GRID_TOLERANCE);
-    let place = |taxel: usize| {
-        let (row, column) = (taxel / columns, taxel % columns);
-        pitch * (column as f64 * x + row as f64 * y)
-    };
-    let is_grid =
-        n.is_multiple_of(columns) && is_square && is_long(y) && (0..n).all(|k| is_at(k, place(k)));
-    is_grid.then_some(Grid {
-        nx: columns,
-        ny: n / columns,
-        pitch,
-    })
-}
-
 /// Rounds a number for an error message.
 fn rounded(number: f64) -> f64 {
     (number * 1e3).round() / 1e3
@@ -390,7 +295,6 @@ fn rounded(number: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, PI};
 
     fn sensor(layout: Layout, pitch: f64) -> Result<PlacedSensor> {
         PlacedSensor::new("s", ("layout.csv", layout), pitch, None)
@@ -399,74 +303,6 @@ mod tests {
     fn listed(taxels: impl IntoIterator<Item = (DVec3, DVec3)>) -> Layout {
         let (centers, axes) = taxels.into_iter().unzip();
         Layout::new(centers, axes).unwrap()
-    }
-
-    #[test]
-    fn a_grid_in_any_position_and_numbered_row_by_row_is_the_grid() {
-        let grid = Grid {
-            nx: 5,
-            ny: 3,
-            pitch: 2e-3,
-        };
-        let flat = Layout::grid(&grid).unwrap();
-        let pose = Pose {
-            rotation: DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 2.0, -1.0),
-            translation: DVec3::new(0.1, -0.2, 0.3),
-        };
-        for (nx, ny) in [(5, 3), (1, 7), (6, 1), (1, 1)] {
-            let flat = Layout::grid(&Grid { nx, ny, ..grid }).unwrap();
-            let moved = sensor(flat.moved(&pose), 2e-3).unwrap().layout;
-            if nx * ny > 1 {
-                let found = moved.as_grid().expect("a grid");
-                // A single line has one row or one column.
-                assert_eq!((found.nx * found.ny, found.pitch), (nx * ny, 2e-3));
-            }
-            if nx > 1 && ny > 1 {
-                assert_eq!(moved.sides(), Some([ny, nx]));
-            }
-        }
-        // Another order or a moved taxel is no grid.
-        let taxels = || {
-            flat.centers()
-                .iter()
-                .copied()
-                .zip(flat.axes().iter().copied())
-        };
-        let by_columns = |k: usize| taxels().nth(k / 3 + 5 * (k % 3)).unwrap();
-        assert!(as_grid(&listed((0..15).map(by_columns))).is_some_and(|g| (g.nx, g.ny) == (3, 5)));
-        let serpentine = |k: usize| match (k / 5) % 2 {
-            0 => taxels().nth(k).unwrap(),
-            _ => taxels().nth(k / 5 * 5 + 4 - k % 5).unwrap(),
-        };
-        assert!(as_grid(&listed((0..15).map(serpentine))).is_none());
-        let moved = taxels().enumerate();
-        let moved = moved.map(|(k, (c, a))| (c + f64::from(k == 7) * 1e-4 * DVec3::X, a));
-        assert!(as_grid(&listed(moved)).is_none());
-        assert!(sensor(flat.moved(&pose), 3e-3).is_err());
-    }
-
-    #[test]
-    fn images_of_a_cylinder_and_a_cap_keep_distances_along_the_surface() {
-        let radius = 0.02;
-        let on_cylinder = |k: usize| {
-            let (angle, y) = (
-                f64::from(k as u32 % 9) / 8.0 * PI - FRAC_PI_2,
-                1e-3 * (k / 9) as f64,
-            );
-            let axis = DVec3::new(angle.sin(), 0.0, angle.cos());
-            (radius * axis + y * DVec3::Y, axis)
-        };
-        let places = on_plane(&listed((0..27).map(on_cylinder)));
-        for (k, place) in places.iter().enumerate() {
-            let away = *place - places[0];
-            let expected = DVec2::new((k % 9) as f64 * PI * radius / 8.0, 1e-3 * (k / 9) as f64);
-            assert!((away - expected).length() < 1e-12, "{k}: {away}");
-        }
-        let cap = Layout::sphere_cap(radius, 1.2, 2e-3).unwrap();
-        for (axis, place) in cap.axes().iter().zip(on_plane(&cap)) {
-            let arc = radius * axis.z.acos();
-            assert!((place.length() - arc).abs() < 1e-9, "{place} {arc}");
-        }
     }
 
     #[test]

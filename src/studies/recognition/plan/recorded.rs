@@ -13,7 +13,7 @@ use crate::studies::recognition::spec::scene::{SensedSpec, SkinSpec, TouchesSpec
 use crate::studies::recognition::spec::signal::StepSpec;
 use crate::studies::recognition::spec::study::StudySpec;
 use crate::studies::recognition::spec::zero::ZeroSpec;
-use crate::world::{ArrayLayout, Grid, Layout};
+use crate::world::{ArrayLayout, Grid};
 use glam::DVec2;
 
 impl RecordedSpec {
@@ -235,18 +235,7 @@ impl RecordedSpec {
         let shape = self.shape_of("frames")?;
         let sides = shape.has_grid.then_some([shape.rows, shape.columns]);
         let Some(path) = &self.layout else {
-            let sensor = |[rows, columns]: [usize; 2]| -> Result<PlacedSensor> {
-                let grid = Grid {
-                    nx: columns,
-                    ny: rows,
-                    pitch,
-                };
-                Ok(PlacedSensor {
-                    name: name.to_owned(),
-                    layout: Layout::grid(&grid)?,
-                    pitch,
-                })
-            };
+            let sensor = |[ny, nx]: [usize; 2]| PlacedSensor::grid(name, &Grid { nx, ny, pitch });
             return sides.map(sensor).transpose();
         };
         let layout = LayoutFile::read(path, LayoutOptions::default())?.layout;

@@ -275,7 +275,10 @@ impl TaxelArray {
         let words = self.layout.words();
         match (self.layout, self.layout.neighbour_distance(self.pitch())) {
             _ if !self.is_placed => format!("{}{taxels} without a layout", self.n_taxels()),
-            _ if let Some(listed) = &self.listed => format!("{count}, {}", listed.words()),
+            _ if let Some(listed) = &self.listed => match self.image_shapes().len() {
+                1 => format!("{count}, {}", listed.words()),
+                _ => format!("{}{taxels} of {}", self.n_taxels(), listed.words()),
+            },
             (ArrayLayout::Grid, _) => count,
             (_, None) => format!("{count}, {words}"),
             (_, Some(distance)) => {

@@ -277,7 +277,8 @@ pub struct SelectedTaxel {
     rank: usize => Note "order of selection": Linear;
     /// Index of the taxel in a frame, from 0; frames are stored row by row.
     taxel: usize => Subject: Linear;
-    /// Position of the taxel along x of the array, mm; on a curved array, of its projection along the axis of the middle. Empty for taxels without a layout.
+    /// Position of the taxel along x of the array, mm; on a curved array, of its projection along the axis of the middle. Several sensors
+    /// are side by side. Empty for taxels without a layout.
     x_mm: Option<f64> => Note "x" in "mm": Linear;
     /// Position of the taxel along y of the array, mm, as `x_mm`.
     y_mm: Option<f64> => Value(Neither) "y" in "mm": Linear;

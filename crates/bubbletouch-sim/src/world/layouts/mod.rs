@@ -9,6 +9,7 @@
 //! | `draped`, `drape_region` | on a mesh, or on a part of a mesh |
 //! | `projected` | a flat grid, projected onto a mesh ([`Projected`]) |
 //! | `arrays` | arrays of equal area and density that can be compared ([`ArrayLayout`]) |
+//! | `plane` | positions on a plane, distances of neighbours, layouts that are grids |
 //! | `order` | the order in which taxels are numbered |
 //! | `ring`, `limits` | rings around an axis, and the checks that all layouts share |
 
@@ -22,6 +23,7 @@ mod flat;
 mod layout;
 mod limits;
 mod order;
+mod plane;
 mod projected;
 mod ring;
 
@@ -32,4 +34,5 @@ pub use extrusion::Extrusion;
 pub(crate) use layout::Rule;
 pub use layout::{Layout, unit_axis};
 pub use limits::MAX_TAXELS;
+pub use plane::nearest_distances;
 pub use projected::{MissingTaxels, Projected};
