@@ -87,7 +87,7 @@ pub fn run_audit<'py>(
             groups,
             sessions,
             full_scale,
-            is_in_order_of_time: false,
+            ..AuditData::default()
         };
         data.check().map_err(exception)?;
         if let Some(times) = times {

@@ -21,6 +21,8 @@ pub struct Source {
     pub name: &'static str,
     /// Function that returns the features of the sampled touches, shape (n_sample, m); `None` if the data have no such source.
     pub rows: fn(&Context) -> Option<Array2<f64>>,
+    /// Whether the label of a touch is read from the touches of other groups.
+    pub holds_out_groups: bool,
 }
 
 /// Reason for an omitted check that needs labels.

@@ -17,7 +17,7 @@ use bubbletouch_svm::audit::{Readability, readability};
 use ndarray::{Array1, Array2, ArrayView2, Axis};
 use rand::seq::SliceRandom;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Maximum number of touches in permutation tests and in statistics of taxels. More touches find smaller effects and take time in proportion to the square.
@@ -104,7 +104,7 @@ impl Context {
         fill_missing(&mut data.frames, &n_missing);
         let n = data.n_touches();
         let labels = data.labels.clone().unwrap_or_else(|| vec![0; n]);
-        let classes = labels.iter().collect::<std::collections::BTreeSet<_>>();
+        let classes = labels.iter().collect::<BTreeSet<_>>();
         let n_classes = classes.len();
         let sample = sample(n, &seed);
         let sample_labels: Vec<usize> = sample.iter().map(|&touch| labels[touch]).collect();
@@ -127,7 +127,7 @@ impl Context {
         let has_classes = data.labels.is_some() && n_classes > 1;
         let (groups, sessions) = (data.groups.as_deref(), data.sessions.as_deref());
         let splits = match has_classes {
-            true => splits(&labels, groups, sessions, &seed),
+            true => splits(&labels, groups, sessions, data.is_test.as_deref(), &seed),
             false => Vec::new(),
         };
         let n_labels = data.classes.len().max(1);
@@ -170,12 +170,32 @@ impl Context {
         self.scores.is_some()
     }
 
-    /// Tests whether the labels of the sampled touches can be read from some features.
-    pub fn readability(&self, rows: ArrayView2<f64>, name: &str) -> Option<Readability> {
+    /// Tests whether the labels of the sampled touches can be read from some features. With `holds_out_groups`, the label of a touch is read from the touches
+    /// of other groups, if at least two classes have touches in several groups.
+    pub fn readability(
+        &self,
+        rows: ArrayView2<f64>,
+        name: &str,
+        holds_out_groups: bool,
+    ) -> Option<Readability> {
         let seed = self.seed(name);
+        let groups = self.data.groups.as_ref().filter(|_| holds_out_groups);
+        let groups = groups.map(|groups| {
+            let of_sample = self.sample.iter().map(|&touch| groups[touch]);
+            of_sample.collect::<Vec<usize>>()
+        });
+        let is_held_out = |groups: &Vec<usize>| {
+            let cells: BTreeSet<_> = self.sample_labels.iter().zip(groups).collect();
+            let mut n_groups = BTreeMap::<usize, usize>::new();
+            for (&label, _) in cells {
+                *n_groups.entry(label).or_default() += 1;
+            }
+            n_groups.into_values().filter(|&n| n > 1).count() > 1
+        };
         readability(
             rows,
             &self.sample_labels,
+            groups.filter(is_held_out).as_deref(),
             self.options.n_permutations,
             &seed,
         )

@@ -20,6 +20,8 @@ pub struct AuditData {
     pub groups: Option<Vec<usize>>,
     /// Session or file of each touch; `None` without sessions.
     pub sessions: Option<Vec<usize>>,
+    /// Whether each touch belongs to a given test set; `None` without such a set.
+    pub is_test: Option<Vec<bool>>,
     /// Reading at full scale; `None` if unknown.
     pub full_scale: Option<f64>,
     /// Whether the touches are known to be in the order of their times.
@@ -47,6 +49,9 @@ impl AuditData {
                 *list = order.iter().map(|&touch| list[touch]).collect();
             }
         }
+        if let Some(is_test) = &mut self.is_test {
+            *is_test = order.iter().map(|&touch| is_test[touch]).collect();
+        }
         self.is_in_order_of_time = true;
     }
 
@@ -61,16 +66,18 @@ impl AuditData {
             let allowed = format!("at least {MIN_TOUCHES} touches of one taxel");
             return Err(Error::input("frames", given, allowed));
         }
+        let length = |list: &Option<Vec<usize>>| list.as_ref().map(Vec::len);
         let lists = [
-            ("labels", &self.labels),
-            ("groups", &self.groups),
-            ("sessions", &self.sessions),
+            ("labels", length(&self.labels)),
+            ("groups", length(&self.groups)),
+            ("sessions", length(&self.sessions)),
+            ("is_test", self.is_test.as_ref().map(Vec::len)),
         ];
-        for (name, list) in lists {
-            if let Some(list) = list
-                && list.len() != n
+        for (name, length) in lists {
+            if let Some(length) = length
+                && length != n
             {
-                let given = format!("{} numbers", list.len());
+                let given = format!("{length} numbers");
                 let allowed = format!("{n}, one for each touch");
                 return Err(Error::input(name, given, allowed));
             }

@@ -29,6 +29,12 @@ pub struct AuditFiles {
     pub sessions: Option<PathBuf>,
     /// File with the time of each touch, a number; `None` for an array or file `times` beside the frames, if there is one.
     pub times: Option<PathBuf>,
+    /// File with the frames of a given test set; `None` for an array or file `frames_test` beside the frames, if there is one.
+    pub frames_test: Option<PathBuf>,
+    /// File with the class of each touch of the test set; `None` for an array or file `labels_test` beside the frames.
+    pub labels_test: Option<PathBuf>,
+    /// File with the group of each touch of the test set; `None` for an array or file `groups_test` beside the frames, if there is one.
+    pub groups_test: Option<PathBuf>,
     /// Order of the axes of the frames, one letter per axis, as in `recorded.order`; `None` for the default order.
     pub order: Option<String>,
     /// Numbers of rows and columns of the skin, if the axis `c` of the frames lists its taxels row by row.
@@ -66,7 +72,7 @@ impl AuditFiles {
             return Err(Error::input("full scale", full_scale, "a finite number"));
         }
         if !self.data.is_dir() {
-            return assembled(vec![self.part(&self.data, None)?], self.full_scale);
+            return self.with_test_set(&self.data, None);
         }
         let recorded = self.data.join(RECORDED);
         if recorded.is_file() {
@@ -74,7 +80,7 @@ impl AuditFiles {
         }
         let frames = ENDINGS.map(|ending| self.data.join(format!("frames.{ending}")));
         if let Some(frames) = frames.iter().find(|path| path.is_file()) {
-            return assembled(vec![self.part(frames, Some(&self.data))?], self.full_scale);
+            return self.with_test_set(frames, Some(&self.data));
         }
         self.of_sessions()
     }
@@ -106,16 +112,48 @@ impl AuditFiles {
             data: spec.frames.clone(),
             labels: self.labels.clone().or_else(|| given("labels")),
             groups: self.groups.clone().or_else(|| given("groups")),
+            frames_test: given("frames_test"),
+            labels_test: given("labels_test"),
+            groups_test: given("groups_test"),
             order: self.order.clone().or_else(|| spec.order.clone()),
             grid: self.grid.or(spec.grid),
             full_scale: self.full_scale.or(spec.full_scale),
             sensor: spec.place.name.clone(),
             ..self.clone()
         };
-        assembled(
-            vec![files.part(&files.data, Some(&self.data))?],
-            files.full_scale,
-        )
+        files.with_test_set(&files.data, Some(&self.data))
+    }
+
+    /// Reads the frames of a file, followed by those of the given test set if there is one.
+    fn with_test_set(&self, frames: &Path, folder: Option<&Path>) -> Result<AuditData> {
+        let mut parts = vec![self.part(frames, folder, "")?];
+        if let Some(path) = beside((frames, folder), &self.frames_test, "frames_test") {
+            let of_test = Self {
+                labels: self.labels_test.clone(),
+                groups: self.groups_test.clone(),
+                sessions: None,
+                times: None,
+                ..self.clone()
+            };
+            parts.push(of_test.part(&path, folder, "_test")?);
+            check_shape((&parts[1], &path), (&parts[0], frames))?;
+            let has = |part: &Part| (part.labels.is_some(), part.groups.is_some());
+            if has(&parts[0]) != has(&parts[1]) {
+                let allowed = format!(
+                    "labels_test and groups_test, if {} has labels and groups",
+                    frames.display()
+                );
+                return Err(Error::input(path.display(), "a test set", allowed));
+            }
+        }
+        let n_train = parts[0].frames.nrows() / parts[0].n_frames;
+        let has_test = parts.len() > 1;
+        let mut data = assembled(parts, self.full_scale)?;
+        if has_test {
+            let n = data.n_touches();
+            data.is_test = Some((0..n).map(|touch| touch >= n_train).collect());
+        }
+        Ok(data)
     }
 
     /// Reads all archives of the folder, each as a session.
@@ -153,7 +191,7 @@ impl AuditFiles {
             ));
         }
         let parts = archives.iter().map(|path| {
-            let mut part = self.part(path, None)?;
+            let mut part = self.part(path, None, "")?;
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             let n = part.frames.nrows() / part.n_frames;
             let session = vec![KeyValue::Text(name.into_owned()); n];
@@ -162,23 +200,15 @@ impl AuditFiles {
         });
         let parts = parts.collect::<Result<Vec<Part>>>()?;
         for (part, path) in parts.iter().zip(&archives).skip(1) {
-            let shape = |part: &Part| (part.frames.ncols(), part.n_frames);
-            if shape(part) != shape(&parts[0]) || part.grid != parts[0].grid {
-                let given = format!(
-                    "{} frames of {} taxels a touch",
-                    part.n_frames,
-                    part.frames.ncols()
-                );
-                let (n_taxels, n_frames) = shape(&parts[0]);
-                let allowed = format!("{n_frames} of {n_taxels}, as {}", archives[0].display());
-                return Err(Error::input(path.display(), given, allowed));
-            }
+            check_shape((part, path), (&parts[0], &archives[0]))?;
         }
         assembled(parts, self.full_scale)
     }
 
-    /// Reads the frames of a file, and the arrays that belong to them. If `folder` is given, files beside the frames are found by their names.
-    fn part(&self, frames: &Path, folder: Option<&Path>) -> Result<Part> {
+    /// Reads the frames of a file, and the arrays that belong to them. If `folder` is given, files beside the frames are found by their names, which have the
+    /// ending `end`.
+    fn part(&self, frames: &Path, folder: Option<&Path>, end: &str) -> Result<Part> {
+        let key_of_frames = format!("frames{end}");
         let mut spec = RecordedSpec::of_frames(frames, self.order.as_deref(), self.grid);
         spec.place.name.clone_from(&self.sensor);
         let key = |error: Error| match error {
@@ -192,18 +222,13 @@ impl AuditFiles {
             }
             other => other,
         };
-        let shape = spec.shape_of("frames").map_err(key)?;
-        let array = FileArray::read(frames, &spec.array_name("frames"))?;
+        spec.frames_test = (!end.is_empty()).then(|| frames.to_owned());
+        let shape = spec.shape_of(&key_of_frames).map_err(key)?;
+        let array = FileArray::read(frames, &spec.array_name(&key_of_frames))?;
         let readings = shape.arrange(array.into_numbers()?);
         let n = shape.n_touches;
         let file = |given: &Option<PathBuf>, name: &str| {
-            let beside = || {
-                let folder = folder?;
-                let paths = ENDINGS.map(|ending| folder.join(format!("{name}.{ending}")));
-                paths.into_iter().find(|path| path.is_file())
-            };
-            let within = || is_member(frames, name).then(|| frames.to_owned());
-            given.clone().or_else(within).or_else(beside)
+            beside((frames, folder), given, &format!("{name}{end}"))
         };
         let of_length = |values: Vec<KeyValue>, path: &Path| match values.len() == n {
             true => Ok(values),
@@ -259,6 +284,40 @@ impl AuditFiles {
     }
 }
 
+/// Returns the file of an array: `given`, or else the file of the frames if it contains an array `name`, or else a file of this name in the folder.
+fn beside(
+    (frames, folder): (&Path, Option<&Path>),
+    given: &Option<PathBuf>,
+    name: &str,
+) -> Option<PathBuf> {
+    let in_folder = || {
+        let folder = folder?;
+        let paths = ENDINGS.map(|ending| folder.join(format!("{name}.{ending}")));
+        paths.into_iter().find(|path| path.is_file())
+    };
+    let within = || is_member(frames, name).then(|| frames.to_owned());
+    given.clone().or_else(within).or_else(in_folder)
+}
+
+/// Checks that a part has the taxels and frames of the first part.
+///
+/// # Errors
+/// If the part has another grid, or another number of taxels or frames.
+fn check_shape((part, path): (&Part, &Path), (first, of_first): (&Part, &Path)) -> Result<()> {
+    let shape = |part: &Part| (part.frames.ncols(), part.n_frames);
+    if shape(part) == shape(first) && part.grid == first.grid {
+        return Ok(());
+    }
+    let given = format!(
+        "{} frames of {} taxels a touch",
+        part.n_frames,
+        part.frames.ncols()
+    );
+    let (n_taxels, n_frames) = shape(first);
+    let allowed = format!("{n_frames} of {n_taxels}, as {}", of_first.display());
+    Err(Error::input(path.display(), given, allowed))
+}
+
 /// Joins the arrays of all parts, one after the other, and sorts the touches by time if all parts have times.
 fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
     let joined = |of: fn(&Part) -> &Option<Vec<KeyValue>>| {
@@ -306,6 +365,7 @@ fn assembled(parts: Vec<Part>, full_scale: Option<f64>) -> Result<AuditData> {
         sessions,
         full_scale,
         is_in_order_of_time: times.is_some(),
+        is_test: None,
     };
     if let Some(times) = times {
         data.sort_by_time(&times);

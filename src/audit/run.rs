@@ -30,7 +30,7 @@ pub fn audit(data: AuditData, options: AuditOptions) -> Result<Audit> {
         let sources = checks::SOURCES.par_iter();
         let read = sources.filter_map(|source| {
             let rows = (source.rows)(&context)?;
-            let found = context.readability(rows.view(), source.name)?;
+            let found = context.readability(rows.view(), source.name, source.holds_out_groups)?;
             Some((source.name, found))
         });
         context.readable = read.collect();

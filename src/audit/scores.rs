@@ -129,7 +129,7 @@ pub fn scores(
                 n_classes,
                 folds: &split.folds,
             };
-            let folds = (0..split.n_folds()).into_par_iter();
+            let folds = (0..split.n_folds).into_par_iter();
             let folds = folds.map(|fold| held_out.scores(method, fold, seed));
             let folds: Vec<_> = folds.collect::<std::result::Result<_, _>>()?;
             let mut scores = Array2::from_elem((labels.len(), n_classes), f64::NAN);
@@ -161,7 +161,10 @@ pub fn scores(
         for (method, near) in near {
             let Some(near) = near else { continue };
             let outside = near.outside[index].iter().enumerate();
-            let is_correct = outside.map(|(row, other)| Some(labels[(*other)?] == labels[row]));
+            let is_correct = outside.map(|(row, other)| {
+                let other = other.filter(|_| split.is_tested(row))?;
+                Some(labels[other] == labels[row])
+            });
             tested.push(Tested {
                 method,
                 split: index,

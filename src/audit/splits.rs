@@ -13,56 +13,69 @@ const MAX_LEFT_OUT: usize = 10;
 /// Assignment of touches to folds, each of which is held out once.
 #[derive(Clone, Debug)]
 pub struct AuditSplit {
-    /// Name of the split: `random`, `time`, `group` or `session`.
+    /// Name of the split: `random`, `time`, `group`, `session` or `given`.
     pub name: &'static str,
     /// Fold of each touch; `None` if its class would have no training touches.
     pub folds: Vec<Option<usize>>,
+    /// Number of folds that are tested, from fold 0. The test set of a given split is fold 0; its training touches are fold 1.
+    pub n_folds: usize,
     /// Unit of each touch, such as its group, for intervals and tests. Units are assumed to be independent; touches of one unit are not.
     pub units: Option<Vec<usize>>,
 }
 
 impl AuditSplit {
-    /// Returns the number of folds.
-    pub fn n_folds(&self) -> usize {
-        self.folds.iter().flatten().max().map_or(0, |last| last + 1)
+    /// Creates a split of which each fold is held out once.
+    fn of_folds(name: &'static str, folds: Vec<Option<usize>>, units: Option<Vec<usize>>) -> Self {
+        Self {
+            name,
+            n_folds: folds.iter().flatten().max().map_or(0, |last| last + 1),
+            folds,
+            units,
+        }
+    }
+
+    /// Returns whether the touch is tested.
+    pub fn is_tested(&self, touch: usize) -> bool {
+        self.folds[touch].is_some_and(|fold| fold < self.n_folds)
     }
 
     /// Returns the number of touches that are tested.
     pub fn n_tested(&self) -> usize {
-        self.folds.iter().flatten().count()
+        (0..self.folds.len())
+            .filter(|&touch| self.is_tested(touch))
+            .count()
     }
 }
 
-/// Returns all splits that the data allow; the random split comes first. `groups` and `sessions` contain one number per touch.
+/// Returns all splits that the data allow; the random split comes first. `groups` and `sessions` contain one number per touch; `is_test` marks the touches of a
+/// given test set.
 pub fn splits(
     labels: &[usize],
     groups: Option<&[usize]>,
     sessions: Option<&[usize]>,
+    is_test: Option<&[bool]>,
     seed: &Seed,
 ) -> Vec<AuditSplit> {
     let units = groups.or(sessions).map(<[usize]>::to_vec);
     let mut splits = vec![
-        AuditSplit {
-            name: "random",
-            folds: random(labels, seed),
-            units: units.clone(),
-        },
-        AuditSplit {
-            name: "time",
-            folds: blocks(labels),
-            units,
-        },
+        AuditSplit::of_folds("random", random(labels, seed), units.clone()),
+        AuditSplit::of_folds("time", blocks(labels), units.clone()),
     ];
     for (name, units) in [("group", groups), ("session", sessions)] {
         if let Some(units) = units
             && let Some(folds) = whole_units(labels, units, &seed.named(name))
         {
-            splits.push(AuditSplit {
-                name,
-                folds,
-                units: Some(units.to_vec()),
-            });
+            splits.push(AuditSplit::of_folds(name, folds, Some(units.to_vec())));
         }
+    }
+    if let Some(is_test) = is_test {
+        let folds = is_test.iter().map(|&is_test| Some(usize::from(!is_test)));
+        splits.push(AuditSplit {
+            name: "given",
+            folds: folds.collect(),
+            n_folds: 1,
+            units,
+        });
     }
     splits
 }

@@ -16,6 +16,7 @@ const SPLITS: &[(&str, &str)] = &[
     ("time", "blocks of time"),
     ("group", "groups"),
     ("session", "sessions"),
+    ("given", "given test set"),
 ];
 const LABELS: &[(&str, &str)] = &[
     ("given", "given labels"),

@@ -104,7 +104,7 @@ pub fn audit(args: &Args) -> Result<()> {
         order: args.order.clone(),
         grid: args.grid,
         full_scale: args.full_scale,
-        sensor: None,
+        ..AuditFiles::default()
     };
     let data = files.read()?;
     if let Some(range) = &args.before_contact

@@ -69,14 +69,14 @@ impl Source {
         }
     }
 
-    /// Replaces the folder of the recorded frames if a command-line option gives another folder.
-    pub fn replace_recorded(&self, recorded: &mut RecordedSpec) {
-        let Some(folder) = &self.objects else {
-            return;
-        };
+    /// Replaces the folder of the recorded frames if a command-line option gives another folder. Returns the absolute path of this folder.
+    pub fn replace_recorded(&self, recorded: &mut RecordedSpec) -> Option<PathBuf> {
+        let folder = self.objects.as_ref()?;
+        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
         for file in recorded.files_mut() {
             *file = folder.join(&*file);
         }
+        Some(folder)
     }
 
     /// Returns an error if a command-line option replaces the objects; `why` states what the study has in place of objects.

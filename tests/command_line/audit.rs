@@ -159,3 +159,52 @@ fn bad_input_is_named_and_nothing_is_written() {
     // The output is not written over the input.
     refused(&audit(&["skin", "--out", "skin/frames.npy"]), "frames.npy");
 }
+
+#[test]
+fn a_given_test_set_is_read_from_the_folder_or_from_recorded_toml() {
+    let case = with_recording();
+    let table = |name: &str| {
+        let table = case.path(&format!("results/{name}_audit/accuracy_by_split.csv"));
+        std::fs::read_to_string(table).unwrap()
+    };
+    case.succeeds(&audit(&["skin"]));
+    assert!(!table("skin").contains("\ngiven,"), "{}", table("skin"));
+    let test = frames().slice(s![..30, .., ..]).to_owned();
+    write_npy(&case.path("skin/frames_test.npy"), &test).unwrap();
+    write_integers(&case.path("skin/labels_test.npy"), (0..30).map(label)).unwrap();
+    case.succeeds(&audit(&["skin"]));
+    let beside = table("skin");
+    assert!(beside.contains("\ngiven,"), "{beside}");
+    std::fs::create_dir(case.path("other")).unwrap();
+    for (from, to) in [
+        ("frames", "x"),
+        ("labels", "y"),
+        ("frames_test", "u"),
+        ("labels_test", "v"),
+    ] {
+        let of = |folder: &str, name: &str| case.path(&format!("{folder}/{name}.npy"));
+        std::fs::copy(of("skin", from), of("other", to)).unwrap();
+    }
+    let recorded = "[recorded]\nframes = \"x.npy\"\nlabels = \"y.npy\"\nframes_test = \"u.npy\"\nlabels_test = \"v.npy\"\n";
+    case.file("other/recorded.toml", recorded);
+    case.succeeds(&audit(&["other"]));
+    assert_eq!(table("other"), beside);
+    let said = |arguments: &[&str]| {
+        let output = case.run(&audit(arguments));
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    std::fs::remove_file(case.path("skin/labels_test.npy")).unwrap();
+    let error = said(&["skin"]);
+    assert!(
+        error.contains("frames_test.npy") && error.contains("labels_test"),
+        "{error}"
+    );
+    write_npy(
+        &case.path("other/u.npy"),
+        &test.slice(s![.., 1.., ..]).to_owned(),
+    )
+    .unwrap();
+    let error = said(&["other"]);
+    assert!(error.contains("u.npy") && error.contains("64"), "{error}");
+}

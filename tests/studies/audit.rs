@@ -547,6 +547,117 @@ fn no_fault_is_invented_in_clean_data() {
     }
 }
 
+/// Replaces each touch by nine frames. The contact begins with frame `onset`.
+fn with_onsets(data: &mut Planted, onset: impl Fn(usize, &mut ChaCha8Rng) -> usize) {
+    let mut frames = Array2::zeros((9 * data.n(), N_TAXELS));
+    for touch in 0..data.n() {
+        let onset = onset(data.labels[touch], &mut data.rng);
+        for frame in 0..9 {
+            let share = if frame >= onset { 1.0 } else { 0.0 };
+            let row = data.frames.row(touch);
+            let row = row.mapv(|x| share * x + NOISE * normal(&mut data.rng));
+            frames.row_mut(9 * touch + frame).assign(&row);
+        }
+    }
+    data.frames = frames;
+    data.n_frames = 9;
+}
+
+#[test]
+fn the_time_of_the_first_contact_names_the_class_only_if_it_depends_on_the_class() {
+    let mut data = Planted::clean(30);
+    with_onsets(&mut data, |label, rng| {
+        (4 + label / 2 + rng.gen_range(0..2)).min(8)
+    });
+    let findings = data.audited();
+    let is_onset = |finding: &&Finding| finding.subject == "number of frames";
+    let found = findings.iter().find(is_onset).unwrap();
+    assert_eq!(found.verdict, Verdict::Fault, "{}", found.sentence);
+    assert!(found.value > 0.3, "{}", found.value);
+    let mut data = Planted::clean(31);
+    with_onsets(&mut data, |_, rng| rng.gen_range(4..8));
+    let findings = data.audited();
+    assert_eq!(
+        findings.iter().find(is_onset).unwrap().verdict,
+        Verdict::Passed
+    );
+    assert!(faults(&findings).is_empty(), "{:?}", faults(&findings));
+}
+
+/// Touches of one class in one group share a pattern, as frames of one sequence do. The pattern also covers taxels that nothing touches. It names the
+/// sequence, not the class.
+#[test]
+fn copies_of_a_sequence_are_no_confound_of_the_class() {
+    let mut data = Planted::clean(32);
+    let mut order: Vec<usize> = (0..data.n()).collect();
+    order.sort_by_key(|&touch| data.labels[touch]);
+    data.select(&order);
+    // Each group has four touches of each class, one after the other.
+    data.groups = (0..data.n()).map(|touch| touch % PER_OBJECT / 4).collect();
+    let cells: Vec<usize> = (0..data.n()).map(|touch| touch / 4).collect();
+    data.add_patterns(&cells, 0.1, |_| true);
+    let mut order: Vec<usize> = (0..data.n()).collect();
+    order.sort_by_key(|&touch| (data.groups[touch], data.labels[touch]));
+    data.select(&order);
+    let found = faults(&data.audited());
+    for check in ["untouched_taxels", "row_order", "before_contact"] {
+        assert!(!found.contains(check), "{found:?}");
+    }
+    assert!(found.contains("accuracy_by_split"), "{found:?}");
+}
+
+#[test]
+fn a_given_test_set_is_a_split_that_can_reverse_the_order_of_methods() {
+    let mut data = Planted::clean(33);
+    data.nest_groups(10);
+    let groups = data.groups.clone();
+    let labels = data.labels.clone();
+    data.add_patterns(&labels, 0.015, |_| true);
+    data.add_patterns(&groups, 0.3, |_| true);
+    let is_test: Vec<bool> = groups.iter().map(|group| group % 10 < 4).collect();
+    let data = AuditData {
+        frames: data.frames,
+        n_frames: 1,
+        grid: Some((SIDE, SIDE)),
+        labels: Some(data.labels),
+        classes: OBJECTS.map(str::to_owned).to_vec(),
+        groups: Some(groups),
+        is_test: Some(is_test.clone()),
+        ..AuditData::default()
+    };
+    let options = AuditOptions {
+        n_permutations: N_PERMUTATIONS,
+        ..AuditOptions::default()
+    };
+    let found = audit(data, options).unwrap();
+    let of = |check: &str| {
+        let mut findings = found.findings.iter();
+        let is_given = |f: &&Finding| f.check == check && f.subject == "given split";
+        findings.find(is_given).unwrap()
+    };
+    let split = of("accuracy_by_split");
+    assert_eq!(split.verdict, Verdict::Fault, "{}", split.sentence);
+    assert!(
+        split.sentence.contains("the given test set held out"),
+        "{}",
+        split.sentence
+    );
+    assert!(split.value + 0.2 < split.baseline, "{}", split.sentence);
+    assert!(of("method_order").p_value.is_some());
+    let table = found
+        .tables
+        .iter()
+        .find(|table| table.file == "accuracy_by_split.csv");
+    let table = String::from_utf8(table.unwrap().csv.clone()).unwrap();
+    let n = is_test.iter().filter(|&&is_test| is_test).count();
+    let given = table.lines().filter(|line| line.starts_with("given,"));
+    assert!(given.clone().count() >= 3, "{table}");
+    assert!(
+        given.clone().all(|line| line.contains(&format!(",{n}"))),
+        "{table}"
+    );
+}
+
 #[test]
 fn an_audit_depends_on_data_and_seed_alone() {
     let tables = |threads: usize| {

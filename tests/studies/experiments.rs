@@ -1,5 +1,7 @@
 //! The experiments of the repository: each states its question and can run.
 
+use crate::public_sets::write_recording;
+use bubbletouch::files::with_folder;
 use bubbletouch::kinds;
 use bubbletouch::kinds::object_detail::{ObjectDetailPlan, ObjectDetailStudySpec};
 use bubbletouch::kinds::reconstruction::{ReconstructionPlan, ReconstructionStudySpec};
@@ -8,10 +10,8 @@ use bubbletouch::kinds::whole_body::{WholeBodyPlan, WholeBodyStudySpec};
 use bubbletouch::random::Seed;
 use bubbletouch::report::rank_agreement::rank_agreement;
 use bubbletouch::study::{
-    HumanTouches, Plan, RecordedFrames, RecordedSpec, StudySpec, Sweep, draw_touches, load_objects,
-    write_integers, write_npy,
+    HumanTouches, Plan, RecordedFrames, StudySpec, Sweep, draw_touches, load_objects,
 };
-use ndarray::Array3;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -88,15 +88,30 @@ fn every_experiment_can_run() {
             assert!(plan.configurations.len() > 1, "{place} compares something");
             continue;
         }
-        let mut spec = StudySpec::parse(&place, &text).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        if table == Some("recorded") || text.contains("[recorded]") {
+            let name = path.file_stem().unwrap().to_string_lossy();
+            write_recording(&name, folder.path());
+            // Files of the recording, also those in [axes], are in this folder.
+            let parse = || {
+                let spec = StudySpec::parse(&place, &text)?;
+                assert!(!spec.question.is_empty() && !spec.expected.is_empty());
+                Plan::variants(&place, spec)
+            };
+            let plans = with_folder(folder.path().to_owned(), parse).unwrap();
+            for (_, plan) in &plans {
+                let recorded = plan.spec.recorded.as_ref().unwrap();
+                let touches = RecordedFrames::read(recorded, None).unwrap();
+                let sweep = Sweep::new(plan, &touches).unwrap();
+                assert!(sweep.n_configurations() > 1, "{place} compares something");
+            }
+            continue;
+        }
+        let spec = StudySpec::parse(&place, &text).unwrap();
         assert!(
             !spec.question.is_empty() && !spec.expected.is_empty(),
             "{place}"
         );
-        let folder = tempfile::tempdir().unwrap();
-        if let Some(recorded) = &mut spec.recorded {
-            put_a_recording(folder.path(), recorded);
-        }
         let plan = Plan::new(&place, spec).unwrap();
         if plan.spec.objects.meshes.is_some() {
             println!("{place}: planned; its meshes are not part of the crate");
@@ -105,12 +120,6 @@ fn every_experiment_can_run() {
         let seed = Seed::new(plan.spec.seed);
         if let Some(human) = &plan.spec.human_touch {
             let touches = HumanTouches::draw(human, &seed).unwrap();
-            let sweep = Sweep::new(&plan, &touches).unwrap();
-            assert!(sweep.n_configurations() > 1, "{place} compares something");
-            continue;
-        }
-        if let Some(recorded) = &plan.spec.recorded {
-            let touches = RecordedFrames::read(recorded, None).unwrap();
             let sweep = Sweep::new(&plan, &touches).unwrap();
             assert!(sweep.n_configurations() > 1, "{place} compares something");
             continue;
@@ -132,17 +141,4 @@ fn the_simulated_skin_ranks_designs_as_the_real_one_does() {
     let ranks = rank_agreement(&tables[0], &tables[1]).unwrap();
     assert_eq!(ranks.n_designs, 104);
     assert!(ranks.tau >= 0.8, "{ranks:?}");
-}
-
-/// Writes ten frames per class in the place of recordings that are not part of the repository.
-fn put_a_recording(folder: &Path, recorded: &mut RecordedSpec) {
-    let n_classes = recorded.names.as_ref().map_or(2, Vec::len);
-    let labels = (0..10 * n_classes).map(|touch| touch % n_classes);
-    let frames = Array3::from_shape_fn((10 * n_classes, 28, 50), |(touch, row, column)| {
-        ((touch * (row + 1) * (column + 1)) % 256) as f32
-    });
-    recorded.frames = folder.join("frames.npy");
-    recorded.labels = folder.join("labels.npy");
-    write_npy(&recorded.frames, &frames).unwrap();
-    write_integers(&recorded.labels, labels).unwrap();
 }

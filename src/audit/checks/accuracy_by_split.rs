@@ -25,6 +25,7 @@ pub fn split_words(split: &str) -> &'static str {
         "time" => "blocks of time",
         "group" => "whole groups",
         "session" => "whole sessions",
+        "given" => "the given test set",
         _ => "touches at random",
     }
 }
@@ -58,7 +59,7 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         let Some(difference) = paired_difference(&best.is_correct, &tested.is_correct, units)
         else {
             let why = format!(
-                "There are fewer than five units in the split by {}.",
+                "There are fewer than five units in the {} split.",
                 split.name
             );
             findings.push(Finding::not_checked("", why).about(format!("{} split", split.name)));

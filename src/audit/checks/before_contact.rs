@@ -17,13 +17,47 @@ pub const ABOUT: CheckAbout = CheckAbout {
 pub const SOURCE: Source = Source {
     name: "before_contact",
     rows,
+    holds_out_groups: true,
 };
 
 /// Readings of all taxels in the first or the last frame, whichever varies less within classes; the frame may contain contact.
 pub const QUIETEST: Source = Source {
     name: "quietest_frame",
     rows: |context| Some(some_columns(&quietest_frame(context)?.0, |_| true)),
+    holds_out_groups: true,
 };
+
+/// Frame with which the contact of each touch begins, if all touches have at least [`MIN_BEFORE`] frames before it.
+pub const ONSET: Source = Source {
+    name: "contact_onset",
+    rows: onset,
+    holds_out_groups: true,
+};
+
+/// Minimum number of frames before the earliest contact. In recordings with fewer, the shape of an object determines how its contact begins.
+const MIN_BEFORE: usize = 3;
+/// Fraction of the way from the smallest to the largest sum of a touch's readings at which the contact has begun.
+const BEGUN: f64 = 0.1;
+
+/// Returns the number of frames of each sampled touch before its contact, shape (n_sample, 1).
+fn onset(context: &Context) -> Option<Array2<f64>> {
+    let n_frames = context.data.n_frames;
+    if n_frames <= MIN_BEFORE {
+        return None;
+    }
+    let frames = context.sample.iter().map(|touch| {
+        let rows = touch * n_frames..(touch + 1) * n_frames;
+        let sums: Vec<f64> = rows.map(|row| context.data.frames.row(row).sum()).collect();
+        let least = sums.iter().copied().fold(f64::INFINITY, f64::min);
+        let largest = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let is_begun = |sum: &f64| *sum > least + BEGUN * (largest - least);
+        sums.iter().position(is_begun).unwrap_or(n_frames) as f64
+    });
+    let onsets: Vec<f64> = frames.collect();
+    let earliest = onsets.iter().copied().fold(f64::INFINITY, f64::min);
+    (earliest >= MIN_BEFORE as f64)
+        .then(|| Array2::from_shape_vec((onsets.len(), 1), onsets).expect("one number a touch"))
+}
 
 /// Minimum fraction of the taxels that must be untouched in a frame before the contact, among the taxels that are touched in other frames.
 const MIN_UNTOUCHED: f64 = 0.9;
@@ -92,11 +126,27 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
     if !context.has_classes() {
         return Ok(vec![Finding::not_checked("", NO_LABELS)]);
     }
+    let mut findings = Vec::new();
+    if let Some(found) = context.readable.get(ONSET.name) {
+        let sentence = format!(
+            "The number of frames before the contact names the class of {} of the touches; permuted labels give {}.",
+            percent(found.accuracy),
+            percent(found.chance)
+        );
+        let advice = "Align the touches at the beginning of the contact; otherwise the classifier may name how the recording was made.";
+        let finding = Finding::tested("", found.accuracy, sentence, (found.p_value, true))
+            .about("number of frames")
+            .against(found.chance)
+            .advice(advice)
+            .shown_in("confounds");
+        findings.push(finding);
+    }
     let Some(found) = context.readable.get(SOURCE.name) else {
         let Some(quietest) = context.readable.get(QUIETEST.name) else {
             let why =
                 "Each touch is a single frame, so that there are no frames before the contact.";
-            return Ok(vec![Finding::not_checked("", why)]);
+            findings.push(Finding::not_checked("", why));
+            return Ok(findings);
         };
         let sentence = format!(
             "The quietest frame at an end of the touches names the class of {} of the touches, but may contain contact; permuted labels give {}.",
@@ -107,7 +157,8 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
             .against(quietest.chance)
             .advice("If this frame precedes the contact, name it (before_contact) to test whether it names the class.")
             .shown_in("confounds");
-        return Ok(vec![note]);
+        findings.push(note);
+        return Ok(findings);
     };
     let sentence = format!(
         "Frames before the contact name the class of {} of the touches; permuted labels give {}.",
@@ -119,5 +170,6 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         .against(found.chance)
         .advice(advice)
         .shown_in("confounds");
-    Ok(vec![finding])
+    findings.push(finding);
+    Ok(findings)
 }

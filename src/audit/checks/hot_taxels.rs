@@ -2,6 +2,7 @@
 
 use crate::audit::check::{CheckAbout, Context, Finding, Result};
 use crate::audit::finding::percent;
+use crate::table::short_number;
 use bubbletouch_sim::audit::hot::{HotTaxel, hot_taxels};
 
 pub const ABOUT: CheckAbout = CheckAbout {
@@ -21,6 +22,10 @@ pub fn found(context: &Context) -> Vec<HotTaxel> {
 }
 
 fn run(context: &Context) -> Result<Vec<Finding>> {
+    if context.data.grid.is_none() {
+        let why = "The taxels have no rows and columns, so that the taxels around a taxel are unknown.";
+        return Ok(vec![Finding::not_checked("", why)]);
+    }
     let found = found(context);
     let n_taxels = context.taxels.len();
     let share = found.len() as f64 / n_taxels as f64;
@@ -28,10 +33,11 @@ fn run(context: &Context) -> Result<Vec<Finding>> {
         None => "No taxel reads a pressure or strong noise while the taxels around it are at rest."
             .to_owned(),
         Some(hot) => format!(
-            "{} of {n_taxels} taxels read a pressure or strong noise while the taxels around them are at rest, such as number {} by {} of the full scale.",
+            "{} of {n_taxels} taxels read a pressure or strong noise while the taxels around them are at rest, such as number {}: {} of the full scale above them, noise {} times the median.",
             found.len(),
             hot.taxel,
-            percent(hot.excess)
+            percent(hot.excess),
+            short_number(hot.noise_ratio)
         ),
     };
     let finding = Finding::counted("", share, sentence, !found.is_empty())

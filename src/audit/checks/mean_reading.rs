@@ -14,11 +14,13 @@ pub const ABOUT: CheckAbout = CheckAbout {
 pub const MEAN: Source = Source {
     name: "mean_reading",
     rows: |context| Some(means(context)),
+    holds_out_groups: true,
 };
 
 pub const SHAPE: Source = Source {
     name: "shape",
     rows: |context| Some(shapes(context.sample_features())),
+    holds_out_groups: true,
 };
 
 pub const INVARIANT_SHAPE: Source = Source {
@@ -27,6 +29,7 @@ pub const INVARIANT_SHAPE: Source = Source {
         let invariant = context.features.invariant.as_ref()?;
         Some(shapes(invariant.select(Axis(0), &context.sample)))
     },
+    holds_out_groups: true,
 };
 
 /// Returns the mean of all readings of each sampled touch.

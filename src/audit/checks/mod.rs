@@ -38,6 +38,7 @@ checks! {
 pub const SOURCES: &[Source] = &[
     before_contact::SOURCE,
     before_contact::QUIETEST,
+    before_contact::ONSET,
     untouched_taxels::SOURCE,
     mean_reading::MEAN,
     mean_reading::SHAPE,

@@ -14,6 +14,7 @@ pub const ABOUT: CheckAbout = CheckAbout {
 pub const SOURCE: Source = Source {
     name: "session",
     rows,
+    holds_out_groups: false,
 };
 
 /// Returns one column per session with 1 for the touches of the session.

@@ -14,6 +14,7 @@ pub const ABOUT: CheckAbout = CheckAbout {
 pub const SOURCE: Source = Source {
     name: "untouched_taxels",
     rows,
+    holds_out_groups: true,
 };
 
 fn rows(context: &Context) -> Option<Array2<f64>> {

@@ -68,7 +68,13 @@ pub fn hot_taxels(
             true => rest.spread / spread,
             false => f64::INFINITY,
         };
-        let is_noisy = noise_ratio > MIN_NOISE && rest.spread > 0.2 * MIN_EXCESS * range;
+        // If most taxels at rest always read the same (events, coarse steps), the noise of the others has no common scale.
+        let min_spread = if spread > 0.0 {
+            0.2 * MIN_EXCESS
+        } else {
+            MIN_EXCESS
+        };
+        let is_noisy = noise_ratio > MIN_NOISE && rest.spread > min_spread * range;
         let is_hot = rest.near_level - zero <= 0.5 * floor && (rest.excess > floor || is_noisy);
         is_hot.then_some(HotTaxel {
             taxel: rest.taxel,

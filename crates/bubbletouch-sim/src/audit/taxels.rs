@@ -7,6 +7,9 @@
 //!   zero, a clipped normal distribution with an equal fraction of clipped readings replaces the normal distribution. This fraction must be 30 to 70 %, because
 //!   contact in few rows resembles strongly clipped noise.
 //! - The correlation with the sum of the more active taxels is within four standard errors (1/√n).
+//! - The correlation with each of the more active taxels is at most 0.5 (six standard errors for few rows). Electrodes that read contact in both directions
+//!   have a sum that hardly depends on the contact. If readings are clipped, the same holds for the taxels before and after the taxel: light contact that is
+//!   cut at zero resembles clipped noise, but covers several taxels.
 //! - The standard deviation is at most half the 95 % quantile of the standard deviations of the active taxels; a quarter if readings are clipped.
 //!
 //! With contact in a fraction p of rows and of A standard deviations of the noise, the excess kurtosis is about p A⁴ / (1 + p A²)². A single touch of ten
@@ -20,6 +23,11 @@ use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 const MOMENT_ERRORS: f64 = 5.0;
 /// Bound of the correlation with the active taxels in standard errors.
 const CORRELATION_ERRORS: f64 = 4.0;
+/// Bound of the correlation with a single active taxel, and this bound in standard errors for few rows.
+const SINGLE_CORRELATION: f64 = 0.5;
+const SINGLE_CORRELATION_ERRORS: f64 = 6.0;
+/// Maximum number of active taxels with which a taxel is correlated.
+const MAX_COMPARED: usize = 256;
 /// Maximum standard deviation of an untouched taxel, relative to active taxels.
 const MAX_STD: f64 = 0.5;
 /// Minimum fraction of a taxel's readings that equal its least reading, from which its readings count as clipped.
@@ -129,7 +137,7 @@ pub fn untouched_taxels(
     let n = rows.nrows();
     let contact = standardised(contact);
     let taxels = 0..rows.ncols();
-    taxels
+    let mut is_untouched: Vec<bool> = taxels
         .map(|taxel| {
             let residuals = residuals.column(taxel);
             let std = (residuals.dot(&residuals) / n as f64).sqrt();
@@ -152,7 +160,43 @@ pub fn untouched_taxels(
             correlation.abs() * (n as f64).sqrt() <= CORRELATION_ERRORS
                 && has_light_tails(residuals, std, if is_clipped { clipped } else { 0.0 })
         })
-        .collect()
+        .collect();
+    let found = (0..rows.ncols()).filter(|&taxel| is_untouched[taxel]);
+    let found: Vec<usize> = found.collect();
+    let bound = SINGLE_CORRELATION.max(SINGLE_CORRELATION_ERRORS / (n as f64).sqrt());
+    let correlations = largest_correlations(residuals, &found, active_std);
+    for (&taxel, correlation) in found.iter().zip(correlations) {
+        let beside = |other: usize| {
+            let [own, other] = [taxel, other].map(|taxel| residuals.column(taxel));
+            let norm = (own.dot(&own) * other.dot(&other)).sqrt();
+            norm == 0.0 || own.dot(&other).abs() <= bound * norm
+        };
+        is_untouched[taxel] = correlation <= bound
+            && (clipped_share(rows.column(taxel)) <= CLIPPED
+                || (taxel == 0 || beside(taxel - 1))
+                    && (taxel + 1 == rows.ncols() || beside(taxel + 1)));
+    }
+    is_untouched
+}
+
+/// Returns the largest absolute correlation of each of `taxels` with an active taxel.
+fn largest_correlations(residuals: ArrayView2<f64>, taxels: &[usize], active_std: f64) -> Vec<f64> {
+    let stds = residuals.std_axis(Axis(0), 0.0);
+    let active = (0..residuals.ncols()).filter(|&taxel| stds[taxel] > MAX_STD * active_std);
+    let active: Vec<usize> = active.collect();
+    let step = active.len().div_ceil(MAX_COMPARED).max(1);
+    let active: Vec<usize> = active.into_iter().step_by(step).collect();
+    let of = |taxels: &[usize]| {
+        let mut columns = residuals.select(Axis(1), taxels);
+        for (mut column, &taxel) in columns.columns_mut().into_iter().zip(taxels) {
+            column -= column.mean().unwrap_or(0.0);
+            column /= f64::max(stds[taxel], f64::MIN_POSITIVE) * (residuals.nrows() as f64).sqrt();
+        }
+        columns
+    };
+    let correlations = of(taxels).t().dot(&of(&active));
+    let largest = |row: ArrayView1<f64>| row.iter().fold(0.0, |most, x| f64::max(most, x.abs()));
+    correlations.rows().into_iter().map(largest).collect()
 }
 
 /// Returns the 95 % quantile over taxels of the standard deviations of their readings.
@@ -255,5 +299,26 @@ mod tests {
         let contact = contact_sums(residuals.view(), active);
         let found = untouched_taxels(rows.view(), residuals.view(), &contact, active);
         assert_eq!(found, [true, true, true, false, false, false]);
+    }
+
+    /// Electrodes whose readings rise with the contact and others whose readings fall: their sum does not depend on the contact.
+    #[test]
+    fn electrodes_that_read_contact_in_both_directions_are_touched() {
+        let mut rng = Seed::new(6).named("electrodes").rng();
+        let n = 500;
+        let force: Vec<f64> = (0..n)
+            .map(|_| rng.sample::<f64, _>(StandardNormal))
+            .collect();
+        let rows = Array2::from_shape_fn((n, 8), |(row, taxel)| {
+            let gain = [3.0, -3.0, 2.0, -2.0, 0.5, -0.4, 0.0, 0.0][taxel];
+            gain * force[row] + 0.3 * rng.sample::<f64, _>(StandardNormal)
+        });
+        let labels: Vec<usize> = (0..n).map(|row| row % 2).collect();
+        let residuals = without_class_means(rows.view(), &labels);
+        let active = active_std(residuals.view());
+        let contact = contact_sums(residuals.view(), active);
+        let found = untouched_taxels(rows.view(), residuals.view(), &contact, active);
+        let expected = [false, false, false, false, false, false, true, true];
+        assert_eq!(found, expected);
     }
 }

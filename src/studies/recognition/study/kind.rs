@@ -252,6 +252,9 @@ impl RecognitionStudy {
 fn split_words(spec: &StudySpec) -> String {
     let held_out = match spec.recognition.group_by {
         _ if let Some(recorded) = &spec.recorded => {
+            if spec.axes.has("recorded.groups") {
+                return "recorded groups that are never learned, as each row says".to_owned();
+            }
             if recorded.has_test_set() {
                 return "given test set".to_owned();
             }

@@ -31,7 +31,7 @@ use std::sync::Arc;
 pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
     let parse = || StudySpec::parse(&source.place, &source.text);
     // With `--objects`, the files of the study are in another folder.
-    let folder = source.objects.is_none().then(|| source.folder.clone());
+    let mut folder = source.objects.is_none().then(|| source.folder.clone());
     let mut spec = with_folder(folder.clone(), parse)?;
     if let Some(seed) = source.seed
         && spec.axes.has("seed")
@@ -41,7 +41,7 @@ pub fn read_plans(source: &Source) -> Result<Vec<(AxisValues, Plan)>> {
     }
     spec.seed = source.seed(spec.seed);
     match &mut spec.recorded {
-        Some(recorded) => source.replace_recorded(recorded),
+        Some(recorded) => folder = source.replace_recorded(recorded).or(folder),
         None => source.replace_objects(&mut spec.objects),
     }
     if !Foreign::given().is_empty() && spec.axes.has("recognition.classifier") {

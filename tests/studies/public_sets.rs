@@ -1,0 +1,229 @@
+//! Studies of public recordings run on simulated recordings of the shapes, types and files that `experiments/convert_*.py` write.
+
+use crate::command::Case;
+use bubbletouch::random::Seed;
+use bubbletouch::study::{write_integers, write_npy, write_texts};
+use ndarray::{Array2, Array3};
+use rand::Rng;
+use rand_distr::StandardNormal;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Simulated sequence of a contact: its place and size depend on the class, and a pattern of its own repeats in all frames of the sequence.
+struct Sequence {
+    class: usize,
+    group: usize,
+}
+
+/// Returns frames of `n_frames` for each sequence, shape (n, rows · columns). The contact is a cap that is cut at zero; readings are fractions of `full_scale`.
+fn simulated(
+    sequences: &[Sequence],
+    n_frames: usize,
+    (rows, columns): (usize, usize),
+    full_scale: f64,
+) -> Array2<f64> {
+    let mut rng = Seed::new(11).named("public sets").rng();
+    let mut frames = Array2::zeros((sequences.len() * n_frames, rows * columns));
+    for (number, &Sequence { class, .. }) in sequences.iter().enumerate() {
+        let place = (class as f64 * 2.4).sin_cos();
+        let at = |share: f64, n: usize| (0.5 + 0.3 * share) * n as f64;
+        let (y, x) = (at(place.0, rows), at(place.1, columns));
+        let radius = 0.2 * rows.max(columns) as f64;
+        let own: Vec<f64> = (0..rows * columns)
+            .map(|_| rng.sample(StandardNormal))
+            .collect();
+        for frame in 0..n_frames {
+            let readings = frames.row_mut(number * n_frames + frame);
+            for (taxel, reading) in readings.into_iter().enumerate() {
+                let away = ((taxel / columns) as f64 - y).hypot((taxel % columns) as f64 - x);
+                let cap = (1.0 - away / radius).max(0.0);
+                let noise: f64 = rng.sample(StandardNormal);
+                let share = 0.2 + 0.1 * cap + 0.12 * own[taxel] + 0.01 * noise;
+                *reading = (full_scale * share).clamp(0.0, full_scale).round();
+            }
+        }
+    }
+    frames
+}
+
+fn texts(path: &Path, of: impl Fn(&Sequence) -> String, sequences: &[Sequence], n_frames: usize) {
+    let texts = sequences
+        .iter()
+        .flat_map(|sequence| vec![of(sequence); n_frames]);
+    write_texts(path, &texts.collect::<Vec<_>>()).unwrap();
+}
+
+fn postures(folder: &Path) {
+    const N_FRAMES: usize = 2;
+    let sequence = |k: usize| Sequence {
+        class: 1 + k % 17,
+        group: 1 + k / 17,
+    };
+    let sequences: Vec<Sequence> = (0..6 * 17).map(sequence).collect();
+    let frames = simulated(&sequences, N_FRAMES, (64, 32), 1200.0).mapv(|x| x as u16);
+    let n = frames.nrows();
+    let frames = frames.into_shape_with_order((n, 64, 32)).unwrap();
+    write_npy(&folder.join("frames.npy"), &frames).unwrap();
+    let category = |one: &Sequence| match one.class {
+        2 | 4 | 5 | 13 => "right".to_owned(),
+        3 | 6 | 7 | 14 => "left".to_owned(),
+        _ => "supine".to_owned(),
+    };
+    texts(
+        &folder.join("categories.npy"),
+        category,
+        &sequences,
+        N_FRAMES,
+    );
+    let posture = |one: &Sequence| format!("p{:02}", one.class);
+    texts(&folder.join("postures.npy"), posture, &sequences, N_FRAMES);
+    let subject = |one: &Sequence| format!("S{}", one.group);
+    texts(&folder.join("subjects.npy"), subject, &sequences, N_FRAMES);
+    write_integers(&folder.join("touches.npy"), 0..n).unwrap();
+}
+
+fn grasps(folder: &Path) {
+    const N_FRAMES: usize = 4;
+    for (end, n_objects) in [("", 10), ("_test", 4)] {
+        let sequence = |k: usize| Sequence {
+            class: k % 2,
+            group: k / 2,
+        };
+        let sequences: Vec<Sequence> = (0..2 * n_objects).map(sequence).collect();
+        let frames = simulated(&sequences, N_FRAMES, (3, 24), 4095.0).mapv(|x| x as u16);
+        let file = |name: &str| folder.join(format!("{name}{end}.npy"));
+        write_npy(&file("frames"), &frames).unwrap();
+        let label = |one: &Sequence| ["stable", "slipped"][one.class].to_owned();
+        texts(&file("labels"), label, &sequences, N_FRAMES);
+        let object = |one: &Sequence| format!("object{end}_{}", one.group);
+        texts(&file("objects"), object, &sequences, N_FRAMES);
+        write_integers(&file("grasps"), 0..frames.nrows()).unwrap();
+    }
+}
+
+fn events(folder: &Path) {
+    for (end, per_class) in [("", 6), ("_test", 1)] {
+        let n = 36 * per_class;
+        let mut rng = Seed::new(12).named(end).rng();
+        let frames = Array3::from_shape_fn((n, 25, 78), |(touch, window, channel)| {
+            let rate = 0.3
+                + 0.25 * ((touch % 36 + 1) as f64 * (channel as f64 + 0.1 * window as f64)).sin();
+            (0..10).filter(|_| rng.gen_bool(rate)).count() as u8
+        });
+        write_npy(&folder.join(format!("frames{end}.npy")), &frames).unwrap();
+        let labels = (0..n).map(|touch| touch % 36);
+        write_integers(&folder.join(format!("labels{end}.npy")), labels).unwrap();
+    }
+}
+
+/// Writes a simulated recording of the shape that the study `name` reads.
+pub fn write_recording(name: &str, folder: &Path) {
+    match name {
+        "real_postures" | "real_readout" => postures(folder),
+        "real_grasps" | "real_grasps_new_objects" => grasps(folder),
+        "real_events" => events(folder),
+        "real_skin" => {
+            let frames = Array3::from_shape_fn((220, 28, 50), |(touch, row, column)| {
+                ((touch * (row + 1) * (column + 1)) % 256) as u8
+            });
+            write_npy(&folder.join("frames.npy"), &frames).unwrap();
+            write_integers(&folder.join("labels.npy"), (0..220).map(|touch| touch % 22)).unwrap();
+        }
+        other => panic!("no recording of the shape of {other}"),
+    }
+}
+
+/// Runs a committed study on a simulated recording, and returns the rows of its table `accuracy.csv`.
+fn rows(name: &str) -> Vec<BTreeMap<String, String>> {
+    let case = Case::new();
+    std::fs::create_dir(case.path("set")).unwrap();
+    write_recording(name, &case.path("set"));
+    let study = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("experiments/{name}.toml"));
+    let study = study.display().to_string();
+    case.succeeds(&["run", &study, "--objects", "set", "--out", "out"]);
+    let mut reader = csv::Reader::from_path(case.path("out/accuracy.csv")).unwrap();
+    let rows = reader.deserialize().map(Result::unwrap);
+    rows.collect()
+}
+
+/// Returns the mean accuracy of the rows with these values.
+fn accuracy(rows: &[BTreeMap<String, String>], wanted: &[(&str, &str)]) -> f64 {
+    let is_wanted =
+        |row: &&BTreeMap<String, String>| wanted.iter().all(|(key, value)| row[*key] == *value);
+    let found: Vec<f64> = rows
+        .iter()
+        .filter(is_wanted)
+        .map(|row| row["accuracy"].parse().unwrap())
+        .collect();
+    assert!(!found.is_empty(), "{wanted:?}");
+    found.iter().sum::<f64>() / found.len() as f64
+}
+
+#[test]
+fn postures_are_tested_with_frames_at_random_and_with_new_people() {
+    let rows = rows("real_postures");
+    // 2 groups × 2 labels × 3 features × 4 classifiers × 5 folds.
+    assert_eq!(rows.len(), 240);
+    let of = |groups, classifier| {
+        let wanted = [
+            ("groups", groups),
+            ("labels", "postures.npy"),
+            ("classifier", classifier),
+            ("features", "raw"),
+        ];
+        accuracy(&rows, &wanted)
+    };
+    // The frames of a sequence share a pattern, which only a split by people keeps apart.
+    assert_eq!(of("touches.npy", "k_nearest"), 1.0);
+    assert!(
+        of("subjects.npy", "k_nearest") < 0.7,
+        "{}",
+        of("subjects.npy", "k_nearest")
+    );
+    assert!(of("subjects.npy", "k_nearest") > 0.1);
+    let tested = rows
+        .iter()
+        .filter(|row| row["groups"] == "subjects.npy" && row["labels"] == "categories.npy");
+    let n: usize = tested
+        .map(|row| row["n_test"].parse::<usize>().unwrap())
+        .sum();
+    assert_eq!(n, 12 * 204);
+}
+
+#[test]
+fn grasps_are_tested_at_random_by_object_and_on_the_given_objects() {
+    let split = rows("real_grasps");
+    assert_eq!(split.len(), 2 * 4 * 5);
+    let of = |groups| accuracy(&split, &[("groups", groups), ("classifier", "k_nearest")]);
+    assert!(
+        of("grasps.npy") > of("objects.npy") + 0.1,
+        "{} {}",
+        of("grasps.npy"),
+        of("objects.npy")
+    );
+    let given = rows("real_grasps_new_objects");
+    assert_eq!(given.len(), 4);
+    assert!(
+        given
+            .iter()
+            .all(|row| row["n_test"] == "32" && row["n_groups"] == "4"),
+        "{given:?}"
+    );
+}
+
+#[test]
+fn events_are_counted_in_windows_and_tested_on_the_given_set() {
+    let rows = rows("real_events");
+    assert_eq!(rows.len(), 16);
+    assert!(rows.iter().all(|row| row["n_test"] == "36"));
+    let of = |features| {
+        accuracy(
+            &rows,
+            &[
+                ("temporal_features", features),
+                ("classifier", "linear_svm"),
+            ],
+        )
+    };
+    assert!(of("stacked_25") > 0.9, "{}", of("stacked_25"));
+}
