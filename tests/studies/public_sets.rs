@@ -3,7 +3,7 @@
 use crate::command::Case;
 use bubbletouch::random::Seed;
 use bubbletouch::study::{write_integers, write_npy, write_texts};
-use ndarray::{Array2, Array3};
+use ndarray::{Array2, Array3, s};
 use rand::Rng;
 use rand_distr::StandardNormal;
 use std::collections::BTreeMap;
@@ -93,6 +93,10 @@ fn grasps(folder: &Path) {
         let frames = simulated(&sequences, N_FRAMES, (3, 24), 4095.0).mapv(|x| x as u16);
         let file = |name: &str| folder.join(format!("{name}{end}.npy"));
         write_npy(&file("frames"), &frames).unwrap();
+        for (finger, name) in ["ff", "mf", "th"].into_iter().enumerate() {
+            let electrodes = frames.slice(s![.., 24 * finger..24 * (finger + 1)]);
+            write_npy(&file(name), &electrodes.to_owned()).unwrap();
+        }
         let label = |one: &Sequence| ["stable", "slipped"][one.class].to_owned();
         texts(&file("labels"), label, &sequences, N_FRAMES);
         let object = |one: &Sequence| format!("object{end}_{}", one.group);
@@ -193,8 +197,16 @@ fn postures_are_tested_with_frames_at_random_and_with_new_people() {
 #[test]
 fn grasps_are_tested_at_random_by_object_and_on_the_given_objects() {
     let split = rows("real_grasps");
-    assert_eq!(split.len(), 2 * 4 * 5);
-    let of = |groups| accuracy(&split, &[("groups", groups), ("classifier", "k_nearest")]);
+    // 2 groups × 4 choices of sensors × 4 classifiers × 5 folds.
+    assert_eq!(split.len(), 160);
+    let of = |groups| {
+        let wanted = [
+            ("groups", groups),
+            ("sensor", "all"),
+            ("classifier", "k_nearest"),
+        ];
+        accuracy(&split, &wanted)
+    };
     assert!(
         of("grasps.npy") > of("objects.npy") + 0.1,
         "{} {}",
