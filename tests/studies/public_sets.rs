@@ -54,12 +54,12 @@ fn texts(path: &Path, of: impl Fn(&Sequence) -> String, sequences: &[Sequence], 
 }
 
 fn postures(folder: &Path) {
-    const N_FRAMES: usize = 2;
+    const N_FRAMES: usize = 6;
     let sequence = |k: usize| Sequence {
         class: 1 + k % 17,
         group: 1 + k / 17,
     };
-    let sequences: Vec<Sequence> = (0..6 * 17).map(sequence).collect();
+    let sequences: Vec<Sequence> = (0..5 * 17).map(sequence).collect();
     let frames = simulated(&sequences, N_FRAMES, (64, 32), 1200.0).mapv(|x| x as u16);
     let n = frames.nrows();
     let frames = frames.into_shape_with_order((n, 64, 32)).unwrap();
@@ -191,7 +191,7 @@ fn postures_are_tested_with_frames_at_random_and_with_new_people() {
     let n: usize = tested
         .map(|row| row["n_test"].parse::<usize>().unwrap())
         .sum();
-    assert_eq!(n, 12 * 204);
+    assert_eq!(n, 12 * 510);
 }
 
 #[test]

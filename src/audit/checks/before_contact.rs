@@ -27,35 +27,46 @@ pub const QUIETEST: Source = Source {
     holds_out_groups: true,
 };
 
-/// Frame with which the contact of each touch begins, if all touches have at least [`MIN_BEFORE`] frames before it.
+/// Number of frames before the contact of each touch, if all touches begin at rest.
 pub const ONSET: Source = Source {
     name: "contact_onset",
     rows: onset,
     holds_out_groups: true,
 };
 
-/// Minimum number of frames before the earliest contact. In recordings with fewer, the shape of an object determines how its contact begins.
-const MIN_BEFORE: usize = 3;
+/// Minimum number of frames at rest with which touches begin, and this number as a fraction of the frames. In recordings that begin with the contact, the
+/// shape of an object determines how its contact grows.
+const MIN_REST: usize = 3;
+const MIN_REST_SHARE: f64 = 0.1;
+/// Maximum growth of the sum of the readings during the frames at rest, relative to the growth during the touch; means over touches.
+const MAX_GROWTH: f64 = 0.01;
 /// Fraction of the way from the smallest to the largest sum of a touch's readings at which the contact has begun.
-const BEGUN: f64 = 0.1;
+const BEGUN: f64 = 0.25;
 
 /// Returns the number of frames of each sampled touch before its contact, shape (n_sample, 1).
 fn onset(context: &Context) -> Option<Array2<f64>> {
     let n_frames = context.data.n_frames;
-    if n_frames <= MIN_BEFORE {
+    let n_rest = MIN_REST.max((MIN_REST_SHARE * n_frames as f64) as usize);
+    if n_frames <= n_rest {
         return None;
     }
-    let frames = context.sample.iter().map(|touch| {
+    let stds = context.residuals.std_axis(Axis(0), 0.0);
+    let is_active = stds.mapv(|std| if std > 0.5 * context.active_std { 1.0 } else { 0.0 });
+    let (mut onsets, mut at_rest, mut growth) = (Vec::new(), 0.0, 0.0);
+    for touch in &context.sample {
         let rows = touch * n_frames..(touch + 1) * n_frames;
-        let sums: Vec<f64> = rows.map(|row| context.data.frames.row(row).sum()).collect();
+        let sums: Vec<f64> = rows
+            .map(|row| context.data.frames.row(row).dot(&is_active))
+            .collect();
         let least = sums.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let is_begun = |sum: &f64| *sum > least + BEGUN * (largest - least);
-        sums.iter().position(is_begun).unwrap_or(n_frames) as f64
-    });
-    let onsets: Vec<f64> = frames.collect();
-    let earliest = onsets.iter().copied().fold(f64::INFINITY, f64::min);
-    (earliest >= MIN_BEFORE as f64)
+        let begun = sums.iter().position(is_begun).unwrap_or(n_frames);
+        onsets.push(begun as f64);
+        at_rest += sums[n_rest - 1] - sums[0];
+        growth += largest - least;
+    }
+    (at_rest.abs() <= MAX_GROWTH * growth)
         .then(|| Array2::from_shape_vec((onsets.len(), 1), onsets).expect("one number a touch"))
 }
 
